@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/base: errors, numbers, files, history lines, JSON, progress. Uses the standard library only.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ispace {
+
+/// What is wrong with the command line; runTool answers with exit status 2.
+class UsageError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A stated requirement was not met (`--require`, no valid position); exit status 3.
+/// The product has been written all the same where there is one.
+class UnmetError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// One finding in an input: `file:line:column: error: message`.
+struct Diagnostic {
+    std::string file;     ///< as the user named it; "-" reads as "stdin"; empty: no place
+    int line = 0;         ///< 1-based; 0: the file as a whole
+    int column = 0;       ///< 1-based, in bytes; 0: the line as a whole
+    std::string message;  ///< what was found, what was wanted, the hint
+
+    /// "room.env:14:7: error: wall has zero length"
+    [[nodiscard]] std::string text() const;
+};
+
+/// Bad data: one or more findings, in the order of the input. Exit status 1.
+class FormatError : public std::runtime_error {
+  public:
+    explicit FormatError(Diagnostic diagnostic);
+    explicit FormatError(std::vector<Diagnostic> diagnostics);
+
+    [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+  private:
+    std::vector<Diagnostic> diagnostics_;
+};
+
+/// Collects findings so that several are reported together.
+class Diagnostics {
+  public:
+    /// Printed at most; what lies beyond is counted, not kept.
+    static constexpr std::size_t kMost = 20;
+
+    void add(Diagnostic diagnostic);
+    /// Takes over the findings of a caught error.
+    void add(const FormatError& error);
+    [[nodiscard]] bool empty() const { return kept_.empty(); }
+    [[nodiscard]] bool full() const { return kept_.size() >= kMost; }
+    /// Throws FormatError if there is any finding.
+    void throwIfAny() const;
+
+  private:
+    std::vector<Diagnostic> kept_;
+    std::size_t dropped_ = 0;
+};
+
+/// How messages name an operand: "-" is "stdin".
+std::string displayName(std::string_view operand);
+
+}  // namespace ispace

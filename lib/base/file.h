@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace ispace {
+
+/// Everything in a file, or on standard input for "-".
+/// \throws std::system_error naming the file; also for a directory
+std::string readAll(const std::string& operand);
+
+/// A product on its way to its place: a regular file is written beside its target and renamed by
+/// commit(), so that a reader never sees half of it; without commit() (an error, a signal) the old
+/// file stays and nothing is left behind. "-" is standard output; a device, a pipe and
+/// everything else that is no regular file is written directly. A symbolic link stays, its target
+/// is replaced; an existing file's permissions are kept.
+class OutputFile {
+  public:
+    /// \throws std::system_error if the file cannot be made there
+    explicit OutputFile(const std::string& target);
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    /// \throws std::system_error naming the target, a full disk included
+    void write(std::string_view bytes);
+    /// Puts the file in its place. Nothing can be written afterwards.
+    void commit();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// OutputFile for a product that is whole in memory.
+void writeAll(const std::string& target, std::string_view bytes);
+
+/// True if "-" and standard output is a terminal: binary data does not go there.
+bool isTerminalOutput(const std::string& target);
+
+}  // namespace ispace

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, removed afterwards.
+class FileTest : public testing::Test {
+  protected:
+    FileTest() {
+        std::string name = (fs::temp_directory_path() / "ispace_file_XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+    }
+    void TearDown() override {
+        std::error_code ignored;
+        fs::permissions(folder_, fs::perms::owner_all, ignored);
+        fs::remove_all(folder_, ignored);
+    }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+    [[nodiscard]] std::vector<std::string> names() const {
+        std::vector<std::string> all;
+        for (const auto& entry : fs::directory_iterator(folder_))
+            all.push_back(entry.path().filename());
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+    static mode_t modeOf(const std::string& file) {
+        struct stat info {};
+        EXPECT_EQ(::stat(file.c_str(), &info), 0);
+        return info.st_mode & 07777;
+    }
+    fs::path folder_;
+};
+
+/// The error code of what `action` throws; it names `file`.
+template <typename Action>
+int errorOf(Action action, const std::string& file) {
+    try {
+        action();
+    } catch (const std::system_error& error) {
+        EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
+        return error.code().value();
+    }
+    return 0;
+}
+
+TEST_F(FileTest, CommitPutsTheFileInItsPlace) {
+    OutputFile file(path("a"));
+    file.write("one ");
+    file.write("");
+    file.write("two");
+    EXPECT_EQ(names(), std::vector<std::string>{}) << "seen before commit";
+    file.commit();
+    EXPECT_EQ(names(), std::vector<std::string>{"a"});
+    EXPECT_EQ(readAll(path("a")), "one two");
+}
+
+TEST_F(FileTest, NewFilesFollowTheUmask) {
+    const mode_t before = ::umask(027);
+    writeAll(path("a"), "x");
+    ::umask(before);
+    EXPECT_EQ(modeOf(path("a")), 0640U);
+}
+
+TEST_F(FileTest, WithoutCommitTheOldFileStaysAndNothingIsLeft) {
+    writeAll(path("a"), "old");
+    {
+        OutputFile file(path("a"));
+        file.write("new");
+        EXPECT_EQ(readAll(path("a")), "old");
+    }
+    { const OutputFile never(path("b")); }
+    EXPECT_EQ(readAll(path("a")), "old");
+    EXPECT_EQ(names(), std::vector<std::string>{"a"});
+}
+
+TEST_F(FileTest, ReplacesAsAWholeAndKeepsTheMode) {
+    writeAll(path("a"), "a long old text");
+    ASSERT_EQ(::chmod(path("a").c_str(), 0604), 0);
+    std::ifstream reader(path("a"));
+    writeAll(path("a"), "new");
+    EXPECT_EQ(readAll(path("a")), "new");
+    EXPECT_EQ(modeOf(path("a")), 0604U);
+    std::string seen;
+    std::getline(reader, seen);
+    EXPECT_EQ(seen, "a long old text") << "who reads the old file goes on reading it";
+}
+
+TEST_F(FileTest, LinksStay) {
+    fs::create_directory(path("sub"));
+    writeAll(path("sub/real"), "old");
+    fs::create_symlink("sub/real", path("link"));
+    fs::create_symlink(path("link"), path("link2"));
+    writeAll(path("link2"), "new");
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+    EXPECT_TRUE(fs::is_symlink(path("link2")));
+    EXPECT_EQ(readAll(path("sub/real")), "new");
+}
+
+TEST_F(FileTest, ALinkToNothingGetsItsTarget) {
+    fs::create_symlink("later", path("link"));
+    writeAll(path("link"), "new");
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+    EXPECT_EQ(readAll(path("later")), "new");
+}
+
+TEST_F(FileTest, AStandInOfAKilledProcessIsNoHindrance) {
+    const std::string left = path(".ispace.tmp." + std::to_string(::getpid()) + ".0");
+    std::ofstream(left) << "left";
+    writeAll(path("a"), "new");
+    EXPECT_EQ(readAll(path("a")), "new");
+    EXPECT_EQ(readAll(left), "left");
+    EXPECT_EQ(names().size(), 2U);
+}
+
+TEST_F(FileTest, TakesTheLongestNames) {
+    const std::string name(255, 'x');
+    writeAll(path(name), "new");
+    EXPECT_EQ(readAll(path(name)), "new");
+    EXPECT_EQ(errorOf([&] { writeAll(path(name + 'x'), "new"); }, "xxx"), ENAMETOOLONG);
+}
+
+TEST_F(FileTest, DevicesAreWrittenDirectly) {
+    writeAll("/dev/null", "gone");
+    struct stat info {};
+    ASSERT_EQ(::stat("/dev/null", &info), 0);
+    EXPECT_TRUE(S_ISCHR(info.st_mode));
+    EXPECT_EQ(errorOf([] { writeAll("/dev/full", "x"); }, "/dev/full"), ENOSPC);
+}
+
+TEST_F(FileTest, RefusesFoldersAndWhatCannotBeMade) {
+    const auto write = [&](const std::string& name) {
+        return errorOf([&] { const OutputFile file(name); }, name);
+    };
+    EXPECT_EQ(write(folder_.string()), EISDIR);
+    EXPECT_EQ(write(folder_.string() + '/'), EISDIR);
+    EXPECT_EQ(write(path("new/")), EISDIR);
+    EXPECT_EQ(write(path("no/such/folder")), ENOENT);
+    EXPECT_EQ(write(""), ENOENT);
+    writeAll(path("file"), "x");
+    EXPECT_EQ(write(path("file/below")), ENOTDIR);
+    EXPECT_NE(write("/proc/ispace"), 0);
+    EXPECT_EQ(names(), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, RefusesWhatMayNotBeWritten) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write everything";
+    writeAll(path("a"), "old");
+    ASSERT_EQ(::chmod(path("a").c_str(), 0444), 0);
+    EXPECT_EQ(errorOf([&] { const OutputFile file(path("a")); }, path("a")), EACCES);
+    ASSERT_EQ(::chmod(folder_.c_str(), 0555), 0);
+    EXPECT_EQ(errorOf([&] { const OutputFile file(path("b")); }, path("b")), EACCES);
+}
+
+TEST_F(FileTest, ReadsEverything) {
+    std::string bytes(300000, 'x');
+    bytes[7] = '\0';
+    bytes[8] = '\n';
+    writeAll(path("a"), bytes);
+    EXPECT_EQ(readAll(path("a")), bytes);
+    writeAll(path("empty"), "");
+    EXPECT_EQ(readAll(path("empty")), "");
+    EXPECT_NE(readAll("/proc/self/status").find("Name:"), std::string::npos);
+    EXPECT_EQ(errorOf([&] { (void)readAll(path("none")); }, path("none")), ENOENT);
+    EXPECT_EQ(errorOf([&] { (void)readAll(folder_); }, folder_), EISDIR);
+}
+
+}  // namespace
+}  // namespace ispace

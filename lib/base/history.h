@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ispace {
+
+/// The commands that touched a stream, oldest first, without the leading "# ".
+///
+/// A line holds the tool, its operands by base name and the options that change the result, so
+/// that equal work gives equal bytes on any machine.
+using History = std::vector<std::string>;
+
+/// `word` as a shell would need it: quoted if it holds anything but plain characters; control
+/// characters and bytes that are no UTF-8 become '?', so that a history line stays one line of
+/// text.
+std::string shellQuote(std::string_view word);
+
+/// The operand as history names it: the base name, "-" for a stream.
+std::string baseName(std::string_view operand);
+
+}  // namespace ispace

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/json_writer.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "base/number.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+void appendQuoted(std::string& out, std::string_view text) {
+    out += '"';
+    while (!text.empty()) {
+        const std::size_t length = utf8Length(text);
+        const char c = text.front();
+        if (length == 0) {
+            out += "\xef\xbf\xbd";
+        } else if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (c == '\n') {
+            out += "\\n";
+        } else if (c == '\t') {
+            out += "\\t";
+        } else if (static_cast<unsigned char>(c) < 0x20) {
+            std::array<char, 8> escape;
+            std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
+            out += escape.data();
+        } else {
+            out += text.substr(0, length);
+        }
+        text.remove_prefix(length == 0 ? 1 : length);
+    }
+    out += '"';
+}
+
+}  // namespace
+
+void JsonWriter::separate() {
+    if (comma_) text_ += ',';
+    comma_ = true;
+}
+
+JsonWriter& JsonWriter::beginObject() {
+    separate();
+    text_ += '{';
+    comma_ = false;
+    return *this;
+}
+
+JsonWriter& JsonWriter::endObject() {
+    text_ += '}';
+    comma_ = true;
+    return *this;
+}
+
+JsonWriter& JsonWriter::beginArray() {
+    separate();
+    text_ += '[';
+    comma_ = false;
+    return *this;
+}
+
+JsonWriter& JsonWriter::endArray() {
+    text_ += ']';
+    comma_ = true;
+    return *this;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name) {
+    separate();
+    appendQuoted(text_, name);
+    text_ += ':';
+    comma_ = false;
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(std::string_view text) {
+    separate();
+    appendQuoted(text_, text);
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(double number) {
+    if (!std::isfinite(number)) return null();
+    separate();
+    text_ += formatDouble(number);
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(float number) {
+    if (!std::isfinite(number)) return null();
+    separate();
+    appendFloat(text_, number);
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(std::int64_t number) {
+    separate();
+    text_ += std::to_string(number);
+    return *this;
+}
+
+JsonWriter& JsonWriter::value(bool flag) {
+    separate();
+    text_ += flag ? "true" : "false";
+    return *this;
+}
+
+JsonWriter& JsonWriter::null() {
+    separate();
+    text_ += "null";
+    return *this;
+}
+
+}  // namespace ispace

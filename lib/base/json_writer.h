@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ispace {
+
+/// Writes compact JSON into a string, keys in the order given, doubles in shortest form.
+///
+///     JsonWriter json;
+///     json.beginObject().key("schema").value("x/1").key("area").value(1.5).endObject();
+class JsonWriter {
+  public:
+    JsonWriter& beginObject();
+    JsonWriter& endObject();
+    JsonWriter& beginArray();
+    JsonWriter& endArray();
+    JsonWriter& key(std::string_view name);
+    /// Invalid UTF-8 is replaced by U+FFFD, so that the result always is valid JSON.
+    JsonWriter& value(std::string_view text);
+    JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+    /// A number that is not finite becomes null: JSON has no other word for it.
+    JsonWriter& value(double number);
+    JsonWriter& value(float number);
+    JsonWriter& value(std::int64_t number);
+    JsonWriter& value(int number) { return value(static_cast<std::int64_t>(number)); }
+    JsonWriter& value(std::size_t number) { return value(static_cast<std::int64_t>(number)); }
+    JsonWriter& value(bool flag);
+    JsonWriter& null();
+    template <typename T>
+    JsonWriter& value(const std::optional<T>& maybe) {
+        return maybe ? value(*maybe) : null();
+    }
+    template <typename T>
+    JsonWriter& value(const std::vector<T>& list) {
+        beginArray();
+        for (const T& item : list) value(item);
+        return endArray();
+    }
+
+    [[nodiscard]] const std::string& text() const { return text_; }
+    std::string take() { return std::move(text_); }
+
+  private:
+    void separate();
+
+    std::string text_;
+    bool comma_ = false;
+};
+
+}  // namespace ispace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/number.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kBuffer = 64;
+constexpr double kPlainFrom = 1e-5, kPlainTo = 1e15;
+
+template <typename Float>
+std::string_view shortest(Float value, std::array<char, kBuffer>& buffer) {
+    if (value == 0) value = 0;  // drops the sign of minus zero
+    const Float size = std::fabs(value);
+    const bool plain = size == 0 || (size >= static_cast<Float>(kPlainFrom) &&
+                                     size < static_cast<Float>(kPlainTo));
+    const auto format = plain ? std::chars_format::fixed : std::chars_format::scientific;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format).ptr;
+    return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
+}
+
+}  // namespace
+
+std::optional<double> parseDouble(std::string_view text) {
+    if (text.starts_with('+')) {
+        text.remove_prefix(1);
+        if (text.starts_with('-') || text.starts_with('+')) return std::nullopt;
+    }
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+std::optional<double> parseScaled(std::string_view text, int exponent) {
+    // On the decimal text, not by a product: 30.1 / 100 is not 0.301.
+    const auto mark = text.find_first_of("eE");
+    const std::string_view mantissa = text.substr(0, mark);
+    std::int64_t written = 0;
+    if (mark != std::string_view::npos) {
+        const auto power = parseInteger(text.substr(mark + 1));
+        constexpr std::int64_t kFarBeyond = 1'000'000'000;
+        if (!power || *power > kFarBeyond || *power < -kFarBeyond) return std::nullopt;
+        written = *power;
+    }
+    if (!parseDouble(mantissa)) return std::nullopt;
+    return parseDouble(std::string(mantissa) + 'e' + std::to_string(written + exponent));
+}
+
+std::optional<std::int64_t> parseInteger(std::string_view text) {
+    if (text.starts_with('+')) {
+        text.remove_prefix(1);
+        if (text.starts_with('-')) return std::nullopt;
+    }
+    std::int64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+    return value;
+}
+
+std::string formatDouble(double value) {
+    std::array<char, kBuffer> buffer;
+    return std::string(shortest(value, buffer));
+}
+
+std::string formatFloat(float value) {
+    std::array<char, kBuffer> buffer;
+    return std::string(shortest(value, buffer));
+}
+
+void appendFloat(std::string& out, float value) {
+    std::array<char, kBuffer> buffer;
+    out += shortest(value, buffer);
+}
+
+std::string formatFixed(double value, int decimals) {
+    std::array<char, 512> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                   std::chars_format::fixed, decimals)
+                         .ptr;
+    std::string text(buffer.data(), end);
+    if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos)
+        text.erase(0, 1);
+    return text;
+}
+
+std::string formatPercent(double fraction) {
+    if (fraction == 0) return "0%";
+    // The point moves in the decimal text, as parseShare moves it back: many fractions are no
+    // quotient of a double by 100.
+    std::array<char, kBuffer> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), fraction,
+                                   std::chars_format::scientific)
+                         .ptr;
+    const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+    const auto mark = text.find('e');
+    std::string digits(text.substr(0, mark));
+    const bool negative = digits.front() == '-';
+    std::erase_if(digits, [](char c) { return c == '-' || c == '.'; });
+    const auto exponent = parseInteger(text.substr(mark + 1)).value_or(0) + 2;
+    std::string out = negative ? "-" : "";
+    constexpr std::int64_t kSmallest = -5, kLargest = 15;
+    const auto count = static_cast<std::int64_t>(digits.size());
+    if (exponent < kSmallest || exponent >= kLargest) {
+        if (count > 1) digits.insert(1, 1, '.');
+        return out + digits + 'e' + (exponent < 0 ? "-" : "+") +
+               std::to_string(exponent < 0 ? -exponent : exponent) + '%';
+    }
+    if (exponent < 0) digits.insert(0, static_cast<std::size_t>(-exponent), '0');
+    const auto whole = static_cast<std::size_t>(exponent < 0 ? 1 : exponent + 1);
+    if (digits.size() < whole) digits.append(whole - digits.size(), '0');
+    if (digits.size() > whole) digits.insert(whole, 1, '.');
+    return out + digits + '%';
+}
+
+std::optional<double> parseShare(std::string_view text) {
+    const bool percent = text.ends_with('%');
+    if (percent) text.remove_suffix(1);
+    const auto share = percent ? parseScaled(text, -2) : parseDouble(text);
+    if (!share || *share < 0 || *share > 1) return std::nullopt;
+    return share;
+}
+
+}  // namespace ispace

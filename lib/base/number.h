@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ispace {
+
+/// The whole text as a finite number: no blanks, no trailing junk, no locale, no NaN or infinity.
+/// A leading '+' is allowed. Values beyond the range of double give nothing.
+std::optional<double> parseDouble(std::string_view text);
+
+/// The same times 10^exponent, rounded once: ("30.1", -2) is the double nearest to 0.301.
+std::optional<double> parseScaled(std::string_view text, int exponent);
+
+/// The whole text as a decimal integer.
+std::optional<std::int64_t> parseInteger(std::string_view text);
+
+/// Shortest decimal text that reads back as the same double; plain notation from 1e-5 up to 1e15,
+/// otherwise with exponent; -0 is "0".
+/// \pre value is finite
+std::string formatDouble(double value);
+
+/// The same for a float: shortest text that reads back as the same float.
+std::string formatFloat(float value);
+/// Appends formatFloat(value); for long lists.
+void appendFloat(std::string& out, float value);
+
+/// Fixed number of decimals; a result of minus zero is written without sign.
+std::string formatFixed(double value, int decimals);
+
+/// Shortest percentage that parseShare reads back as the same fraction: 0.974 is "97.4%".
+/// \pre fraction is finite
+std::string formatPercent(double fraction);
+
+/// A share as users write it: "95%" and "0.95" are the same. A number above 1 without a per cent
+/// sign is refused (it could be either), as is anything outside 0..1.
+std::optional<double> parseShare(std::string_view text);
+
+}  // namespace ispace
