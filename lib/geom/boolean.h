@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// The pieces of `region` outside all closed `solids` (simple polygons, any orientation, which may
+/// overlap and touch). Exact constructions inside (CGAL), rounded to doubles at the end.
+std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
+
+/// Sum of the areas of disjoint regions.
+double totalArea(std::span<const Region> regions);
+
+}  // namespace ispace

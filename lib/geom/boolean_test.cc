@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/boolean.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/planar_map.h"
+#include "geom/test_curves.h"
+
+namespace ispace {
+namespace {
+
+Polygon reversed(Polygon polygon) {
+    std::reverse(polygon.begin(), polygon.end());
+    return polygon;
+}
+
+const Region kRoom{test::box(0, 0, 8, 6), {}};
+
+TEST(Difference, withoutSolidsIsTheRegion) {
+    const auto pieces = difference(kRoom, {});
+    ASSERT_EQ(pieces.size(), 1U);
+    EXPECT_EQ(pieces[0].outline, kRoom.outline);
+    EXPECT_TRUE(difference({}, {}).empty());
+    EXPECT_TRUE(difference({}, std::vector<Polygon>{test::box(0, 0, 1, 1)}).empty());
+    EXPECT_EQ(totalArea({}), 0);
+}
+
+TEST(Difference, solidInside) {
+    for (const Polygon& solid : {test::box(2, 2, 4, 4), reversed(test::box(2, 2, 4, 4))}) {
+        const auto pieces = difference(kRoom, std::vector<Polygon>{solid});
+        ASSERT_EQ(pieces.size(), 1U);
+        EXPECT_EQ(pieces[0].outline, kRoom.outline);
+        ASSERT_EQ(pieces[0].holes.size(), 1U);
+        EXPECT_EQ(signedArea(pieces[0].holes[0]), -4);
+    }
+}
+
+TEST(Difference, overlappingTouchingNestedDoubledSolids) {
+    const std::vector<Polygon> solids{
+        test::box(1, 1, 3, 3),     test::box(1, 1, 3, 3),            // twice the same
+        test::box(2, 2, 4, 4),                                       // overlaps
+        test::box(4, 2, 5, 4),                                       // shares an edge
+        test::box(5, 4, 6, 5),                                       // touches at a corner
+        test::box(1.5, 1.5, 2, 2), reversed(test::box(1, 1, 2, 2)),  // nested
+        test::box(-5, -5, -1, -1),                                   // outside
+    };
+    const auto pieces = difference(kRoom, solids);
+    ASSERT_EQ(pieces.size(), 1U);
+    EXPECT_EQ(totalArea(pieces), 48 - (4 + 4 - 1 + 2 + 1));
+}
+
+TEST(Difference, thousandsOfEqualSolids) {
+    const std::vector<Polygon> solids(5000, test::box(2, 2, 4, 4));
+    EXPECT_EQ(totalArea(difference(kRoom, solids)), 44);
+}
+
+TEST(Difference, solidAcrossTheRoomDividesIt) {
+    const auto pieces = difference(kRoom, std::vector<Polygon>{test::box(3, -1, 5, 7)});
+    ASSERT_EQ(pieces.size(), 2U);
+    EXPECT_EQ(pieces[0].outline, test::box(0, 0, 3, 6));
+    EXPECT_EQ(pieces[1].outline, test::box(5, 0, 8, 6));
+    EXPECT_EQ(difference(kRoom, std::vector<Polygon>{test::box(3, 0, 5, 6)}).size(), 2U) << "flush";
+}
+
+TEST(Difference, solidAlongAWallCutsTheOutline) {
+    const auto pieces = difference(kRoom, std::vector<Polygon>{test::box(2, 0, 4, 1)});
+    ASSERT_EQ(pieces.size(), 1U);
+    EXPECT_EQ(pieces[0].outline,
+              (Polygon{{0, 0}, {2, 0}, {2, 1}, {4, 1}, {4, 0}, {8, 0}, {8, 6}, {0, 6}}));
+}
+
+TEST(Difference, everythingCovered) {
+    EXPECT_TRUE(difference(kRoom, std::vector<Polygon>{test::box(-1, -1, 9, 9)}).empty());
+    EXPECT_TRUE(difference(kRoom, std::vector<Polygon>{kRoom.outline}).empty());
+    EXPECT_TRUE(
+        difference(kRoom, std::vector<Polygon>{test::box(0, 0, 4, 6), test::box(4, 0, 8, 6)})
+            .empty());
+}
+
+TEST(Difference, ringOfSolidsKeepsItsMiddle) {
+    const std::vector<Polygon> ring{test::box(2, 2, 6, 3), test::box(2, 4, 6, 5),
+                                    test::box(2, 2, 3, 5), test::box(5, 2, 6, 5)};
+    const auto pieces = difference(kRoom, ring);
+    ASSERT_EQ(pieces.size(), 2U);
+    EXPECT_EQ(pieces[0].area(), 48 - 12);
+    EXPECT_EQ(pieces[1].area(), 2);
+}
+
+TEST(Difference, holesThatTouchTheOutlineAndSolids) {
+    // A hole with one corner on the outline, and solids on that corner, along the hole and over it.
+    const Region region{
+        test::box(0, 0, 8, 6),
+        {reversed({{0, 3}, {1, 2}, {2, 3}, {1, 4}}), reversed(test::box(4, 2, 6, 4))}};
+    EXPECT_EQ(totalArea(difference(region, {})), 48 - 2 - 4);
+    EXPECT_EQ(totalArea(difference(region, std::vector<Polygon>{test::box(6, 2, 7, 4)})),
+              48 - 2 - 6);
+    EXPECT_EQ(totalArea(difference(region, std::vector<Polygon>{test::box(5, 3, 7, 5)})),
+              48 - 6 - 3);
+    EXPECT_EQ(totalArea(difference(region, std::vector<Polygon>{test::box(0, 2, 2, 4)})),
+              48 - 4 - 4);
+    EXPECT_EQ(totalArea(difference(region, std::vector<Polygon>{test::box(4, 2, 6, 4)})),
+              48 - 2 - 4);
+}
+
+TEST(Difference, pinchedRegion) {
+    // Two squares that hang together at (4, 3) only are two pieces of floor.
+    const Region eight{{{0, 0}, {4, 0}, {4, 3}, {8, 3}, {8, 6}, {4, 6}, {4, 3}, {0, 3}}, {}};
+    EXPECT_EQ(difference(eight, {}).size(), 2U);
+    EXPECT_DOUBLE_EQ(
+        totalArea(difference(eight, std::vector<Polygon>{test::box(3.5, 2.5, 4.5, 3.5)})), 23.5);
+}
+
+TEST(Difference, agreesWithPointsOnRandomSolids) {
+    std::mt19937_64 random(10);
+    std::uniform_real_distribution<double> coordinate(-10, 10);
+    for (int round = 0; round < 30; ++round) {
+        const Region region{test::star(random, 30, 10), {}};
+        std::vector<Polygon> solids;
+        for (int i = 0; i < 12; ++i) {
+            Polygon solid = test::star(random, 12, 3);
+            const Vec2 move{coordinate(random), coordinate(random)};
+            for (Point2& p : solid) p = p + move;
+            solids.push_back(solid);
+        }
+        const auto pieces = difference(region, solids);
+        for (int i = 0; i < 500; ++i) {
+            const Point2 p{coordinate(random), coordinate(random)};
+            bool wanted = region.locate(p) == Side::Inside;
+            for (const Polygon& solid : solids)
+                wanted = wanted && locate(solid, p) == Side::Outside;
+            const auto holds = [&](const Region& piece) { return piece.locate(p) == Side::Inside; };
+            EXPECT_EQ(std::count_if(pieces.begin(), pieces.end(), holds), wanted ? 1 : 0);
+        }
+        for (const Region& piece : pieces) {
+            EXPECT_GT(piece.area(), 0);
+            EXPECT_GT(signedArea(piece.outline), 0);
+        }
+    }
+}
+
+TEST(Difference, agreesWithPixelsOnRaggedMaps) {
+    std::mt19937_64 random(11);
+    for (int round = 0; round < 10; ++round) {
+        test::PixelMap map(random, 60, 60, 0.75);
+        std::vector<Polygon> solids;
+        test::PixelMap left = map;
+        for (int i = 0; i < 40; ++i) {
+            const int x = int(random() % 58), y = int(random() % 58), w = 1 + int(random() % 4),
+                      h = 1 + int(random() % 4);
+            solids.push_back(test::box(x, y, x + w, y + h));
+            for (int py = y; py < std::min(60, y + h); ++py) {
+                for (int px = x; px < std::min(60, x + w); ++px)
+                    left.free[static_cast<std::size_t>(py * 60 + px)] = false;
+            }
+        }
+        std::vector<Region> pieces;
+        for (const Region& face : boundedFaces(weld(map.boundary()))) {
+            const Point2 p = interiorPoint(face);
+            if (!map.at(int(std::floor(p.x)), int(std::floor(p.y)))) continue;
+            for (Region& piece : difference(face, solids)) pieces.push_back(std::move(piece));
+        }
+        EXPECT_DOUBLE_EQ(totalArea(pieces), double(left.freeCount()));
+        EXPECT_EQ(int(pieces.size()), left.pieces());
+    }
+}
+
+TEST(Difference, manyRoundSolids) {
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<double> coordinate(0, 60);
+    const Region hall{test::box(0, 0, 60, 60), {}};
+    std::vector<Polygon> solids;
+    for (int i = 0; i < 200; ++i)
+        solids.push_back(test::circle({coordinate(random), coordinate(random)}, 1, 140));
+    const auto pieces = difference(hall, solids);
+    for (int i = 0; i < 2000; ++i) {
+        const Point2 p{coordinate(random), coordinate(random)};
+        const bool blocked = std::any_of(solids.begin(), solids.end(), [&](const Polygon& solid) {
+            return locate(solid, p) != Side::Outside;
+        });
+        const bool free = std::any_of(pieces.begin(), pieces.end(), [&](const Region& piece) {
+            return piece.locate(p) == Side::Inside;
+        });
+        EXPECT_NE(free, blocked);
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "geom/planar_map.h"
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+namespace {
+
+/// Ways to close a dangling end that are tried: the nearest may lead nowhere new.
+constexpr std::size_t kWaysPerEnd = 4;
+/// Closings that are considered, the narrowest: no plan has more, and heaps of loose lines are
+/// answered in seconds too.
+constexpr std::size_t kMostClosings = 10000;
+
+struct Closing {
+    Segment2 line;
+    double width;
+    std::size_t a, b;  // the input lines it joins, a < b
+};
+
+bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+/// Each line's pieces without the doubles that overlapping lines leave.
+WeldedLines withoutDoubles(const WeldedLines& lines) {
+    std::vector<std::tuple<double, double, double, double, std::size_t>> keys;
+    for (std::size_t i = 0; i < lines.pieces.size(); ++i) {
+        auto [a, b] = lines.pieces[i];
+        if (lexLess(b, a)) std::swap(a, b);
+        keys.emplace_back(a.x, a.y, b.x, b.y, lines.source[i]);
+    }
+    std::sort(keys.begin(), keys.end());
+    WeldedLines unique;
+    for (const auto& [ax, ay, bx, by, source] : keys) {
+        const Segment2 piece{{ax, ay}, {bx, by}};
+        if (!unique.pieces.empty() && unique.pieces.back() == piece) continue;
+        unique.pieces.push_back(piece);
+        unique.source.push_back(source);
+    }
+    return unique;
+}
+
+/// The pieces that meet at each vertex.
+class Vertices {
+  public:
+    explicit Vertices(const std::vector<Segment2>& pieces) {
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            visits_.emplace_back(pieces[i].a, i);
+            visits_.emplace_back(pieces[i].b, i);
+        }
+        std::sort(visits_.begin(), visits_.end(), [](const Visit& u, const Visit& v) {
+            return u.first == v.first ? u.second < v.second : lexLess(u.first, v.first);
+        });
+    }
+
+    using Visit = std::pair<Point2, std::size_t>;
+    [[nodiscard]] std::span<const Visit> at(Point2 p) const {
+        const auto first =
+            std::lower_bound(visits_.begin(), visits_.end(), p,
+                             [](const Visit& v, Point2 point) { return lexLess(v.first, point); });
+        auto last = first;
+        while (last != visits_.end() && last->first == p) ++last;
+        return {first, last};
+    }
+
+  private:
+    std::vector<Visit> visits_;
+};
+
+/// Finds how dangling ends could be joined to other lines.
+class GapFinder {
+  public:
+    explicit GapFinder(const WeldedLines& lines)
+        : lines_(withoutDoubles(lines)), vertices_(lines_.pieces), grid_(lines_.pieces, 0) {}
+
+    /// From the narrowest on; in an order that depends only on the lines.
+    [[nodiscard]] std::vector<Closing> closings() const {
+        std::vector<Closing> all;
+        for (std::size_t i = 0; i < lines_.pieces.size(); ++i) {
+            const auto& [a, b] = lines_.pieces[i];
+            for (const Point2 end : {a, b}) {
+                if (vertices_.at(end).size() == 1) addClosings(i, end, all);
+            }
+        }
+        const auto key = [](const Closing& c) {
+            return std::tuple(c.width, c.line.a.x, c.line.a.y, c.line.b.x, c.line.b.y);
+        };
+        std::sort(all.begin(), all.end(), [&](const Closing& c, const Closing& d) {
+            return std::tuple(key(c), c.a, c.b) < std::tuple(key(d), d.a, d.b);
+        });
+        // Two dangling ends find each other from both sides.
+        all.erase(std::unique(all.begin(), all.end(),
+                              [](const Closing& c, const Closing& d) { return c.line == d.line; }),
+                  all.end());
+        if (all.size() > kMostClosings) all.resize(kMostClosings);
+        return all;
+    }
+
+  private:
+    struct Way {
+        double width;
+        Point2 to;
+        std::size_t source;
+        friend bool operator<(const Way& v, const Way& w) {
+            return std::tuple(v.width, v.to.x, v.to.y, v.source) <
+                   std::tuple(w.width, w.to.x, w.to.y, w.source);
+        }
+        friend bool operator==(const Way& v, const Way& w) { return v.to == w.to; }
+    };
+
+    /// True if lines come no nearer to `end` than at their point `to`. Along the chain of lines
+    /// that the end itself hangs on, only where it turns back towards the end.
+    [[nodiscard]] bool isNearestOfItsNeighbours(Point2 end, Point2 to, double width) const {
+        const auto meeting = vertices_.at(to);
+        return std::none_of(meeting.begin(), meeting.end(), [&](const Vertices::Visit& visit) {
+            return distance(end, lines_.pieces[visit.second]) < width;
+        });
+    }
+
+    void addClosings(std::size_t own, Point2 end, std::vector<Closing>& all) const {
+        std::vector<Way> ways;
+        const auto collect = [&](std::span<const std::uint32_t> cell) {
+            for (const std::uint32_t i : cell) {
+                if (i == own) continue;
+                const Point2 to = nearestPoint(lines_.pieces[i], end);
+                const double width = distance(end, to);
+                if (width > 0 && isNearestOfItsNeighbours(end, to, width))
+                    ways.push_back({width, to, lines_.source[i]});
+            }
+        };
+        grid_.searchFrom(end, collect, [&](double reach) {
+            std::sort(ways.begin(), ways.end());
+            ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
+            return ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach;
+        });
+        ways.resize(std::min(ways.size(), kWaysPerEnd));
+        const std::size_t source = lines_.source[own];
+        for (const Way& way : ways) {
+            Segment2 line{end, way.to};
+            if (lexLess(line.b, line.a)) std::swap(line.a, line.b);
+            all.push_back(
+                {line, way.width, std::min(source, way.source), std::max(source, way.source)});
+        }
+    }
+
+    WeldedLines lines_;
+    Vertices vertices_;
+    SegmentGrid grid_;
+};
+
+bool encloses(const std::vector<Segment2>& lines, std::optional<Point2> inside) {
+    const auto faces = boundedFaces(weld(lines));
+    if (!inside) return !faces.empty();
+    return std::any_of(faces.begin(), faces.end(),
+                       [&](const Region& face) { return face.locate(*inside) != Side::Outside; });
+}
+
+}  // namespace
+
+std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside) {
+    const std::vector<Closing> closings = GapFinder(weld(lines)).closings();
+    const auto enclosedBy = [&](std::size_t count) {
+        std::vector<Segment2> closed(lines.begin(), lines.end());
+        for (std::size_t i = 0; i < count; ++i) closed.push_back(closings[i].line);
+        return encloses(closed, inside);
+    };
+    // What is enclosed stays enclosed as more gaps are closed: halve between too few and enough.
+    std::size_t too_few = 0, enough = closings.size();
+    if (enclosedBy(too_few) || !enclosedBy(enough)) return std::nullopt;
+    while (enough - too_few > 1) {
+        const std::size_t count = too_few + (enough - too_few) / 2;
+        (enclosedBy(count) ? enough : too_few) = count;
+    }
+    const Closing& last = closings[enough - 1];
+    const Point2 place = last.line.a + 0.5 * (last.line.b - last.line.a);
+    return Gap{last.width, place, last.a, last.b};
+}
+
+}  // namespace ispace

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/planar_map.h"
+
+#include <algorithm>
+#include <deque>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "geom/overlay.h"
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+namespace {
+
+bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+/// For each point the one that stands for all within kWeldDistance of it.
+///
+/// Points are taken from left to right; each joins the nearest standing point in reach or becomes
+/// one, so that no point moves farther than kWeldDistance however many lie close together.
+std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        return points[i] == points[k] ? i < k : lexLess(points[i], points[k]);
+    });
+    std::vector<Point2> welded(points.size());
+    std::deque<Point2> recent;                   // standing points in reach along x, …
+    std::set<std::pair<double, double>> by_y_x;  // … and the same to be searched along y
+    for (const std::size_t i : order) {
+        const Point2 p = points[i];
+        while (!recent.empty() && recent.front().x < p.x - kWeldDistance) {
+            by_y_x.erase({recent.front().y, recent.front().x});
+            recent.pop_front();
+        }
+        double nearest = kWeldDistance;
+        welded[i] = p;
+        bool joined = false;
+        for (auto it = by_y_x.lower_bound({p.y - kWeldDistance, p.x - kWeldDistance});
+             it != by_y_x.end() && it->first <= p.y + kWeldDistance; ++it) {
+            const Point2 standing{it->second, it->first};
+            const double apart = distance(p, standing);
+            if (joined ? apart < nearest : apart <= nearest) {
+                welded[i] = standing;
+                nearest = apart;
+                joined = true;
+            }
+        }
+        if (joined) continue;
+        recent.push_back(p);
+        by_y_x.emplace(p.y, p.x);
+    }
+    return welded;
+}
+
+/// For each segment the points of others that lie on its inside, in order along it.
+std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments) {
+    std::vector<Point2> points;
+    for (const auto& [a, b] : segments) points.insert(points.end(), {a, b});
+    std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+
+    const SegmentGrid grid(segments, kWeldDistance);
+    std::vector<std::vector<Point2>> touching(segments.size());
+    for (const Point2 p : points) {
+        for (const std::uint32_t i : grid.near(p)) {
+            const Segment2& s = segments[i];
+            if (p != s.a && p != s.b && distance(p, s) <= kWeldDistance) touching[i].push_back(p);
+        }
+    }
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const auto& [a, b] = segments[i];
+        std::stable_sort(touching[i].begin(), touching[i].end(),
+                         [&](Point2 p, Point2 q) { return dot(p - a, b - a) < dot(q - a, b - a); });
+    }
+    return touching;
+}
+
+}  // namespace
+
+WeldedLines weld(std::span<const Segment2> lines) {
+    std::vector<Point2> ends;
+    ends.reserve(2 * lines.size());
+    for (const auto& [a, b] : lines) ends.insert(ends.end(), {a, b});
+    const std::vector<Point2> welded_ends = weldPoints(ends);
+
+    WeldedLines whole;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const Segment2 line{welded_ends[2 * i], welded_ends[2 * i + 1]};
+        if (line.a == line.b) continue;
+        whole.pieces.push_back(line);
+        whole.source.push_back(i);
+    }
+    const auto touching = touchingPoints(whole.pieces);
+
+    WeldedLines split;
+    for (std::size_t i = 0; i < whole.pieces.size(); ++i) {
+        Point2 from = whole.pieces[i].a;
+        const auto addPiece = [&](Point2 to) {
+            split.pieces.push_back({from, to});
+            split.source.push_back(whole.source[i]);
+            from = to;
+        };
+        for (const Point2 p : touching[i]) addPiece(p);
+        addPiece(whole.pieces[i].b);
+    }
+    return split;
+}
+
+std::vector<Region> boundedFaces(const WeldedLines& lines) { return overlayFaces(lines.pieces); }
+
+}  // namespace ispace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/polygon.h"
+
+#include <algorithm>
+
+#include "geom/predicates.h"
+
+namespace ispace {
+
+namespace {
+
+/// How an edge meets the ray that leaves p towards +x, end points by the half-open rule.
+enum class Meeting { None, Crossing, Touches };
+
+Meeting meetRay(const Segment2& edge, Point2 p) {
+    const auto& [a, b] = edge;
+    if (p == a || p == b) return Meeting::Touches;
+    const double low_x = std::min(a.x, b.x), high_x = std::max(a.x, b.x);
+    if ((a.y > p.y) == (b.y > p.y)) {
+        const bool along = a.y == p.y && b.y == p.y && low_x <= p.x && p.x <= high_x;
+        return along ? Meeting::Touches : Meeting::None;
+    }
+    if (p.x > high_x) return Meeting::None;
+    if (p.x < low_x) return Meeting::Crossing;
+    const Turn turn = a.y < b.y ? orientation(a, b, p) : orientation(b, a, p);
+    if (turn == Turn::Straight) return Meeting::Touches;
+    return turn == Turn::Left ? Meeting::Crossing : Meeting::None;
+}
+
+}  // namespace
+
+double signedArea(const Polygon& polygon) {
+    double twice = 0;
+    // Relative to the first vertex, so that a small polygon far from the origin keeps its digits.
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        twice += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+    return twice / 2;
+}
+
+double perimeter(const Polygon& polygon) {
+    double sum = 0;
+    forEachEdge(polygon, [&](const Segment2& edge) { sum += distance(edge.a, edge.b); });
+    return sum;
+}
+
+Box2 bounds(const Polygon& polygon) {
+    Box2 box;
+    for (const Point2 p : polygon) box.add(p);
+    return box;
+}
+
+Side locate(const Polygon& polygon, Point2 p) {
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point2 next = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const Meeting meeting = meetRay({polygon[i], next}, p);
+        if (meeting == Meeting::Touches) return Side::Boundary;
+        if (meeting == Meeting::Crossing) inside = !inside;
+    }
+    return inside ? Side::Inside : Side::Outside;
+}
+
+double Region::area() const {
+    double sum = std::abs(signedArea(outline));
+    for (const Polygon& hole : holes) sum -= std::abs(signedArea(hole));
+    return sum;
+}
+
+double Region::boundaryLength() const {
+    double sum = perimeter(outline);
+    for (const Polygon& hole : holes) sum += perimeter(hole);
+    return sum;
+}
+
+Side Region::locate(Point2 p) const {
+    const Side side = ispace::locate(outline, p);
+    if (side != Side::Inside) return side;
+    for (const Polygon& hole : holes) {
+        const Side in_hole = ispace::locate(hole, p);
+        if (in_hole == Side::Boundary) return Side::Boundary;
+        if (in_hole == Side::Inside) return Side::Outside;
+    }
+    return Side::Inside;
+}
+
+}  // namespace ispace

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/polygon.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geom/predicates.h"
+#include "geom/test_curves.h"
+
+namespace ispace {
+namespace {
+
+TEST(Box2, growsFromEmpty) {
+    Box2 box;
+    EXPECT_TRUE(box.empty());
+    box.add({1, 2});
+    EXPECT_FALSE(box.empty());
+    EXPECT_EQ(box.width(), 0);
+    box.add({-1, 6});
+    EXPECT_EQ(box.width(), 2);
+    EXPECT_EQ(box.depth(), 4);
+    EXPECT_EQ(box.center(), (Point2{0, 4}));
+}
+
+TEST(Polygon, areaPerimeterBounds) {
+    const Polygon room = test::box(1, 2, 4, 6);
+    EXPECT_EQ(signedArea(room), 12);
+    EXPECT_EQ(signedArea(Polygon(room.rbegin(), room.rend())), -12);
+    EXPECT_EQ(perimeter(room), 14);
+    EXPECT_EQ(bounds(room), (Box2{{1, 2}, {4, 6}}));
+}
+
+TEST(Polygon, degenerateHaveNoArea) {
+    EXPECT_EQ(signedArea({}), 0);
+    EXPECT_EQ(perimeter({}), 0);
+    EXPECT_TRUE(bounds({}).empty());
+    EXPECT_EQ(signedArea({{1, 1}}), 0);
+    EXPECT_EQ(signedArea({{1, 1}, {2, 5}}), 0);
+    EXPECT_EQ(perimeter({{0, 0}, {3, 4}}), 10);
+    EXPECT_EQ(signedArea({{0, 0}, {1, 1}, {2, 2}}), 0);
+}
+
+TEST(Polygon, areaKeepsItsDigitsFarFromTheOrigin) {
+    EXPECT_NEAR(signedArea(test::box(1e6, 1e6, 1e6 + 0.5, 1e6 + 0.25)), 0.125, 1e-12);
+}
+
+TEST(Locate, insideOutsideBoundary) {
+    const Polygon l{{0, 0}, {8, 0}, {8, 3}, {4, 3}, {4, 6}, {0, 6}};
+    EXPECT_EQ(locate(l, {1, 1}), Side::Inside);
+    EXPECT_EQ(locate(l, {6, 5}), Side::Outside);
+    EXPECT_EQ(locate(l, {-1, 3}), Side::Outside) << "level with an edge";
+    EXPECT_EQ(locate(l, {2, 3}), Side::Inside) << "level with an edge";
+    EXPECT_EQ(locate(l, {9, 3}), Side::Outside) << "level with an edge";
+    EXPECT_EQ(locate(l, {6, 3}), Side::Boundary);
+    EXPECT_EQ(locate(l, {4, 4}), Side::Boundary);
+    for (const Point2 corner : l) EXPECT_EQ(locate(l, corner), Side::Boundary);
+    EXPECT_EQ(locate({}, {0, 0}), Side::Outside);
+    EXPECT_EQ(locate({{1, 1}}, {1, 1}), Side::Boundary);
+    EXPECT_EQ(locate({{0, 0}, {2, 2}}, {1, 1}), Side::Boundary);
+}
+
+TEST(Locate, isExactBesideASlopingEdge) {
+    const Polygon triangle{{0, 0}, {24, 24}, {0, 24}};
+    const double x = 0.5 + std::ldexp(1, -52);
+    EXPECT_EQ(locate(triangle, {x, x}), Side::Boundary);
+    EXPECT_EQ(locate(triangle, {x, std::nextafter(x, 1)}), Side::Inside);
+    EXPECT_EQ(locate(triangle, {std::nextafter(x, 1), x}), Side::Outside);
+}
+
+TEST(Locate, evenOddWhereACurveTouchesItself) {
+    // Two squares joined at (1, 1).
+    const Polygon eight{{0, 0}, {1, 0}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1}, {0, 1}};
+    EXPECT_EQ(locate(eight, {0.5, 0.5}), Side::Inside);
+    EXPECT_EQ(locate(eight, {1.5, 1.5}), Side::Inside);
+    EXPECT_EQ(locate(eight, {1.5, 0.5}), Side::Outside);
+    EXPECT_EQ(locate(eight, {1, 1}), Side::Boundary);
+}
+
+TEST(Region, areaAndSides) {
+    Polygon hole = test::box(2, 2, 4, 4);
+    std::reverse(hole.begin(), hole.end());
+    const Region region{test::box(0, 0, 8, 6), {hole}};
+    EXPECT_EQ(region.area(), 44);
+    EXPECT_EQ(region.boundaryLength(), 36);
+    EXPECT_EQ(region.locate({1, 1}), Side::Inside);
+    EXPECT_EQ(region.locate({3, 3}), Side::Outside);
+    EXPECT_EQ(region.locate({2, 3}), Side::Boundary);
+    EXPECT_EQ(region.locate({8, 3}), Side::Boundary);
+    EXPECT_EQ(region.locate({9, 3}), Side::Outside);
+    std::size_t edges = 0;
+    region.forEachEdge([&](const Segment2&) { ++edges; });
+    EXPECT_EQ(edges, 8U);
+}
+
+double clearance(const Region& region, Point2 p) {
+    double nearest = 1e300;
+    region.forEachEdge([&](const Segment2& e) { nearest = std::min(nearest, distance(p, e)); });
+    return nearest;
+}
+
+TEST(InteriorPoint, isWellInside) {
+    const Region room{test::box(0, 0, 8, 6), {}};
+    EXPECT_GT(clearance(room, interiorPoint(room)), 2.8);
+    Polygon pillar = test::box(3, 2, 5, 4);
+    std::reverse(pillar.begin(), pillar.end());
+    const Region ring{test::box(0, 0, 8, 6), {pillar}};
+    EXPECT_EQ(ring.locate(interiorPoint(ring)), Side::Inside);
+    EXPECT_GT(clearance(ring, interiorPoint(ring)), 0.9);
+}
+
+TEST(InteriorPoint, isStrictlyInsideSlivers) {
+    const Polygon slivers[] = {
+        {{0, 0}, {1, 0}, {1, 1e-12}},
+        {{0, 0}, {1e6, 1e6}, {1e6, 1e6 + 1e-9}},
+        {{0, 0}, {10, 1e-300}, {10, 2e-300}},
+        {{1, 1}, {3, 2}, {2, std::nextafter(1.5, 2)}},
+        {{0.1, 0.1}, {0.7, 0.7000000000000002}, {0.1, 0.1000000000000001}},
+        {{0, 0}, {5, 0}, {5, 5}, {4.999999999, 1e-9}},
+    };
+    for (Polygon sliver : slivers) {
+        if (signedArea(sliver) < 0) std::reverse(sliver.begin(), sliver.end());
+        const Region region{sliver, {}};
+        EXPECT_EQ(region.locate(interiorPoint(region)), Side::Inside) << sliver[1].x;
+    }
+}
+
+TEST(InteriorPoint, refusesWhatHasNoInside) {
+    EXPECT_THROW(interiorPoint({}), std::invalid_argument);
+    EXPECT_THROW(interiorPoint({{{0, 0}, {1, 1}, {2, 2}}, {}}), std::invalid_argument);
+}
+
+TEST(InteriorPoint, isInsideRandomRegions) {
+    std::mt19937_64 random(7);
+    for (int round = 0; round < 200; ++round) {
+        const Region region{test::star(random, 3 + round, std::pow(10, round % 9 - 4)), {}};
+        EXPECT_EQ(region.locate(interiorPoint(region)), Side::Inside) << round;
+    }
+}
+
+}  // namespace
+}  // namespace ispace

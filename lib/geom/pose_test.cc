@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/pose.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace ispace {
+namespace {
+
+TEST(Point, vectorsAndPlaces) {
+    EXPECT_EQ((Point2{1, 2} + Vec2{3, 4}), (Point2{4, 6}));
+    EXPECT_EQ((Point2{1, 2} - Point2{3, 5}), (Vec2{-2, -3}));
+    EXPECT_EQ((Point2{1, 2} - Vec2{3, 5}), (Point2{-2, -3}));
+    EXPECT_EQ(cross({1, 0}, {0, 1}), 1);
+    EXPECT_EQ(dot(Vec2{1, 2}, Vec2{3, 4}), 11);
+    EXPECT_EQ(perpendicular({1, 2}), (Vec2{-2, 1}));
+    EXPECT_EQ(unitVector(Angle::degrees(90)), (Vec2{0, 1}));
+    EXPECT_EQ(distance({1, 1}, {4, 5}), 5);
+    EXPECT_EQ(length(Vec3{2, 3, 6}), 7);
+    EXPECT_EQ((Point3{1, 2, 3} + 2 * Vec3{1, 0, 1}).onFloor(), (Point2{3, 2}));
+}
+
+TEST(Pose2, takesPointsToTheOuterFrame) {
+    const Pose2 world_from_body{{3, 4}, Angle::degrees(90)};
+    EXPECT_EQ((world_from_body * Point2{2, 0}), (Point2{3, 6}));
+    EXPECT_EQ((world_from_body * Point2{0, 1}), (Point2{2, 4}));
+    EXPECT_EQ((world_from_body * Vec2{2, 1}), (Vec2{-1, 2}));
+}
+
+TEST(Pose3, levelBeamIsExact) {
+    const Pose3 pose{{0, 0, 1}, Angle::degrees(90), {}, {}};
+    EXPECT_TRUE(pose.isLevel());
+    EXPECT_EQ(pose.beam(Angle::degrees(0)), (Vec3{0, 1, 0}));
+    EXPECT_EQ(pose.beam(Angle::degrees(90)), (Vec3{-1, 0, 0}));
+    EXPECT_EQ(pose.beam(Angle::degrees(-90)), (Vec3{1, 0, 0}));
+}
+
+TEST(Pose3, positiveTiltLooksUpAndPositiveRollLiftsTheLeft) {
+    const Pose3 up{{}, {}, Angle::degrees(90), {}};
+    EXPECT_FALSE(up.isLevel());
+    EXPECT_EQ(up.beam({}), (Vec3{0, 0, 1}));
+    EXPECT_EQ(up.beam(Angle::degrees(90)), (Vec3{0, 1, 0}));
+    const Pose3 rolled{{}, {}, {}, Angle::degrees(90)};
+    EXPECT_FALSE(rolled.isLevel());
+    EXPECT_EQ(rolled.beam(Angle::degrees(90)), (Vec3{0, 0, 1}));
+    EXPECT_EQ(rolled.beam({}), (Vec3{1, 0, 0}));
+}
+
+/// Eq. 3.6 of the thesis as printed: x and z span its floor, y is up.
+Vec3 thesisBeam(Angle m, Angle t, Angle d) {
+    return {cos(m) * sin(d) + sin(m) * cos(t) * cos(d), sin(t) * cos(d),
+            -sin(m) * sin(d) + cos(m) * cos(t) * cos(d)};
+}
+
+TEST(Pose3, beamFollowsTheFormulas) {
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> degrees(-180, 180);
+    for (int i = 0; i < 1000; ++i) {
+        const Angle m = Angle::degrees(degrees(random)), t = Angle::degrees(degrees(random));
+        const Angle d = Angle::degrees(degrees(random));
+        const Angle h = Angle::degrees(90) - m, b = -d;
+        const Vec3 beam = Pose3{{}, h, t, {}}.beam(b);
+
+        const Vec3 thesis = thesisBeam(m, t, d);
+        EXPECT_NEAR(beam.x, thesis.x, 1e-14);
+        EXPECT_NEAR(beam.y, thesis.z, 1e-14);
+        EXPECT_NEAR(beam.z, thesis.y, 1e-14);
+
+        const double x = cos(b) * cos(t), y = sin(b), z = cos(b) * sin(t);
+        EXPECT_NEAR(beam.x, cos(h) * x - sin(h) * y, 1e-14);
+        EXPECT_NEAR(beam.y, sin(h) * x + cos(h) * y, 1e-14);
+        EXPECT_NEAR(beam.z, z, 1e-14);
+    }
+}
+
+TEST(Pose3, rollTurnsAboutTheBeamAhead) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> degrees(-180, 180);
+    for (int i = 0; i < 1000; ++i) {
+        const Angle h = Angle::degrees(degrees(random)), t = Angle::degrees(degrees(random));
+        const Angle r = Angle::degrees(degrees(random)), b = Angle::degrees(degrees(random));
+        const Pose3 plain{{}, h, t, {}}, rolled{{}, h, t, r};
+        // Bearings ±90 without roll are the y axis, and the third axis is x cross y.
+        const Vec3 x = plain.beam({}), y = plain.beam(Angle::degrees(90));
+        const Vec3 z{x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
+        const Vec3 beam = rolled.beam(b);
+        EXPECT_NEAR(dot(beam, x), cos(b), 1e-14);
+        EXPECT_NEAR(dot(beam, y), sin(b) * cos(r), 1e-14);
+        EXPECT_NEAR(dot(beam, z), sin(b) * sin(r), 1e-14);
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/geom only.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/box.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// Finds the segments near a point: square cells over their bounding box, about as many as there
+/// are segments, each listing the segments that come within `margin` of it.
+class SegmentGrid {
+  public:
+    SegmentGrid(std::span<const Segment2> segments, double margin);
+
+    /// Ascending indices of segments, among them all those within `margin` of p.
+    /// \pre p lies in the bounding box of the segments
+    [[nodiscard]] std::span<const std::uint32_t> near(Point2 p) const;
+
+    /// Visits cells around p in growing rings: visit(indices of one cell), then, with all segments
+    /// nearer than `reach` seen, done(reach) ends the search by returning true. An index may come
+    /// several times.
+    template <typename Visit, typename Done>
+    void searchFrom(Point2 p, Visit visit, Done done) const;
+
+  private:
+    [[nodiscard]] std::int64_t column(double x) const { return cellOf(x - box_.low.x, columns_); }
+    [[nodiscard]] std::int64_t row(double y) const { return cellOf(y - box_.low.y, rows_); }
+    [[nodiscard]] std::int64_t cellOf(double offset, std::int64_t count) const;
+    [[nodiscard]] std::span<const std::uint32_t> cell(std::int64_t column, std::int64_t row) const;
+    template <typename Visit>
+    void forEachCell(const Segment2& segment, Visit visit) const;
+
+    Box2 box_;
+    double margin_;
+    double size_ = 1;  // of a cell
+    std::int64_t columns_ = 1, rows_ = 1;
+    std::vector<std::size_t> first_;      // of each cell's indices, and the end
+    std::vector<std::uint32_t> indices_;  // by cell
+};
+
+template <typename Visit, typename Done>
+void SegmentGrid::searchFrom(Point2 p, Visit visit, Done done) const {
+    const std::int64_t column0 = column(p.x), row0 = row(p.y);
+    for (std::int64_t ring = 0; ring < std::max(columns_, rows_); ++ring) {
+        for (std::int64_t r = row0 - ring; r <= row0 + ring; ++r) {
+            if (r < 0 || r >= rows_) continue;
+            const bool whole = r == row0 - ring || r == row0 + ring;
+            for (std::int64_t c = column0 - ring; c <= column0 + ring;
+                 c += whole ? 1 : std::max<std::int64_t>(1, 2 * ring)) {
+                if (c >= 0 && c < columns_) visit(cell(c, r));
+            }
+        }
+        if (done(static_cast<double>(ring) * size_)) return;
+    }
+}
+
+}  // namespace ispace
