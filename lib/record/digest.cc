@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "record/digest.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+
+#include "record/text.h"
+
+namespace ispace {
+
+namespace {
+
+class Sha256 {
+  public:
+    Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+        check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+    }
+    void add(std::string_view bytes) {
+        check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
+    }
+    std::string finish() {
+        std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+        unsigned size = 0;
+        check(EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
+        constexpr std::string_view kDigits = "0123456789abcdef";
+        std::string text = "sha256:";
+        for (unsigned i = 0; i < size; ++i) {
+            text += kDigits[digest[i] >> 4U];
+            text += kDigits[digest[i] & 15U];
+        }
+        return text;
+    }
+
+  private:
+    static void check(bool success) {
+        if (!success) throw std::runtime_error("OpenSSL cannot make a SHA-256 digest");
+    }
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+std::string sha256(std::string_view bytes) {
+    Sha256 digest;
+    digest.add(bytes);
+    return digest.finish();
+}
+
+std::string environmentDigest(std::span<const Record> records) {
+    Sha256 digest;
+    for (const Record& record : records)
+        if (record.schema().isEnvironment()) digest.add(formatRecord(record) + '\n');
+    return digest.finish();
+}
+
+}  // namespace ispace

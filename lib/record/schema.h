@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "record/value.h"
+
+namespace ispace {
+
+/// What a key's text means and which alternative of Value holds it.
+enum class KeyType {
+    Flag,       ///< yes/no (also true/false, on/off, in any case); bool
+    Number,     ///< double
+    Text,       ///< any UTF-8 string without control characters other than tab and newline
+    Word,       ///< a plain word: an id, a name; letters, digits and _ - . / + : @
+    Choice,     ///< one of KeySpec::choices; string
+    Tuple,      ///< `a,b[,c]`, blanks around numbers allowed where quoted; Tuple
+    TupleList,  ///< `a,b;c,d;…`, not empty; TupleList
+};
+
+/// Unit of a key's numbers. A number may carry a suffix; without one it is in the first unit named.
+enum class Unit {
+    None,
+    Length,     ///< m; also km, cm, mm
+    Angle,      ///< deg; also rad
+    Area,       ///< m2
+    Time,       ///< s; also ms, us
+    Frequency,  ///< Hz
+    Share,      ///< fraction 0..1 in Value; text "95%" or "0.95", a bare number above 1 is refused
+};
+
+struct KeySpec {
+    std::string name;
+    KeyType type = KeyType::Number;
+    Unit unit = Unit::None;
+    std::string help;                          ///< one phrase, for man page and messages
+    std::optional<Value> default_value = {};   ///< never kept as written; none: no default
+    std::size_t min_count = 1, max_count = 1;  ///< numbers of a tuple, or of each tuple of a list
+    double lower = -std::numeric_limits<double>::infinity();  ///< of each number
+    double upper = std::numeric_limits<double>::infinity();
+    bool lower_open = false;  ///< `lower` itself is refused ("must be above 0")
+    std::vector<std::string> choices = {};
+    bool required = false;
+};
+
+/// The four types of the thesis' menus, and what is placed.
+enum class RecordType { Space, Floor, Wall, Infra, Other, Placement, Meta };
+
+/// One keyword and its keys, in canonical order. Every schema has the key `id` first.
+struct Schema {
+    std::string keyword;
+    RecordType type = RecordType::Other;
+    std::string help;
+    std::vector<KeySpec> keys;
+
+    [[nodiscard]] const KeySpec* find(std::string_view name) const;
+    [[nodiscard]] std::vector<std::string> keyNames() const;
+    /// Space, Floor, Wall, Infra or Other: belongs to the environment and its digest.
+    [[nodiscard]] bool isEnvironment() const { return type < RecordType::Placement; }
+};
+
+/// The keywords a reader knows. Each module offers its own list; sceneSchemas() in layout joins
+/// them. Records point into it, so it must outlive them (the joined lists are constants).
+class Schemas {
+  public:
+    Schemas() = default;
+    /// \pre keywords are unique, each schema has the key `id` (a word) first, keys are unique,
+    ///      defaults fit their keys (std::logic_error and FormatError otherwise)
+    explicit Schemas(std::vector<Schema> schemas);
+    [[nodiscard]] const Schema* find(std::string_view keyword) const;
+    [[nodiscard]] const std::vector<Schema>& all() const { return schemas_; }
+    [[nodiscard]] std::vector<std::string> keywords() const;
+
+  private:
+    std::vector<Schema> schemas_;
+};
+
+/// Reads one value as the schema's key wants it. `text` is the value's text without quotes.
+/// \throws FormatError whose diagnostic has only a message ("`height`: `tall` is not a number");
+///         the caller adds the place
+Value parseValue(const KeySpec& key, std::string_view text);
+
+/// Canonical text: SI, shortest doubles, quotes where needed.
+std::string formatValue(const KeySpec& key, const Value& value);
+
+/// Checks count, bounds, choices and characters of a value however it came about.
+/// \pre the value has the key's type \throws as parseValue
+void checkValue(const KeySpec& key, const Value& value);
+
+}  // namespace ispace

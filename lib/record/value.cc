@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values as text and back, and their checks.
+#include "record/value.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "base/suggest.h"
+#include "base/utf8.h"
+#include "record/scalar.h"
+#include "record/schema.h"
+
+namespace ispace {
+
+namespace {
+
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+/// Calls visit(piece) for the pieces between separators, blanks around them removed.
+template <typename Visit>
+void forEachPiece(std::string_view text, char separator, Visit visit) {
+    while (true) {
+        const auto end = text.find(separator);
+        visit(trimmed(text.substr(0, end)));
+        if (end == std::string_view::npos) return;
+        text.remove_prefix(end + 1);
+    }
+}
+
+bool parseFlag(const KeySpec& key, std::string_view text) {
+    constexpr std::size_t kLongest = 5;
+    std::string lower(text.substr(0, kLongest + 1));
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (lower == "yes" || lower == "true" || lower == "on") return true;
+    if (lower == "no" || lower == "false" || lower == "off") return false;
+    refuseValue(key, excerpt(text) + " is neither yes nor no");
+}
+
+double parseSingle(const KeySpec& key, std::string_view text) {
+    if (text.find_first_of(",;") != std::string_view::npos)
+        refuseValue(key, excerpt(text) + " is a list, one number is wanted");
+    return parseNumber(key, text);
+}
+
+Tuple parseTuple(const KeySpec& key, std::string_view text) {
+    if (text.find(';') != std::string_view::npos)
+        refuseValue(key, excerpt(text) + " is a `;` list, one tuple is wanted");
+    Tuple tuple;
+    forEachPiece(text, ',',
+                 [&](std::string_view piece) { tuple.push_back(parseNumber(key, piece)); });
+    return tuple;
+}
+
+TupleList parseTupleList(const KeySpec& key, std::string_view text) {
+    TupleList list;
+    forEachPiece(text, ';', [&](std::string_view piece) {
+        if (piece.empty())
+            refuseValue(key, "tuple " + std::to_string(list.size() + 1) + " is empty");
+        list.push_back(parseTuple(key, piece));
+    });
+    return list;
+}
+
+std::string wantedCount(const KeySpec& key) {
+    std::string least = std::to_string(key.min_count);
+    if (key.max_count == key.min_count) return least;
+    if (key.max_count == static_cast<std::size_t>(-1)) return "at least " + least;
+    return least + (key.max_count == key.min_count + 1 ? " or " : " to ") +
+           std::to_string(key.max_count);
+}
+
+void checkNumber(const KeySpec& key, double number) {
+    if (std::isnan(number)) refuseValue(key, "NaN (not a number) is given, a number is wanted");
+    if (std::isinf(number)) refuseValue(key, "infinite, a finite number is wanted");
+    const auto text = [&](double x) { return formatNumber(key, x); };
+    if (key.lower_open ? number <= key.lower : number < key.lower)
+        refuseValue(key, text(number) +
+                             (key.lower_open ? " is given, must be above " : " is below ") +
+                             text(key.lower));
+    if (number > key.upper) refuseValue(key, text(number) + " is above " + text(key.upper));
+}
+
+/// \param where "" or " in tuple 3"
+void checkTuple(const KeySpec& key, const Tuple& tuple, const std::string& where) {
+    if (tuple.size() < key.min_count || tuple.size() > key.max_count)
+        refuseValue(key, std::to_string(tuple.size()) +
+                             (tuple.size() == 1 ? " number" : " numbers") + " given" + where +
+                             ", " + wantedCount(key) + " wanted");
+    for (const double number : tuple) checkNumber(key, number);
+}
+
+void checkTupleList(const KeySpec& key, const TupleList& list) {
+    if (list.empty()) refuseValue(key, "an empty list is given");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const Tuple& tuple = list[i];
+        const bool counts = tuple.size() >= key.min_count && tuple.size() <= key.max_count;
+        checkTuple(key, tuple, counts ? "" : " in tuple " + std::to_string(i + 1));
+    }
+}
+
+/// What .env can hold: UTF-8 without control characters but tab and newline.
+void checkText(const KeySpec& key, std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8Length(text);
+        const auto first = static_cast<unsigned char>(text.front());
+        if (length == 0) refuseValue(key, "the text is not UTF-8");
+        if ((first < 0x20 && first != '\t' && first != '\n') || first == 0x7f)
+            refuseValue(key, "the text holds a control character");
+        text.remove_prefix(length);
+    }
+}
+
+void checkString(const KeySpec& key, const std::string& text) {
+    checkText(key, text);
+    if (key.type == KeyType::Word && !isWord(text))
+        refuseValue(key, excerpt(text) + " is not a word: letters, digits and _-./+:@ are wanted");
+    if (key.type != KeyType::Choice) return;
+    if (std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return;
+    std::string known;
+    for (const std::string& choice : key.choices) known += (known.empty() ? "" : ", ") + choice;
+    refuseValue(key, excerpt(text) + " is none of " + known + didYouMean(text, key.choices));
+}
+
+std::string formatText(const std::string& text) {
+    if (!text.empty() && text.find_first_of(" \t\n\"#") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '\n') {
+            quoted += "\\n";
+        } else if (c == '\t') {
+            quoted += "\\t";
+        } else {
+            if (c == '"' || c == '\\') quoted += '\\';
+            quoted += c;
+        }
+    }
+    return quoted + '"';
+}
+
+void appendTuple(std::string& out, const KeySpec& key, const Tuple& tuple) {
+    for (std::size_t i = 0; i < tuple.size(); ++i) {
+        if (i > 0) out += ',';
+        out += formatNumber(key, tuple[i]);
+    }
+}
+
+template <typename T>
+const T& hold(const KeySpec& key, const Value& value) {
+    if (const T* held = std::get_if<T>(&value)) return *held;
+    throw std::logic_error("value of key " + key.name + " has another type than its schema");
+}
+
+}  // namespace
+
+Value parseValue(const KeySpec& key, std::string_view text) {
+    Value value;
+    switch (key.type) {
+        case KeyType::Flag:
+            value = parseFlag(key, text);
+            break;
+        case KeyType::Number:
+            value = parseSingle(key, text);
+            break;
+        case KeyType::Text:
+        case KeyType::Word:
+        case KeyType::Choice:
+            value = std::string(text);
+            break;
+        case KeyType::Tuple:
+            value = parseTuple(key, text);
+            break;
+        case KeyType::TupleList:
+            value = parseTupleList(key, text);
+            break;
+    }
+    checkValue(key, value);
+    return value;
+}
+
+std::string formatValue(const KeySpec& key, const Value& value) {
+    std::string out;
+    switch (key.type) {
+        case KeyType::Flag:
+            out = hold<bool>(key, value) ? "yes" : "no";
+            break;
+        case KeyType::Number:
+            out = formatNumber(key, hold<double>(key, value));
+            break;
+        case KeyType::Text:
+        case KeyType::Word:
+        case KeyType::Choice:
+            out = formatText(hold<std::string>(key, value));
+            break;
+        case KeyType::Tuple:
+            appendTuple(out, key, hold<Tuple>(key, value));
+            break;
+        case KeyType::TupleList:
+            for (const Tuple& tuple : hold<TupleList>(key, value)) {
+                if (!out.empty()) out += ';';
+                appendTuple(out, key, tuple);
+            }
+            break;
+    }
+    return out;
+}
+
+void checkValue(const KeySpec& key, const Value& value) {
+    switch (key.type) {
+        case KeyType::Flag:
+            (void)hold<bool>(key, value);
+            break;
+        case KeyType::Number:
+            checkNumber(key, hold<double>(key, value));
+            break;
+        case KeyType::Text:
+        case KeyType::Word:
+        case KeyType::Choice:
+            checkString(key, hold<std::string>(key, value));
+            break;
+        case KeyType::Tuple:
+            checkTuple(key, hold<Tuple>(key, value), "");
+            break;
+        case KeyType::TupleList:
+            checkTupleList(key, hold<TupleList>(key, value));
+            break;
+    }
+}
+
+}  // namespace ispace
