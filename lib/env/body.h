@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "geom/polygon.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// What a surface is made of, as far as pictures and viewers care.
+enum class Material {
+    Floor,
+    FloorDark,
+    Wall,
+    Wood,
+    WoodDark,
+    Brick,
+    Concrete,
+    Metal,
+    Fabric,
+    Barrier,
+    Box,
+    Pillar,
+    Ceiling
+};
+
+/// A closed upright prism: footprint (simple, counter-clockwise, world frame) from bottom to top.
+struct Prism {
+    Polygon footprint;
+    double bottom = 0, top = 0;
+    Material material = Material::Wood;
+};
+
+/// An upright sheet without thickness: walls and fences as lines.
+struct Sheet {
+    Segment2 line;
+    double bottom = 0, top = 0;
+    Material material = Material::Wall;
+};
+
+/// A level sheet without thickness at height z: floors, ceilings. Never part of a slice.
+struct Plate {
+    Polygon outline;
+    double z = 0;
+    Material material = Material::Floor;
+    bool visual_only = false;  ///< a pattern on the floor: drawn, not met by rays
+};
+
+/// The shape of one element in the world frame.
+struct Body {
+    std::vector<Prism> prisms;
+    std::vector<Sheet> sheets;
+    std::vector<Plate> plates;
+};
+
+/// Greatest distance between a curve and the chords that stand for it, in metres.
+constexpr double kCurveTolerance = 0.00025;
+
+/// Ellipse with these full axes about `center`, the first along `heading`, vertices on the curve,
+/// chords within kCurveTolerance of it. Counter-clockwise.
+Polygon ellipse(Point2 center, double length, double width, Angle heading);
+
+/// Rectangle of this length (along heading) and width about `center`, counter-clockwise.
+Polygon rectangle(Point2 center, double length, double width, Angle heading);
+
+/// The wall lines of a wall, fence or ispace record: what encloses the room, at its mid-line.
+/// Zero-length lines are findings. Other records have none.
+std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings);
+
+/// The body of an environment record; nothing for `inside` and `zone`.
+///
+/// A wall or fence is one sheet per line, or with a thickness one box per line plus joints that
+/// leave no crack at corners. A table is a round top on a stem and a foot; a desk a top on four
+/// legs, or with kind=closed on panels down to the floor on both ends of its length and on its
+/// left, so that it is open to its right; a chair a seat on four legs with a back behind; barrier,
+/// cube, pillar boxes (pillar kind=round a cylinder). A floor is a pattern of plates.
+Body bodyOf(const Record& record);
+
+/// Area named by a `zone` record.
+Polygon zoneOutline(const Record& record);
+
+}  // namespace ispace

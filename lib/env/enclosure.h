@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "env/environment.h"
+#include "geom/planar_map.h"
+
+namespace ispace {
+
+/// What the wall lines enclose.
+struct Enclosure {
+    Region indoor;
+    Point2 inside;
+};
+
+/// The wall lines as written, and the element each belongs to.
+struct OwnedLines {
+    std::vector<Segment2> lines;
+    std::vector<std::size_t> owner;  ///< index of the element of each line
+};
+
+/// Finds the indoor region.
+///
+/// With an `inside` record (null: none) it is the face that holds its point; without, the face that
+/// holds the origin strictly inside, else the largest. A face that lies within other wall lines
+/// which would enclose it but for a gap is not taken without a record: the gap is the error (as
+/// with a closed pillar in a room that leaks). Where something is enclosed, only gaps of at most
+/// half the plan's shorter side count as such.
+/// \throws FormatError where there is no such face: a gap in the lines, or a point out of place
+Enclosure enclose(const OwnedLines& owned, const WeldedLines& welded, const Box2& limits,
+                  std::span<const Element> elements, const Record* inside);
+
+}  // namespace ispace

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/info.h"
+
+#include "base/json_writer.h"
+#include "base/number.h"
+#include "env/mesh.h"
+#include "geom/boolean.h"
+
+namespace ispace {
+
+EnvironmentInfo describe(const Environment& environment, std::span<const Record> records,
+                         const std::string& digest) {
+    EnvironmentInfo info;
+    info.digest = digest;
+    info.limits = environment.limits();
+    info.indoor_area = environment.indoor().area();
+    info.free_area = totalArea(environment.freeFloor(kScanHeight));
+    info.height = environment.height();
+    info.perimeter = environment.indoor().boundaryLength();
+    for (const Record& record : records) ++info.counts[record.keyword()];
+    info.triangles = floorMesh(environment.indoor()).triangles.size();
+    for (const Element& element : environment.elements())
+        for (const Mesh& mesh : meshesOf(element.body, false))
+            info.triangles += mesh.triangles.size();
+    return info;
+}
+
+std::string infoJson(const EnvironmentInfo& info) {
+    const Box2& b = info.limits;
+    JsonWriter json;
+    json.beginObject().key("schema").value("ispace-info/1");
+    json.key("digest").value(info.digest);
+    json.key("limits").value(std::vector<double>{b.low.x, b.low.y, b.high.x, b.high.y});
+    json.key("indoor_area").value(info.indoor_area);
+    json.key("free_area").value(info.free_area);
+    json.key("height").value(info.height);
+    json.key("perimeter").value(info.perimeter);
+    json.key("counts").beginObject();
+    for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
+    json.endObject();
+    json.key("triangles").value(info.triangles);
+    json.endObject();
+    return json.take() + '\n';
+}
+
+std::string infoText(const EnvironmentInfo& info) {
+    const Box2& b = info.limits;
+    std::string out = "digest       " + info.digest + '\n';
+    out += "limits       " + formatFixed(b.low.x, 3) + ' ' + formatFixed(b.low.y, 3) + " to " +
+           formatFixed(b.high.x, 3) + ' ' + formatFixed(b.high.y, 3) + " m (" +
+           formatFixed(b.width(), 3) + " x " + formatFixed(b.depth(), 3) + ")\n";
+    out += "indoor area  " + formatFixed(info.indoor_area, 3) + " m2\n";
+    out += "free area    " + formatFixed(info.free_area, 3) + " m2 at " +
+           formatDouble(kScanHeight) + " m\n";
+    out += "height       " + formatFixed(info.height, 3) + " m\n";
+    out += "perimeter    " + formatFixed(info.perimeter, 3) + " m\n";
+    out += "records     ";
+    for (const auto& [keyword, count] : info.counts)
+        out += ' ' + keyword + ' ' + std::to_string(count) + ',';
+    if (out.ends_with(',')) out.pop_back();
+    out += "\ntriangles    " + std::to_string(info.triangles) + '\n';
+    return out;
+}
+
+}  // namespace ispace

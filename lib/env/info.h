@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "env/environment.h"
+
+namespace ispace {
+
+/// The figures of an environment, for people and for `envc --info --json`.
+struct EnvironmentInfo {
+    std::string digest;
+    Box2 limits;
+    double indoor_area = 0;             ///< m2
+    double free_area = 0;               ///< m2, at kScanHeight
+    double height = 0;                  ///< the highest wall, m
+    double perimeter = 0;               ///< of the indoor region, holes included, m
+    std::map<std::string, int> counts;  ///< records by keyword
+    std::size_t triangles = 0;          ///< of bodies and floor
+};
+
+EnvironmentInfo describe(const Environment& environment, std::span<const Record> records,
+                         const std::string& digest);
+
+/// One JSON object and a newline, schema ispace-info/1.
+std::string infoJson(const EnvironmentInfo& info);
+std::string infoText(const EnvironmentInfo& info);
+
+}  // namespace ispace

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "geom/predicates.h"
+#include "geom/triangulate.h"
+
+namespace ispace {
+
+namespace {
+
+using Index = std::uint32_t;
+using Triangle = std::array<Index, 3>;
+
+/// True if every corner turns left: then a fan from any vertex triangulates it.
+bool isStrictlyConvex(const Polygon& polygon) {
+    const std::size_t n = polygon.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (orientation(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]) != Turn::Left)
+            return false;
+    return n >= 3;
+}
+
+/// Counter-clockwise triangles over the polygon's own vertices.
+std::vector<Triangle> trianglesOf(const Polygon& polygon) {
+    std::vector<Triangle> out;
+    if (isStrictlyConvex(polygon)) {
+        for (Index i = 2; i < polygon.size(); ++i) out.push_back({0, i - 1, i});
+        return out;
+    }
+    std::map<std::pair<double, double>, Index> index_of;
+    for (Index i = 0; i < polygon.size(); ++i)
+        index_of.try_emplace({polygon[i].x, polygon[i].y}, i);
+    const Triangulation parts = triangulate({polygon, {}});
+    const auto own = [&](Index i) {
+        return index_of.at({parts.vertices[i].x, parts.vertices[i].y});
+    };
+    for (const Triangle& t : parts.triangles) out.push_back({own(t[0]), own(t[1]), own(t[2])});
+    return out;
+}
+
+/// Appends the ring at height z; returns the index of its first vertex.
+Index addRing(Mesh& mesh, const Polygon& polygon, double z) {
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    for (const Point2 p : polygon) mesh.vertices.push_back({p.x, p.y, z});
+    return first;
+}
+
+void addPrism(Mesh& mesh, const Prism& prism) {
+    const auto n = static_cast<Index>(prism.footprint.size());
+    const Index low = addRing(mesh, prism.footprint, prism.bottom);
+    const Index high = addRing(mesh, prism.footprint, prism.top);
+    for (Index i = 0; i < n; ++i) {
+        const Index next = (i + 1) % n;
+        mesh.triangles.push_back({low + i, low + next, high + next});
+        mesh.triangles.push_back({low + i, high + next, high + i});
+    }
+    for (const Triangle& t : trianglesOf(prism.footprint)) {
+        mesh.triangles.push_back({high + t[0], high + t[1], high + t[2]});
+        mesh.triangles.push_back({low + t[0], low + t[2], low + t[1]});
+    }
+}
+
+void addSheet(Mesh& mesh, const Sheet& sheet) {
+    const Polygon line{sheet.line.a, sheet.line.b};
+    const Index low = addRing(mesh, line, sheet.bottom);
+    const Index high = addRing(mesh, line, sheet.top);
+    mesh.triangles.push_back({low, low + 1, high + 1});
+    mesh.triangles.push_back({low, high + 1, high});
+}
+
+void addPlate(Mesh& mesh, const Plate& plate) {
+    const Index first = addRing(mesh, plate.outline, plate.z);
+    for (const Triangle& t : trianglesOf(plate.outline))
+        mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+}  // namespace
+
+std::vector<Mesh> meshesOf(const Body& body, bool with_visual) {
+    std::vector<Mesh> meshes;
+    const auto of = [&meshes](Material material) -> Mesh& {
+        const auto found = std::find_if(meshes.begin(), meshes.end(), [material](const Mesh& mesh) {
+            return mesh.material == material;
+        });
+        return found != meshes.end() ? *found : meshes.emplace_back(Mesh{material, {}, {}});
+    };
+    for (const Prism& prism : body.prisms) addPrism(of(prism.material), prism);
+    for (const Sheet& sheet : body.sheets) addSheet(of(sheet.material), sheet);
+    for (const Plate& plate : body.plates)
+        if (with_visual || !plate.visual_only) addPlate(of(plate.material), plate);
+    return meshes;
+}
+
+Mesh floorMesh(const Region& indoor) {
+    Triangulation parts = triangulate(indoor);
+    Mesh mesh{Material::Floor, {}, std::move(parts.triangles)};
+    for (const Point2 p : parts.vertices) mesh.vertices.push_back({p.x, p.y, 0});
+    return mesh;
+}
+
+}  // namespace ispace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "env/body.h"
+#include "geom/point.h"
+
+namespace ispace {
+
+/// Triangles of one material, counter-clockwise seen from outside; sheets and plates once (they
+/// are seen from both sides).
+struct Mesh {
+    Material material = Material::Wood;
+    std::vector<Point3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// The body's triangles, one mesh per material, in the order of first use.
+/// `with_visual`: also plates that no ray meets.
+std::vector<Mesh> meshesOf(const Body& body, bool with_visual);
+
+/// The floor of an indoor region at z = 0.
+Mesh floorMesh(const Region& indoor);
+
+}  // namespace ispace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "env/body.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// Frame and extents of a record that has `at`, `heading`, `size` and perhaps `height`.
+struct Standing {
+    Pose2 world_from_body;
+    double length = 0, width = 0;
+    double bottom = 0, top = 0;
+
+    [[nodiscard]] double height() const { return top - bottom; }
+    /// The rectangle between two corners given in the body's frame, `low` left-below of `high`.
+    [[nodiscard]] Polygon box(Point2 low, Point2 high) const;
+    /// The whole rectangle, and the ellipse in it.
+    [[nodiscard]] Polygon rectangle() const;
+    [[nodiscard]] Polygon ellipse() const;
+    /// An ellipse about the centre scaled by `share`.
+    [[nodiscard]] Polygon ellipse(double share) const;
+};
+
+/// One number in `size` stands for length and width. The height is the third number of `size`,
+/// else `height`, else the length.
+Standing standingOf(const Record& record);
+
+Body tableBody(const Record& record);
+Body deskBody(const Record& record);
+Body chairBody(const Record& record);
+
+}  // namespace ispace

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/walls.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "base/number.h"
+#include "env/test_scene.h"
+#include "geom/pose.h"
+
+namespace ispace {
+namespace {
+
+using testing::environment;
+using testing::record;
+
+std::vector<Segment2> lines(const std::string& line) {
+    Diagnostics findings;
+    std::vector<Segment2> out = wallLines(record(line), findings);
+    EXPECT_TRUE(findings.empty()) << line;
+    return out;
+}
+
+std::string finding(const std::string& line) {
+    Diagnostics findings;
+    const auto out = wallLines(record(line), findings);
+    try {
+        findings.throwIfAny();
+    } catch (const FormatError& error) {
+        return error.diagnostics().front().message;
+    }
+    ADD_FAILURE() << line << " gave " << out.size() << " lines and no finding";
+    return "";
+}
+
+TEST(WallLines, WallByEndsOrByCentre) {
+    EXPECT_EQ(lines("wall from=1,2 to=3,4"), (std::vector<Segment2>{{{1, 2}, {3, 4}}}));
+    EXPECT_EQ(lines("wall at=1,2 size=4"), (std::vector<Segment2>{{{-1, 2}, {3, 2}}}));
+    EXPECT_EQ(lines("wall at=1,2 size=4 heading=90"), (std::vector<Segment2>{{{1, 0}, {1, 4}}}));
+    EXPECT_EQ(lines("wall size=4"), (std::vector<Segment2>{{{-2, 0}, {2, 0}}}));
+}
+
+TEST(WallLines, FenceOpenClosedAndByEnds) {
+    EXPECT_EQ(lines("fence from=0,0 to=1,0").size(), 1U);
+    EXPECT_EQ(lines("fence path=0,0;1,0;1,1").size(), 2U);
+    EXPECT_EQ(lines("fence path=0,0;1,0;1,1 closed=yes").size(), 3U);
+    // The first point repeated at the end adds nothing.
+    EXPECT_EQ(lines("fence path=0,0;1,0;1,1;0,0 closed=yes").size(), 3U);
+}
+
+TEST(WallLines, RoomIsItsFourWalls) {
+    EXPECT_EQ(lines("ispace at=1,1 size=4,2").size(), 4U);
+    EXPECT_TRUE(lines("desk").empty());
+    EXPECT_TRUE(lines("pillar").empty());
+}
+
+TEST(WallLines, FindsWhatIsNoWall) {
+    EXPECT_EQ(finding("wall from=1,1 to=1,1"), "wall has zero length");
+    EXPECT_EQ(finding("wall from=1,1 to=1.0000001,1"), "wall has zero length");
+    EXPECT_EQ(finding("wall size=0"), "wall has zero length");
+    EXPECT_EQ(finding("wall size=1,0,0"), "wall has zero height");
+    EXPECT_NE(finding("wall").find("no extent"), std::string::npos);
+    EXPECT_NE(finding("wall from=0,0").find("`to` is missing"), std::string::npos);
+    EXPECT_NE(finding("wall from=0,0 to=1,1 size=3").find("one way only"), std::string::npos);
+    EXPECT_NE(finding("wall from=0,0 to=1,1 at=3,3").find("`at`"), std::string::npos);
+    EXPECT_NE(finding("fence").find("no extent"), std::string::npos);
+    EXPECT_NE(finding("fence path=0,0").find("1 points"), std::string::npos);
+    EXPECT_NE(finding("fence path=0,0;1,1 closed=yes").find("at least 3"), std::string::npos);
+    EXPECT_NE(finding("fence path=0,0;1,1;1,1").find("zero length at (1, 1)"), std::string::npos);
+    EXPECT_NE(finding("fence path=0,0;1,1 from=0,0 to=1,1").find("one way"), std::string::npos);
+    EXPECT_NE(finding("ispace size=1e-7,3").find("zero length"), std::string::npos);
+}
+
+TEST(WallBodies, SheetsStandFromUndersideToHeight) {
+    const Body wall = bodyOf(record("wall at=0,0,1 size=4,0,0.5 kind=brick"));
+    ASSERT_EQ(wall.sheets.size(), 1U);
+    EXPECT_EQ(wall.sheets[0].bottom, 1);
+    EXPECT_EQ(wall.sheets[0].top, 1.5);
+    EXPECT_EQ(wall.sheets[0].material, Material::Brick);
+    const Body fence = bodyOf(record("fence path=0,0;1,0;1,1 height=1.2"));
+    ASSERT_EQ(fence.sheets.size(), 2U);
+    EXPECT_EQ(fence.sheets[1].top, 1.2);
+}
+
+TEST(WallBodies, ThickWallIsABoxAboutItsMidLine) {
+    const Body wall = bodyOf(record("wall from=0,0 to=4,0 thickness=0.2"));
+    EXPECT_TRUE(wall.sheets.empty());
+    ASSERT_EQ(wall.prisms.size(), 1U);
+    EXPECT_EQ(wall.prisms[0].footprint, (Polygon{{0, -0.1}, {4, -0.1}, {4, 0.1}, {0, 0.1}}));
+    EXPECT_EQ(bodyOf(record("wall size=4,0.3")).prisms.size(), 1U);
+}
+
+TEST(WallBodies, MitreFillsTheCorner) {
+    const Body fence = bodyOf(record("fence path=0,0;4,0;4,3 thickness=0.2"));
+    ASSERT_EQ(fence.prisms.size(), 3U);
+    const Polygon& joint = fence.prisms[1].footprint;
+    EXPECT_NEAR(signedArea(joint), 0.01, 1e-12);
+    EXPECT_EQ(locate(joint, {4.05, -0.05}), Side::Inside);
+    EXPECT_NE(locate(joint, {4.1, -0.1}), Side::Outside);
+    // The joint has the very corners of the boxes.
+    const auto has = [](const Polygon& polygon, Point2 p) {
+        return std::find(polygon.begin(), polygon.end(), p) != polygon.end();
+    };
+    int shared = 0;
+    for (const Point2 p : joint)
+        shared += has(fence.prisms[0].footprint, p) + has(fence.prisms[2].footprint, p);
+    EXPECT_EQ(shared, 2);
+}
+
+TEST(WallBodies, SharpCornerIsCutOff) {
+    const Body fence = bodyOf(record("fence path=0,0;4,0;0,0.2 thickness=0.2"));
+    ASSERT_EQ(fence.prisms.size(), 3U);
+    EXPECT_EQ(fence.prisms[1].footprint.size(), 3U);
+    for (const Point2 p : fence.prisms[1].footprint) EXPECT_LT(distance(p, {4, 0}), 0.41);
+    // There and back again: nothing to fill.
+    EXPECT_EQ(bodyOf(record("fence path=0,0;4,0;0,0 thickness=0.2")).prisms.size(), 2U);
+}
+
+TEST(WallBodies, ClosedThickFenceHasNoNotches) {
+    const Environment env = environment(
+        "fence path=0,0;6,0;6,4;3,4;3,2;0,2 closed=yes "
+        "thickness=0.2\n");
+    EXPECT_NEAR(env.indoor().area(), 18, 1e-9);
+    // Inner faces: 5.8 x 3.8 less the 3 x 2 notch, whose corner is a full mitre.
+    const double free = totalArea(env.freeFloor(1));
+    EXPECT_NEAR(free, 5.8 * 3.8 - 3 * 2, 1e-9);
+}
+
+TEST(WallBodies, JointOfTwoRecordsBelongsToTheFirst) {
+    const Environment env = environment(
+        "wall id=a from=0,0 to=4,0 thickness=0.2\n"
+        "wall id=b from=4,0 to=4,4 thickness=0.4 height=2\n"
+        "wall id=c from=4,4 to=0,4\nwall id=d from=0,4 to=0,0\n");
+    EXPECT_EQ(env.elements()[0].body.prisms.size(), 2U);
+    EXPECT_EQ(env.elements()[1].body.prisms.size(), 1U);
+    EXPECT_EQ(env.elements()[0].body.prisms[1].top, 2);
+    EXPECT_NEAR(signedArea(env.elements()[0].body.prisms[1].footprint), 0.02, 1e-12);
+    EXPECT_EQ(env.height(), 2.5);
+}
+
+/// Ends of all sheets as exact pairs.
+std::multiset<std::pair<double, double>> sheetEnds(const Environment& env) {
+    std::multiset<std::pair<double, double>> ends;
+    for (const Element& element : env.elements())
+        for (const Sheet& sheet : element.body.sheets) {
+            ends.insert({sheet.line.a.x, sheet.line.a.y});
+            ends.insert({sheet.line.b.x, sheet.line.b.y});
+        }
+    return ends;
+}
+
+std::string wallAt(Point2 center, double length, double heading) {
+    return "wall at=" + formatDouble(center.x) + "," + formatDouble(center.y) +
+           " size=" + formatDouble(length) + " heading=" + formatDouble(heading) + "\n";
+}
+
+TEST(WallBodies, RotatedWallsShareTheirCorners) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> turn(-180, 180), shift(-50, 50);
+    for (int round = 0; round < 50; ++round) {
+        const Pose2 world_from_room{{shift(random), shift(random)}, Angle::degrees(turn(random))};
+        const double h = world_from_room.heading.degrees();
+        // A 6 x 4 room of four walls and a partition that ends on two of them.
+        const std::string room = wallAt(world_from_room * Point2{3, 0}, 6, h) +
+                                 wallAt(world_from_room * Point2{6, 2}, 4, h + 90) +
+                                 wallAt(world_from_room * Point2{3, 4}, 6, h + 180) +
+                                 wallAt(world_from_room * Point2{0, 2}, 4, h - 90) +
+                                 wallAt(world_from_room * Point2{2, 2}, 4, h + 90);
+        const Point2 inside = world_from_room * Point2{4, 2};
+        const Environment env = environment(room + "inside at=" + formatDouble(inside.x) + "," +
+                                            formatDouble(inside.y) + "\n");
+        const auto ends = sheetEnds(env);
+        const std::set<std::pair<double, double>> places(ends.begin(), ends.end());
+        EXPECT_EQ(places.size(), 6U);
+        EXPECT_EQ(ends.size(), 14U);
+        for (const auto& place : places)
+            EXPECT_GE(ends.count(place), 2U) << place.first << ' ' << place.second;
+        EXPECT_NEAR(env.indoor().area(), 16, 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace ispace
