@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "record/record.h"
+
+namespace ispace {
+
+/// The models of share/devices: text files in the language of `.3dm`, one record a device, with
+/// its figures, their `source` and `confidence`.
+class DeviceCatalogue {
+  public:
+    DeviceCatalogue() = default;
+    /// Reads all `*.3dm` files of a folder in the order of their names.
+    /// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
+    static DeviceCatalogue load(const std::string& folder);
+
+    /// The record of a model, or null. Models are unique over all keywords.
+    [[nodiscard]] const Record* find(std::string_view model) const;
+    /// All model names, in catalogue order.
+    [[nodiscard]] std::vector<std::string> models() const;
+
+  private:
+    std::vector<Record> records_;
+};
+
+}  // namespace ispace

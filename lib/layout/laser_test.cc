@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/laser.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "env/environment.h"
+#include "layout/test_layout.h"
+
+namespace ispace {
+
+using testing::devices;
+using testing::findings;
+
+namespace {
+
+Record record(const std::string& line) { return readRecord(line, "line", sceneSchemas()); }
+
+Laser laser(const std::string& keys) { return laserOf(record("laser " + keys), devices()); }
+
+std::string laserFindings(const std::string& keys) {
+    return findings([&] { return laser(keys); });
+}
+
+TEST(LaserOf, BareLaserIsThePanelOfTheThesis) {
+    const Laser bare = laser("");
+    EXPECT_EQ(bare, Laser());
+    EXPECT_EQ(bare.model, "");
+    EXPECT_EQ(bare.min_range, 0);
+    EXPECT_EQ(bare.max_range, 5);
+    EXPECT_EQ(bare.beams, 181);
+    EXPECT_EQ(bare.bearing(0).degrees(), -90);
+    EXPECT_EQ(bare.bearing(90).degrees(), 0);
+    EXPECT_EQ(bare.last().degrees(), 90);
+}
+
+TEST(LaserOf, RangeHasMaximumAloneOrBoth) {
+    EXPECT_EQ(laser("range=4").max_range, 4);
+    EXPECT_EQ(laser("range=4").min_range, 0);
+    EXPECT_EQ(laser("range=0.5,4").min_range, 0.5);
+    EXPECT_EQ(laser("range=0.5,4").max_range, 4);
+    EXPECT_EQ(laser("model=urg-04lx range=4").min_range, 0.06);
+    EXPECT_EQ(laser("range=50cm").max_range, 0.5);
+}
+
+TEST(LaserOf, RangeErrors) {
+    EXPECT_NE(laserFindings("range=5,4").find("least range 5 m is above"), std::string::npos);
+    EXPECT_NE(laserFindings("range=0").find("must be above 0"), std::string::npos);
+    EXPECT_NE(laserFindings("range=0,0").find("must be above 0"), std::string::npos);
+    EXPECT_NE(laserFindings("range=-1"), "");
+    EXPECT_NE(laserFindings("model=urg-04lx range=0.05").find("above the greatest"),
+              std::string::npos);
+}
+
+TEST(LaserOf, FovLaysTheBeamsAnew) {
+    const Laser wide = laser("fov=270");
+    EXPECT_EQ(wide.first.degrees(), -135);
+    EXPECT_EQ(wide.beams, 271);
+    const Laser fine = laser("fov=90 step=0.25");
+    EXPECT_EQ(fine.first.degrees(), -45);
+    EXPECT_EQ(fine.beams, 361);
+    EXPECT_EQ(laser("fov=0").beams, 1);
+    EXPECT_EQ(laser("fov=0").first.degrees(), 0);
+    EXPECT_EQ(laser("fov=360").beams, 361);
+    const Laser urg = laser("model=urg-04lx fov=180");
+    EXPECT_EQ(urg.first.degrees(), -90);
+    EXPECT_EQ(urg.beams, 513);  // 180 / 0.3515625 = 512
+}
+
+TEST(LaserOf, FovThatIsNoMultipleOfTheStepEndsEarly) {
+    const Laser odd = laser("fov=10 step=3");
+    EXPECT_EQ(odd.first.degrees(), -5);
+    EXPECT_EQ(odd.beams, 4);
+    EXPECT_EQ(odd.last().degrees(), 4);
+}
+
+TEST(LaserOf, DivisionByStepIsNotLostToRounding) {
+    // 0.3 / 0.1 is a little below 3 in doubles.
+    EXPECT_EQ(laser("fov=0.3 step=0.1").beams, 4);
+    for (int beams = 2; beams < 2000; ++beams) {
+        const double step = 0.1;
+        const Record made = [&] {
+            Record out = record("laser");
+            out.set("fov", step * (beams - 1) > 360 ? 360 : step * (beams - 1));
+            out.set("step", step);
+            return out;
+        }();
+        EXPECT_EQ(laserOf(made, devices()).beams, beams);
+    }
+}
+
+TEST(LaserOf, StepAloneKeepsFirstBeamAndSpan) {
+    EXPECT_EQ(laser("step=0.5").beams, 361);
+    EXPECT_EQ(laser("step=0.5").first.degrees(), -90);
+    const Laser urg = laser("model=urg-04lx step=0.703125");
+    EXPECT_EQ(urg.first.degrees(), -119.53125);
+    EXPECT_EQ(urg.beams, 341);  // floor(681 / 2) + 1
+}
+
+TEST(LaserOf, FirstAndBeams) {
+    const Laser turned = laser("first=0");
+    EXPECT_EQ(turned.beams, 181);
+    EXPECT_EQ(turned.last().degrees(), 180);
+    const Laser few = laser("beams=3");
+    EXPECT_EQ(few.first.degrees(), -90);
+    EXPECT_EQ(few.last().degrees(), -88);
+    const Laser all = laser("first=-135 beams=1081 step=0.25");
+    EXPECT_EQ(all.last().degrees(), 135);
+    const Laser half = laser("fov=90 first=0");
+    EXPECT_EQ(half.last().degrees(), 90);
+    EXPECT_EQ(laser("fov=90 step=0.5 beams=181").beams, 181);
+}
+
+TEST(LaserOf, BeamErrors) {
+    EXPECT_NE(laserFindings("fov=180 beams=361").find("fov and step give 181"), std::string::npos);
+    EXPECT_NE(laserFindings("beams=2.5").find("not a whole number"), std::string::npos);
+    EXPECT_NE(laserFindings("beams=0"), "");
+    EXPECT_NE(laserFindings("beams=1e7"), "");
+    EXPECT_NE(laserFindings("step=0"), "");
+    EXPECT_NE(laserFindings("step=1e-9").find("at most 1000000"), std::string::npos);
+    EXPECT_NE(laserFindings("fov=361"), "");
+    EXPECT_NE(laserFindings("beams=1000").find("more than a full turn"), std::string::npos);
+    // Both findings at once.
+    const std::string both = laserFindings("range=5,4 beams=2.5");
+    EXPECT_EQ(std::count(both.begin(), both.end(), '\n'), 2);
+}
+
+TEST(LaserOf, ModelGivesTheFiguresAndExplicitKeysWin) {
+    const Laser urg = laser("model=urg-04lx");
+    EXPECT_EQ(urg.model, "urg-04lx");
+    EXPECT_EQ(urg.min_range, 0.06);
+    EXPECT_EQ(urg.max_range, 4.095);
+    EXPECT_EQ(urg.beams, 682);
+    EXPECT_EQ(urg.step.degrees(), 360.0 / 1024);
+    EXPECT_EQ(urg.bearing(384 - 44).degrees(), 0);
+    EXPECT_EQ(urg.last().degrees(), 119.8828125);
+    const Laser utm = laser("model=utm-30lx");
+    EXPECT_EQ(utm.beams, 1081);
+    EXPECT_EQ(utm.first.degrees(), -135);
+    EXPECT_EQ(utm.last().degrees(), 135);
+    EXPECT_EQ(utm.max_range, 30);
+    EXPECT_EQ(laser("model=utm-30lx range=8").max_range, 8);
+}
+
+TEST(LaserOf, UnknownModelNamesTheNearestAndTheOthers) {
+    const std::string text = laserFindings("model=urg-4lx");
+    EXPECT_NE(text.find("unknown model `urg-4lx`, did you mean `urg-04lx`?"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("utm-30lx"), std::string::npos);
+    EXPECT_EQ(text.find("line:1:"), 0U) << text;
+    EXPECT_NE(findings([] {
+                  return laserOf(record("laser model=x"), DeviceCatalogue());
+              }).find("catalogue is empty"),
+              std::string::npos);
+}
+
+TEST(Laser, SeesBetweenFirstAndLastBeamAtAnyTurn) {
+    const Laser half;  // -90 .. 90
+    for (const double turn : {-720.0, -360.0, 0.0, 360.0, 1080.0}) {
+        EXPECT_TRUE(half.sees(Angle::degrees(turn)));
+        EXPECT_TRUE(half.sees(Angle::degrees(turn + 90)));
+        EXPECT_TRUE(half.sees(Angle::degrees(turn - 90)));
+        EXPECT_TRUE(half.sees(Angle::degrees(turn + 90 + 1e-10)));
+        EXPECT_FALSE(half.sees(Angle::degrees(turn + 90.001)));
+        EXPECT_FALSE(half.sees(Angle::degrees(turn - 90.001)));
+        EXPECT_FALSE(half.sees(Angle::degrees(turn + 180)));
+    }
+    const Laser all = laser("fov=360");
+    const Laser one = laser("fov=0 first=30");
+    EXPECT_TRUE(one.sees(Angle::degrees(30)));
+    EXPECT_TRUE(one.sees(Angle::degrees(-330)));
+    EXPECT_FALSE(one.sees(Angle::degrees(30.01)));
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> any(-1000, 1000);
+    for (int i = 0; i < 1000; ++i) {
+        const double bearing = any(random);
+        EXPECT_TRUE(all.sees(Angle::degrees(bearing)));
+        const double near = std::remainder(bearing, 360.0);
+        EXPECT_EQ(half.sees(Angle::degrees(bearing)), near >= -90 && near <= 90) << bearing;
+    }
+}
+
+TEST(PoseOf, HeightIsThatOfAStandingSensorIfNotGiven) {
+    const Pose3 pose = poseOf(record("laser at=1,2 heading=30"));
+    EXPECT_EQ(pose.position, (Point3{1, 2, kScanHeight}));
+    EXPECT_EQ(pose.heading.degrees(), 30);
+    EXPECT_TRUE(pose.isLevel());
+    const Pose3 tilted = poseOf(record("laser at=1,2,1.5 tilt=-30 roll=5"));
+    EXPECT_EQ(tilted.position.z, 1.5);
+    EXPECT_EQ(tilted.tilt.degrees(), -30);
+    EXPECT_EQ(tilted.roll.degrees(), 5);
+    EXPECT_FALSE(tilted.isLevel());
+}
+
+}  // namespace
+
+}  // namespace ispace

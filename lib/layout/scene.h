@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "env/environment.h"
+#include "layout/devices.h"
+#include "layout/laser.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// A sensor that still has to be placed.
+struct PendingLaser {
+    std::string id;
+    Record record;
+    Laser laser;
+};
+
+/// Environment and layout, joined and resolved: what the tools read.
+///
+/// A LAYOUT record replaces the ENV record of the same written id, in its place; others follow.
+struct Scene {
+    std::vector<Record> records;        ///< joined, without `environment` and `result`
+    std::vector<std::string> ids;       ///< of each record
+    Environment environment;            ///< of the joined records
+    std::string digest;                 ///< of ENV alone, see environmentDigest
+    std::vector<PlacedLaser> lasers;    ///< with a place, in order
+    std::vector<PendingLaser> pending;  ///< without a place, in order
+};
+
+/// The records of LAYOUT put in the places of those of ENV with the same written id, the others
+/// behind them.
+std::vector<Record> joinRecords(const std::vector<Record>& environment,
+                                const std::vector<Record>& layout);
+
+/// \throws FormatError as Environment does, and for unknown models
+Scene makeScene(const Document& environment, const Document* layout,
+                const DeviceCatalogue& devices);
+
+/// What a LAYOUT says about its ENV, if it does.
+struct EnvironmentReference {
+    std::string file;    ///< relative to the LAYOUT's folder; "" if not given
+    std::string digest;  ///< "" if not given
+    Record record;
+};
+std::optional<EnvironmentReference> environmentReference(const Document& layout);
+
+}  // namespace ispace

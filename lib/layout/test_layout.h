@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For tests of this folder and of those above it: scenes from text.
+#pragma once
+
+#include <string>
+
+#include "layout/scene.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace::testing {
+
+/// The devices that come with the project.
+inline const DeviceCatalogue& devices() {
+    static const DeviceCatalogue kDevices =
+        DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
+    return kDevices;
+}
+
+/// Line 1 is the magic line, so the first of `lines` is line 2.
+inline Document roomDocument(const std::string& lines) {
+    return readRecordText("#env 1\n" + lines, "room.env", sceneSchemas());
+}
+
+inline Document layoutDocument(const std::string& lines) {
+    return readRecordText("#3dm 1\n" + lines, "room.3dm", sceneSchemas());
+}
+
+inline Scene scene(const std::string& lines) {
+    return makeScene(roomDocument(lines), nullptr, devices());
+}
+
+inline Scene scene(const std::string& room, const std::string& layout) {
+    const Document document = layoutDocument(layout);
+    return makeScene(roomDocument(room), &document, devices());
+}
+
+/// What `work` throws as FormatError, a finding a line; "" if it does not.
+template <typename Work>
+std::string findings(Work work) {
+    try {
+        static_cast<void>(work());
+    } catch (const FormatError& error) {
+        std::string out;
+        for (const Diagnostic& diagnostic : error.diagnostics()) out += diagnostic.text() + '\n';
+        return out;
+    }
+    return "";
+}
+
+}  // namespace ispace::testing
