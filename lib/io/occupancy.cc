@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/occupancy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ispace {
+
+Cell classify(int sample, int max_value, const OccupancyRule& rule) {
+    if (rule.mode == OccupancyRule::Mode::Raw) {
+        const long value = std::lround(255.0 * sample / max_value);
+        return value == 0 ? Cell::Free : value == 100 ? Cell::Occupied : Cell::Unknown;
+    }
+    // One division, correctly rounded, so that a threshold of 0.2 meets 51 of 255 exactly.
+    const double darkness = static_cast<double>(rule.negate ? sample : max_value - sample) /
+                            static_cast<double>(max_value);
+    if (darkness > rule.occupied_thresh) return Cell::Occupied;
+    return darkness < rule.free_thresh ? Cell::Free : Cell::Unknown;
+}
+
+std::size_t MapCells::count() const {
+    return static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), 1));
+}
+
+MapCells freeCells(const Pgm& image, const OccupancyRule& rule) {
+    std::vector<std::uint8_t> is_free(static_cast<std::size_t>(image.max_value) + 1);
+    for (int sample = 0; sample <= image.max_value; ++sample)
+        is_free[static_cast<std::size_t>(sample)] =
+            classify(sample, image.max_value, rule) == Cell::Free ? 1 : 0;
+    MapCells cells(image.width, image.height);
+    std::size_t i = 0;
+    for (int y = image.height - 1; y >= 0; --y)
+        for (int x = 0; x < image.width; ++x)
+            if (is_free[image.samples[i++]] != 0) cells.insert(x, y);
+    return cells;
+}
+
+namespace {
+
+constexpr std::array<CellPlace, 4> kNeighbours{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+
+/// Adds the 4-connected piece of `cells` that holds `seed` to `seen`.
+/// \return its size
+std::size_t flood(const MapCells& cells, CellPlace seed, MapCells& seen) {
+    std::vector<CellPlace> open{seed};
+    seen.insert(seed.x, seed.y);
+    std::size_t size = 0;
+    while (!open.empty()) {
+        const CellPlace cell = open.back();
+        open.pop_back();
+        ++size;
+        for (const CellPlace step : kNeighbours) {
+            const CellPlace next{cell.x + step.x, cell.y + step.y};
+            if (!cells.contains(next.x, next.y) || seen.contains(next.x, next.y)) continue;
+            seen.insert(next.x, next.y);
+            open.push_back(next);
+        }
+    }
+    return size;
+}
+
+}  // namespace
+
+MapCells largestPiece(const MapCells& cells) {
+    MapCells seen(cells.width(), cells.height());
+    std::size_t best_size = 0;
+    CellPlace best;
+    for (int y = 0; y < cells.height(); ++y)
+        for (int x = 0; x < cells.width(); ++x) {
+            if (!cells.contains(x, y) || seen.contains(x, y)) continue;
+            const std::size_t size = flood(cells, {x, y}, seen);
+            if (size <= best_size) continue;
+            best_size = size;
+            best = {x, y};
+        }
+    MapCells piece(cells.width(), cells.height());
+    if (best_size > 0) flood(cells, best, piece);
+    return piece;
+}
+
+CellPlace widestPlace(const MapCells& cells) {
+    const int width = cells.width();
+    const int height = cells.height();
+    std::vector<int> rings(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const auto at = [&](int x, int y) {
+        return x < 0 || y < 0 || x >= width || y >= height ? 0 : rings[cells.index(x, y)];
+    };
+    // Distance transform in two passes: from below and the left, then from above and the right.
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (cells.contains(x, y))
+                rings[cells.index(x, y)] =
+                    1 + std::min({at(x - 1, y), at(x - 1, y - 1), at(x, y - 1), at(x + 1, y - 1)});
+    CellPlace best;
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = width - 1; x >= 0; --x) {
+            int& ring = rings[cells.index(x, y)];
+            ring = std::min(ring, 1 + std::min({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1),
+                                                at(x - 1, y + 1)}));
+            if (ring >= at(best.x, best.y)) best = {x, y};
+        }
+    return best;
+}
+
+}  // namespace ispace

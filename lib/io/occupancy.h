@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "io/pgm.h"
+
+namespace ispace {
+
+/// How a map's pixels are meant, as map_server's YAML says it.
+struct OccupancyRule {
+    enum class Mode {
+        Trinary,  ///< by the two thresholds
+        Scale,    ///< the same, with shades of unknown between the thresholds
+        Raw,      ///< the pixel (of 255) is the value: 0 free, 100 occupied
+    };
+    Mode mode = Mode::Trinary;
+    bool negate = false;            ///< white is occupied
+    double occupied_thresh = 0.65;  ///< occupied if the darkness is above
+    double free_thresh = 0.196;     ///< free if the darkness is below
+};
+
+enum class Cell : std::uint8_t { Free, Occupied, Unknown };
+
+/// Meaning of a sample out of 0 .. max_value. Both comparisons are strict, occupied comes first.
+Cell classify(int sample, int max_value, const OccupancyRule& rule);
+
+/// A set of cells; column 0 is the left one, row 0 the bottom row.
+class MapCells {
+  public:
+    MapCells(int width, int height)
+        : width_(width),
+          height_(height),
+          cells_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    /// False outside of the grid.
+    [[nodiscard]] bool contains(int x, int y) const {
+        return x >= 0 && y >= 0 && x < width_ && y < height_ && cells_[index(x, y)] != 0;
+    }
+    /// \pre the cell lies in the grid
+    void insert(int x, int y) { cells_[index(x, y)] = 1; }
+    [[nodiscard]] std::size_t count() const;
+    /// Where (x, y) stands in a list of all cells, row by row from the bottom.
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+               static_cast<std::size_t>(x);
+    }
+
+  private:
+    int width_, height_;
+    std::vector<std::uint8_t> cells_;
+};
+
+/// The free cells of a map; the picture's top row becomes the highest row.
+MapCells freeCells(const Pgm& image, const OccupancyRule& rule);
+
+/// The largest 4-connected piece, of equal ones the one that begins lowest, then leftmost. O(n).
+MapCells largestPiece(const MapCells& cells);
+
+struct CellPlace {
+    int x = 0, y = 0;
+};
+
+/// The cell furthest from all cells outside the set, by rings of eight neighbours; of equal ones
+/// the lowest, then leftmost. O(n). \pre not empty
+CellPlace widestPlace(const MapCells& cells);
+
+}  // namespace ispace

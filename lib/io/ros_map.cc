@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ros_map.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/suggest.h"
+#include "base/utf8.h"
+#include "geom/pose.h"
+#include "io/occupancy.h"
+#include "io/outline.h"
+#include "io/pgm.h"
+
+namespace ispace {
+
+namespace {
+
+/// Cells that outlines move by default: half for stairs, see outline.h, and half for noise.
+constexpr double kDefaultSimplify = 1;
+
+/// A millimetre a cell, ten kilometres of map, and its distance from the origin (records end at
+/// 1000 km): beyond them the numbers are no metres, or the map is no plan of a building.
+constexpr double kFinestResolution = 0.001;
+constexpr double kLargestExtent = 10000;
+constexpr double kFarthest = 900000;
+
+/// What map.yaml says.
+struct MapHeader {
+    std::string image;
+    double resolution = 0;  ///< metres a cell
+    Pose2 map_from_grid;    ///< the lower left corner of the picture
+    OccupancyRule rule;
+};
+
+/// Reads map.yaml, collecting findings.
+class HeaderReader {
+  public:
+    HeaderReader(const YAML::Node& root, const std::string& name) : root_(root), name_(name) {}
+
+    MapHeader read() {
+        MapHeader header;
+        header.image = text("image");
+        header.resolution = resolution();
+        header.map_from_grid = origin();
+        header.rule = rule();
+        findings_.throwIfAny();
+        return header;
+    }
+
+  private:
+    void fail(const YAML::Node& node, std::string message) {
+        const YAML::Mark mark = node.Mark();
+        findings_.add(
+            Diagnostic{displayName(name_), mark.line + 1, mark.column + 1, std::move(message)});
+    }
+
+    YAML::Node required(const std::string& key) {
+        YAML::Node node = root_[key];
+        if (!node) fail(root_, "missing key `" + key + "` of a ROS map");
+        return node;
+    }
+
+    std::string text(const std::string& key) {
+        const YAML::Node node = required(key);
+        if (!node) return {};
+        if (node.IsScalar() && !node.Scalar().empty()) return node.Scalar();
+        fail(node, '`' + key + "`: wanted the name of a PGM picture");
+        return {};
+    }
+
+    double number(const YAML::Node& node, const std::string& key, double lowest, double highest) {
+        const auto value = node.IsScalar() ? parseDouble(node.Scalar()) : std::nullopt;
+        if (value && *value >= lowest && *value <= highest) return *value;
+        const std::string found = node.IsScalar() ? excerpt(node.Scalar()) : "a list or map";
+        fail(node, '`' + key + "`: found " + found + ", wanted a number from " +
+                       formatDouble(lowest) + " to " + formatDouble(highest));
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+
+    double resolution() {
+        const YAML::Node node = required("resolution");
+        return node ? number(node, "resolution", kFinestResolution, 1000) : 0;
+    }
+
+    Pose2 origin() {
+        const YAML::Node node = required("origin");
+        if (!node) return {};
+        if (!node.IsSequence() || node.size() < 2 || node.size() > 3) {
+            fail(node, "`origin`: wanted a list of two or three numbers, [x, y, yaw]");
+            return {};
+        }
+        const auto entry = [&](std::size_t i) {
+            return number(node[i], "origin", -kFarthest, kFarthest);
+        };
+        Pose2 pose;
+        pose.position = {entry(0), entry(1)};
+        if (node.size() == 3) pose.heading = Angle::radians(entry(2));
+        return pose;
+    }
+
+    OccupancyRule rule() {
+        OccupancyRule rule;
+        if (const YAML::Node node = root_["mode"]; node) {
+            const std::vector<std::string> names{"trinary", "scale", "raw"};
+            const std::string found = node.IsScalar() ? node.Scalar() : std::string();
+            if (found == "scale")
+                rule.mode = OccupancyRule::Mode::Scale;
+            else if (found == "raw")
+                rule.mode = OccupancyRule::Mode::Raw;
+            else if (found != "trinary")
+                fail(node, "`mode`: found " + excerpt(found) + ", wanted trinary, scale or raw" +
+                               didYouMean(found, names));
+        }
+        if (const YAML::Node node = root_["negate"]; node) rule.negate = flag(node, "negate");
+        if (const YAML::Node node = root_["occupied_thresh"]; node)
+            rule.occupied_thresh = number(node, "occupied_thresh", 0, 1);
+        if (const YAML::Node node = root_["free_thresh"]; node)
+            rule.free_thresh = number(node, "free_thresh", 0, 1);
+        return rule;
+    }
+
+    bool flag(const YAML::Node& node, const std::string& key) {
+        const std::string found = node.IsScalar() ? node.Scalar() : std::string();
+        if (found == "1" || found == "true" || found == "yes") return true;
+        if (found != "0" && found != "false" && found != "no")
+            fail(node, '`' + key + "`: found " + excerpt(found) + ", wanted 0 or 1");
+        return false;
+    }
+
+    const YAML::Node& root_;
+    const std::string& name_;
+    Diagnostics findings_;
+};
+
+MapHeader readHeader(std::string_view yaml, const std::string& name) {
+    try {
+        const YAML::Node root = YAML::Load(std::string(yaml));
+        if (!root.IsMap())
+            throw FormatError(Diagnostic{displayName(name), 0, 0,
+                                         "not a ROS map: wanted `image`, `resolution`, `origin`"});
+        return HeaderReader(root, name).read();
+    } catch (const YAML::Exception& error) {
+        throw FormatError(Diagnostic{displayName(name), error.mark.line + 1, error.mark.column + 1,
+                                     "bad YAML: " + error.msg});
+    }
+}
+
+std::string imagePath(const std::string& image, const std::string& map_name) {
+    const std::filesystem::path folder =
+        map_name == "-" ? std::filesystem::path() : std::filesystem::path(map_name).parent_path();
+    return (folder / image).string();
+}
+
+MapCells readRoom(const MapHeader& header, const std::string& path) {
+    const auto fail = [&path](const std::string& message) {
+        throw FormatError(Diagnostic{path, 0, 0, message});
+    };
+    const Pgm image = parsePgm(readAll(path), path);
+    if (header.resolution * std::max(image.width, image.height) > kLargestExtent)
+        fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " cells of " +
+             formatDouble(header.resolution) + " m are more than " + formatDouble(kLargestExtent) +
+             " m: is `resolution` in metres?");
+    MapCells room = largestPiece(freeCells(image, header.rule));
+    if (room.count() == 0)
+        fail("no free cell among " + std::to_string(image.width) + " x " +
+             std::to_string(image.height) + ": check `negate` and `free_thresh` of the map");
+    return room;
+}
+
+/// Metres on whole micrometres, which keeps the text short and moves no cell edge visibly.
+double rounded(double metres) { return std::round(metres * 1e6) / 1e6; }
+
+class RoomWriter {
+  public:
+    RoomWriter(const MapHeader& header, const Schemas& schemas, const std::string& name,
+               double wall_height)
+        : header_(header),
+          schemas_(schemas),
+          place_{std::make_shared<const std::string>(displayName(name)), 0, 0},
+          wall_height_(wall_height) {}
+
+    [[nodiscard]] Record fence(const Polygon& curve) const {
+        TupleList path;
+        path.reserve(curve.size());
+        for (const Point2 corner : curve) path.push_back(inMap(corner));
+        Record record(*schemas_.find("fence"), place_);
+        record.set("path", std::move(path));
+        record.set("closed", true);
+        record.set("height", wall_height_);
+        return record;
+    }
+
+    [[nodiscard]] Record inside(Point2 point) const {
+        Record record(*schemas_.find("inside"), place_);
+        record.set("at", inMap(point));
+        return record;
+    }
+
+  private:
+    [[nodiscard]] Tuple inMap(Point2 cells) const {
+        const Point2 metres{cells.x * header_.resolution, cells.y * header_.resolution};
+        const Point2 map = header_.map_from_grid * metres;
+        return {rounded(map.x), rounded(map.y)};
+    }
+
+    const MapHeader& header_;
+    const Schemas& schemas_;
+    Place place_;
+    double wall_height_;
+};
+
+/// The middle of the widest place; where simplification took it away, another point of the room.
+Point2 insideOf(const MapCells& room, const Region& region) {
+    const CellPlace widest = widestPlace(room);
+    const Point2 middle{widest.x + 0.5, widest.y + 0.5};
+    return region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
+}
+
+}  // namespace
+
+bool isRosMap(std::string_view bytes) {
+    // Most YAML is told apart without parsing it twice.
+    if (bytes.find("image") == std::string_view::npos ||
+        bytes.find("resolution") == std::string_view::npos)
+        return false;
+    try {
+        const YAML::Node root = YAML::Load(std::string(bytes));
+        return root.IsMap() && root["image"] && root["resolution"];
+    } catch (const YAML::Exception&) {
+        return false;  // the YAML reader says where it is bad
+    }
+}
+
+Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
+                    const Schemas& schemas) {
+    const MapHeader header = readHeader(yaml, name);
+    const MapCells room = readRoom(header, imagePath(header.image, name));
+    const double tolerance =
+        options.simplify ? *options.simplify / header.resolution : kDefaultSimplify;
+    const Region region = vectorised(room, tolerance);
+
+    Document document;
+    const RoomWriter writer(header, schemas, name, options.wall_height);
+    document.records.push_back(writer.fence(region.outline));
+    for (const Polygon& hole : region.holes) document.records.push_back(writer.fence(hole));
+    document.records.push_back(writer.inside(insideOf(room, region)));
+    return document;
+}
+
+}  // namespace ispace

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "record/record.h"
+
+namespace ispace {
+
+/// How plans without heights become rooms.
+struct ImportOptions {
+    double wall_height = 2.5;        ///< metres
+    std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
+};
+
+/// True if the bytes are YAML with the top-level keys `image` and `resolution`.
+bool isRosMap(std::string_view bytes);
+
+/// Reads a ROS map (map_server's map.yaml and its PGM, P2 or P5, 8 or 16 bit): the largest free
+/// region (4-connected; unknown is not free) becomes the room, its outline and its holes closed
+/// fences along the cell edges, simplified by at most ImportOptions::simplify (default one
+/// cell: slanted walls become straight lines through their stairs), and `inside` a point far from
+/// them.
+/// \param name the map.yaml; `image` is relative to its folder (for "-" to the current one)
+/// \throws FormatError with place in YAML or image, std::system_error for a missing image
+Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
+                    const Schemas& schemas);
+
+}  // namespace ispace

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ros_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "io/occupancy.h"
+#include "layout/scene.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+namespace {
+
+/// A folder of the running test's own.
+class RosMap : public testing::Test {
+  protected:
+    RosMap()
+        : folder_(std::filesystem::path(ISPACE_BINARY_DIR) / "ros_map_test" /
+                  testing::UnitTest::GetInstance()->current_test_info()->name()) {
+        std::filesystem::create_directories(folder_);
+    }
+    ~RosMap() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string path(const std::string& name) const {
+        return (folder_ / name).string();
+    }
+
+    /// Writes map.pgm: '.' free, '#' occupied, ' ' unknown.
+    void writeImage(const std::vector<std::string>& rows) const {
+        std::string bytes = "P5\n" + std::to_string(rows.front().size()) + ' ' +
+                            std::to_string(rows.size()) + "\n255\n";
+        for (const std::string& row : rows)
+            for (const char c : row)
+                bytes += static_cast<char>(c == '.' ? 254 : c == '#' ? 0 : 205);
+        writeAll(path("map.pgm"), bytes);
+    }
+
+    Document read(const std::string& yaml, const ImportOptions& options = {}) const {
+        return readRosMap(yaml, path("map.yaml"), options, sceneSchemas());
+    }
+
+    /// All findings, without the folder.
+    [[nodiscard]] std::string errorsOf(const std::string& yaml) const {
+        try {
+            read(yaml);
+        } catch (const FormatError& error) {
+            std::string all;
+            for (const Diagnostic& diagnostic : error.diagnostics())
+                all += diagnostic.text().substr(folder_.string().size() + 1) + '\n';
+            return all;
+        }
+        return "no error";
+    }
+
+    std::filesystem::path folder_;
+};
+
+const std::string kHeader = "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\n";
+
+std::string textOf(const Document& document) { return writeRecordText(document); }
+
+Environment environmentOf(const Document& document) {
+    return makeScene(document, nullptr, DeviceCatalogue()).environment;
+}
+
+TEST_F(RosMap, KnowsAMap) {
+    EXPECT_TRUE(isRosMap(kHeader));
+    EXPECT_TRUE(isRosMap("{resolution: 0.1, image: a.png}"));
+    EXPECT_FALSE(isRosMap("image: map.pgm\n"));
+    EXPECT_FALSE(isRosMap("# image resolution\ndesk: {at: [1, 2]}\n"));
+    EXPECT_FALSE(isRosMap("image: [resolution\n"));
+    EXPECT_FALSE(isRosMap("- image\n- resolution\n"));
+    EXPECT_FALSE(isRosMap(""));
+    EXPECT_FALSE(isRosMap("image resolution " + std::string(100000, '[')));
+}
+
+TEST_F(RosMap, RoomWithPillar) {
+    writeImage({"        ",  //
+                " ###### ",  //
+                " #....# ",  //
+                " #.#..# ",  //
+                " #....# ",  //
+                " ###### "});
+    // Unknown and occupied cells are no floor; cell (0, 0) has its corner at the origin.
+    EXPECT_EQ(textOf(read(kHeader)),
+              "#env 1\n"
+              "fence path=0,2.5;2,2.5;2,4;0,4 closed=yes\n"
+              "fence path=0.5,3;0.5,3.5;1,3.5;1,3 closed=yes\n"
+              "inside at=0.25,2.75\n");
+    const Environment room = environmentOf(read(kHeader));
+    EXPECT_DOUBLE_EQ(room.indoor().area(), 11 * 0.25);
+    EXPECT_EQ(room.indoor().holes.size(), 1U);
+    EXPECT_DOUBLE_EQ(room.height(), 2.5);
+}
+
+TEST_F(RosMap, OptionsSetHeightAndTolerance) {
+    writeImage({"....####", ".....###", "......##", ".......#", "........", "........"});
+    ImportOptions options;
+    options.wall_height = 3;
+    options.simplify = 0;
+    const Document exact = read(kHeader, options);
+    EXPECT_EQ(exact.records.front().number("height"), 3);
+    EXPECT_EQ(exact.records.front().list("path").size(), 12U);
+    EXPECT_LT(read(kHeader).records.front().list("path").size(), 8U);
+}
+
+TEST_F(RosMap, YawTurnsAboutTheLowerLeftCorner) {
+    writeImage({"..", "..", ".."});
+    const std::string turned =
+        "image: map.pgm\nresolution: 0.5\norigin: [10, 20, 1.5707963267948966]\n";
+    EXPECT_EQ(textOf(read(turned)),
+              "#env 1\n"
+              "fence path=10,20;10,21;8.5,21;8.5,20 closed=yes\n"
+              "inside at=9.75,20.25\n");
+}
+
+TEST_F(RosMap, LargestPieceIsTheRoomAndNegateIsHeeded) {
+    writeImage({".#...", ".#...", "##..."});
+    ImportOptions exact;
+    exact.simplify = 0;
+    const auto area = [&](const std::string& yaml) {
+        return environmentOf(read(yaml, exact)).indoor().area();
+    };
+    EXPECT_DOUBLE_EQ(area(kHeader), 9 * 0.25);
+    EXPECT_DOUBLE_EQ(area(kHeader + "negate: 1\n"), 4 * 0.25);
+}
+
+TEST_F(RosMap, FindingsNameTheirPlace) {
+    writeImage({"..", ".."});
+    EXPECT_EQ(errorsOf("image: map.pgm\n"
+                       "resolution: -0.05\n"
+                       "negate: maybe\n"
+                       "free_thresh: 1.5\n"
+                       "occupied_thresh: nan\n"
+                       "mode: trinar\n"),
+              "map.yaml:2:13: error: `resolution`: found `-0.05`, wanted a number from 0.001 to "
+              "1000\n"
+              "map.yaml:1:1: error: missing key `origin` of a ROS map\n"
+              "map.yaml:6:7: error: `mode`: found `trinar`, wanted trinary, scale or raw, did you "
+              "mean `trinary`?\n"
+              "map.yaml:3:9: error: `negate`: found `maybe`, wanted 0 or 1\n"
+              "map.yaml:5:18: error: `occupied_thresh`: found `nan`, wanted a number from 0 to 1\n"
+              "map.yaml:4:14: error: `free_thresh`: found `1.5`, wanted a number from 0 to 1\n");
+    EXPECT_EQ(
+        errorsOf("image: map.pgm\nresolution: 0.05\norigin: [1]\n"),
+        "map.yaml:3:9: error: `origin`: wanted a list of two or three numbers, [x, y, yaw]\n");
+    EXPECT_EQ(errorsOf("image: map.pgm\nresolution: 0.05\norigin: [1, .inf]\n"),
+              "map.yaml:3:13: error: `origin`: found `.inf`, wanted a number from -900000 to "
+              "900000\n");
+    EXPECT_EQ(errorsOf("image: [a]\nresolution: [1]\norigin: [1, 2]\n"),
+              "map.yaml:1:8: error: `image`: wanted the name of a PGM picture\n"
+              "map.yaml:2:13: error: `resolution`: found a list or map, wanted a number from 0.001 "
+              "to 1000\n");
+    EXPECT_EQ(errorsOf("image: map.pgm\nresolution: 0.05\n  origin: [1, 2]\n").substr(0, 34),
+              "map.yaml:3:9: error: bad YAML: ill");
+}
+
+TEST_F(RosMap, BadImages) {
+    EXPECT_THROW(read(kHeader), std::system_error);
+    writeImage({"##", "  "});
+    EXPECT_EQ(errorsOf(kHeader),
+              "map.pgm: error: no free cell among 2 x 2: check `negate` and `free_thresh` of the "
+              "map\n");
+    writeAll(path("map.pgm"), "P5\n9 9\n255\nxx");
+    EXPECT_EQ(errorsOf(kHeader), "map.pgm: error: truncated: 2 of 81 bytes\n");
+    writeImage({std::string(20, '.')});
+    EXPECT_EQ(errorsOf("image: map.pgm\nresolution: 1000\norigin: [0, 0]\n"),
+              "map.pgm: error: 20 x 1 cells of 1000 m are more than 10000 m: is `resolution` in "
+              "metres?\n");
+}
+
+TEST_F(RosMap, ImageMayBeElsewhere) {
+    writeImage({"..", ".."});
+    std::filesystem::create_directories(folder_ / "sub");
+    std::filesystem::rename(path("map.pgm"), path("sub/map.pgm"));
+    const std::string rest = "\nresolution: 0.5\norigin: [0, 0]\n";
+    EXPECT_EQ(read("image: sub/map.pgm" + rest).records.size(), 2U);
+    EXPECT_EQ(read("image: " + path("sub/map.pgm") + rest).records.size(), 2U);
+}
+
+TEST_F(RosMap, RoomsOfNoiseKeepTheirFloor) {
+    std::mt19937_64 random(1312);
+    for (int round = 0; round < 40; ++round) {
+        const auto size = static_cast<std::size_t>(5 + round);
+        std::vector<std::string> rows(size, std::string(size, '.'));
+        for (std::string& row : rows)
+            for (char& c : row)
+                if (random() % 100 < 8U + static_cast<unsigned>(round) % 30) c = '#';
+        writeImage(rows);
+        ImportOptions exact;
+        exact.simplify = 0;
+        const Environment cells = environmentOf(read(kHeader, exact));
+        const double count = cells.indoor().area() / 0.25;
+        EXPECT_NEAR(count, std::round(count), 1e-6);
+        const Environment room = environmentOf(read(kHeader));
+        EXPECT_EQ(room.indoor().locate(room.inside()), Side::Inside);
+        EXPECT_LE(std::abs(room.indoor().area() - cells.indoor().area()),
+                  0.5 * cells.indoor().boundaryLength());
+    }
+}
+
+/// The real maps, if the machine has them.
+class RealMaps : public testing::Test {
+  protected:
+    static Document read(const std::string& name, double tolerance_cells, double resolution) {
+        const char* folder = std::getenv("ISPACE_TEST_DATA");
+        if (folder == nullptr) return {};
+        const std::string path = std::string(folder) + '/' + name;
+        ImportOptions options;
+        if (tolerance_cells >= 0) options.simplify = tolerance_cells * resolution;
+        return readRosMap(readAll(path), path, options, sceneSchemas());
+    }
+};
+
+TEST_F(RealMaps, PillarsOfTheArenaAreHoles) {
+    const Document document = read("turtlebot3.yaml", -1, 0.05);
+    if (document.records.empty()) GTEST_SKIP() << "ISPACE_TEST_DATA names no folder of maps";
+    const Environment room = environmentOf(document);
+    EXPECT_EQ(room.indoor().holes.size(), 9U);
+    EXPECT_NEAR(room.indoor().area(), 7936 * 0.0025, 7936 * 0.0025 * 0.01);
+    // The origin lies in a pillar, so the inside point cannot be the origin.
+    EXPECT_EQ(room.indoor().locate({0, 0}), Side::Outside);
+    EXPECT_EQ(room.indoor().locate(room.inside()), Side::Inside);
+}
+
+TEST_F(RealMaps, OfficeKeepsItsFloor) {
+    const Document exact = read("willow-full.yaml", 0, 0.1);
+    if (exact.records.empty()) GTEST_SKIP() << "ISPACE_TEST_DATA names no folder of maps";
+    EXPECT_NEAR(environmentOf(exact).indoor().area(), 1312.46, 1e-6);
+    const Environment room = environmentOf(read("willow-full.yaml", -1, 0.1));
+    EXPECT_NEAR(room.indoor().area(), 1312.46, 4);
+    EXPECT_GT(room.indoor().holes.size(), 800U);
+}
+
+}  // namespace
+}  // namespace ispace
