@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/sense: sensors and the formats of their readings. Uses trace and below; TBB inside.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "layout/laser.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+/// One sweep of a laser range finder. `ranges[k]` belongs to the beam of bearing
+/// `laser.bearing(k)`: metres from the optical centre; +infinity means no return, which is
+/// nothing within max_range or a surface nearer than min_range.
+struct Scan {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    std::vector<float> ranges;
+};
+
+/// Distance to the first surface of every beam up to max_range, whatever min_range is; +infinity
+/// if there is none. What figures are computed from.
+std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor);
+
+/// What the sensor reads: castBeams with the blind zone applied.
+Scan castScan(const RayWorld& world, const PlacedLaser& sensor);
+
+/// One scan of each sensor, in order, shared out over all cores.
+std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors);
+
+/// Eq. (4.4) of the thesis over all beams: sum of step * pi * dist^2 / 360 with no return counted
+/// as max_range. `ranges` as of castBeams.
+double sliceArea(const Laser& laser, std::span<const float> ranges);
+
+}  // namespace ispace

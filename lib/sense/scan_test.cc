@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/scan.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "base/number.h"
+#include "layout/test_layout.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
+
+PlacedLaser placed(Laser laser, Pose3 pose) { return {"l", std::move(laser), pose}; }
+
+Laser laserWithRange(double min_range, double max_range) {
+    Laser laser;
+    laser.min_range = min_range;
+    laser.max_range = max_range;
+    return laser;
+}
+
+/// All beams of a sensor in a scene, as the tools cast them.
+Scan scanIn(const Scene& scene, const PlacedLaser& sensor) {
+    Worlds worlds(scene.environment);
+    return castScans(worlds, {&sensor, 1}).front();
+}
+
+/// One beam at this bearing.
+float beam(const Scene& scene, const Pose3& pose, double bearing, double max_range = 100) {
+    Laser laser = laserWithRange(0, max_range);
+    laser.first = Angle::degrees(bearing);
+    laser.beams = 1;
+    return scanIn(scene, placed(laser, pose)).ranges.front();
+}
+
+Pose3 at(double x, double y, double z, double heading = 0, double tilt = 0, double roll = 0) {
+    return {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
+}
+
+TEST(Scan, BeamsRunCounterClockwiseFromFirst) {
+    const Scene scene = testing::scene(kRoom);
+    const Scan scan = scanIn(scene, placed(laserWithRange(0, 100), at(3, 2, 0.15)));
+    ASSERT_EQ(scan.ranges.size(), 181U);
+    EXPECT_EQ(scan.ranges[0], 2);    // -y
+    EXPECT_EQ(scan.ranges[90], 5);   // +x
+    EXPECT_EQ(scan.ranges[180], 4);  // +y
+    EXPECT_NEAR(scan.ranges[45], 2 * std::sqrt(2.0), 1e-6);
+}
+
+TEST(Scan, AlongAWall) {
+    const Scene scene = testing::scene(kRoom);
+    // On the wall y = 0, along it both ways, level and (into floor and end wall) tilted.
+    EXPECT_EQ(beam(scene, at(2, 0, 0.15), 0), 6);
+    EXPECT_EQ(beam(scene, at(2, 0, 0.15), 180), 2);
+    EXPECT_NEAR(beam(scene, at(2, 0, 1, 0, -30), 0), 2, 1e-6);
+    EXPECT_NEAR(beam(scene, at(2, 0, 1, 0, 5), 0), 6 / std::cos(std::numbers::pi / 36), 1e-6);
+    // A hair in front of it.
+    EXPECT_EQ(beam(scene, at(2, 0.001, 0.15), 0), 6);
+}
+
+TEST(Scan, ThroughACornerOfTwoWalls) {
+    const Scene scene = testing::scene(kRoom);
+    EXPECT_EQ(beam(scene, at(4, 3, 0.15), Angle::radians(std::atan2(3, 4)).degrees()), 5);
+    EXPECT_NEAR(beam(scene, at(2, 2, 0.15), -135), 2 * std::sqrt(2.0), 1e-6);
+    // Tilted, into the corner of two walls and the floor.
+    const double flat = std::hypot(2, 2), down = 0.7;
+    const Pose3 pose = at(2, 2, down, -135, -std::atan2(down, flat) * 180 / std::numbers::pi);
+    EXPECT_NEAR(beam(scene, pose, 0), std::hypot(flat, down), 1e-4);
+}
+
+TEST(Scan, FromAWall) {
+    const Scene scene = testing::scene(kRoom);
+    EXPECT_EQ(beam(scene, at(2, 0, 0.15), 90), 6);
+    EXPECT_TRUE(std::isinf(beam(scene, at(2, 0, 0.15), -90)));
+    EXPECT_EQ(beam(scene, at(8, 2, 0.15, 180), 0), 8);
+    EXPECT_NEAR(beam(scene, at(2, 0, 1, 90, -45), 0), std::sqrt(2.0), 1e-6);
+    // From the floor, and from a corner.
+    EXPECT_NEAR(beam(scene, at(2, 2, 0, 0, 10), 0), 6 / std::cos(std::numbers::pi / 18), 1e-6);
+    EXPECT_EQ(beam(scene, at(0, 0, 0.15), 0), 8);
+    EXPECT_EQ(beam(scene, at(0, 0, 0.15), 90), 6);
+}
+
+TEST(Scan, NoReturn) {
+    const Scene scene = testing::scene(kRoom);
+    EXPECT_TRUE(std::isinf(beam(scene, at(2, 3, 0.15), 0, 5)));
+    EXPECT_TRUE(std::isinf(beam(scene, at(2, 3, 1, 0, 60), 0)));  // over the walls
+    EXPECT_TRUE(std::isinf(beam(scene, at(2, 3, 2.6), 0)));       // above them
+    EXPECT_EQ(beam(scene, at(2, 3, 2.5), 0), 6);                  // their top counts
+    EXPECT_TRUE(std::isinf(beam(scene, at(-2, 3, 0.15), 180)));   // outside
+    EXPECT_EQ(beam(scene, at(-2, 3, 0.15), 0), 2);                // from outside
+}
+
+TEST(Scan, ExactlyMaximumRange) {
+    const Scene scene = testing::scene(kRoom);
+    EXPECT_EQ(beam(scene, at(3, 3, 0.15), 0, 5), 5);
+    EXPECT_TRUE(std::isinf(beam(scene, at(3, 3, 0.15), 0, 4.999999)));
+    EXPECT_EQ(beam(scene, at(8 - 4.095, 3, 0.15), 0, 4.095), 4.095F);
+}
+
+TEST(Scan, BlindZone) {
+    const Scene scene = testing::scene(kRoom);
+    const PlacedLaser sensor = placed(laserWithRange(0.5, 5), at(7.5, 3, 0.15));
+    Worlds worlds(scene.environment);
+    worlds.prepare(sensor.pose);
+    const RayWorld& world = worlds.at(sensor.pose);
+    EXPECT_EQ(castScan(world, sensor).ranges[90], 0.5F);  // exactly at its edge
+    const PlacedLaser near = placed(laserWithRange(0.5, 5), at(7.6, 3, 0.15));
+    EXPECT_TRUE(std::isinf(castScan(world, near).ranges[90]));
+    EXPECT_NEAR(castBeams(world, near)[90], 0.4, 1e-6);
+    // What the blind zone hides does not uncover what lies behind.
+    EXPECT_FALSE(std::isinf(castScan(world, near).ranges[160]));
+}
+
+TEST(Scan, TwoHeightsMeetDifferentThings) {
+    const Scene scene =
+        testing::scene(kRoom + "cube at=6,3 size=1,1,0.5\ntable at=2,3 size=1,1 height=0.7\n");
+    EXPECT_EQ(beam(scene, at(4, 3, 0.15), 0), 1.5F);
+    EXPECT_EQ(beam(scene, at(4, 3, 0.5), 0), 1.5F);
+    EXPECT_EQ(beam(scene, at(4, 3, 0.51), 0), 4);
+    EXPECT_NEAR(beam(scene, at(6, 3, 1.5, 0, -90), 0), 1, 1e-6);  // onto the cube from above
+    EXPECT_NEAR(beam(scene, at(2, 3, 1.5, 0, -90), 0), 0.8, 1e-6);
+}
+
+/// The room of a property test and what a ray in it meets, by formula.
+struct Box {
+    Pose2 pose;
+    double length, width, height;
+    bool ceiling;
+
+    [[nodiscard]] std::string record() const {
+        return "ispace at=" + formatDouble(pose.position.x) + ',' + formatDouble(pose.position.y) +
+               " heading=" + formatDouble(pose.heading.degrees()) +
+               " size=" + formatDouble(length) + ',' + formatDouble(width) + ',' +
+               formatDouble(height) + (ceiling ? " ceiling=yes\n" : "\n");
+    }
+    /// Infinite if it leaves through a missing ceiling; `doubt` if that is a close decision.
+    [[nodiscard]] double range(Point3 local, Vec3 direction, bool& doubt) const {
+        const auto wall = [](double from, double way, double half) {
+            return way == 0 ? kInfinity : ((way > 0 ? half : -half) - from) / way;
+        };
+        const double sides =
+            std::min(wall(local.x, direction.x, length / 2), wall(local.y, direction.y, width / 2));
+        const double end = ((direction.z > 0 ? height : 0) - local.z) / direction.z;
+        const bool up = direction.z > 0;
+        doubt = up && !ceiling && std::fabs(local.z + sides * direction.z - height) < 1e-4;
+        if (direction.z == 0) return sides;
+        return up && !ceiling && end < sides ? kInfinity : std::min(sides, end);
+    }
+    [[nodiscard]] Vec3 toLocal(Vec3 direction) const {
+        const Pose2 turned{{}, -pose.heading};
+        const Vec2 flat = turned * Vec2{direction.x, direction.y};
+        return {flat.x, flat.y, direction.z};
+    }
+};
+
+class Rooms : public ::testing::Test {
+  protected:
+    double uniform(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random_);
+    }
+    double magnitude(double low, double high) {
+        return std::exp(uniform(std::log(low), std::log(high)));
+    }
+    Box room(double largest) {
+        return {{{uniform(-50, 50), uniform(-50, 50)}, Angle::degrees(uniform(-180, 180))},
+                magnitude(1, largest),
+                magnitude(1, largest),
+                magnitude(1, 20),
+                uniform(0, 1) < 0.5};
+    }
+    /// A place strictly inside the room, in its frame, and the pose there in the world.
+    Pose3 anywhere(const Box& box, Point3& local, bool level) {
+        local = {uniform(-0.49, 0.49) * box.length, uniform(-0.49, 0.49) * box.width,
+                 uniform(0.01, 0.99) * box.height};
+        const Point2 place = box.pose * local.onFloor();
+        Pose3 pose = at(place.x, place.y, local.z, uniform(-360, 360));
+        if (!level) {
+            pose.tilt = Angle::degrees(uniform(-90, 90));
+            pose.roll = Angle::degrees(uniform(-180, 180));
+        }
+        return pose;
+    }
+    std::mt19937_64 random_{20250601};
+};
+
+Laser fullTurn() {
+    Laser laser = laserWithRange(0, 1e4);
+    laser.first = Angle::degrees(-180);
+    laser.beams = 361;
+    return laser;
+}
+
+TEST_F(Rooms, RectangularAtAnyPoseWithinAMillimetre) {
+    int met = 0, left = 0;
+    for (int i = 0; i < 120; ++i) {
+        const Box box = room(100);
+        const Scene scene =
+            testing::scene(box.record() + "inside at=" + formatDouble(box.pose.position.x) + ',' +
+                           formatDouble(box.pose.position.y) + "\n");
+        Point3 local;
+        const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 3 == 0));
+        const Scan scan = scanIn(scene, sensor);
+        for (int k = 0; k < sensor.laser.beams; ++k) {
+            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
+            bool doubt = false;
+            const double exact = box.range(local, direction, doubt);
+            const double found = scan.ranges[static_cast<std::size_t>(k)];
+            if (doubt) continue;
+            if (std::isinf(exact)) {
+                EXPECT_TRUE(std::isinf(found)) << box.record() << k;
+                ++left;
+            } else {
+                EXPECT_NEAR(found, exact, 1e-3) << box.record() << k;
+                ++met;
+            }
+        }
+    }
+    EXPECT_GT(met, 20000);
+    EXPECT_GT(left, 2000);
+}
+
+TEST_F(Rooms, FarFromTheOriginWithinAMillimetre) {
+    for (int i = 0; i < 20; ++i) {
+        Box box = room(20);
+        box.pose.position = {1e5 + uniform(0, 1), -1e5 + uniform(0, 1)};
+        const Scene scene = testing::scene(box.record());
+        Point3 local;
+        const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 2 == 0));
+        const Scan scan = scanIn(scene, sensor);
+        for (int k = 0; k < sensor.laser.beams; ++k) {
+            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
+            bool doubt = false;
+            const double exact = box.range(local, direction, doubt);
+            const double found = scan.ranges[static_cast<std::size_t>(k)];
+            if (doubt || std::isinf(exact)) continue;
+            EXPECT_NEAR(found, exact, 1e-3);
+        }
+    }
+}
+
+/// Entry into an upright cylinder about the origin; infinite if the ray misses it.
+double cylinderRange(Point3 from, Vec3 direction, double radius, double height) {
+    double enter = -kInfinity, leave = kInfinity;
+    const auto clip = [&](double near, double far) {
+        enter = std::max(enter, std::min(near, far));
+        leave = std::min(leave, std::max(near, far));
+    };
+    const double a = direction.x * direction.x + direction.y * direction.y;
+    const double b = from.x * direction.x + from.y * direction.y;
+    const double c = from.x * from.x + from.y * from.y - radius * radius;
+    const double root = b * b - a * c;
+    if (root < 0 || (a == 0 && c > 0)) return kInfinity;
+    if (a > 0) clip((-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a);
+    if (direction.z != 0) clip(-from.z / direction.z, (height - from.z) / direction.z);
+    if (direction.z == 0 && (from.z < 0 || from.z > height)) return kInfinity;
+    return enter <= leave && enter > 0 ? enter : kInfinity;
+}
+
+TEST_F(Rooms, AroundCylinders) {
+    constexpr double kSagitta = kCurveTolerance;
+    int on_cylinder = 0;
+    for (int i = 0; i < 300; ++i) {
+        Box box{{}, 12, 10, 3, true};
+        const double radius = magnitude(0.02, 3), height = i % 2 == 0 ? 3 : uniform(0.3, 2.9);
+        const std::string size = formatDouble(2 * radius);
+        const Scene scene = testing::scene(
+            box.record() + "inside at=5.5,4.5\n" + (i % 4 == 0 ? "pillar kind=round" : "cylinder") +
+            " size=" + size + ',' + size + ',' + formatDouble(height) + "\n");
+        Point3 local;
+        Pose3 pose;
+        do pose = anywhere(box, local, i % 3 == 0);
+        while (std::hypot(local.x, local.y) < radius + 0.05);
+        const PlacedLaser sensor = placed(fullTurn(), pose);
+        const Scan scan = scanIn(scene, sensor);
+        for (int k = 0; k < sensor.laser.beams; ++k) {
+            const Vec3 direction = pose.beam(sensor.laser.bearing(k));
+            bool doubt = false;
+            const double walls = box.range(local, direction, doubt);
+            const double outer = cylinderRange(local, direction, radius, height);
+            const double inner = cylinderRange(local, direction, radius - kSagitta, height);
+            const double found = scan.ranges[static_cast<std::size_t>(k)];
+            // Every beam: between the cylinder and the one that just fits into its chords.
+            EXPECT_GE(found, std::min(walls, outer) - 1e-5) << i << ' ' << k;
+            EXPECT_LE(found, std::min(walls, inner) + 1e-5) << i << ' ' << k;
+            if (std::isinf(outer) || std::isinf(inner)) continue;
+            const Point3 hit = local + outer * direction;
+            const double facing = -(hit.x * direction.x + hit.y * direction.y) / radius;
+            const bool on_side = std::fabs(std::hypot(hit.x, hit.y) - radius) < 1e-9;
+            if (on_side && facing < std::cos(70 * std::numbers::pi / 180)) continue;
+            EXPECT_NEAR(found, outer, 1e-3) << i << ' ' << k;
+            ++on_cylinder;
+        }
+    }
+    EXPECT_GT(on_cylinder, 1000);
+}
+
+TEST(CastScans, SameForAnyNumberOfThreadsAndInOrder) {
+    const Scene scene = testing::scene(kRoom + "cube at=6,3\ncylinder at=2,4\ntable at=3,1\n");
+    std::vector<PlacedLaser> sensors;
+    for (int i = 0; i < 40; ++i)
+        sensors.push_back(
+            placed(Laser(), at(1 + 0.1 * i, 2, 0.15 + (i % 3) * 0.1, 9 * i, i % 4 == 0 ? -20 : 0)));
+    std::vector<std::vector<float>> alone;
+    for (const PlacedLaser& sensor : sensors) alone.push_back(scanIn(scene, sensor).ranges);
+    for (const std::size_t threads : {1, 2, 4}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        Worlds worlds(scene.environment);
+        const std::vector<Scan> scans = castScans(worlds, sensors);
+        ASSERT_EQ(scans.size(), sensors.size());
+        for (std::size_t i = 0; i < scans.size(); ++i) EXPECT_EQ(scans[i].ranges, alone[i]);
+    }
+    Worlds worlds(scene.environment);
+    EXPECT_TRUE(castScans(worlds, {}).empty());
+}
+
+TEST(SliceArea, HalfDiscInTheOpen) {
+    // All 181 beams return nothing: 181 slices of one degree, as printed in the thesis.
+    const std::vector<float> none(181, std::numeric_limits<float>::infinity());
+    EXPECT_NEAR(sliceArea(Laser(), none), 181 * std::numbers::pi * 25 / 360, 1e-12);
+    Laser fine;
+    fine.step = Angle::degrees(0.01);
+    fine.beams = 18001;
+    const std::vector<float> many(18001, std::numeric_limits<float>::infinity());
+    EXPECT_NEAR(sliceArea(fine, many), std::numbers::pi * 12.5, 0.01);
+}
+
+TEST(SliceArea, ReturnsCountByTheirSquare) {
+    const Laser laser;
+    std::vector<float> ranges(181, 2.0F);
+    EXPECT_NEAR(sliceArea(laser, ranges), 181 * std::numbers::pi * 4 / 360, 1e-12);
+    ranges.front() = std::numeric_limits<float>::infinity();
+    EXPECT_NEAR(sliceArea(laser, ranges), (180 * 4 + 25) * std::numbers::pi / 360, 1e-12);
+    EXPECT_EQ(sliceArea(laser, {}), 0);
+}
+
+}  // namespace
+
+}  // namespace ispace

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace/ray_world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "geom/pose.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kWidths[] = {1, 4, 8, 16};
+
+/// Lines where `pose` puts them.
+Slice moved(std::vector<Segment2> sheets, const Pose2& pose) {
+    for (Segment2& line : sheets) line = {pose * line.a, pose * line.b};
+    return {0.15, std::move(sheets), {}};
+}
+
+std::vector<Segment2> rectangleLines(Point2 low, Point2 high) {
+    const Point2 b{high.x, low.y}, d{low.x, high.y};
+    return {{low, b}, {b, high}, {high, d}, {d, low}};
+}
+
+/// One ray in the frame of `pose`, asked alone and in a full packet of its like.
+double range(const RayWorld& world, const Pose2& pose, Point2 from, Angle heading,
+             double max_range = 100) {
+    const Point2 origin = pose * from;
+    const Vec2 direction = unitVector(pose.heading + heading);
+    const std::vector<Vec3> directions(17, {direction.x, direction.y, 0});
+    std::vector<float> ranges(17);
+    world.cast({origin.x, origin.y, 0.15}, directions, max_range, ranges);
+    for (const float other : ranges) EXPECT_EQ(other, ranges.front());
+    float alone = 0;
+    world.cast({origin.x, origin.y, 0.15}, std::span(directions).first(1), max_range, {&alone, 1});
+    EXPECT_EQ(alone, ranges.front());
+    return alone;
+}
+
+bool sees(const RayWorld& world, const Pose2& pose, Point2 from, Point2 to) {
+    const Point2 origin = pose * from, target = pose * to;
+    std::uint8_t seen = 7;
+    const Point3 at{target.x, target.y, 0.15};
+    world.look({origin.x, origin.y, 0.15}, {&at, 1}, {&seen, 1});
+    EXPECT_LE(seen, 1);
+    return seen == 1;
+}
+
+/// The same degenerate cases square to the axes, turned, and far from the origin.
+class RayWorldCases : public ::testing::TestWithParam<std::pair<int, Pose2>> {
+  protected:
+    [[nodiscard]] RayWorld world(std::vector<Segment2> lines) const {
+        return RayWorld::ofSlice(moved(std::move(lines), pose()), GetParam().first);
+    }
+    [[nodiscard]] Pose2 pose() const { return GetParam().second; }
+    void expectRange(const RayWorld& world, Point2 from, double heading, double expected,
+                     double max_range = 100) const {
+        const double found = range(world, pose(), from, Angle::degrees(heading), max_range);
+        if (std::isinf(expected)) {
+            EXPECT_TRUE(std::isinf(found)) << heading << " degrees, found " << found;
+        } else {
+            EXPECT_NEAR(found, expected, 1e-6) << heading << " degrees";
+        }
+    }
+};
+
+std::vector<std::pair<int, Pose2>> cases() {
+    std::vector<std::pair<int, Pose2>> all;
+    for (const int width : kWidths) {
+        all.push_back({width, {}});
+        all.push_back({width, {{1e5, -2e5}, {}}});
+        for (const double heading : {17.0, 45.0, 123.456})
+            all.push_back({width, {{3.3, -1.7}, Angle::degrees(heading)}});
+        all.push_back({width, {{-1e5, 1e5}, Angle::degrees(200.1)}});
+    }
+    return all;
+}
+INSTANTIATE_TEST_SUITE_P(Places, RayWorldCases, ::testing::ValuesIn(cases()));
+
+TEST_P(RayWorldCases, Room) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    expectRange(room, {3, 2}, 0, 5);
+    expectRange(room, {3, 2}, 90, 4);
+    expectRange(room, {3, 2}, 180, 3);
+    expectRange(room, {3, 2}, -90, 2);
+    // Into the corners.
+    expectRange(room, {4, 3}, Angle::radians(std::atan2(3, 4)).degrees(), 5);
+    expectRange(room, {4, 3}, Angle::radians(std::atan2(-3, -4)).degrees(), 5);
+    expectRange(room, {2, 2}, -135, 2 * std::sqrt(2.0));
+}
+
+TEST_P(RayWorldCases, CornersLetNoRayThrough) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), off(-1e-7, 1e-7);
+    for (int i = 0; i < 400; ++i) {
+        const Point2 from{x(random), y(random)};
+        for (const Point2 corner : {Point2{0, 0}, {8, 0}, {8, 6}, {0, 6}}) {
+            const Vec2 way = corner - from;
+            const double exact = i % 2 == 0 ? 0 : off(random);
+            const Angle heading = directionOf(way.x, way.y) + Angle::radians(exact);
+            EXPECT_NEAR(range(room, pose(), from, heading), length(way), 1e-4);
+        }
+    }
+}
+
+TEST_P(RayWorldCases, FromAWallItLooksOutOnBothSidesAndAlong) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    expectRange(room, {2, 0}, 0, 6);
+    expectRange(room, {2, 0}, 180, 2);
+    expectRange(room, {2, 0}, 90, 6);
+    expectRange(room, {2, 0}, -90, kInfinity);
+    for (const double small : {1e-7, 1e-5, 1e-3, 0.1}) {
+        const double up = 6 * std::tan(small * std::numbers::pi / 180);
+        expectRange(room, {2, 0}, small, std::hypot(6, up));
+        expectRange(room, {2, 0}, -small, small > 1e-4 ? kInfinity : 6);
+    }
+    // Within the contact distance of the wall, on either side.
+    for (const double y : {9e-5, -9e-5}) {
+        expectRange(room, {2, y}, 90, 6 - y);
+        expectRange(room, {2, y}, -90, kInfinity);
+        expectRange(room, {2, y}, y > 0 ? -0.01 : 0.01, y > 0 ? kInfinity : 6);
+    }
+    // Beyond it the wall stands in the way.
+    expectRange(room, {2, 2e-4}, -90, 2e-4);
+    expectRange(room, {2, -2e-4}, 90, 2e-4);
+}
+
+TEST_P(RayWorldCases, FromACorner) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    expectRange(room, {0, 0}, 0, 8);
+    expectRange(room, {0, 0}, 90, 6);
+    expectRange(room, {0, 0}, 45, 6 * std::sqrt(2.0));
+    expectRange(room, {0, 0}, 225, kInfinity);
+}
+
+TEST_P(RayWorldCases, WallInPiecesIsNoneForASensorOnIt) {
+    std::vector<Segment2> lines = rectangleLines({0, 0}, {8, 6});
+    lines[0] = {{0, 0}, {3, 0}};
+    lines.push_back({{3, 0}, {5, 0}});
+    lines.push_back({{5, 0}, {8, 0}});
+    const RayWorld room = world(lines);
+    expectRange(room, {2, 0}, 0, 6);
+    expectRange(room, {7, 0}, 180, 7);
+    EXPECT_TRUE(sees(room, pose(), {2, 0}, {7.5, 0}));
+    EXPECT_TRUE(sees(room, pose(), {2, 0}, {7.5, 3}));
+}
+
+TEST_P(RayWorldCases, SheetSeenFromItsEdgeStopsNothing) {
+    std::vector<Segment2> lines = rectangleLines({0, 0}, {8, 6});
+    lines.push_back({{3, 2}, {5, 2}});
+    const RayWorld room = world(lines);
+    expectRange(room, {1, 2}, 0, 7);
+    expectRange(room, {1, 2}, 0.001, 7);
+    expectRange(room, {1, 2 - 1e-3}, Angle::radians(std::atan2(1e-3, 3)).degrees(), 3);
+    // A wall across its end does.
+    lines.push_back({{3, 1}, {3, 2}});
+    expectRange(world(lines), {1, 2}, 0, 2);
+}
+
+TEST_P(RayWorldCases, SolidIsClosed) {
+    std::vector<Segment2> lines = rectangleLines({0, 0}, {8, 6});
+    for (const Segment2& line : rectangleLines({3, 2}, {4, 3})) lines.push_back(line);
+    const RayWorld room = world(lines);
+    expectRange(room, {1, 2.5}, 0, 2);
+    expectRange(room, {1, 2}, 0, 2);  // along a face
+    expectRange(room, {1, 3}, 0, 2);
+    expectRange(room, {1, 3.001}, 0, 7);
+    expectRange(room, {2, 4}, -45, std::sqrt(2.0));  // touches the corner (3, 3)
+    EXPECT_FALSE(sees(room, pose(), {2, 4}, {4.5, 1.5}));
+    EXPECT_TRUE(sees(room, pose(), {2, 4.01}, {4, 3.01}));
+}
+
+TEST_P(RayWorldCases, MaximumRangeIsInclusive) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    expectRange(room, {3, 2}, 0, 5, 5);
+    expectRange(room, {3, 2}, 0, kInfinity, 4.999999);
+    expectRange(room, {3, 2}, 0, 5, kInfinity);
+    expectRange(room, {3.905, 2}, 0, 4.095, 4.095);
+    expectRange(room, {3, 2}, 180, kInfinity, 2.9);
+}
+
+TEST_P(RayWorldCases, ThinGap) {
+    const RayWorld gap = world({{{2, -3}, {2, -0.0005}}, {{2, 0.0005}, {2, 3}}, {{6, -9}, {6, 9}}});
+    expectRange(gap, {0, 0}, 0, 6);
+    expectRange(gap, {0, 0}, 0.012, 6);
+    expectRange(gap, {0, 0}, 0.017, 2);
+    expectRange(gap, {0, 0}, -0.017, 2);
+    EXPECT_TRUE(sees(gap, pose(), {0, 0}, {6, 0}));
+    EXPECT_FALSE(sees(gap, pose(), {0, 0}, {6, 0.003}));
+}
+
+TEST_P(RayWorldCases, EndOfAGazeIsOpen) {
+    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8, 2}));
+    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8 + 9e-5, 2}));
+    EXPECT_FALSE(sees(room, pose(), {3, 2}, {8 + 2e-4, 2}));
+    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8, 6}));
+    EXPECT_TRUE(sees(room, pose(), {3, 2}, {3, 2}));
+    EXPECT_TRUE(sees(room, pose(), {8, 2}, {9, 2}));
+    EXPECT_TRUE(sees(room, pose(), {8, 2}, {7, 2}));
+}
+
+TEST(RayWorld, EmptyWorldStopsNothing) {
+    for (const int width : kWidths) {
+        const RayWorld nothing = RayWorld::ofSlice({}, width);
+        EXPECT_TRUE(std::isinf(range(nothing, {}, {1, 2}, {})));
+        EXPECT_TRUE(sees(nothing, {}, {1, 2}, {1e3, 2}));
+        // A line without length is none.
+        const RayWorld point = RayWorld::ofSlice({0.15, {{{1, 1}, {1, 1}}}, {}}, width);
+        EXPECT_TRUE(std::isinf(range(point, {}, {0, 0}, Angle::degrees(45))));
+        nothing.cast({}, {}, 5, {});
+        nothing.look({}, {}, {});
+    }
+}
+
+/// Lines of all sizes and directions.
+std::vector<Segment2> tangle(std::mt19937_64& random, int count, double size) {
+    std::uniform_real_distribution<double> place(0, size), turn(0, 360), exponent(-3, 0);
+    std::vector<Segment2> lines;
+    for (int i = 0; i < count; ++i) {
+        const Point2 a{place(random), place(random)};
+        const double reach = size * std::pow(10, exponent(random));
+        lines.push_back({a, a + reach * unitVector(Angle::degrees(turn(random)))});
+    }
+    return lines;
+}
+
+/// Distance to the first line, each made longer by `margin` at both ends.
+double bruteForce(const std::vector<Segment2>& lines, Point2 origin, Vec2 direction,
+                  double margin = 0) {
+    double nearest = kInfinity;
+    for (const Segment2& line : lines) {
+        if (distance(origin, line) <= kContact) continue;
+        const Vec2 along = line.b - line.a, way = line.a - origin;
+        const double slope = cross(direction, along), more = margin / length(along);
+        const double t = cross(way, along) / slope, s = cross(way, direction) / slope;
+        if (t > 0 && s >= -more && s <= 1 + more) nearest = std::min(nearest, t);
+    }
+    return nearest;
+}
+
+TEST(RayWorld, TangleAgreesWithBruteForceAtEveryWidth) {
+    std::mt19937_64 random(11);
+    for (const double size : {0.1, 10.0, 300.0}) {
+        const std::vector<Segment2> lines = tangle(random, 300, size);
+        const Slice slice{0.15, lines, {}};
+        std::uniform_real_distribution<double> place(0, size);
+        std::vector<RayWorld> worlds;
+        for (const int width : kWidths) worlds.push_back(RayWorld::ofSlice(slice, width));
+        int beside = 0;
+        for (int i = 0; i < 50; ++i) {
+            const Point2 origin{place(random), place(random)};
+            std::vector<Vec3> directions;
+            for (int k = 0; k < 731; ++k) {
+                const Vec2 direction = unitVector(Angle::degrees(0.5 * k + 0.01 * i));
+                directions.push_back({direction.x, direction.y, 0});
+            }
+            std::vector<float> first(directions.size());
+            worlds[0].cast({origin.x, origin.y, 0.15}, directions, 2 * size, first);
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                const Vec2 direction{directions[k].x, directions[k].y};
+                const auto exact = static_cast<float>(bruteForce(lines, origin, direction));
+                if (first[k] == exact) continue;
+                // Ends of lines may stop a ray that passes them by a hair.
+                const double margin = 1e-6 * size;
+                EXPECT_NEAR(first[k], bruteForce(lines, origin, direction, margin), 10 * margin)
+                    << size << ' ' << i << ' ' << k;
+                ++beside;
+            }
+            for (const RayWorld& other : worlds) {
+                std::vector<float> again(directions.size());
+                other.cast({origin.x, origin.y, 0.15}, directions, 2 * size, again);
+                EXPECT_EQ(first, again);
+            }
+        }
+        EXPECT_LT(beside, 50 * 731 / 1000) << size;
+    }
+}
+
+TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
+    std::mt19937_64 random(12);
+    const std::vector<Segment2> lines = tangle(random, 100, 10);
+    std::vector<RayWorld> worlds;
+    for (const int width : kWidths) worlds.push_back(RayWorld::ofSlice({0.15, lines, {}}, width));
+    std::uniform_real_distribution<double> place(0, 10);
+    for (int i = 0; i < 50; ++i) {
+        const Point2 origin{place(random), place(random)};
+        std::vector<Point3> targets;
+        for (int k = 0; k < 301; ++k) targets.push_back({place(random), place(random), 0.15});
+        for (const RayWorld& world : worlds) {
+            std::vector<std::uint8_t> seen(targets.size(), 7);
+            world.look({origin.x, origin.y, 0.15}, targets, seen);
+            for (std::size_t k = 0; k < targets.size(); ++k) {
+                const bool free = std::none_of(lines.begin(), lines.end(), [&](const Segment2& s) {
+                    return intersects(s, {origin, targets[k].onFloor()});
+                });
+                EXPECT_EQ(seen[k] == 1, free) << i << ' ' << k;
+            }
+        }
+    }
+}
+
+TEST(RayWorld, SightIsSymmetric) {
+    std::mt19937_64 random(13);
+    const RayWorld world = RayWorld::ofSlice({0.15, tangle(random, 100, 10), {}});
+    std::uniform_real_distribution<double> place(0, 10);
+    for (int i = 0; i < 5000; ++i) {
+        const Point2 a{place(random), place(random)}, b{place(random), place(random)};
+        EXPECT_EQ(sees(world, {}, a, b), sees(world, {}, b, a));
+    }
+}
+
+TEST(RayWorld, SeveralThreadsShareAWorld) {
+    std::mt19937_64 random(14);
+    const std::vector<Segment2> lines = tangle(random, 2000, 10);
+    const RayWorld world = RayWorld::ofSlice({0.15, lines, {}});
+    std::vector<Vec3> directions;
+    for (int k = 0; k < 2000; ++k) {
+        const Vec2 direction = unitVector(Angle::degrees(0.18 * k));
+        directions.push_back({direction.x, direction.y, 0});
+    }
+    std::vector<std::vector<float>> found(4, std::vector<float>(directions.size()));
+    std::vector<std::thread> threads;
+    for (auto& ranges : found)
+        threads.emplace_back([&] { world.cast({5, 5, 0.15}, directions, 20, ranges); });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& ranges : found) EXPECT_EQ(ranges, found.front());
+    // A world built again, and moved, answers the same.
+    RayWorld again = RayWorld::ofSlice({0.15, lines, {}});
+    const RayWorld moved_world = std::move(again);
+    moved_world.cast({5, 5, 0.15}, directions, 20, found.back());
+    EXPECT_EQ(found.back(), found.front());
+}
+
+}  // namespace
+
+}  // namespace ispace
