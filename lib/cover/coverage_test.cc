@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/coverage.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "cover/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+TEST(Coverage, EmptyConvexRoomSeenWholeIsCoveredWhole) {
+    for (const std::string room :
+         {"ispace size=6,4", "fence path=-3,-1;2,-2;4,1;0,3;-2,2 closed=yes"}) {
+        const Coverage coverage = coverageOf(sceneOf(room + "\nlaser at=0,0 range=20 fov=360\n"));
+        EXPECT_EQ(coverage.report.coverage.grid, 1.0) << room;
+        EXPECT_EQ(coverage.report.free_coverage.grid, 1.0) << room;
+        EXPECT_EQ(coverage.report.redundancy, (std::vector<double>{0, 1})) << room;
+    }
+}
+
+TEST(Coverage, HalfPlaneFanInTheMiddleCoversHalf) {
+    for (const int cells : {100, 101}) {
+        for (const double heading : {0.0, 90.0, 180.0, -90.0}) {
+            const Scene scene = sceneOf(
+                "ispace size=6,6\nlaser at=0,0 range=20 heading=" + std::to_string(heading) + "\n");
+            EXPECT_NEAR(*coverageOf(scene, cells, cells).report.coverage.grid, 0.5, 1.0 / cells)
+                << cells << ' ' << heading;
+        }
+    }
+}
+
+TEST(Coverage, NoSensorCoversNothing) {
+    const Coverage coverage = coverageOf(sceneOf("ispace size=6,4"));
+    EXPECT_EQ(coverage.report.coverage.grid, 0.0);
+    EXPECT_EQ(coverage.report.total_effective_area.grid, 0.0);
+    EXPECT_EQ(coverage.report.redundancy, (std::vector<double>{1}));
+    EXPECT_TRUE(coverage.report.sensors.empty());
+}
+
+TEST(Coverage, AreasAreExact) {
+    const CoverageReport report =
+        coverageOf(
+            sceneOf("ispace size=6,4\ncube at=1,1 size=1,0.5,1\ncube at=-1,1,1 size=1,1,1\n"))
+            .report;
+    EXPECT_NEAR(report.indoor_area, 24, 1e-12);
+    EXPECT_NEAR(report.free_area, 23.5, 1e-12);
+    EXPECT_EQ(report.height, kScanHeight);
+    EXPECT_EQ(report.limits, (Box2{{-3, -2}, {3, 2}}));
+    EXPECT_EQ(report.columns, 100);
+    EXPECT_FALSE(report.coverage.exact);
+    EXPECT_FALSE(report.free_coverage.exact);
+    EXPECT_FALSE(report.total_effective_area.exact);
+}
+
+const char* const kOffice =
+    "fence path=0,0;8,0;8,6;3,6;3,5;0,5 closed=yes\ninside at=1,1\n"
+    "desk at=2,3 heading=30 size=1.2,0.8,0.7\ncube at=4,2 size=0.5,0.5,0.5\n"
+    "laser id=a at=0.1,2.5\nlaser id=b at=7.9,3 heading=180 range=4\n"
+    "laser id=c at=3.5,5.9 heading=-90 fov=240\n"
+    "laser id=d at=7,0.3,1.5 heading=120 fov=90 tilt=-20\n";
+
+TEST(Coverage, FiguresFitTogether) {
+    const Coverage coverage = coverageOf(sceneOf(kOffice), 80, 60);
+    const CoverageReport& report = coverage.report;
+    ASSERT_EQ(report.redundancy.size(), 5U);
+    EXPECT_NEAR(std::accumulate(report.redundancy.begin(), report.redundancy.end(), 0.0), 1, 1e-12);
+    EXPECT_NEAR(*report.coverage.grid, 1 - report.redundancy[0], 1e-12);
+    EXPECT_GT(*report.free_coverage.grid, *report.coverage.grid);  // no laser sees into solids
+
+    CellSet all(coverage.target.grid.size());
+    for (const CellSet& seen : coverage.seen) all |= seen;
+    const double cell_area = coverage.target.grid.cellArea();
+    EXPECT_DOUBLE_EQ(*report.total_effective_area.grid,
+                     static_cast<double>(all.count()) * cell_area);
+    double marginal_sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        CellSet others(coverage.target.grid.size());
+        for (std::size_t j = 0; j < 4; ++j)
+            if (j != i) others |= coverage.seen[j];
+        EXPECT_NEAR(report.sensors[i].marginal_area,
+                    static_cast<double>(all.count() - others.count()) * cell_area, 1e-9);
+        marginal_sum += report.sensors[i].marginal_area;
+    }
+    EXPECT_LE(marginal_sum, *report.total_effective_area.grid);
+    EXPECT_EQ(report.sensors[1].id, "b");
+}
+
+TEST(Coverage, TwoEqualSensorsHaveNoMarginalArea) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=6,4\nlaser at=1,1 range=3\nlaser at=1,1 range=3\n")).report;
+    EXPECT_EQ(report.sensors[0].marginal_area, 0);
+    EXPECT_EQ(report.sensors[1].marginal_area, 0);
+    EXPECT_EQ(report.redundancy[1], 0);
+    EXPECT_EQ(report.redundancy[2], *report.coverage.grid);
+}
+
+TEST(Coverage, LoneSensorIsWorthAllItSees) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=12,12\nlaser at=0,0 range=4 fov=180\n")).report;
+    EXPECT_EQ(report.sensors[0].marginal_area, *report.total_effective_area.grid);
+    EXPECT_NEAR(*report.total_effective_area.grid, std::acos(-1.0) * 8, 0.4);
+    // 181 beams, each worth a sector of one degree.
+    EXPECT_NEAR(report.sensors[0].slice_area, std::acos(-1.0) * 16 * 181 / 360, 1e-9);
+}
+
+TEST(Coverage, SameForAnyNumberOfThreads) {
+    const Scene scene = sceneOf(kOffice);
+    const auto with_threads = [&scene](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return coverageJson(coverageOf(scene).report);
+    };
+    EXPECT_EQ(with_threads(1), with_threads(4));
+}
+
+TEST(Coverage, OneCellWillDo) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=6,4\nlaser at=1,1 fov=360\n"), 1, 1).report;
+    EXPECT_EQ(report.coverage.grid, 1.0);
+    EXPECT_EQ(report.total_effective_area.grid, 24.0);
+}
+
+TEST(Coverage, NoIndoorCellIsNoShareAtAll) {
+    // The only centre lies in the notch.
+    const CoverageReport report =
+        coverageOf(sceneOf("fence path=0,0;4,0;4,1;1,1;1,4;0,4 closed=yes\ninside at=0.5,0.5\n"
+                           "laser at=0.5,0.5 fov=360\n"),
+                   1, 1)
+            .report;
+    EXPECT_EQ(report.coverage.grid, 0.0);
+    EXPECT_EQ(report.redundancy, (std::vector<double>{0, 0}));
+}
+
+TEST(MakeTarget, RefusesGridsOfNoOrTooManyCells) {
+    const Scene scene = sceneOf("ispace size=6,4");
+    for (const auto& [columns, rows] : std::vector<std::pair<int, int>>{
+             {0, 5}, {5, 0}, {-1, -1}, {kMostCells, 2}, {2, kMostCells}})
+        EXPECT_THROW(makeTarget(scene.environment, columns, rows, 0.15), UsageError)
+            << columns << ' ' << rows;
+}
+
+TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
+    const Scene scene = sceneOf("ispace size=6,4\ncube at=0,0 size=3,2,1\n");
+    const Target low = makeTarget(scene.environment, 60, 40, 0.15);
+    EXPECT_EQ(low.indoor.count(), 2400U);
+    EXPECT_EQ(low.free.count(), 1800U);
+    EXPECT_EQ(makeTarget(scene.environment, 60, 40, 1.01).free.count(), 2400U);
+}
+
+CoverageReport sampleReport() {
+    CoverageReport report;
+    report.digest = "sha256:0a";
+    report.limits = {{-1, 0}, {3, 2.5}};
+    report.columns = 4;
+    report.rows = 5;
+    report.height = 0.15;
+    report.indoor_area = 10;
+    report.free_area = 9.25;
+    report.sensors = {{"l1", "urg-04lx", 3.5, {}, 1.25}, {"l2", "", 12, {}, 0}};
+    report.total_effective_area.grid = 8;
+    report.coverage.grid = 0.8;
+    report.free_coverage.grid = 0.875;
+    report.redundancy = {0.2, 0.8, 0};
+    return report;
+}
+
+TEST(CoverageJson, HasTheKeysInTheirOrder) {
+    EXPECT_EQ(coverageJson(sampleReport()),
+              R"({"schema":"ispace-coverage/1","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
+              R"("grid":[4,5],"height":0.15,"indoor_area":10,"free_area":9.25,"sensors":[)"
+              R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":null,)"
+              R"("marginal_area":1.25},{"id":"l2","model":null,"slice_area":12,)"
+              R"("exact_area":null,"marginal_area":0}],)"
+              R"("total_effective_area":{"grid":8,"exact":null},)"
+              R"("coverage":{"grid":0.8,"exact":null},)"
+              R"("free_coverage":{"grid":0.875,"exact":null},"redundancy":[0.2,0.8,0]})"
+              "\n");
+}
+
+TEST(CoverageText, IsAlignedWithUnitsAndPerCentSigns) {
+    EXPECT_EQ(coverageText(sampleReport()),
+              "environment           sha256:0a\n"
+              "limits                x -1.00 to 3.00 m, y 0.00 to 2.50 m\n"
+              "grid                  4 x 5 cells\n"
+              "indoor area           10.00 m2\n"
+              "free floor            9.25 m2 at 0.15 m\n"
+              "total effective area  8.00 m2\n"
+              "coverage              80.00% of the indoor cells\n"
+              "free coverage         87.50% of the free cells\n"
+              "seen by               0: 20.00%, 1: 80.00%\n"
+              "\n"
+              "sensor  model     slice area  marginal\n"
+              "l1      urg-04lx     3.50 m2   1.25 m2\n"
+              "l2      -           12.00 m2   0.00 m2\n"
+              "\n"
+              "figures by cells, areas of floor exact; exact coverage is not computed\n");
+}
+
+TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
+    CoverageReport report = sampleReport();
+    report.sensors.clear();
+    EXPECT_NE(coverageText(report).find("\nno sensor is placed\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/canvas.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/utf8.h"
+
+#ifdef __SANITIZE_ADDRESS__
+// Cairo keeps its fonts until the process ends, by pointers that fontconfig stores as offsets,
+// which the leak checker cannot follow.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+#endif
+
+namespace ispace {
+
+namespace {
+
+cairo_status_t append(void* closure, const unsigned char* bytes, unsigned int length) {
+    try {
+        static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(bytes), length);
+    } catch (const std::bad_alloc&) {
+        return CAIRO_STATUS_NO_MEMORY;
+    }
+    return CAIRO_STATUS_SUCCESS;
+}
+
+void check(cairo_status_t status) {
+    if (status == CAIRO_STATUS_SUCCESS) return;
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+    throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));
+}
+
+/// Cairo names SVG surfaces by a counter of the process; numbered anew, equal pictures are equal.
+std::string renumberSurfaces(const std::string& svg) {
+    constexpr std::string_view kName = "surface";
+    std::string result;
+    std::map<std::string, std::size_t> numbers;
+    std::size_t done = 0;
+    for (std::size_t at; (at = svg.find(kName, done)) != std::string::npos;) {
+        std::size_t end = at + kName.size();
+        while (end < svg.size() && std::isdigit(static_cast<unsigned char>(svg[end])) != 0) ++end;
+        result.append(svg, done, at + kName.size() - done);
+        const std::string old = svg.substr(at + kName.size(), end - at - kName.size());
+        if (!old.empty())
+            result += std::to_string(numbers.emplace(old, numbers.size()).first->second);
+        done = end;
+    }
+    return result.append(svg, done);
+}
+
+/// Sets the font, independent of what the machine's settings prefer.
+void selectFont(cairo_t* context, const TextStyle& style) {
+    cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(context, style.size);
+    cairo_font_options_t* options = cairo_font_options_create();
+    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+    cairo_set_font_options(context, options);
+    cairo_font_options_destroy(options);
+}
+
+}  // namespace
+
+double textWidth(std::string_view text, const TextStyle& style) {
+    cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
+    cairo_t* context = cairo_create(surface);
+    selectFont(context, style);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context, printable(text).c_str(), &extents);
+    cairo_destroy(context);
+    cairo_surface_destroy(surface);
+    return extents.x_advance;
+}
+
+struct Canvas::Data {
+    PictureFormat format;
+    double width, height;
+    std::string bytes;
+    cairo_surface_t* surface = nullptr;
+    cairo_t* context = nullptr;
+    std::vector<std::optional<PageView>> views = {std::nullopt};  // the innermost last; none: page
+    bool finished = false;
+
+    Data(PictureFormat wanted, double w, double h) : format(wanted), width(w), height(h) {
+        switch (format) {
+            case PictureFormat::Png:
+                surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                                     static_cast<int>(std::lround(width)),
+                                                     static_cast<int>(std::lround(height)));
+                break;
+            case PictureFormat::Svg:
+                surface = cairo_svg_surface_create_for_stream(append, &bytes, width, height);
+                cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+                break;
+            case PictureFormat::Pdf:
+                surface = cairo_pdf_surface_create_for_stream(append, &bytes, width, height);
+                cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
+                break;
+        }
+        context = cairo_create(surface);
+        cairo_set_fill_rule(context, CAIRO_FILL_RULE_EVEN_ODD);
+        cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+        cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
+        cairo_set_source_rgb(context, 1, 1, 1);
+        cairo_paint(context);
+    }
+    Data(const Data&) = delete;
+    Data& operator=(const Data&) = delete;
+    ~Data() {
+        cairo_destroy(context);
+        cairo_surface_destroy(surface);
+    }
+
+    [[nodiscard]] Point2 toPage(Point2 p) const {
+        // Cairo counts in 24.8 fixed point: what lies far off the page is brought near it.
+        constexpr double kFar = 1e6;
+        const Point2 page = views.back() ? *views.back() * p : p;
+        return {std::clamp(page.x, -kFar, kFar), std::clamp(page.y, -kFar, kFar)};
+    }
+    [[nodiscard]] double toPage(double length) const {
+        return views.back() ? length * views.back()->scale : length;
+    }
+    void moveTo(Point2 p) const {
+        const Point2 page = toPage(p);
+        cairo_move_to(context, page.x, page.y);
+    }
+    void lineTo(Point2 p) const {
+        const Point2 page = toPage(p);
+        cairo_line_to(context, page.x, page.y);
+    }
+    void addCurve(const Polygon& polygon) const {
+        if (polygon.empty()) return;
+        moveTo(polygon.front());
+        for (std::size_t i = 1; i < polygon.size(); ++i) lineTo(polygon[i]);
+        cairo_close_path(context);
+    }
+    void addRegion(const Region& region) const {
+        addCurve(region.outline);
+        for (const Polygon& hole : region.holes) addCurve(hole);
+    }
+    void addArc(Point2 center, double radius, Angle from, Angle to) const {
+        const Point2 page = toPage(center);
+        cairo_arc_negative(context, page.x, page.y, std::min(toPage(radius), 1e6), -from.radians(),
+                           -to.radians());
+    }
+    void addCircle(Point2 center, double radius) const {
+        addArc(center, radius, Angle(), Angle::degrees(360));
+        cairo_close_path(context);
+    }
+    void use(Color color) const {
+        cairo_set_source_rgba(context, color.red, color.green, color.blue, color.alpha);
+    }
+    void fillPath(Color color) const {
+        use(color);
+        cairo_fill(context);
+    }
+    void strokePath(const Stroke& stroke) const {
+        use(stroke.color);
+        cairo_set_line_width(context, stroke.width);
+        cairo_set_dash(context, stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0);
+        cairo_set_line_cap(context,
+                           stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+        cairo_stroke(context);
+    }
+    void push(std::optional<PageView> view) {
+        cairo_save(context);
+        views.push_back(view);
+    }
+};
+
+Canvas::Canvas(PictureFormat format, double width, double height) {
+    if (!(width >= 1 && width <= kLongestSide && height >= 1 && height <= kLongestSide))
+        throw UsageError("a picture of " + formatFixed(width, 0) + " x " + formatFixed(height, 0) +
+                         " cannot be drawn, wanted 1 to " + formatFixed(kLongestSide, 0) +
+                         " each way");
+    data_ = std::make_unique<Data>(format, width, height);
+}
+
+Canvas::Canvas(Canvas&&) noexcept = default;
+Canvas& Canvas::operator=(Canvas&&) noexcept = default;
+Canvas::~Canvas() = default;
+
+double Canvas::width() const { return data_->width; }
+double Canvas::height() const { return data_->height; }
+
+void Canvas::pushView(const PageView& view) { data_->push(view); }
+
+void Canvas::pushClip(const Polygon& inside) {
+    data_->push(data_->views.back());
+    data_->addCurve(inside);
+    cairo_clip(data_->context);
+}
+
+void Canvas::pushClip(const Region& inside) {
+    data_->push(data_->views.back());
+    data_->addRegion(inside);
+    cairo_clip(data_->context);
+}
+
+void Canvas::pop() {
+    assert(data_->views.size() > 1);
+    data_->views.pop_back();
+    cairo_restore(data_->context);
+}
+
+Point2 Canvas::toPage(Point2 p) const { return data_->toPage(p); }
+
+void Canvas::fill(const Polygon& polygon, Color color) { fill(std::span(&polygon, 1), color); }
+
+void Canvas::fill(const Region& region, Color color) {
+    data_->addRegion(region);
+    data_->fillPath(color);
+}
+
+void Canvas::fill(std::span<const Polygon> curves, Color color) {
+    for (const Polygon& curve : curves) data_->addCurve(curve);
+    data_->fillPath(color);
+}
+
+void Canvas::stroke(const Polygon& polygon, const Stroke& stroke) {
+    data_->addCurve(polygon);
+    data_->strokePath(stroke);
+}
+
+void Canvas::stroke(const Region& region, const Stroke& stroke) {
+    data_->addRegion(region);
+    data_->strokePath(stroke);
+}
+
+void Canvas::line(Point2 a, Point2 b, const Stroke& stroke) {
+    const Segment2 segment{a, b};
+    lines(std::span(&segment, 1), stroke);
+}
+
+void Canvas::lines(std::span<const Segment2> segments, const Stroke& stroke) {
+    const Segment2* previous = nullptr;
+    for (const Segment2& segment : segments) {
+        if (previous == nullptr || !(previous->b == segment.a)) data_->moveTo(segment.a);
+        data_->lineTo(segment.b);
+        previous = &segment;
+    }
+    data_->strokePath(stroke);
+}
+
+void Canvas::polyline(std::span<const Point2> points, const Stroke& stroke) {
+    for (const Point2& p : points) &p == points.data() ? data_->moveTo(p) : data_->lineTo(p);
+    data_->strokePath(stroke);
+}
+
+void Canvas::fillCircle(Point2 center, double radius, Color color) {
+    data_->addCircle(center, radius);
+    data_->fillPath(color);
+}
+
+void Canvas::strokeCircle(Point2 center, double radius, const Stroke& stroke) {
+    data_->addCircle(center, radius);
+    data_->strokePath(stroke);
+}
+
+void Canvas::strokeArc(Point2 center, double radius, Angle from, Angle to, const Stroke& stroke) {
+    cairo_new_sub_path(data_->context);
+    data_->addArc(center, radius, from, to);
+    data_->strokePath(stroke);
+}
+
+void Canvas::fillSector(Point2 center, double radius, Angle from, Angle to, Color color) {
+    data_->moveTo(center);
+    data_->addArc(center, radius, from, to);
+    cairo_close_path(data_->context);
+    data_->fillPath(color);
+}
+
+void Canvas::text(Point2 anchor, std::string_view text, const TextStyle& style) {
+    const std::string clean = printable(text);
+    const double length = textWidth(clean, style);
+    const double back = style.align == Align::Left     ? 0
+                        : style.align == Align::Center ? length / 2
+                                                       : length;
+    const Point2 page = data_->toPage(anchor);
+    cairo_t* context = data_->context;
+    selectFont(context, style);
+    if (style.halo) {
+        cairo_move_to(context, page.x - back, page.y);
+        cairo_text_path(context, clean.c_str());
+        data_->strokePath({*style.halo, style.size / 4});
+    }
+    cairo_move_to(context, page.x - back, page.y);
+    data_->use(style.color);
+    cairo_show_text(context, clean.c_str());
+    cairo_new_path(context);
+}
+
+std::string Canvas::encode() {
+    Data& data = *data_;
+    if (!data.finished) {
+        data.finished = true;
+        check(cairo_status(data.context));
+        if (data.format == PictureFormat::Png)
+            check(cairo_surface_write_to_png_stream(data.surface, append, &data.bytes));
+        cairo_surface_finish(data.surface);
+        check(cairo_surface_status(data.surface));
+        if (data.format == PictureFormat::Svg) data.bytes = renumberSurfaces(data.bytes);
+    }
+    return data.bytes;
+}
+
+}  // namespace ispace

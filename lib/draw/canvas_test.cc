@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/canvas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "base/error.h"
+#include "draw/image.h"
+
+namespace ispace {
+namespace {
+
+/// A decoded PNG.
+struct Pixels : Image {
+    explicit Pixels(const std::string& png) : Image(decodePng(png)) {}
+
+    [[nodiscard]] int countOf(std::uint32_t rgb) const {
+        return static_cast<int>(std::count(pixels.begin(), pixels.end(), rgb));
+    }
+};
+
+constexpr Color kRed = Color::rgb(0xFF0000);
+constexpr Color kBlue = Color::rgb(0x0000FF);
+const Polygon kSquare = {{2, 2}, {8, 2}, {8, 8}, {2, 8}};
+const Polygon kHole = {{4, 4}, {4, 6}, {6, 6}, {6, 4}};
+
+TEST(Canvas, StartsWhiteInTheWantedSize) {
+    Canvas canvas(PictureFormat::Png, 30, 20);
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.width, 30);
+    EXPECT_EQ(pixels.height, 20);
+    EXPECT_EQ(pixels.countOf(0xFFFFFF), 600);
+}
+
+TEST(Canvas, RefusesSizesItCannotDraw) {
+    EXPECT_THROW(Canvas(PictureFormat::Png, 0, 10), UsageError);
+    EXPECT_THROW(Canvas(PictureFormat::Svg, 10, -1), UsageError);
+    EXPECT_THROW(Canvas(PictureFormat::Pdf, 10, 1e9), UsageError);
+    EXPECT_THROW(Canvas(PictureFormat::Png, std::nan(""), 10), UsageError);
+}
+
+TEST(Canvas, FillsPolygonsInPageUnits) {
+    Canvas canvas(PictureFormat::Png, 10, 10);
+    canvas.fill(Polygon{{1, 2}, {4, 2}, {4, 7}, {1, 7}}, kRed);
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.countOf(0xFF0000), 15);
+    EXPECT_EQ(pixels.at(1, 2), 0xFF0000U);
+    EXPECT_EQ(pixels.at(4, 7), 0xFFFFFFU);
+}
+
+TEST(Canvas, HolesStayFreeWhateverTheirOrientation) {
+    for (const bool reversed : {false, true}) {
+        Region region{kSquare, {kHole}};
+        if (reversed) std::reverse(region.holes[0].begin(), region.holes[0].end());
+        Canvas canvas(PictureFormat::Png, 10, 10);
+        canvas.fill(region, kBlue);
+        const Pixels pixels(canvas.encode());
+        EXPECT_EQ(pixels.countOf(0x0000FF), 36 - 4);
+        EXPECT_EQ(pixels.at(5, 5), 0xFFFFFFU);
+    }
+}
+
+TEST(Canvas, CurvesThatMeetLeaveNoSeam) {
+    Canvas canvas(PictureFormat::Png, 10, 10);
+    const std::array<Polygon, 2> halves = {Polygon{{0, 0}, {4.5, 0}, {4.5, 10}, {0, 10}},
+                                           Polygon{{4.5, 0}, {10, 0}, {10, 10}, {4.5, 10}}};
+    canvas.fill(halves, kRed);
+    EXPECT_EQ(Pixels(canvas.encode()).countOf(0xFF0000), 100);
+}
+
+TEST(Canvas, ViewTakesMetresWithYUp) {
+    Canvas canvas(PictureFormat::Png, 100, 100);
+    canvas.pushView({10, {0, 0}, {20, 80}});
+    EXPECT_EQ(canvas.toPage({1, 2}), (Point2{30, 60}));
+    canvas.fill(Polygon{{0, 0}, {1, 0}, {1, 2}, {0, 2}}, kRed);
+    canvas.pop();
+    EXPECT_EQ(canvas.toPage({1, 2}), (Point2{1, 2}));
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.countOf(0xFF0000), 200);
+    EXPECT_EQ(pixels.at(20, 60), 0xFF0000U);
+    EXPECT_EQ(pixels.at(20, 80), 0xFFFFFFU);
+}
+
+TEST(Canvas, LineWidthsArePageUnitsInAnyView) {
+    Canvas canvas(PictureFormat::Png, 100, 100);
+    canvas.pushView({1000, {0, 0}, {0, 100}});
+    canvas.line({-1, 0.05}, {1, 0.05}, {kRed, 4});
+    canvas.pop();
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.countOf(0xFF0000), 400);
+    EXPECT_EQ(pixels.at(50, 48), 0xFF0000U);
+    EXPECT_EQ(pixels.at(50, 52), 0xFFFFFFU);
+}
+
+TEST(Canvas, ClipsAddUpAndEndWithPop) {
+    Canvas canvas(PictureFormat::Png, 10, 10);
+    canvas.pushClip(Region{kSquare, {kHole}});
+    canvas.pushClip(Polygon{{0, 0}, {5, 0}, {5, 10}, {0, 10}});
+    canvas.fill(Polygon{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, kRed);
+    canvas.pop();
+    canvas.pop();
+    canvas.fill(Polygon{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, kBlue);
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.countOf(0xFF0000), 18 - 2);
+    EXPECT_EQ(pixels.at(0, 0), 0x0000FFU);
+}
+
+TEST(Canvas, AlphaMixesWithWhatLiesBelow) {
+    Canvas canvas(PictureFormat::Png, 10, 10);
+    canvas.fill(kSquare, kRed.faded(0.5));
+    const std::uint32_t pixel = Pixels(canvas.encode()).at(5, 5);
+    EXPECT_EQ(pixel >> 16, 0xFFU);
+    EXPECT_NEAR(pixel & 0xFFU, 0x80, 1);
+}
+
+TEST(Canvas, DashesLeaveGaps) {
+    Canvas canvas(PictureFormat::Png, 100, 10);
+    canvas.line({0, 5}, {100, 5}, {kRed, 2, {10, 10}});
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.at(5, 5), 0xFF0000U);
+    EXPECT_EQ(pixels.at(15, 5), 0xFFFFFFU);
+    EXPECT_EQ(pixels.at(25, 5), 0xFF0000U);
+}
+
+TEST(Canvas, SectorsTurnCounterClockwiseAsSeen) {
+    for (const bool world : {false, true}) {
+        Canvas canvas(PictureFormat::Png, 100, 100);
+        if (world) canvas.pushView({10, {0, 0}, {50, 50}});
+        canvas.fillSector(world ? Point2{0, 0} : Point2{50, 50}, world ? 4 : 40, Angle::degrees(0),
+                          Angle::degrees(90), kRed);
+        const Pixels pixels(canvas.encode());
+        EXPECT_EQ(pixels.at(70, 30), 0xFF0000U);
+        EXPECT_EQ(pixels.at(70, 70), 0xFFFFFFU);
+        EXPECT_EQ(pixels.at(30, 30), 0xFFFFFFU);
+        EXPECT_NEAR(pixels.countOf(0xFF0000), std::acos(-1.0) * 400, 80);
+    }
+}
+
+TEST(Canvas, CirclesAndArcs) {
+    Canvas canvas(PictureFormat::Png, 100, 100);
+    canvas.fillCircle({30, 30}, 20, kRed);
+    canvas.strokeCircle({30, 30}, 25, {kBlue, 2});
+    canvas.strokeArc({70, 70}, 20, Angle::degrees(90), Angle::degrees(180), {kBlue, 4});
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.at(30, 30), 0xFF0000U);
+    EXPECT_EQ(pixels.at(30, 5), 0x0000FFU);
+    EXPECT_EQ(pixels.at(55, 55), 0x0000FFU);
+    EXPECT_EQ(pixels.at(84, 84), 0xFFFFFFU);
+}
+
+TEST(Canvas, PlacesFarOffThePageDoNoHarm) {
+    Canvas canvas(PictureFormat::Png, 20, 20);
+    canvas.pushView({1e6, {0, 0}, {10, 10}});
+    canvas.fill(Polygon{{-1e12, -1e12}, {1e12, -1e12}, {1e12, 1e12}, {-1e12, 1e12}}, kRed);
+    EXPECT_EQ(Pixels(canvas.encode()).countOf(0xFF0000), 400);
+}
+
+TEST(Canvas, EmptyThingsDrawNothing) {
+    Canvas canvas(PictureFormat::Png, 10, 10);
+    canvas.fill(Polygon{}, kRed);
+    canvas.fill(Region{}, kRed);
+    canvas.stroke(Polygon{}, {kRed, 1});
+    canvas.lines({}, {kRed, 1});
+    canvas.polyline({}, {kRed, 1});
+    canvas.text({5, 5}, "", {});
+    EXPECT_EQ(Pixels(canvas.encode()).countOf(0xFFFFFF), 100);
+}
+
+TEST(Canvas, TextIsAlignedAtItsAnchor) {
+    const auto inkLeftOf = [](Align align) {
+        Canvas canvas(PictureFormat::Png, 200, 40);
+        canvas.text({100, 30}, "HHHH", {20, true, align, Color::rgb(0x000000)});
+        const Pixels pixels(canvas.encode());
+        int left = 0, all = 0;
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 200; ++x)
+                if (pixels.at(x, y) < 0x808080) {
+                    ++all;
+                    left += x < 100 ? 1 : 0;
+                }
+        EXPECT_GT(all, 100);
+        return static_cast<double>(left) / all;
+    };
+    EXPECT_LT(inkLeftOf(Align::Left), 0.05);
+    EXPECT_NEAR(inkLeftOf(Align::Center), 0.5, 0.05);
+    EXPECT_GT(inkLeftOf(Align::Right), 0.95);
+}
+
+TEST(Canvas, HaloSurroundsText) {
+    Canvas canvas(PictureFormat::Png, 100, 40);
+    canvas.fill(Polygon{{0, 0}, {100, 0}, {100, 40}, {0, 40}}, kRed);
+    TextStyle style{20, true, Align::Center, Color::rgb(0x000000)};
+    style.halo = Color::rgb(0xFFFFFF);
+    canvas.text({50, 28}, "I", style);
+    const Pixels pixels(canvas.encode());
+    EXPECT_GT(pixels.countOf(0xFFFFFF), 20);
+    EXPECT_EQ(pixels.at(5, 5), 0xFF0000U);
+}
+
+std::string sample(PictureFormat format) {
+    Canvas canvas(format, 200, 100);
+    canvas.pushView({10, {0, 0}, {10, 90}});
+    canvas.pushClip(kSquare);
+    canvas.fill(Region{kSquare, {kHole}}, kBlue.faded(0.4));
+    canvas.pop();
+    canvas.pop();
+    canvas.text({100, 50}, "7.5 m² <&> \x01\xFF",
+                {12, false, Align::Left, kRed, Color{1, 1, 1, 1}});
+    return canvas.encode();
+}
+
+TEST(Canvas, EqualCallsGiveEqualBytes) {
+    for (const PictureFormat format :
+         {PictureFormat::Png, PictureFormat::Svg, PictureFormat::Pdf}) {
+        const std::string first = sample(format);
+        EXPECT_FALSE(first.empty());
+        EXPECT_EQ(first, sample(format));
+        EXPECT_EQ(first.find("20"
+                             "26-"),
+                  std::string::npos);
+    }
+}
+
+TEST(Canvas, FormatsAreWhatTheySay) {
+    EXPECT_EQ(sample(PictureFormat::Png).substr(1, 3), "PNG");
+    EXPECT_EQ(sample(PictureFormat::Pdf).substr(0, 5), "%PDF-");
+    EXPECT_EQ(sample(PictureFormat::Pdf).find("/CreationDate"), std::string::npos);
+    const std::string svg = sample(PictureFormat::Svg);
+    EXPECT_EQ(svg.substr(0, 5), "<?xml");
+    EXPECT_NE(svg.find("width=\"200px\""), std::string::npos);
+    EXPECT_NE(svg.find("</svg>"), std::string::npos);
+}
+
+TEST(Canvas, EncodesOnceAndKeepsTheBytes) {
+    Canvas canvas(PictureFormat::Svg, 10, 10);
+    const std::string first = canvas.encode();
+    EXPECT_EQ(canvas.encode(), first);
+}
+
+TEST(Image, RefusesWhatIsNoWholePng) {
+    const std::string png = sample(PictureFormat::Png);
+    EXPECT_EQ(decodePng(png).width, 200);
+    EXPECT_THROW(decodePng(""), FormatError);
+    EXPECT_THROW(decodePng("P5 1 1 255 x"), FormatError);
+    EXPECT_THROW(decodePng(png.substr(0, png.size() / 2)), FormatError);
+}
+
+TEST(Color, PaletteRepeatsAndItsColoursDiffer) {
+    for (std::size_t i = 0; i < kSeriesColors; ++i) {
+        EXPECT_EQ(seriesColor(i), seriesColor(i + kSeriesColors));
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(seriesColor(i), seriesColor(j));
+    }
+}
+
+TEST(Color, SequentialSchemeDarkensWithEachLevel) {
+    const auto lightness = [](Color c) {
+        return 0.2126 * c.red + 0.7152 * c.green + 0.0722 * c.blue;
+    };
+    for (int levels = 1; levels <= 9; ++levels) {
+        for (int level = 2; level <= levels; ++level)
+            EXPECT_LT(lightness(sequentialColor(level, levels)),
+                      lightness(sequentialColor(level - 1, levels)) - 0.03)
+                << level << " of " << levels;
+        EXPECT_EQ(sequentialColor(levels + 3, levels), sequentialColor(levels, levels));
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ispace {
+
+namespace {
+
+Color mixed(Color a, Color b, double share) {
+    const auto mix = [share](double from, double to) { return from + share * (to - from); };
+    return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), 1};
+}
+
+}  // namespace
+
+Color seriesColor(std::size_t index) {
+    constexpr std::array<std::uint32_t, kSeriesColors> kOkabeIto = {
+        0xD55E00,  // vermilion
+        0x009E73,  // bluish green
+        0xCC79A7,  // reddish purple
+        0x0072B2,  // blue
+        0xE69F00,  // orange
+        0x000000,  // black
+        0x56B4E9,  // sky blue
+        0xF0E442,  // yellow
+    };
+    return Color::rgb(kOkabeIto[index % kSeriesColors]);
+}
+
+Color sequentialColor(int level, int levels) {
+    constexpr std::array<std::uint32_t, 5> kStops = {0xD3E4F3, 0xA8CDE4, 0x6DAED5, 0x3A87C0,
+                                                     0x1A5A9C};
+    // Few levels keep to the light half, where lines and labels on top stay readable.
+    const double top = std::min(1.0, 0.25 * levels);
+    const double share =
+        levels <= 1 ? 0.25 : top * (std::clamp(level, 1, levels) - 1) / (levels - 1);
+    const double place = share * (kStops.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
+    return mixed(Color::rgb(kStops[below]), Color::rgb(kStops[below + 1]),
+                 place - static_cast<double>(below));
+}
+
+}  // namespace ispace

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ispace {
+
+/// sRGB with opacity, each 0..1.
+struct Color {
+    double red = 0, green = 0, blue = 0, alpha = 1;
+
+    /// From 0xRRGGBB.
+    static constexpr Color rgb(std::uint32_t hex) {
+        const auto part = [hex](unsigned shift) {
+            return static_cast<double>((hex >> shift) & 0xFFU) / 255;
+        };
+        return {part(16), part(8), part(0), 1};
+    }
+    /// The same colour at another opacity.
+    [[nodiscard]] constexpr Color faded(double opacity) const {
+        return {red, green, blue, opacity};
+    }
+    friend bool operator==(const Color&, const Color&) = default;
+};
+
+/// Number of distinct colours of seriesColor().
+constexpr std::size_t kSeriesColors = 8;
+
+/// Colour of the i-th thing of a kind: the palette of Okabe and Ito, which people with any colour
+/// vision tell apart, strongest on white first; it repeats after kSeriesColors.
+Color seriesColor(std::size_t index);
+
+/// Step `level` (1..levels) of a scheme from light to dark blue: lightness falls with each level,
+/// so that it reads in grey as well.
+Color sequentialColor(int level, int levels);
+
+}  // namespace ispace
