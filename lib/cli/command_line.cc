@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "base/history.h"
+#include "base/number.h"
+#include "base/suggest.h"
+#include "cli/run_tool.h"
+#include "record/schema.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
+
+/// "-o, --output FILE"
+std::string signature(const CLI::Option& option, const std::string& value) {
+    std::string names;
+    for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
+    for (const std::string& name : option.get_lnames()) names += "--" + name + ", ";
+    names.resize(names.size() - 2);
+    return value.empty() ? names : names + ' ' + value;
+}
+
+/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line is
+/// `used` characters long already.
+void appendWrapped(std::string& out, const std::string& text, std::size_t used,
+                   std::size_t column) {
+    std::istringstream words(text);
+    bool fresh = true;
+    for (std::string word; words >> word; fresh = false) {
+        if (!fresh && used + 1 + word.size() > kHelpWidth) {
+            out += '\n' + std::string(column, ' ');
+            used = column;
+            fresh = true;
+        }
+        if (!fresh) out += ' ';
+        out += word;
+        used += word.size() + (fresh ? 0 : 1);
+    }
+    out += '\n';
+}
+
+}  // namespace
+
+struct CommandLine::Data {
+    struct Entry {
+        CLI::Option* option;
+        std::string value, help;
+        Enters enters;
+    };
+
+    std::string tool, synopsis, summary;
+    CLI::App app;
+    std::vector<Entry> entries;
+    bool help = false, version = false;
+    std::vector<std::string> unused_operands;
+    std::vector<std::string>* operands = &unused_operands;
+    std::size_t most_operands = 0;
+
+    CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
+                      Enters enters) {
+        entries.push_back({option, value, text, enters});
+        return option;
+    }
+    [[noreturn]] void usage(const std::string& message) const {
+        throw UsageError(message + " (see " + tool + " --help)");
+    }
+    void sortOut(const std::vector<std::string>& words);
+};
+
+CommandLine::CommandLine(std::string tool, std::string synopsis, std::string summary)
+    : data_(std::make_unique<Data>()) {
+    data_->tool = std::move(tool);
+    data_->synopsis = std::move(synopsis);
+    data_->summary = std::move(summary);
+    data_->app.set_help_flag();
+    data_->app.allow_extras();
+    flag("-h,--help", data_->help, "show this help and exit", Enters::Nothing);
+    flag("-V,--version", data_->version, "show version and licence and exit", Enters::Nothing);
+}
+
+CommandLine::~CommandLine() = default;
+
+void CommandLine::text(const std::string& names, const std::string& value, std::string& variable,
+                       const std::string& help, Enters enters) {
+    data_->keep(data_->app.add_option(names, variable), value, help, enters);
+}
+
+void CommandLine::texts(const std::string& names, const std::string& value,
+                        std::vector<std::string>& variable, const std::string& help,
+                        Enters enters) {
+    CLI::Option* option = data_->app.add_option(names, variable);
+    option->expected(1)->allow_extra_args(false)->multi_option_policy(
+        CLI::MultiOptionPolicy::TakeAll);
+    data_->keep(option, value, help + " (repeatable)", enters);
+}
+
+void CommandLine::flag(const std::string& names, bool& variable, const std::string& help,
+                       Enters enters) {
+    data_->keep(data_->app.add_flag(names, variable), "", help, enters);
+}
+
+void CommandLine::flag(const std::string& names, int& variable, const std::string& help,
+                       Enters enters) {
+    data_->keep(data_->app.add_flag(names, variable), "", help, enters);
+}
+
+void CommandLine::switchFlag(const std::string& on, const std::string& off,
+                             std::optional<bool>& variable, const std::string& help) {
+    const auto set = [&variable](bool value) {
+        return [&variable, value](std::int64_t) { variable = value; };
+    };
+    data_->keep(data_->app.add_flag_function(on, set(true)), "", help, Enters::Nothing);
+    data_->keep(data_->app.add_flag_function(off, set(false)), "", "do not", Enters::Nothing);
+}
+
+void CommandLine::parsed(const std::string& names, const std::string& value,
+                         std::function<void(const std::string&)> take, const std::string& help,
+                         Enters enters) {
+    const std::string last = names.substr(names.rfind(',') + 1);
+    const auto guarded = [last, take = std::move(take), data = data_.get()](const std::string& s) {
+        try {
+            take(s);
+        } catch (const UsageError& error) {
+            data->usage(last + ": " + error.what());
+        } catch (const FormatError& error) {
+            data->usage(last + ": " + error.diagnostics().front().message);
+        }
+    };
+    data_->keep(data_->app.add_option_function<std::string>(names, guarded), value, help, enters);
+}
+
+void CommandLine::count(const std::string& names, const std::string& value,
+                        std::optional<int>& variable, int lowest, int highest,
+                        const std::string& help, Enters enters) {
+    const auto take = [&variable, lowest, highest](const std::string& s) {
+        const auto number = parseInteger(s);
+        if (!number || *number < lowest || *number > highest)
+            throw UsageError('`' + s + "` is not a whole number from " + std::to_string(lowest) +
+                             " to " + std::to_string(highest));
+        variable = static_cast<int>(*number);
+    };
+    parsed(names, value, take, help, enters);
+}
+
+void CommandLine::count(const std::string& names, const std::string& value, int& variable,
+                        int lowest, int highest, const std::string& help, Enters enters) {
+    const auto take = [&variable, lowest, highest](const std::string& s) {
+        const auto number = parseInteger(s);
+        if (!number || *number < lowest || *number > highest)
+            throw UsageError('`' + s + "` is not a whole number from " + std::to_string(lowest) +
+                             " to " + std::to_string(highest));
+        variable = static_cast<int>(*number);
+    };
+    parsed(names, value, take, help + " (default " + std::to_string(variable) + ")", enters);
+}
+
+namespace {
+
+double metersFrom(const std::string& text, double lowest, double highest) {
+    KeySpec key;
+    key.name = "length";
+    key.unit = Unit::Length;
+    const double value = std::get<double>(parseValue(key, text));
+    if (value < lowest || value > highest)
+        throw UsageError('`' + text + "` is not from " + formatDouble(lowest) + " to " +
+                         formatDouble(highest) + " metres");
+    return value;
+}
+
+}  // namespace
+
+void CommandLine::meters(const std::string& names, std::optional<double>& variable, double lowest,
+                         double highest, const std::string& help, Enters enters) {
+    const auto take = [&variable, lowest, highest](const std::string& s) {
+        variable = metersFrom(s, lowest, highest);
+    };
+    parsed(names, "M", take, help, enters);
+}
+
+void CommandLine::meters(const std::string& names, double& variable, double lowest, double highest,
+                         const std::string& help, Enters enters) {
+    const auto take = [&variable, lowest, highest](const std::string& s) {
+        variable = metersFrom(s, lowest, highest);
+    };
+    parsed(names, "M", take, help + " (default " + formatDouble(variable) + " m)", enters);
+}
+
+void CommandLine::choice(const std::string& names, std::string& variable,
+                         std::vector<std::string> words, const std::string& help, Enters enters) {
+    std::string list;
+    for (const std::string& word : words) list += (list.empty() ? "" : "|") + word;
+    const auto take = [&variable, words = std::move(words), list](const std::string& s) {
+        if (std::find(words.begin(), words.end(), s) == words.end())
+            throw UsageError('`' + s + "` is none of " + list + didYouMean(s, words));
+        variable = s;
+    };
+    parsed(names, list, take, help, enters);
+}
+
+void CommandLine::operands(std::vector<std::string>& variable, std::size_t most) {
+    data_->operands = &variable;
+    data_->most_operands = most;
+}
+
+void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
+    bool options_ended = false;
+    for (const std::string& word : words) {
+        if (!options_ended && word == "--") {
+            options_ended = true;
+        } else if (!options_ended && word.size() > 1 && word.starts_with('-')) {
+            std::vector<std::string> known;
+            for (const Entry& entry : entries)
+                for (const std::string& name : entry.option->get_lnames())
+                    known.push_back("--" + name);
+            usage("unknown option " + shellQuote(word) +
+                  didYouMean(word.substr(0, word.find('=')), known));
+        } else if (word.empty()) {
+            usage("an operand is empty");
+        } else {
+            operands->push_back(word);
+        }
+    }
+    if (operands->size() > most_operands)
+        usage("too many operands: " + shellQuote((*operands)[most_operands]));
+}
+
+void CommandLine::parse(int argc, const char* const* argv) {
+    Data& d = *data_;
+    std::vector<std::string> words(argv + 1, argv + argc);
+    // CLI11 takes words from the back; what follows "--" is kept from it and put behind.
+    const auto end = std::find(words.begin(), words.end(), "--");
+    const std::vector<std::string> tail(end, words.end());
+    words.erase(end, words.end());
+    std::reverse(words.begin(), words.end());
+    try {
+        d.app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        d.usage(error.what());
+    }
+    if (d.help) throw TextRequested{helpText()};
+    if (d.version)
+        throw TextRequested{d.tool + " (ispace) " ISPACE_VERSION
+                                     "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
+    std::vector<std::string> rest = d.app.remaining();
+    rest.insert(rest.end(), tail.begin(), tail.end());
+    d.sortOut(rest);
+}
+
+bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
+
+std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
+    std::string line = data_->tool;
+    for (const std::string& operand : operands) line += ' ' + shellQuote(baseName(operand));
+    for (const Data::Entry& entry : data_->entries) {
+        const CLI::Option& option = *entry.option;
+        if (entry.enters == Enters::Nothing || option.count() == 0) continue;
+        const std::string name = option.get_lnames().empty() ? "-" + option.get_snames().front()
+                                                             : "--" + option.get_lnames().front();
+        if (entry.value.empty()) {
+            line += ' ' + name;
+            continue;
+        }
+        for (const std::string& value : option.results())
+            line += ' ' + name + ' ' + shellQuote(value);
+    }
+    return line;
+}
+
+std::string CommandLine::helpText() const {
+    std::string out = "Usage: " + data_->tool + " [OPTION]... " + data_->synopsis + "\n";
+    appendWrapped(out, data_->summary, 0, 0);
+    out += "\nOptions:\n";
+    for (const Data::Entry& entry : data_->entries) {
+        const std::string name = "  " + signature(*entry.option, entry.value);
+        out += name;
+        if (name.size() + 2 > kHelpColumn)
+            out += '\n' + std::string(kHelpColumn, ' ');
+        else
+            out += std::string(kHelpColumn - name.size(), ' ');
+        appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
+    }
+    out += "\nExit status: 0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met.\n";
+    out += "Details: man " + data_->tool + "\n";
+    return out;
+}
+
+}  // namespace ispace

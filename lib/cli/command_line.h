@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "record/record.h"
+
+namespace ispace {
+
+/// Whether an option changes the bytes of the product: only those enter its history line.
+enum class Enters { History, Nothing };
+
+/// One tool's options and operands. Each option is declared once, in the man page's order, bound
+/// to its variable; `--help` and the history line come from that table.
+///
+/// Numbers are parsed whole, without locale, and checked at once. Options may stand before, between
+/// and after operands; `--` ends them.
+class CommandLine {
+  public:
+    /// `synopsis` is what follows the tool's name, `summary` one or two lines for `--help`.
+    CommandLine(std::string tool, std::string synopsis, std::string summary);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
+    void text(const std::string& names, const std::string& value, std::string& variable,
+              const std::string& help, Enters enters);
+    /// May be given several times.
+    void texts(const std::string& names, const std::string& value,
+               std::vector<std::string>& variable, const std::string& help, Enters enters);
+    void flag(const std::string& names, bool& variable, const std::string& help, Enters enters);
+    /// How often it was given (-vv).
+    void flag(const std::string& names, int& variable, const std::string& help, Enters enters);
+    /// A pair --name / --no-name; `off` wins if both are given, empty if neither is.
+    void switchFlag(const std::string& on, const std::string& off, std::optional<bool>& variable,
+                    const std::string& help);
+    /// Any other option: `take` gets the text; what it throws (UsageError) is prefixed with the
+    /// option's name.
+    void parsed(const std::string& names, const std::string& value,
+                std::function<void(const std::string&)> take, const std::string& help,
+                Enters enters);
+    /// A whole number in [lowest, highest].
+    void count(const std::string& names, const std::string& value, std::optional<int>& variable,
+               int lowest, int highest, const std::string& help, Enters enters);
+    void count(const std::string& names, const std::string& value, int& variable, int lowest,
+               int highest, const std::string& help, Enters enters);
+    /// A length in metres (suffixes m, cm, mm, km), within [lowest, highest].
+    void meters(const std::string& names, std::optional<double>& variable, double lowest,
+                double highest, const std::string& help, Enters enters);
+    void meters(const std::string& names, double& variable, double lowest, double highest,
+                const std::string& help, Enters enters);
+    /// One of a fixed set of words.
+    void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
+                const std::string& help, Enters enters);
+    /// The operands in order; at most `most`.
+    void operands(std::vector<std::string>& variable, std::size_t most);
+
+    /// \throws UsageError with a hint, TextRequested for -h and -V
+    void parse(int argc, const char* const* argv);
+
+    /// True if the option ("--output") stood in the command line. \pre it is declared
+    [[nodiscard]] bool given(const std::string& name) const;
+    /// "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
+    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
+    [[nodiscard]] std::string helpText() const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Options that every tool has.
+struct CommonOptions {
+    std::string output = "-";
+    bool quiet = false;
+    int verbose = 0;
+    int threads = 0;  ///< 0: all cores this process may use
+    std::uint64_t seed = 0;
+    std::optional<bool> progress;
+};
+/// Declares -o -q -v -j --seed --progress; `output_help` says what the product is.
+void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
+
+/// Keeps the number of worker threads down to `threads` (0: cores of the affinity mask, or
+/// SLURM_CPUS_PER_TASK if that is less) while it lives.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int threads);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
+std::string shareFolder();
+
+/// Format of a product: `to` if given, else the suffix of `output` if it is one of `known`, else
+/// the first of `known`.
+std::string outputFormat(const std::string& to, const std::string& output,
+                         const std::vector<std::string>& known);
+
+/// Refuses binary data for a terminal. \throws UsageError
+void refuseTerminal(const std::string& output, const std::string& what);
+
+}  // namespace ispace

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/command_line.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+#include <system_error>
+
+#include "base/error.h"
+#include "cli/run_tool.h"
+#include "cli/scene_options.h"
+
+namespace ispace {
+namespace {
+
+/// A tool with one option of each sort.
+struct Tool {
+    CommandLine line{"tool", "ENV",
+                     "Do a thing to a room, and say so in words that are many "
+                     "enough to need more than one line of the help text."};
+    CommonOptions common;
+    std::vector<std::string> operands, words;
+    std::string strategy;
+    std::optional<int> x;
+    double height = 0.15;
+    int columns = 100, rows = 100;
+    bool json = false;
+
+    Tool() {
+        line.operands(operands, 2);
+        line.texts("--sensor", "SPEC", words, "place one", Enters::History);
+        line.choice("--strategy", strategy, {"grid", "wall"}, "how", Enters::History);
+        line.count("-X", "N", x, 1, 100, "lines", Enters::History);
+        line.meters("--height", height, 0, 10, "where", Enters::History);
+        addGridOption(line, columns, rows);
+        line.flag("--json", json, "as JSON", Enters::Nothing);
+        addCommonOptions(line, common, "there");
+    }
+    void parse(std::vector<const char*> words_given) {
+        words_given.insert(words_given.begin(), "tool");
+        line.parse(static_cast<int>(words_given.size()), words_given.data());
+    }
+    std::string errorOf(const std::vector<const char*>& words_given) {
+        try {
+            parse(words_given);
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    }
+};
+
+TEST(CommandLine, OptionsAndOperandsInAnyOrder) {
+    Tool tool;
+    tool.parse({"room.glb", "--sensor", "a:2", "-X", "7", "--sensor=b", "-", "--height", "50cm",
+                "-qo", "out.3dm", "--grid", "20,30"});
+    EXPECT_EQ(tool.operands, (std::vector<std::string>{"room.glb", "-"}));
+    EXPECT_EQ(tool.words, (std::vector<std::string>{"a:2", "b"}));
+    EXPECT_EQ(tool.x, 7);
+    EXPECT_EQ(tool.height, 0.5);
+    EXPECT_EQ(tool.columns, 20);
+    EXPECT_EQ(tool.rows, 30);
+    EXPECT_EQ(tool.common.output, "out.3dm");
+    EXPECT_TRUE(tool.common.quiet);
+    EXPECT_TRUE(tool.line.given("--output"));
+    EXPECT_FALSE(tool.line.given("--threads"));
+}
+
+TEST(CommandLine, TwoDashesEndOptions) {
+    Tool tool;
+    tool.parse({"--json", "--", "--strategy", "-X"});
+    EXPECT_EQ(tool.operands, (std::vector<std::string>{"--strategy", "-X"}));
+    EXPECT_TRUE(tool.json);
+    EXPECT_EQ(tool.strategy, "");
+}
+
+TEST(CommandLine, HistoryHoldsWhatChangesTheResultInTheTablesOrder) {
+    Tool tool;
+    tool.parse({"-X", "3", "--json", "-o", "x", "-j", "2", "--seed", "5", "--strategy", "grid",
+                "dir/room one.glb", "--sensor", "laser,range=4:3"});
+    EXPECT_EQ(tool.line.historyLine(tool.operands),
+              "tool 'room one.glb' --sensor laser,range=4:3 --strategy grid -X 3 --seed 5");
+    EXPECT_EQ(tool.line.historyLine({"-"}).substr(0, 6), "tool -");
+}
+
+TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
+    EXPECT_NE(Tool().errorOf({"--stratgy", "grid"}).find("did you mean `--strategy`"),
+              std::string::npos);
+    EXPECT_NE(Tool().errorOf({"--strategy", "gird"}).find("did you mean `grid`"),
+              std::string::npos);
+    EXPECT_NE(Tool().errorOf({"-X", "0"}).find("from 1 to 100"), std::string::npos);
+    EXPECT_NE(Tool().errorOf({"-X", "3x"}).find("`3x`"), std::string::npos);
+    EXPECT_NE(Tool().errorOf({"--height", "nan"}), "");
+    EXPECT_NE(Tool().errorOf({"--height", "3deg"}), "");
+    EXPECT_NE(Tool().errorOf({"--height", "-1"}), "");
+    EXPECT_NE(Tool().errorOf({"--grid", "3,0"}), "");
+    EXPECT_NE(Tool().errorOf({"--seed", "-1"}), "");
+    EXPECT_NE(Tool().errorOf({"a", "b", "c"}).find("too many operands: c"), std::string::npos);
+    EXPECT_NE(Tool().errorOf({""}), "");
+    EXPECT_NE(Tool().errorOf({"-X"}), "");
+    EXPECT_EQ(Tool().errorOf({"--height", "0"}), "");
+}
+
+TEST(CommandLine, HelpFitsEightyColumnsAndNamesEveryOption) {
+    Tool tool;
+    std::string help;
+    try {
+        tool.parse({"--help", "--json"});
+        FAIL() << "--help was not taken";
+    } catch (const TextRequested& request) {
+        help = request.text;
+    }
+    for (const char* name :
+         {"--help", "--version", "--sensor", "--strategy", "-X", "--height", "--grid", "--json",
+          "--output", "--quiet", "--verbose", "--threads", "--seed", "--progress", "--no-progress"})
+        EXPECT_NE(help.find(name), std::string::npos) << name;
+    std::size_t begin = 0;
+    for (std::size_t end = help.find('\n'); end != std::string::npos;
+         end = help.find('\n', begin)) {
+        EXPECT_LE(end - begin, 79U) << help.substr(begin, end - begin);
+        begin = end + 1;
+    }
+    EXPECT_THROW(Tool().parse({"-V"}), TextRequested);
+}
+
+TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {
+    const std::vector<std::string> known{"glb", "env"};
+    EXPECT_EQ(outputFormat("env", "x.glb", known), "env");
+    EXPECT_EQ(outputFormat("", "x.env", known), "env");
+    EXPECT_EQ(outputFormat("", "x.txt", known), "glb");
+    EXPECT_EQ(outputFormat("", "-", known), "glb");
+}
+
+TEST(RunTool, ChoosesTheExitStatus) {
+    const auto status = [](const std::function<void()>& body) { return runTool("tool", body); };
+    EXPECT_EQ(status([] {}), 0);
+    EXPECT_EQ(status([] { throw UsageError("x"); }), 2);
+    EXPECT_EQ(status([] { throw UnmetError("x"); }), 3);
+    EXPECT_EQ(status([] { throw FormatError({"f", 1, 2, "x"}); }), 1);
+    EXPECT_EQ(status([] { throw std::bad_alloc(); }), 1);
+    EXPECT_EQ(status([] { throw std::runtime_error("x"); }), 1);
+}
+
+TEST(RunTool, PrintsOneLineAnError) {
+    testing::internal::CaptureStderr();
+    runTool("envc", [] {
+        throw FormatError({{"room.env", 14, 7, "wall has zero length"}, {"room.env", 0, 0, "y"}});
+    });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "envc: room.env:14:7: error: wall has zero length\nenvc: room.env: error: y\n");
+    testing::internal::CaptureStderr();
+    runTool("scan", [] { throw std::system_error(ENOENT, std::generic_category(), "a: b.glb"); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "scan: a: b.glb: error: No such file or directory\n");
+}
+
+}  // namespace
+}  // namespace ispace

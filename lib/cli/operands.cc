@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/operands.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/command_line.h"
+#include "io/input.h"
+#include "layout/schemas.h"
+#include "record/digest.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Document read(const std::string& operand) {
+    const std::string bytes = operand == "-" ? readStdin() : readAll(operand);
+    return parseDocument(bytes, operand, ImportOptions(), sceneSchemas());
+}
+
+bool hasPlacedSensor(const Document& document) {
+    return std::any_of(document.records.begin(), document.records.end(), [](const Record& r) {
+        return r.schema().type == RecordType::Placement && r.has("at");
+    });
+}
+
+void checkStreams(const std::vector<std::string>& operands) {
+    if (std::count(operands.begin(), operands.end(), "-") > 1)
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
+}
+
+/// The operands as they are found, before they are joined.
+class OperandReader {
+  public:
+    explicit OperandReader(const SceneRequest& request) : request_(request) {}
+
+    SceneInput read() {
+        checkStreams(request_.operands);
+        named_ = request_.operands;
+        for (const std::string& operand : request_.operands) take(operand, ispace::read(operand));
+        if (wantsStdin()) {
+            named_.emplace_back("-");
+            takeLayoutFromStdin();
+        }
+        if (!environment_) findEnvironment();
+        checkDigest();
+        const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
+        Scene scene = makeScene(*environment_, layout_ ? &*layout_ : nullptr, devices);
+        return {std::move(scene),           std::move(*environment_),
+                std::move(layout_),         std::move(environment_operand_),
+                std::move(layout_operand_), std::move(named_)};
+    }
+
+  private:
+    void take(const std::string& operand, Document document) {
+        if (document.kind == DocumentKind::Layout) {
+            if (layout_) throw UsageError("two layouts given, one is wanted: " + operand);
+            layout_ = std::move(document);
+            layout_operand_ = operand;
+        } else {
+            if (environment_) throw UsageError("two environments given, one is wanted: " + operand);
+            environment_ = std::move(document);
+            environment_operand_ = operand;
+        }
+    }
+
+    [[nodiscard]] bool wantsStdin() const {
+        if (layout_) return false;
+        if (!environment_ && !request_.layout_from_stdin) throw UsageError("no environment given");
+        return request_.layout_from_stdin && !(environment_ && hasPlacedSensor(*environment_));
+    }
+
+    void takeLayoutFromStdin() {
+        if (environment_operand_ == "-")
+            throw UsageError("the environment on stdin holds no placed sensor: give a LAYOUT");
+        Document document = ispace::read("-");
+        if (document.kind != DocumentKind::Layout)
+            throw FormatError(
+                {"stdin", 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
+        take("-", std::move(document));
+    }
+
+    /// ENV was left out: LAYOUT's `environment file=` names it.
+    void findEnvironment() {
+        const auto reference = environmentReference(*layout_);
+        if (!reference || reference->file.empty())
+            throw UsageError(displayName(layout_operand_) +
+                             " names no environment (`environment file=…`): give ENV");
+        const fs::path folder =
+            layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
+        const std::string operand = (folder / reference->file).string();
+        Document document = ispace::read(operand);
+        if (document.kind != DocumentKind::Environment)
+            throw FormatError(
+                reference->record.finding("file", operand + " is a layout, not an environment"));
+        take(operand, std::move(document));
+    }
+
+    void checkDigest() const {
+        if (!layout_ || request_.any_environment) return;
+        const auto reference = environmentReference(*layout_);
+        if (!reference || reference->digest.empty()) return;
+        const std::string digest = environmentDigest(environment_->records);
+        if (digest == reference->digest) return;
+        throw FormatError(reference->record.finding(
+            "digest", "the layout was made for another environment than " +
+                          displayName(environment_operand_) + " (" + digest.substr(0, 15) +
+                          "…): arrange again, or go on with --any-environment"));
+    }
+
+    const SceneRequest& request_;
+    std::optional<Document> environment_, layout_;
+    std::string environment_operand_, layout_operand_;
+    std::vector<std::string> named_;
+};
+
+}  // namespace
+
+std::string readStdin() {
+    if (::isatty(STDIN_FILENO) != 0)
+        throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
+    return readAll("-");
+}
+
+SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
+
+std::string environmentFileFor(const std::string& output, const std::string& environment_operand) {
+    if (environment_operand == "-") return "";
+    const fs::path folder = output == "-" ? fs::path() : fs::path(output).parent_path();
+    const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
+    // The environment itself may be a link that is meant: only its folder is resolved.
+    const fs::path file(environment_operand);
+    const fs::path to = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".");
+    return (to / file.filename()).lexically_relative(from).string();
+}
+
+}  // namespace ispace

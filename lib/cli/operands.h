@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "layout/scene.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// How a tool that takes `ENV [LAYOUT]` reads its operands.
+struct SceneRequest {
+    std::vector<std::string> operands;  ///< at most two, in any order; told apart by content
+    bool any_environment = false;       ///< a digest that differs is no error
+    /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
+    /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
+    bool layout_from_stdin = true;
+};
+
+/// What the operands hold.
+struct SceneInput {
+    Scene scene;
+    Document environment;
+    std::optional<Document> layout;
+    std::string environment_operand;  ///< "-" for stdin; found through LAYOUT if left out
+    std::string layout_operand;       ///< "" without LAYOUT
+    /// As history lines name them: the operands given, and "-" for a stdin read without one.
+    std::vector<std::string> named;
+};
+
+/// Reads and joins ENV and LAYOUT by the rules of operands.
+/// \throws UsageError for missing or doubled operands, two uses of stdin and a terminal as stdin;
+///         FormatError, std::system_error as the readers do, and for a digest that differs
+SceneInput readScene(const SceneRequest& request);
+
+/// Reads everything on stdin unless it is a terminal. \throws UsageError
+std::string readStdin();
+
+/// `file=` of an `environment` record in a layout written to `output`: the way from its folder to
+/// ENV, never absolute; "" if ENV came from stdin.
+std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
+
+}  // namespace ispace

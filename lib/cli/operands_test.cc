@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/operands.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "record/digest.h"
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Operands : public testing::Test {
+  protected:
+    void SetUp() override {
+        before_ = fs::current_path();
+        folder_ = fs::path(testing::TempDir()) /
+                  ("operands_" +
+                   std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_ / "sub");
+        fs::current_path(folder_);
+        writeAll("room.env", "#env 1\nispace size=4,4\n");
+        writeAll("other.env", "#env 1\nispace size=5,4\n");
+        writeAll("seeing.env", "#env 1\nispace size=4,4\nlaser at=0,0\n");
+    }
+    void TearDown() override {
+        fs::current_path(before_);
+        fs::remove_all(folder_);
+    }
+    static void writeLayout(const std::string& name, const std::string& environment) {
+        writeAll(name, "#3dm 1\n" + environment + "laser at=1,1\n");
+    }
+
+    fs::path before_, folder_;
+};
+
+TEST_F(Operands, AreToldApartByContent) {
+    writeLayout("layout.txt", "");
+    for (const auto& operands : {std::vector<std::string>{"room.env", "layout.txt"},
+                                 std::vector<std::string>{"layout.txt", "room.env"}}) {
+        const SceneInput input = readScene({operands});
+        EXPECT_EQ(input.environment_operand, "room.env");
+        EXPECT_EQ(input.layout_operand, "layout.txt");
+        EXPECT_EQ(input.scene.lasers.size(), 1U);
+        EXPECT_EQ(input.named, operands);
+    }
+}
+
+TEST_F(Operands, AnEnvironmentWithSensorsNeedsNoLayout) {
+    const SceneInput input = readScene({{"seeing.env"}});
+    EXPECT_FALSE(input.layout);
+    EXPECT_EQ(input.scene.lasers.size(), 1U);
+}
+
+TEST_F(Operands, TheLayoutNamesItsEnvironmentRelativeToItself) {
+    writeLayout("sub/layout.3dm", "environment file=../room.env\n");
+    const SceneInput input = readScene({{"sub/layout.3dm"}});
+    EXPECT_EQ(input.environment_operand, "sub/../room.env");
+    EXPECT_EQ(input.named, (std::vector<std::string>{"sub/layout.3dm"}));
+    writeLayout("nameless.3dm", "");
+    EXPECT_THROW(readScene({{"nameless.3dm"}}), UsageError);
+    writeLayout("lost.3dm", "environment file=nowhere.glb\n");
+    EXPECT_THROW(readScene({{"lost.3dm"}}), std::system_error);
+    writeLayout("circular.3dm", "environment file=circular.3dm\n");
+    EXPECT_THROW(readScene({{"circular.3dm"}}), FormatError);
+}
+
+TEST_F(Operands, TheDigestMustMatch) {
+    const std::string digest = readScene({{"seeing.env"}}).scene.digest;
+    writeLayout("layout.3dm", "environment file=room.env digest=" + digest + "\n");
+    EXPECT_EQ(readScene({{"layout.3dm"}}).scene.digest, digest);
+    EXPECT_THROW(readScene({{"other.env", "layout.3dm"}}), FormatError);
+    EXPECT_EQ(readScene({{"other.env", "layout.3dm"}, true}).environment_operand, "other.env");
+}
+
+TEST_F(Operands, UsageIsChecked) {
+    writeLayout("layout.3dm", "");
+    EXPECT_THROW(readScene({{"-", "-"}}), UsageError);
+    EXPECT_THROW(readScene({{"room.env", "other.env"}}), UsageError);
+    EXPECT_THROW(readScene({{"layout.3dm", "layout.3dm"}}), UsageError);
+    EXPECT_THROW(readScene({{}, false, false}), UsageError);
+    EXPECT_THROW(readScene({{"missing.env"}}), std::system_error);
+}
+
+TEST_F(Operands, TheWayToTheEnvironmentIsRelativeToTheLayout) {
+    EXPECT_EQ(environmentFileFor("-", "room.env"), "room.env");
+    EXPECT_EQ(environmentFileFor("best.3dm", "room.env"), "room.env");
+    EXPECT_EQ(environmentFileFor("sub/best.3dm", "room.env"), "../room.env");
+    EXPECT_EQ(environmentFileFor("best.3dm", (folder_ / "sub" / "room.glb").string()),
+              "sub/room.glb");
+    EXPECT_EQ(environmentFileFor("best.3dm", "-"), "");
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/progress_bar.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::int64_t kDrawEvery = 100000;  // microseconds
+constexpr int kBarWidth = 24;
+
+std::string rateText(double per_second) {
+    if (per_second >= 1e6) return formatFixed(per_second / 1e6, 1) + " M/s";
+    if (per_second >= 1e3) return formatFixed(per_second / 1e3, 1) + " k/s";
+    return formatFixed(per_second, 1) + " /s";
+}
+
+std::string timeText(double seconds) {
+    const auto whole = static_cast<std::int64_t>(seconds + 0.5);
+    if (whole < 60) return std::to_string(whole) + " s";
+    if (whole < 3600)
+        return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+    return std::to_string(whole / 3600) + " h " + std::to_string(whole / 60 % 60) + " min";
+}
+
+}  // namespace
+
+ProgressBar::~ProgressBar() { end(); }
+
+void ProgressBar::begin(std::string_view phase, std::int64_t total) {
+    end();
+    phase_ = phase;
+    total_ = std::max<std::int64_t>(total, 1);
+    done_ = 0;
+    next_draw_ = 0;
+    start_ = Clock::now();
+    draw(0, false);
+}
+
+void ProgressBar::advance(std::int64_t count) {
+    const std::int64_t done = done_ += count;
+    const std::int64_t now =
+        std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start_).count();
+    std::int64_t due = next_draw_;
+    if (now >= due && next_draw_.compare_exchange_strong(due, now + kDrawEvery)) draw(done, false);
+}
+
+void ProgressBar::draw(std::int64_t done, bool last) {
+    const std::lock_guard<std::mutex> lock(drawing_);
+    const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    const int filled = static_cast<int>(share * kBarWidth);
+    std::string line = "\r" + tool_ + ": " + phase_ + " [" +
+                       std::string(static_cast<std::size_t>(filled), '#') +
+                       std::string(static_cast<std::size_t>(kBarWidth - filled), ' ') + "] " +
+                       formatFixed(share * 100, 0) + " %";
+    if (elapsed > 0.2 && done > 0) {
+        line += ", " + rateText(static_cast<double>(done) / elapsed);
+        if (!last) line += ", " + timeText(elapsed / share - elapsed) + " left";
+    }
+    std::cerr << line << "\x1b[K" << std::flush;
+    shown_ = true;
+}
+
+void ProgressBar::end() {
+    if (!shown_) return;
+    draw(done_, true);
+    std::cerr << '\n' << std::flush;
+    shown_ = false;
+}
+
+std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
+                                       bool quiet) {
+    const bool show = wanted.value_or(!quiet && ::isatty(STDERR_FILENO) != 0);
+    if (!show) return std::make_unique<SilentProgress>();
+    return std::make_unique<ProgressBar>(tool);
+}
+
+}  // namespace ispace

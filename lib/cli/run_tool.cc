@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/run_tool.h"
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace ispace {
+
+namespace {
+
+enum Status { kDone = 0, kFailed = 1, kUsage = 2, kUnmet = 3 };
+
+void say(const std::string& tool, const std::string& line) {
+    std::cerr << tool << ": " << line << '\n';
+}
+
+/// "house.glb: error: No such file or directory" from what() = "house.glb: No such file …".
+std::string systemErrorText(const std::system_error& error) {
+    const std::string message = error.code().message();
+    const std::string what = error.what();
+    const std::string tail = ": " + message;
+    if (what.size() > tail.size() && what.ends_with(tail))
+        return what.substr(0, what.size() - tail.size()) + ": error: " + message;
+    return "error: " + what;
+}
+
+}  // namespace
+
+int runTool(const std::string& tool, const std::function<void()>& body) {
+    std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
+    try {
+        try {
+            body();
+        } catch (const TextRequested& request) {
+            writeAll("-", request.text);
+        }
+        return kDone;
+    } catch (const UsageError& error) {
+        say(tool, std::string("error: ") + error.what());
+        return kUsage;
+    } catch (const UnmetError& error) {
+        say(tool, std::string("error: ") + error.what());
+        return kUnmet;
+    } catch (const FormatError& error) {
+        for (const Diagnostic& diagnostic : error.diagnostics()) say(tool, diagnostic.text());
+    } catch (const std::system_error& error) {
+        say(tool, systemErrorText(error));
+    } catch (const std::bad_alloc&) {
+        say(tool, "error: not enough memory for this input");
+    } catch (const std::exception& error) {
+        say(tool, std::string("error: ") + error.what());
+    }
+    return kFailed;
+}
+
+}  // namespace ispace

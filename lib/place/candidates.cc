@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/candidates.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cover/visible.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kSegments = 5;  // "seg" of eq. (4.1) and (4.2)
+
+int linesAlong(double extent, double max_range) {
+    constexpr double kMost = 10000;
+    const double lines = std::floor(extent / max_range * kSegments - 1);
+    return static_cast<int>(std::clamp(lines, 1.0, kMost));
+}
+
+}  // namespace
+
+GridSearch defaultGridSearch(const Box2& limits, double max_range) {
+    return {linesAlong(limits.width(), max_range), linesAlong(limits.depth(), max_range), 8};
+}
+
+std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {
+    std::vector<Point2> places;
+    for (int j = 1; j <= search.y; ++j)
+        for (int i = 1; i <= search.x; ++i)
+            places.push_back({limits.low.x + i * limits.width() / (search.x + 1),
+                              limits.low.y + j * limits.depth() / (search.y + 1)});
+    return places;
+}
+
+bool isStandable(const Environment& environment, const Slice& slice, Point2 p) {
+    return environment.indoor().locate(p) == Side::Inside && !slice.blocked(p);
+}
+
+std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target, Worlds& worlds,
+                                      const Laser& laser, const Pose3& mount,
+                                      const std::vector<Point2>& places, int headings,
+                                      Progress& progress) {
+    const auto per_place = static_cast<std::size_t>(headings);
+    std::vector<Candidate> candidates(places.size() * per_place);
+    worlds.prepare(mount);
+    const RayWorld& world = worlds.at(mount);
+    progress.begin("scanning candidates", static_cast<std::int64_t>(candidates.size()));
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        Pose3 pose = mount;
+        pose.position = {places[i].x, places[i].y, mount.position.z};
+        // A level sensor looks about once; a heading is a sector of what it sees.
+        const VisibleCells visible = mount.isLevel()
+                                         ? visibleCells(grid, world, pose.position, laser.max_range)
+                                         : VisibleCells();
+        for (int k = 0; k < headings; ++k) {
+            pose.heading = Angle::degrees(360.0 * k / headings);
+            Candidate& candidate = candidates[i * per_place + static_cast<std::size_t>(k)];
+            candidate.pose = pose;
+            candidate.seen = mount.isLevel() ? cellsInFan(grid, visible, laser, pose.heading)
+                                             : cellsSeen(grid, world, {"", laser, pose});
+            candidate.seen &= target;
+        }
+        progress.advance(headings);
+    });
+    progress.end();
+    return candidates;
+}
+
+}  // namespace ispace

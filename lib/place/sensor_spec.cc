@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/sensor_spec.h"
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/suggest.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::int64_t kMostSensors = 10000;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> pieces(1);
+    for (const char c : text) {
+        if (c == separator)
+            pieces.emplace_back();
+        else
+            pieces.back() += c;
+    }
+    return pieces;
+}
+
+/// The pieces after the model, each `KEY=VALUE` with its continuations joined again.
+std::vector<std::string> settings(const std::vector<std::string>& pieces) {
+    std::vector<std::string> joined;
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+        if (pieces[i].find('=') != std::string::npos)
+            joined.push_back(pieces[i]);
+        else if (joined.empty())
+            throw UsageError("`" + pieces[i] + "` is no KEY=VALUE");
+        else
+            joined.back() += ',' + pieces[i];
+    }
+    return joined;
+}
+
+Record recordFor(const std::string& model, const Schemas& schemas, const DeviceCatalogue& devices) {
+    const Schema* const kind = schemas.find(model);
+    if (kind != nullptr && kind->type == RecordType::Placement) return Record(*kind);
+    const Record* const device = devices.find(model);
+    if (device == nullptr) {
+        std::vector<std::string> known = devices.models();
+        known.emplace_back("laser");
+        std::string list;
+        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+        throw UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) +
+                         " (known: " + list + ")");
+    }
+    Record record(*schemas.find(device->keyword()));
+    record.set("model", Value(model));
+    return record;
+}
+
+}  // namespace
+
+std::vector<Record> readSensorSpec(const std::string& text, const Schemas& schemas,
+                                   const DeviceCatalogue& devices) {
+    std::string body = text;
+    std::int64_t count = 1;
+    if (const auto colon = text.rfind(':'); colon != std::string::npos) {
+        const auto number = parseInteger(text.substr(colon + 1));
+        if (!number || *number < 1 || *number > kMostSensors)
+            throw UsageError("`" + text.substr(colon + 1) + "` is no count from 1 to " +
+                             std::to_string(kMostSensors));
+        count = *number;
+        body.resize(colon);
+    }
+    const std::vector<std::string> pieces = split(body, ',');
+    Record record = recordFor(pieces.front(), schemas, devices);
+    for (const std::string& setting : settings(pieces)) {
+        const auto equals = setting.find('=');
+        const std::string name = setting.substr(0, equals);
+        const KeySpec* const key = record.schema().find(name);
+        if (key == nullptr)
+            throw UsageError("unknown key `" + name + "`" +
+                             didYouMean(name, record.schema().keyNames()));
+        if (record.has(name)) throw UsageError("`" + name + "` is given twice");
+        try {
+            record.set(name, parseValue(*key, setting.substr(equals + 1)));
+        } catch (const FormatError& error) {
+            throw UsageError(error.diagnostics().front().message);
+        }
+    }
+    if (count > 1 && record.has("id")) throw UsageError("`id` names one sensor, not several");
+    return std::vector<Record>(static_cast<std::size_t>(count), record);
+}
+
+}  // namespace ispace

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "layout/devices.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// Reads `MODEL[,KEY=VALUE…][:COUNT]`: MODEL is a device or a bare kind (`laser`), a piece without
+/// `=` continues the value before it (`range=0.1,4`), COUNT follows the last colon (default 1, at
+/// most 10000). Gives COUNT equal records.
+/// \throws UsageError with the nearest model or key
+std::vector<Record> readSensorSpec(const std::string& text, const Schemas& schemas,
+                                   const DeviceCatalogue& devices);
+
+}  // namespace ispace

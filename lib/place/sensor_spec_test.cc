@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/sensor_spec.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+namespace {
+
+std::vector<Record> read(const std::string& text) {
+    static const DeviceCatalogue kDevices =
+        DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
+    return readSensorSpec(text, sceneSchemas(), kDevices);
+}
+
+std::string errorOf(const std::string& text) {
+    try {
+        read(text);
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(SensorSpec, DeviceAndBareKind) {
+    const auto device = read("urg-04lx");
+    ASSERT_EQ(device.size(), 1U);
+    EXPECT_EQ(formatRecord(device[0]), "laser model=urg-04lx");
+    EXPECT_EQ(formatRecord(read("laser")[0]), "laser");
+}
+
+TEST(SensorSpec, CountFollowsTheLastColon) {
+    EXPECT_EQ(read("urg-04lx:3").size(), 3U);
+    EXPECT_EQ(read("laser,range=4,fov=270:12").size(), 12U);
+}
+
+TEST(SensorSpec, APieceWithoutEqualsContinuesTheValueBeforeIt) {
+    EXPECT_EQ(formatRecord(read("laser,range=0.1,4,fov=270:2")[0]), "laser range=0.1,4 fov=270");
+    EXPECT_EQ(formatRecord(read("laser,range=50cm,4m")[0]), "laser range=0.5,4");
+}
+
+TEST(SensorSpec, ErrorsNameWhatIsWrong) {
+    EXPECT_NE(errorOf("urg-04lxx").find("did you mean `urg-04lx`"), std::string::npos);
+    EXPECT_NE(errorOf("laser,rnage=4").find("did you mean `range`"), std::string::npos);
+    EXPECT_NE(errorOf("laser,4").find("no KEY=VALUE"), std::string::npos);
+    EXPECT_NE(errorOf("laser:0").find("no count"), std::string::npos);
+    EXPECT_NE(errorOf("laser:x").find("no count"), std::string::npos);
+    EXPECT_NE(errorOf("laser,fov=nan").find("fov"), std::string::npos);
+    EXPECT_NE(errorOf("laser,fov=90,fov=80").find("twice"), std::string::npos);
+    EXPECT_NE(errorOf("laser,id=a:2"), "");
+    EXPECT_NE(errorOf(""), "");
+    EXPECT_NE(errorOf("desk"), "") << "furniture is no sensor";
+    EXPECT_NE(errorOf("result"), "");
+}
+
+}  // namespace
+}  // namespace ispace

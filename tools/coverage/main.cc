@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// coverage: measures and draws what the sensors of a scene see.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/history.h"
+#include "base/number.h"
+#include "cli/operands.h"
+#include "cli/run_tool.h"
+#include "coverage/options.h"
+
+namespace {
+
+using namespace ispace;
+
+void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
+    const double share = report.coverage.grid.value_or(0);
+    if (!options.require || share >= *options.require) return;
+    throw UnmetError("coverage is " + formatFixed(share * 100, 2) + "%, below the required " +
+                     options.require_text);
+}
+
+void coverage(CoverageToolOptions options) {
+    const ThreadLimit threads(options.common.threads);
+    const SceneInput input = readScene({options.operands, options.any_environment, true});
+    Worlds worlds(input.scene.environment);
+    const Coverage measured =
+        measureCoverage(input.scene, worlds, options.columns, options.rows, options.height);
+    if (options.draw) {
+        options.map.title =
+            input.environment_operand == "-" ? "" : baseName(input.environment_operand);
+        writeAll(options.common.output, drawCoverageMap(input.scene, measured, options.map));
+    }
+    writeAll("-", options.json ? coverageJson(measured.report) : coverageText(measured.report));
+    checkRequired(options, measured.report);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return ispace::runTool("coverage", [&] { coverage(ispace::parseCoverageOptions(argc, argv)); });
+}
