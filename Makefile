@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Only forwards: to CMake, and to the scripts in .ci and share/examples.
+
+BUILD = build
+SANITIZED = build-asan
+prefix = /usr/local
+JOBS = $(shell nproc)
+
+configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
+build = cmake --build $(1) -j $(JOBS)
+
+.NOTPARALLEL:
+.PHONY: all help deps demo check bench format lint install clean
+
+all: $(BUILD)/configured
+	$(call build,$(BUILD))
+
+help:
+	@echo "make             build the tools (build/bin), tests and benchmarks"
+	@echo "make deps        install the Debian packages of packages.txt"
+	@echo "make demo        deps, build, and run the pipeline on a furnished room"
+	@echo "make check       deps, build, formatting, sanitizers, all tests"
+	@echo "make bench       deps, build, benchmarks"
+	@echo "make format      reformat the sources"
+	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
+	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
+	@echo "make clean       remove $(BUILD) and $(SANITIZED)"
+
+deps:
+	@.ci/deps build check lint
+
+demo:
+	@.ci/deps build
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools
+	@PATH="$$PWD/$(BUILD)/bin:$$PATH" share/examples/demo.sh $(BUILD)/demo
+
+check:
+	@.ci/deps build check
+	@.ci/format --check
+	@$(MAKE) --no-print-directory all $(SANITIZED)/configured
+	@.ci/validator $(BUILD)/npm
+	$(call build,$(SANITIZED))
+	@.ci/sanitized $(SANITIZED) $(JOBS)
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
+
+bench:
+	@.ci/deps build
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools benchmarks
+	@tests/bench/run.sh $(BUILD)
+
+format:
+	@.ci/deps check
+	@.ci/format
+
+lint:
+	@.ci/deps build lint
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	@.ci/lint $(BUILD) $(JOBS) $(BASE)
+
+install: all
+	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
+
+clean:
+	rm -rf $(BUILD) $(SANITIZED)
+
+$(BUILD)/configured:
+	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
+	@touch $@
+
+$(SANITIZED)/configured:
+	$(configure) -B $(SANITIZED) -DISPACE_SANITIZE=ON
+	@touch $@

@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# demo.sh [FOLDER]: a room, three lasers placed in it, what they read and what they see, for two
+# rooms of the thesis. Needs the tools in PATH; leaves its files in FOLDER (default: ispace-demo).
+set -eu
+scenes=$(cd "$(dirname "$0")/../scenes" && pwd)
+mkdir -p "${1:-ispace-demo}"
+cd "${1:-ispace-demo}"
+
+run() {
+    echo "\$ $*"
+    "$@"
+}
+
+# The Intelligent Space of the thesis, looked over by two real scanners.
+run envc "$scenes/ispace.env" -o ispace.glb
+run arrange ispace.glb --sensor urg-04lx:2 --strategy grid -X 7 -Y 7 -o ispace.3dm
+run coverage ispace.glb ispace.3dm -o ispace.png
+
+# The furnished room and the three 4 m, 180 degree lasers of its section 4.8.
+run envc "$scenes/facilities.env" -o facilities.glb
+run arrange facilities.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 11 -Y 11 --deg 8 \
+    -o facilities.3dm
+run scan facilities.glb facilities.3dm -o facilities.jsonl
+run coverage facilities.glb facilities.3dm -o facilities.png
+
+echo
+result=$(sed -n 's/^result.*coverage=\([^ ]*\).*/\1/p' facilities.3dm)
+echo "coverage of the furnished room by three lasers: $result"
+echo "open the map: $(pwd)/facilities.png"

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tests/bench: programs of Google Benchmark that `make bench` runs. Every result is verified
+// before its time is taken.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "env/environment.h"
+#include "env/slice.h"
+#include "layout/laser.h"
+
+namespace ispace::bench {
+
+/// What Embree alone does with the surfaces that a RayWorld holds: the same ROBUST scene, rays in
+/// 16-wide coherent packets that are all prepared beforehand, no contact rule, no exact distance.
+class RawEmbree {
+  public:
+    static RawEmbree ofSlice(const Slice& slice);
+    static RawEmbree ofEnvironment(const Environment& environment);
+    RawEmbree(RawEmbree&&) noexcept;
+    ~RawEmbree();
+
+    /// Packs every beam of these sensors, each sensor in packets of its own.
+    void prepare(std::span<const PlacedLaser> sensors);
+    /// The tight loop: resets and traces packets first .. last-1 of all.
+    void trace(std::size_t first, std::size_t last);
+    [[nodiscard]] std::size_t packets() const;
+    /// Packets of one sensor. \pre prepare() was called
+    [[nodiscard]] std::size_t packetsPerSensor() const;
+    /// Ranges of the last trace, sensor after sensor; +infinity for no return.
+    [[nodiscard]] std::vector<float> ranges() const;
+
+  private:
+    struct Data;
+    explicit RawEmbree(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace::bench

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# run.sh BUILD: runs every benchmark; the figures also go to BUILD/bench/*.json.
+set -euo pipefail
+build=$1
+mkdir -p "$build/bench"
+for program in grid_job ray_rate; do
+    "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
+        --benchmark_out_format=json
+done

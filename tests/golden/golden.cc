@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// golden [OPTION VALUE]… COMMAND: runs a shell command in a scratch folder and compares exit
+// status, standard output, standard error and the files it makes with what is expected of it.
+//
+//   --expect PREFIX   PREFIX.out and PREFIX.err are the expected texts, PREFIX.FILE those of files
+//                     made; without PREFIX.out or .err nothing may be written there
+//   --scratch FOLDER  made anew for every run, removed after success
+//   --inputs FOLDER   its files are copied into the scratch folder (repeatable)
+//   --status N        expected exit status, 0 without
+//   --creates A;B     the files made, no more and no less
+//   --abs X --rel Y   tolerance of numbers
+//   --exact yes       history is compared, too
+//
+// With UPDATE_GOLDEN=1 in the environment the expectations are written anew instead.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "compare.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Case {
+    std::string command;
+    fs::path expect, scratch;
+    std::vector<fs::path> inputs;
+    int status = 0;
+    std::set<std::string> creates;
+    golden::Tolerance tolerance;
+    bool exact = false;
+};
+
+std::set<std::string> splitList(const std::string& list) {
+    std::set<std::string> items;
+    std::istringstream stream(list);
+    for (std::string item; std::getline(stream, item, ';');) items.insert(item);
+    return items;
+}
+
+Case parseCase(const std::vector<std::string>& words) {
+    Case test;
+    if (words.size() % 2 == 0) throw std::runtime_error("options need values, then the command");
+    for (std::size_t i = 0; i + 2 < words.size(); i += 2) {
+        const std::string& name = words[i];
+        const std::string& value = words[i + 1];
+        if (name == "--expect") {
+            test.expect = value;
+        } else if (name == "--scratch") {
+            test.scratch = value;
+        } else if (name == "--inputs") {
+            test.inputs.emplace_back(value);
+        } else if (name == "--status") {
+            test.status = std::stoi(value);
+        } else if (name == "--creates") {
+            test.creates = splitList(value);
+        } else if (name == "--abs") {
+            test.tolerance.absolute = std::stod(value);
+        } else if (name == "--rel") {
+            test.tolerance.relative = std::stod(value);
+        } else if (name == "--exact") {
+            test.exact = value == "yes";
+        } else {
+            throw std::runtime_error("unknown option " + name);
+        }
+    }
+    test.command = words.back();
+    return test;
+}
+
+/// The file's bytes; "" for one that is not there.
+std::string read(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// An expectation of nothing is no file.
+void update(const fs::path& file, const std::string& text) {
+    if (text.empty()) {
+        fs::remove(file);
+    } else {
+        fs::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << text;
+    }
+}
+
+fs::path withSuffix(const fs::path& prefix, const std::string& suffix) {
+    return prefix.string() + "." + suffix;
+}
+
+std::set<std::string> namesIn(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        names.insert(entry.path().filename().string());
+    }
+    return names;
+}
+
+/// A new room with the inputs in it.
+void furnish(const Case& test, const fs::path& room) {
+    fs::remove_all(test.scratch);
+    fs::create_directories(room);
+    for (const fs::path& folder : test.inputs) {
+        fs::copy(folder, room, fs::copy_options::recursive);
+    }
+}
+
+/// Runs the command in the room; its streams go to files beside it.
+int run(const Case& test, const fs::path& room) {
+    const fs::path script = test.scratch / "command";
+    std::ofstream(script) << "cd '" << room.string() << "' || exit 125\n" << test.command << '\n';
+    const std::string shell = "sh '" + script.string() + "' </dev/null >'" +
+                              (test.scratch / "out").string() + "' 2>'" +
+                              (test.scratch / "err").string() + "'";
+    const int result = std::system(shell.c_str());
+    if (result == -1) throw std::runtime_error("cannot run a shell");
+    return WIFEXITED(result) ? WEXITSTATUS(result) : 128 + WTERMSIG(result);
+}
+
+class Judge {
+  public:
+    explicit Judge(const Case& test)
+        : test_(test), update_(std::getenv("UPDATE_GOLDEN") != nullptr) {}
+
+    void text(const std::string& what, const fs::path& expected_file, std::string actual) {
+        if (!test_.exact) actual = golden::withoutHistory(actual);
+        if (update_) return update(expected_file, actual);
+        const std::string found = golden::difference(read(expected_file), actual, test_.tolerance);
+        if (!found.empty()) fail(what + " differs from " + expected_file.string() + ", " + found);
+    }
+
+    void status(int actual) {
+        if (actual != test_.status) {
+            fail("exit status is " + std::to_string(actual) + ", expected " +
+                 std::to_string(test_.status));
+        }
+    }
+
+    /// Every file made must be announced, every announced one made; texts that have an expectation
+    /// are compared with it.
+    void files(const fs::path& room, const std::set<std::string>& before) {
+        std::set<std::string> made = namesIn(room);
+        for (const std::string& name : before) made.erase(name);
+        for (const std::string& name : made) {
+            if (!test_.creates.contains(name)) fail("left behind: " + name);
+        }
+        for (const std::string& name : test_.creates) {
+            const fs::path expected = withSuffix(test_.expect, name);
+            if (!made.contains(name)) {
+                fail("not made: " + name);
+            } else if (fs::exists(expected)) {
+                text(name, expected, read(room / name));
+            }
+        }
+    }
+
+    void fail(const std::string& message) {
+        std::cout << message << '\n';
+        failed_ = true;
+    }
+
+    [[nodiscard]] bool failed() const { return failed_; }
+
+  private:
+    const Case& test_;
+    bool update_;
+    bool failed_ = false;
+};
+
+bool passes(const Case& test) {
+    const fs::path room = test.scratch / "room";
+    furnish(test, room);
+    const std::set<std::string> before = namesIn(room);
+    Judge judge(test);
+    judge.status(run(test, room));
+    judge.text("standard output", withSuffix(test.expect, "out"), read(test.scratch / "out"));
+    judge.text("standard error", withSuffix(test.expect, "err"), read(test.scratch / "err"));
+    judge.files(room, before);
+    if (judge.failed()) {
+        std::cout << "command: " << test.command << "\nstderr:\n" << read(test.scratch / "err");
+    } else {
+        fs::remove_all(test.scratch);
+    }
+    return !judge.failed();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return passes(parseCase({argv + 1, argv + argc})) ? 0 : 1;
+    } catch (const std::exception& error) {
+        std::cout << "golden: " << error.what() << '\n';
+        return 2;
+    }
+}

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A full disk is an error, whatever the output is; on a real file system nothing is left behind.
+. "$(dirname "$0")/common.sh"
+
+placing=(--sensor laser --strategy grid -X 2 -Y 2 --deg 4)
+room=$data/room.env
+layout=$data/room.3dm
+[ -c /dev/full ] || skip "no /dev/full here"
+
+# Every product and every report, on stdout and by -o.
+full() {
+    local status=0
+    "$@" >/dev/full 2>err || status=$?
+    [ "$status" -eq 1 ] || fail "status $status, expected 1, with a full disk behind: $*"
+    grep -q "^$1: .*error: No space left on device" err || fail "$*: $(cat err)"
+}
+full envc "$room" --to glb
+full envc "$room" --to env
+full envc "$room" --info
+full envc "$room" --info --json
+full arrange "$room" "${placing[@]}"
+full scan "$room" "$layout"
+full coverage "$room" "$layout"
+full coverage "$room" "$layout" --json
+for tool in $tools; do
+    full "$tool" --help
+    full "$tool" --version
+done
+for command in "envc $room --to glb" "arrange $room ${placing[*]}" "scan $room $layout" \
+    "coverage $room $layout --to png"; do
+    # shellcheck disable=SC2086
+    expect_status 1 $command -o /dev/full
+    grep -q "/dev/full: error: No space left on device" err || fail "$command: $(cat err)"
+done
+
+mkdir disk
+if ! mount -t tmpfs -o size=64k tmpfs disk 2>/dev/null; then
+    echo "no right to mount: the part with a small file system is left out"
+    exit 0
+fi
+trap 'umount disk; cleanup' EXIT
+echo old >disk/target.png
+head -c 60000 /dev/zero >disk/ballast 2>/dev/null || true
+expect_status 1 coverage "$room" "$layout" -o disk/target.png
+grep -q "No space left on device" err || fail "coverage: $(cat err)"
+[ "$(cat disk/target.png)" = old ] || fail "the old file is gone"
+[ "$(ls -A disk)" = "$(printf 'ballast\ntarget.png')" ] || fail "left behind: $(ls -A disk)"

@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy
+# libraries stay out of headers, and below lib/cli nothing prints, exits or reads the environment.
+# Before it judges ROOT it shows on a made-up tree that it can fail.
+set -euo pipefail
+root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
+
+# Prints one line per violation. $1: a tree with lib/ and tools/.
+violations() {
+    (cd "$1" && find lib tools \( -name '*.h' -o -name '*.cc' \) | LC_ALL=C sort | xargs awk '
+    function layer(folder, below,    names, i, n) {
+        known[folder] = 1
+        n = split(below, names, " ")
+        for (i = 1; i <= n; i++) {
+            may[folder, names[i]] = 1
+            for (other in known) if ((names[i], other) in may) may[folder, other] = 1
+        }
+        may[folder, folder] = 1
+    }
+    function report(what) { print FILENAME ":" FNR ": " what }
+    BEGIN {
+        layer("base", ""); layer("geom", "base"); layer("draw", "geom"); layer("record", "geom")
+        layer("env", "draw record"); layer("layout", "env"); layer("io", "layout")
+        layer("trace", "layout"); layer("sense", "trace"); layer("cover", "sense")
+        layer("place", "cover"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
+        layer("cli", "place net io")
+        heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
+        quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
+                "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \
+                "environ([^A-Za-z0-9_]|$))"
+    }
+    FNR == 1 {
+        split(FILENAME, path, "/")
+        in_lib = path[1] == "lib"
+        folder = path[2]
+        in_test = FILENAME ~ /_test\.cc$/
+        if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
+    }
+    /^[ \t]*#[ \t]*include/ {
+        target = $0
+        sub(/^[^<"]*[<"]/, "", target); sub(/[>"].*/, "", target)
+        split(target, parts, "/")
+        if (in_lib && (parts[1] in known) && !((folder, parts[1]) in may))
+            report("lib/" folder " must not include " target)
+        if (in_lib && index($0, "\"") && !(parts[1] in known))
+            report("name the folder: " target)
+        if (FILENAME ~ /\.h$/ && target ~ heavy) report("keep " target " out of headers")
+        if (target ~ /^CLI\// && in_lib && folder != "cli") report("only lib/cli may include " target)
+        next
+    }
+    in_lib && folder != "cli" && !in_test {
+        code = $0
+        gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
+        sub(/\/\/.*/, "", code)
+        if (code ~ quiet) report("below lib/cli nothing prints, exits or reads the environment: " code)
+    }')
+}
+
+fail() {
+    echo "include_direction: $*"
+    exit 1
+}
+
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+# expect FILE LINE WANTED: a file with this line gives a violation iff WANTED is yes.
+expect() {
+    rm -rf "$tree/lib" "$tree/tools"
+    mkdir -p "$tree/$(dirname "$1")" "$tree/lib" "$tree/tools"
+    printf '%s\n' "$2" >"$tree/$1"
+    local found
+    found=$(violations "$tree")
+    if [ "$3" = yes ]; then
+        [ -n "$found" ] || fail "self-test: not noticed in $1: $2"
+    else
+        [ -z "$found" ] || fail "self-test: wrongly reported: $found"
+    fi
+}
+expect lib/geom/a.h '#include "env/slice.h"' yes
+expect lib/io/a.cc '#include "trace/ray_world.h"' yes
+expect lib/cover/a.cc '#include "io/glb.h"' yes
+expect lib/draw/a_test.cc '#include "record/value.h"' yes
+expect lib/base/a.cc '#include <geom/pose.h>' yes
+expect lib/place/a.cc '#include "net/server.h"' yes
+expect lib/nowhere/a.cc '#include <vector>' yes
+expect lib/geom/a.cc '#include "pose.h"' yes
+expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes
+expect lib/trace/a.h '#include <embree3/rtcore.h>' yes
+expect lib/record/a.h '#include <yaml-cpp/yaml.h>' yes
+expect lib/env/a.cc '#include <CLI/CLI.hpp>' yes
+expect lib/env/a.cc 'std::cerr << 1;' yes
+expect lib/env/a.cc 'if (x) exit(1);' yes
+expect lib/env/a.cc 'auto* v = std::getenv("HOME");' yes
+expect lib/place/a.cc '#include "base/error.h"' no
+expect lib/env/a.cc '#include "draw/picture.h"' no
+expect lib/cli/a.cc '#include "place/grid.h"' no
+expect lib/cli/a.cc 'std::cerr << 1;' no
+expect lib/geom/a.cc '#include <CGAL/Arrangement_2.h>' no
+expect lib/env/a.cc 'onExit(); snprintf(b, 1, ""); // exit(1)' no
+expect lib/env/a.cc 'f("exit(1)");' no
+expect tools/envc/main.cc '#include "cli/run.h"' no
+
+found=$(violations "$root")
+[ -z "$found" ] || fail "$(printf 'wrong direction\n%s' "$found")"
+[ -n "$(ls "$root"/lib/base/*.cc)" ] || fail "no sources in $root"

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs into a staged folder and works from there: the tools find devices and scenes, the manual
+# lies where man looks, and nothing points back into the build.
+. "$(dirname "$0")/../pipelines/common.sh"
+
+DESTDIR=$scratch/stage cmake --install "$binary_dir" --prefix /opt/ispace >log
+mv stage/opt/ispace moved # an installed tree may be moved: nothing is compiled in
+[ "$(ls stage/opt)" = "" ] || fail "installed elsewhere: $(find stage)"
+for tool in $tools; do
+    [ -x "moved/bin/$tool" ] || fail "no bin/$tool"
+    [ -s "moved/share/man/man1/$tool.1" ] || fail "no man page of $tool"
+done
+[ "$(ls moved/bin | wc -l)" -eq 4 ] || fail "more than the tools in bin: $(ls moved/bin)"
+if find moved -type l | grep .; then fail "links installed"; fi
+
+mkdir elsewhere
+cd elsewhere
+export PATH=$scratch/moved/bin:/usr/bin:/bin
+share=$scratch/moved/share/ispace
+envc "$share/scenes/ispace.env" -o room.glb
+# A device model comes from share/devices.
+arrange room.glb --sensor urg-04lx:2 --strategy grid -X 3 -Y 3 -o best.3dm
+grep -q 'model=urg-04lx' best.3dm || fail "no device in the layout"
+scan room.glb best.3dm | tail -n 1 | grep -q '"ranges":' || fail "no scan"
+coverage room.glb best.3dm -o map.png
+[ -s map.png ] || fail "no map"
+
+# Without its share/ a tool says what is missing.
+rm -rf "$share/devices"
+expect_error 1 scan room.glb best.3dm
+grep -q devices err || fail "$(cat err)"

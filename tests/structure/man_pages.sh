@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The manual against the tools: the same options in both, the sections in order, no complaint of
+# groff, and the examples run.
+. "$(dirname "$0")/../pipelines/common.sh"
+
+pages=$binary_dir/share/man/man1
+sections="NAME SYNOPSIS DESCRIPTION OPTIONS DIAGNOSTICS MEMORY USAGE EXAMPLES SEE ALSO"
+
+# A page without the escapes and quotes of roff.
+plain() { sed -e 's/\\-/-/g' -e 's/\\f[A-Z]//g' -e 's/\\e/\\/g' -e 's/"//g' "$1"; }
+
+options_of_page() {
+    plain "$1" | awk '/^\.SH / { inside = $2 == "OPTIONS" } inside && heading { print } { heading = /^\.T[PQ]/ }' |
+        grep -oE -- '(^|[ ,])--?[A-Za-z][A-Za-z-]*' | tr -d ' ,' | LC_ALL=C sort
+}
+
+options_of_help() {
+    grep -E '^  -' "$1" | sed -E 's/^(  -.{0,200}[^ ])   .*/\1/; s/^  //; s/  .*//' |
+        grep -oE -- '(^|, )--?[A-Za-z][A-Za-z-]*' | tr -d ' ,' | LC_ALL=C sort
+}
+
+for tool in $tools; do
+    page=$pages/$tool.1
+    "$tool" --help >help
+    options_of_help help >in_help
+    options_of_page "$page" >in_page
+    [ "$(wc -l <in_help)" -gt 6 ] || fail "no options found in $tool --help"
+    diff in_help in_page || fail "$tool: options of --help (<) and of the man page (>) differ"
+    # The test can fail: a page that lacks one option is noticed.
+    sed 's/^\.B.*seed.*/removed/' "$page" >without_seed
+    ! diff -q in_help <(options_of_page without_seed) >/dev/null || fail "self-test: --seed not missed"
+
+    [ "$(plain "$page" | sed -n 's/^\.SH //p' | tr '\n' ' ')" = "$sections " ] ||
+        fail "$tool: sections are not: $sections"
+    ! grep -n '@[A-Z_]*@' "$page" || fail "$tool: text missing"
+    if command -v groff >/dev/null; then
+        groff -man -ww -z -Tutf8 "$page" 2>groff.err
+        [ ! -s groff.err ] || fail "$tool: $(cat groff.err)"
+    fi
+
+    # Every example runs, in a folder with the scenes.
+    mkdir "$tool"
+    cp "$scenes"/*.env "$tool"
+    plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
+        code { print } inside && /^\.EX/ { code = 1 }' >"$tool/examples.sh"
+    [ -s "$tool/examples.sh" ] || fail "$tool: no examples"
+    (cd "$tool" && bash -euo pipefail examples.sh >../out 2>../err) ||
+        fail "$tool: an example fails: $(cat err "$tool/examples.sh")"
+done
