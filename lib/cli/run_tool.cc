@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/run_tool.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -30,9 +34,18 @@ std::string systemErrorText(const std::system_error& error) {
     return "error: " + what;
 }
 
+/// A file opened later must not get the number of a standard stream that the parent closed. What
+/// stands in for it refuses every read or write, so that a lost product is an error.
+void occupyStandardStreams() {
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF)
+            (void)::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 }  // namespace
 
 int runTool(const std::string& tool, const std::function<void()>& body) {
+    occupyStandardStreams();
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
     try {
         try {

@@ -56,9 +56,9 @@ TEST_F(DeviceFolder, ReadsFilesInOrderOfNamesAndNothingElse) {
     writeAll(folder_ + "/README.txt", "not a device");
     const DeviceCatalogue catalogue = DeviceCatalogue::load(folder_);
     EXPECT_EQ(catalogue.models(), (std::vector<std::string>{"three", "one", "two"}));
-    // Records outlive the catalogue they were read with.
-    const DeviceCatalogue copy = catalogue;
-    EXPECT_EQ(copy.find("three")->tuple("range"), Tuple{2});
+    EXPECT_EQ(catalogue.find("three")->tuple("range"), Tuple{2});
+    EXPECT_EQ(laserOf(readRecord("laser model=three", "line", sceneSchemas()), catalogue).max_range,
+              2);
 }
 
 TEST_F(DeviceFolder, EmptyFolderIsAnEmptyCatalogue) {

@@ -12,9 +12,9 @@ namespace ispace::testing {
 
 /// The devices that come with the project.
 inline const DeviceCatalogue& devices() {
-    static const DeviceCatalogue kDevices =
+    static const DeviceCatalogue catalogue =
         DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
-    return kDevices;
+    return catalogue;
 }
 
 /// Line 1 is the magic line, so the first of `lines` is line 2.

@@ -150,11 +150,12 @@ struct Box {
         };
         const double sides =
             std::min(wall(local.x, direction.x, length / 2), wall(local.y, direction.y, width / 2));
-        const double end = ((direction.z > 0 ? height : 0) - local.z) / direction.z;
+        const double end = ((direction.z > 0 ? height : 0.0) - local.z) / direction.z;
         const bool up = direction.z > 0;
         doubt = up && !ceiling && std::fabs(local.z + sides * direction.z - height) < 1e-4;
         if (direction.z == 0) return sides;
-        return up && !ceiling && end < sides ? kInfinity : std::min(sides, end);
+        if (up && !ceiling && end < sides) return kInfinity;
+        return std::min(sides, end);
     }
     [[nodiscard]] Vec3 toLocal(Vec3 direction) const {
         const Pose2 turned{{}, -pose.heading};
@@ -263,7 +264,8 @@ double cylinderRange(Point3 from, Vec3 direction, double radius, double height) 
     if (a > 0) clip((-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a);
     if (direction.z != 0) clip(-from.z / direction.z, (height - from.z) / direction.z);
     if (direction.z == 0 && (from.z < 0 || from.z > height)) return kInfinity;
-    return enter <= leave && enter > 0 ? enter : kInfinity;
+    if (enter > leave || enter <= 0) return kInfinity;
+    return enter;
 }
 
 TEST_F(Rooms, AroundCylinders) {
@@ -271,11 +273,13 @@ TEST_F(Rooms, AroundCylinders) {
     int on_cylinder = 0;
     for (int i = 0; i < 300; ++i) {
         Box box{{}, 12, 10, 3, true};
-        const double radius = magnitude(0.02, 3), height = i % 2 == 0 ? 3 : uniform(0.3, 2.9);
-        const std::string size = formatDouble(2 * radius);
-        const Scene scene = testing::scene(
-            box.record() + "inside at=5.5,4.5\n" + (i % 4 == 0 ? "pillar kind=round" : "cylinder") +
-            " size=" + size + ',' + size + ',' + formatDouble(height) + "\n");
+        const double radius = magnitude(0.02, 3), height = i % 2 == 0 ? 3.0 : uniform(0.3, 2.9);
+        std::string lines = box.record();
+        lines += "inside at=5.5,4.5\n";
+        lines += i % 4 == 0 ? "pillar kind=round size=" : "cylinder size=";
+        for (const double extent : {2 * radius, 2 * radius}) lines += formatDouble(extent) + ',';
+        lines += formatDouble(height) + '\n';
+        const Scene scene = testing::scene(lines);
         Point3 local;
         Pose3 pose;
         do pose = anywhere(box, local, i % 3 == 0);
@@ -307,12 +311,14 @@ TEST_F(Rooms, AroundCylinders) {
 TEST(CastScans, SameForAnyNumberOfThreadsAndInOrder) {
     const Scene scene = testing::scene(kRoom + "cube at=6,3\ncylinder at=2,4\ntable at=3,1\n");
     std::vector<PlacedLaser> sensors;
+    sensors.reserve(40);
     for (int i = 0; i < 40; ++i)
         sensors.push_back(
             placed(Laser(), at(1 + 0.1 * i, 2, 0.15 + (i % 3) * 0.1, 9 * i, i % 4 == 0 ? -20 : 0)));
     std::vector<std::vector<float>> alone;
+    alone.reserve(sensors.size());
     for (const PlacedLaser& sensor : sensors) alone.push_back(scanIn(scene, sensor).ranges);
-    for (const std::size_t threads : {1, 2, 4}) {
+    for (const std::size_t threads : {1U, 2U, 4U}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         Worlds worlds(scene.environment);
         const std::vector<Scan> scans = castScans(worlds, sensors);

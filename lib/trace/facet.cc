@@ -68,10 +68,10 @@ double Facet::distanceTo(Point3 p) const {
     const auto& [a, b, c] = corners;
     const double above = dot(normal, p) - offset;
     const bool is_line = b == c;
-    const auto leftOf = [&](Point3 from, Point3 to) {
+    const auto is_left = [&](Point3 from, Point3 to) {
         return dot(cross(to - from, p - from), normal) >= 0;
     };
-    if (!is_line && leftOf(a, b) && leftOf(b, c) && leftOf(c, a)) return std::fabs(above);
+    if (!is_line && is_left(a, b) && is_left(b, c) && is_left(c, a)) return std::fabs(above);
     if (is_line) return distanceToSegment(p, a, b);
     return std::min(
         {distanceToSegment(p, a, b), distanceToSegment(p, b, c), distanceToSegment(p, c, a)});

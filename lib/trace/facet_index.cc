@@ -120,12 +120,12 @@ void skipFilter(const RTCFilterFunctionNArguments* args) {
     }
 }
 
-template <typename R, typename H, auto intersect, auto occluded>
+template <typename R, typename H, auto kIntersectN, auto kOccludedN>
 struct PacketOf {
     using Ray = R;
     using RayHit = H;
-    static constexpr auto kIntersect = intersect;
-    static constexpr auto kOccluded = occluded;
+    static constexpr auto kIntersect = kIntersectN;
+    static constexpr auto kOccluded = kOccludedN;
 };
 template <int kWidth>
 struct Packet;

@@ -296,6 +296,7 @@ TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
     for (int i = 0; i < 50; ++i) {
         const Point2 origin{place(random), place(random)};
         std::vector<Point3> targets;
+        targets.reserve(301);
         for (int k = 0; k < 301; ++k) targets.push_back({place(random), place(random), 0.15});
         for (const RayWorld& world : worlds) {
             std::vector<std::uint8_t> seen(targets.size(), 7);
@@ -331,6 +332,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
     }
     std::vector<std::vector<float>> found(4, std::vector<float>(directions.size()));
     std::vector<std::thread> threads;
+    threads.reserve(found.size());
     for (auto& ranges : found)
         threads.emplace_back([&] { world.cast({5, 5, 0.15}, directions, 20, ranges); });
     for (std::thread& thread : threads) thread.join();

@@ -67,8 +67,9 @@ TEST(Mesh, SameAtEveryPacketWidthAndWhateverIsAskedTogether) {
         for (int k = 0; k < 333; ++k) {
             Vec3 way{any(random), any(random), any(random)};
             // Every other one straight at an edge or a corner of the room or of the cube.
-            if (k % 4 == 0) way = Point3{8, 6.0 * (k % 8 / 4), std::max(0.0, any(random))} - origin;
-            if (k % 4 == 2) way = Point3{5.5, 2.5 + k % 8 / 4, 0.5 * (k % 16 / 8)} - origin;
+            const double low = k % 8 < 4 ? 0 : 1, high = k % 16 < 8 ? 0 : 1;
+            if (k % 4 == 0) way = Point3{8, 6 * low, std::max(0.0, any(random))} - origin;
+            if (k % 4 == 2) way = Point3{5.5, 2.5 + low, 0.5 * high} - origin;
             directions.push_back((1 / length(way)) * way);
         }
         std::vector<float> first(directions.size()), again(directions.size()), single(1);
