@@ -46,8 +46,9 @@ LegendBlock shadesBlock(const std::vector<double>& redundancy) {
     if (redundancy.size() < 2) return block;
     for (int shade = 1; shade <= shades.count; ++shade) {
         const std::uint32_t last = static_cast<std::uint32_t>(shade) * shades.width;
-        std::string text = std::to_string(last) + (last == 1 ? " sensor" : " sensors");
-        if (shades.width > 1) text = std::to_string(last - shades.width + 1) + "–" + text;
+        std::string text;
+        if (shades.width > 1) text = std::to_string(last - shades.width + 1).append("–");
+        text.append(std::to_string(last)).append(last == 1 ? " sensor" : " sensors");
         block.items.push_back(
             patch(shades.color(shade), std::move(text), shares[static_cast<std::size_t>(shade)]));
     }

@@ -98,18 +98,18 @@ void drawSensors(Canvas& canvas, const Scene& scene, const PageView& view, const
     const double radius = (scene.lasers.size() > 2 * kSeriesColors ? 0.28 : 0.36) * em;
     TextStyle style{em, true, Align::Center, map_colors::kInk, map_colors::kWhite.faded(0.85)};
     LabelPlacer labels(frame, em);
-    const auto isOnPlan = [&](Point2 page) { return contains(frame, {page, page}); };
+    const auto is_on_plan = [&](Point2 page) { return contains(frame, {page, page}); };
     for (const PlacedLaser& sensor : scene.lasers)
-        if (const Point2 page = view * sensor.pose.position.onFloor(); isOnPlan(page))
+        if (const Point2 page = view * sensor.pose.position.onFloor(); is_on_plan(page))
             labels.addMark(page, sensor.pose.heading);
     for (std::size_t i = 0; i < scene.lasers.size(); ++i) {
         const Pose3& pose = scene.lasers[i].pose;
-        if (const Point2 page = view * pose.position.onFloor(); isOnPlan(page))
+        if (const Point2 page = view * pose.position.onFloor(); is_on_plan(page))
             drawSensorMark(canvas, page, pose.heading, radius, seriesColor(i));
     }
     for (const PlacedLaser& sensor : scene.lasers) {
         const Point2 page = view * sensor.pose.position.onFloor();
-        if (!isOnPlan(page)) continue;
+        if (!is_on_plan(page)) continue;
         const std::string id = fitText(sensor.id, 10 * em, style);
         if (const auto middle = labels.place(page, sensor.pose.heading, textWidth(id, style)))
             canvas.text({middle->x, middle->y + 0.36 * em}, id, style);

@@ -171,7 +171,7 @@ TEST(Canvas, EmptyThingsDrawNothing) {
 }
 
 TEST(Canvas, TextIsAlignedAtItsAnchor) {
-    const auto inkLeftOf = [](Align align) {
+    const auto ink_left_of = [](Align align) {
         Canvas canvas(PictureFormat::Png, 200, 40);
         canvas.text({100, 30}, "HHHH", {20, true, align, Color::rgb(0x000000)});
         const Pixels pixels(canvas.encode());
@@ -185,9 +185,9 @@ TEST(Canvas, TextIsAlignedAtItsAnchor) {
         EXPECT_GT(all, 100);
         return static_cast<double>(left) / all;
     };
-    EXPECT_LT(inkLeftOf(Align::Left), 0.05);
-    EXPECT_NEAR(inkLeftOf(Align::Center), 0.5, 0.05);
-    EXPECT_GT(inkLeftOf(Align::Right), 0.95);
+    EXPECT_LT(ink_left_of(Align::Left), 0.05);
+    EXPECT_NEAR(ink_left_of(Align::Center), 0.5, 0.05);
+    EXPECT_GT(ink_left_of(Align::Right), 0.95);
 }
 
 TEST(Canvas, HaloSurroundsText) {

@@ -9,7 +9,7 @@
 namespace ispace {
 
 std::string fitText(std::string_view text, double width, const TextStyle& style) {
-    const std::string clean = printable(text);
+    std::string clean = printable(text);
     if (textWidth(clean, style) <= width) return clean;
     std::vector<std::size_t> ends = {0};  // of each character
     while (ends.back() < clean.size())

@@ -28,13 +28,17 @@ double topOf(const Body& body) {
     return top;
 }
 
-/// Puts the welded bodies of the wall lines in place of those the records have by themselves.
-void setWallBodies(std::vector<Element>& elements, std::span<const WallLine> walls,
+/// What a record is besides its walls: those follow from the lines of all records, welded.
+Body bodyBesideWalls(const Record& record) {
+    if (!isWall(record)) return bodyOf(record);
+    Body body;
+    if (record.keyword() == "ispace") body.plates = bodyOf(record).plates;
+    return body;
+}
+
+/// Adds the bodies of the welded wall lines to the elements that own the lines.
+void addWallBodies(std::vector<Element>& elements, std::span<const WallLine> walls,
                    const OwnedLines& owned, const WeldedLines& welded) {
-    for (Element& element : elements) {
-        element.body.sheets.clear();
-        if (isWall(element.record)) element.body.prisms.clear();
-    }
     std::vector<Body> parts = wallBodies(walls, welded);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         Body& body = elements[owned.owner[i]].body;
@@ -81,7 +85,7 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
             owned.lines.push_back(wall.line);
             owned.owner.push_back(elements_.size());
         }
-        elements_.push_back({record, ids[i], isWall(record) ? Body{} : bodyOf(record)});
+        elements_.push_back({record, ids[i], bodyBesideWalls(record)});
         checkShape(record, elements_.back().body, findings);
     }
     const Record* inside = insideRecord(elements_, findings);
@@ -91,7 +95,7 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
             elements_, "no walls: nothing encloses a room; add an ispace, wall or fence record"));
 
     WeldedLines welded = weld(owned.lines);
-    setWallBodies(elements_, walls, owned, welded);
+    addWallBodies(elements_, walls, owned, welded);
     for (const Segment2& piece : welded.pieces) {
         limits_.add(piece.a);
         limits_.add(piece.b);

@@ -27,6 +27,14 @@ TEST(Environment, RoomByOneRecord) {
     EXPECT_EQ(env.freeFloor(kScanHeight).size(), 1U);
 }
 
+TEST(Environment, RoomKeepsItsCeiling) {
+    const Environment env = environment("ispace size=6,4,2.2 ceiling=yes\n");
+    const Body& body = env.elements().front().body;
+    ASSERT_EQ(body.plates.size(), 1U);
+    EXPECT_EQ(body.plates[0].z, 2.2);
+    EXPECT_EQ(body.sheets.size(), 4U);
+}
+
 TEST(Environment, LRoom) {
     const Environment env =
         environment("fence path=0,0;6,0;6,2;2,2;2,5;0,5 closed=yes height=3\ninside at=1,1\n");

@@ -5,38 +5,30 @@
 
 namespace ispace {
 
-namespace {
-
-/// Cosine and sine of `degrees` reduced to within 45 degrees of a multiple of 90, where the
-/// remainder is exact and 0 gives exactly (1, 0).
-struct CosSin {
-    double cos, sin;
-};
-
-CosSin cosSin(double degrees) {
+CosSin cosSin(Angle angle) {
+    // Reduced to within 45 degrees of a multiple of 90, where the remainder is exact and 0 gives
+    // exactly (1, 0). Adding 0 drops the sign of minus zero.
     int quadrant = 0;
-    const double rest = std::remquo(degrees, 90.0, &quadrant) * (std::numbers::pi / 180);
-    const double c = std::cos(rest), s = std::sin(rest);
+    const double rest = std::remquo(angle.degrees(), 90.0, &quadrant) * (std::numbers::pi / 180);
+    const double c = std::cos(rest) + 0.0, s = std::sin(rest) + 0.0;
     switch (static_cast<unsigned>(quadrant) & 3U) {
         case 0:
             return {c, s};
         case 1:
-            return {-s, c};
+            return {0.0 - s, c};
         case 2:
-            return {-c, -s};
+            return {0.0 - c, 0.0 - s};
         default:
-            return {s, -c};
+            return {s, 0.0 - c};
     }
 }
 
-}  // namespace
+double cos(Angle angle) { return cosSin(angle).cos; }
 
-double cos(Angle angle) { return cosSin(angle.degrees()).cos + 0.0; }
-
-double sin(Angle angle) { return cosSin(angle.degrees()).sin + 0.0; }
+double sin(Angle angle) { return cosSin(angle).sin; }
 
 double tan(Angle angle) {
-    const auto [c, s] = cosSin(angle.degrees());
+    const auto [c, s] = cosSin(angle);
     return s / c;
 }
 

@@ -29,7 +29,11 @@ class Angle {
     double degrees_ = 0;
 };
 
-/// Exact at multiples of 90 degrees.
+struct CosSin {
+    double cos, sin;
+};
+/// Both at once; exact at multiples of 90 degrees.
+CosSin cosSin(Angle angle);
 double cos(Angle angle);
 double sin(Angle angle);
 double tan(Angle angle);

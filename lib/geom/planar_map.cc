@@ -72,9 +72,10 @@ std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& seg
         }
     }
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        const auto& [a, b] = segments[i];
-        std::stable_sort(touching[i].begin(), touching[i].end(),
-                         [&](Point2 p, Point2 q) { return dot(p - a, b - a) < dot(q - a, b - a); });
+        const Vec2 along = segments[i].b - segments[i].a;
+        std::stable_sort(touching[i].begin(), touching[i].end(), [&](Point2 p, Point2 q) {
+            return dot(p - segments[i].a, along) < dot(q - segments[i].a, along);
+        });
     }
     return touching;
 }

@@ -49,12 +49,18 @@ inline double length(Vec2 v) { return std::hypot(v.x, v.y); }
 inline double distance(Point2 a, Point2 b) { return length(b - a); }
 /// v turned left by a quarter turn.
 inline Vec2 perpendicular(Vec2 v) { return {-v.y, v.x}; }
-inline Vec2 unitVector(Angle heading) { return {cos(heading), sin(heading)}; }
+inline Vec2 unitVector(Angle heading) {
+    const auto [c, s] = cosSin(heading);
+    return {c, s};
+}
 
 inline Vec3 operator-(Point3 a, Point3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Point3 operator+(Point3 p, Vec3 v) { return {p.x + v.x, p.y + v.y, p.z + v.z}; }
 inline Vec3 operator*(double s, Vec3 v) { return {s * v.x, s * v.y, s * v.z}; }
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double length(Vec3 v) { return std::hypot(v.x, v.y, v.z); }
 
 }  // namespace ispace

@@ -23,12 +23,14 @@ double distanceFrom(const Polygon& curve, Point2 p) {
 /// Greatest distance of a point of one curve from the other, both ways, points taken densely.
 double displacement(const Polygon& a, const Polygon& b) {
     double most = 0;
-    for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-        forEachEdge(*from, [&](const Segment2& e) {
+    const auto measure = [&](const Polygon& from, const Polygon& to) {
+        forEachEdge(from, [&](const Segment2& e) {
             for (int i = 0; i < 8; ++i)
-                most = std::max(most, distanceFrom(*to, e.a + (i / 8.0) * (e.b - e.a)));
+                most = std::max(most, distanceFrom(to, e.a + (i / 8.0) * (e.b - e.a)));
         });
-    }
+    };
+    measure(a, b);
+    measure(b, a);
     return most;
 }
 

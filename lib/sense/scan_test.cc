@@ -103,7 +103,7 @@ TEST(Scan, NoReturn) {
 TEST(Scan, ExactlyMaximumRange) {
     const Scene scene = testing::scene(kRoom);
     EXPECT_EQ(beam(scene, at(3, 3, 0.15), 0, 5), 5);
-    EXPECT_TRUE(std::isinf(beam(scene, at(3, 3, 0.15), 0, 4.999999)));
+    EXPECT_TRUE(std::isinf(beam(scene, at(3, 3, 0.15), 0, 4.9999)));
     EXPECT_EQ(beam(scene, at(8 - 4.095, 3, 0.15), 0, 4.095), 4.095F);
 }
 

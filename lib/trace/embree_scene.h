@@ -1,36 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "trace/facet_index.h"
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "geom/point.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
 
 namespace ispace {
 
-/// A built Embree scene of a soup: facet i is primitive i of geometry 0. ROBUST, high quality, and
-/// queries may have a filter.
+/// Triangles in float32; equal corners are one vertex.
+class TriangleSoup {
+  public:
+    std::uint32_t add(Point3 corner);
+
+    [[nodiscard]] Point3 corner(std::size_t triangle, std::size_t i) const {
+        const auto& [x, y, z] = vertices[triangles[triangle][i]];
+        return {x, y, z};
+    }
+
+    std::vector<std::array<float, 3>> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  private:
+    std::map<std::tuple<float, float, float>, std::uint32_t> known_;
+};
+
+/// A built Embree scene: ROBUST, so that no ray slips between triangles with a common edge and the
+/// packet width changes no result by more than rounding; high quality.
 ///
-/// Each scene has a device of its own: one costs some 50 microseconds, and a scene then shares
-/// nothing with others that threads may be building, and leaves nothing behind.
+/// Each scene has a device of its own: one costs some 50 microseconds, and scenes share nothing.
 class EmbreeScene {
   public:
+    /// `packet_width`: 4, 8 or 16 rays together, 0 for what the processor traces natively.
     /// \throws std::runtime_error if Embree fails
-    explicit EmbreeScene(const FacetSoup& soup);
+    EmbreeScene(TriangleSoup soup, int packet_width);
 
-    [[nodiscard]] RTCSceneTy* get() const { return scene_.get(); }
-    /// Number of rays that the processor traces together: 16, 8, 4 or 1.
-    [[nodiscard]] int widestPacket() const;
+    /// Distance of the first surface in (0, reach[i]] along unit vector i; +infinity without.
+    /// Surfaces within `contact` of the origin stop nothing, nor do those that continue their
+    /// plane. Neighbouring directions should be alike.
+    void intersect(Point3 origin, std::span<const Vec3> directions, std::span<const float> reach,
+                   double contact, std::span<float> distances) const;
 
   private:
     struct Release {
         void operator()(RTCDeviceTy* device) const;
         void operator()(RTCSceneTy* scene) const;
     };
-    void addGeometry(const FacetSoup& soup);
-
+    TriangleSoup soup_;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> scene_;
+    std::size_t width_ = 4;
 };
 
 }  // namespace ispace

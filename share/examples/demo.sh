@@ -17,7 +17,7 @@ run envc "$scenes/ispace.env" -o ispace.glb
 run arrange ispace.glb --sensor urg-04lx:2 --strategy grid -X 7 -Y 7 -o ispace.3dm
 run coverage ispace.glb ispace.3dm -o ispace.png
 
-# The furnished room and the three 4 m, 180 degree lasers of its section 4.8.
+# The furnished room and the three 4 m, 180 degree lasers of its section 4.6.
 run envc "$scenes/facilities.env" -o facilities.glb
 run arrange facilities.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 11 -Y 11 --deg 8 \
     -o facilities.3dm

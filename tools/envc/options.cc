@@ -19,8 +19,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.meters("--wall-height", options.import.wall_height, 0.001, 1000,
                 "height of walls of imported maps", Enters::History);
     line.meters("--simplify", options.import.simplify, 0, 1000,
-                "outlines of imported maps may move by this (default: one cell)",
-                Enters::History);
+                "outlines of imported maps may move by this (default: one cell)", Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
