@@ -14,7 +14,7 @@ std::string firstLine(const std::vector<Diagnostic>& diagnostics) {
 }  // namespace
 
 std::string Diagnostic::text() const {
-    std::string place = file;
+    std::string place = displayName(file);
     if (!place.empty() && line > 0) {
         place += ':' + std::to_string(line);
         if (column > 0) place += ':' + std::to_string(column);

@@ -12,7 +12,7 @@ TEST(Point, vectorsAndPlaces) {
     EXPECT_EQ((Point2{1, 2} + Vec2{3, 4}), (Point2{4, 6}));
     EXPECT_EQ((Point2{1, 2} - Point2{3, 5}), (Vec2{-2, -3}));
     EXPECT_EQ((Point2{1, 2} - Vec2{3, 5}), (Point2{-2, -3}));
-    EXPECT_EQ(cross({1, 0}, {0, 1}), 1);
+    EXPECT_EQ(cross(Vec2{1, 0}, Vec2{0, 1}), 1);
     EXPECT_EQ(dot(Vec2{1, 2}, Vec2{3, 4}), 11);
     EXPECT_EQ(perpendicular({1, 2}), (Vec2{-2, 1}));
     EXPECT_EQ(unitVector(Angle::degrees(90)), (Vec2{0, 1}));
