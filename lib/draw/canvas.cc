@@ -18,13 +18,6 @@
 #include "base/number.h"
 #include "base/utf8.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// Cairo keeps its fonts until the process ends, by pointers that fontconfig stores as offsets,
-// which the leak checker cannot follow.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
-#endif
-
 namespace ispace {
 
 namespace {
