@@ -164,17 +164,17 @@ bool encloses(const std::vector<Segment2>& lines, std::optional<Point2> inside) 
 
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside) {
     const std::vector<Closing> closings = GapFinder(weld(lines)).closings();
-    const auto enclosedBy = [&](std::size_t count) {
+    const auto enclosed_by = [&](std::size_t count) {
         std::vector<Segment2> closed(lines.begin(), lines.end());
         for (std::size_t i = 0; i < count; ++i) closed.push_back(closings[i].line);
         return encloses(closed, inside);
     };
     // What is enclosed stays enclosed as more gaps are closed: halve between too few and enough.
     std::size_t too_few = 0, enough = closings.size();
-    if (enclosedBy(too_few) || !enclosedBy(enough)) return std::nullopt;
+    if (enclosed_by(too_few) || !enclosed_by(enough)) return std::nullopt;
     while (enough - too_few > 1) {
         const std::size_t count = too_few + (enough - too_few) / 2;
-        (enclosedBy(count) ? enough : too_few) = count;
+        (enclosed_by(count) ? enough : too_few) = count;
     }
     const Closing& last = closings[enough - 1];
     const Point2 place = last.line.a + 0.5 * (last.line.b - last.line.a);

@@ -29,6 +29,7 @@ double middle(double a, double b) { return a / 2 + b / 2; }
 /// of them holds a chord of the region.
 std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, std::size_t most) {
     std::vector<double> ys;
+    ys.reserve(edges.size());
     for (const Segment2& e : edges) ys.push_back(e.a.y);
     std::sort(ys.begin(), ys.end());
     ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
@@ -39,6 +40,7 @@ std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, st
     });
     steps.resize(std::min(steps.size(), most));
     std::vector<double> levels;
+    levels.reserve(steps.size());
     for (const std::size_t i : steps) levels.push_back(middle(ys[i - 1], ys[i]));
     return levels;
 }
@@ -68,6 +70,7 @@ std::vector<Point2> chordMiddles(const std::vector<Segment2>& edges, double y) {
                      [](const auto& c, const auto& d) { return c.first > d.first; });
     chords.resize(std::min(chords.size(), kChordsPerLine));
     std::vector<Point2> middles;
+    middles.reserve(chords.size());
     for (const auto& [width, p] : chords) middles.push_back(p);
     return middles;
 }

@@ -224,12 +224,12 @@ Polygon roundedCurve(const Loop& loop) {
         curve.push_back(p);
         while (curve.size() >= 3 && curve.end()[-3] == p) curve.resize(curve.size() - 2);
     }
-    const auto isSpike = [&] {
+    const auto is_spike = [&] {
         const std::size_t n = curve.size();
         return n >= 2 && (curve[0] == curve[n - 1] || curve[0] == curve[n - 2] ||
                           (n >= 3 && curve[1] == curve[n - 1]));
     };
-    while (isSpike()) {
+    while (is_spike()) {
         if (curve.size() >= 3 && curve[1] == curve.back()) curve.erase(curve.begin());
         curve.pop_back();
     }

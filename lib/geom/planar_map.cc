@@ -100,13 +100,13 @@ WeldedLines weld(std::span<const Segment2> lines) {
     WeldedLines split;
     for (std::size_t i = 0; i < whole.pieces.size(); ++i) {
         Point2 from = whole.pieces[i].a;
-        const auto addPiece = [&](Point2 to) {
+        const auto add_piece = [&](Point2 to) {
             split.pieces.push_back({from, to});
             split.source.push_back(whole.source[i]);
             from = to;
         };
-        for (const Point2 p : touching[i]) addPiece(p);
-        addPiece(whole.pieces[i].b);
+        for (const Point2 p : touching[i]) add_piece(p);
+        add_piece(whole.pieces[i].b);
     }
     return split;
 }

@@ -46,8 +46,8 @@ class Cost {
         std::sort(order_.begin(), order_.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
     }
 
-    boost::optional<double> operator()(const Curves& net,
-                                       Curves::Vertices_in_constraint_iterator vertex) const {
+    boost::optional<double> operator()(
+        const Curves& net, const Curves::Vertices_in_constraint_iterator& vertex) const {
         const auto cost = ps::Squared_distance_cost()(net, vertex);
         if (!cost || *cost > most_ || isTight(net, vertex)) return boost::none;
         const auto place = std::lower_bound(order_.begin(), order_.end(), placeOf(*vertex),
@@ -59,7 +59,7 @@ class Cost {
 
   private:
     /// The net is Delaunay: what lies close behind the new edge is a neighbour of the vertex.
-    static bool isTight(const Curves& net, Curves::Vertices_in_constraint_iterator vertex) {
+    static bool isTight(const Curves& net, const Curves::Vertices_in_constraint_iterator& vertex) {
         const auto before = *boost::prior(vertex), after = *boost::next(vertex);
         const Segment2 edge{placeOf(before), placeOf(after)};
         auto neighbour = net.incident_vertices(*vertex);

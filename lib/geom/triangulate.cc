@@ -48,14 +48,14 @@ std::vector<Point2> distinctVertices(const Region& region) {
 
 /// The edges that separate: one that comes twice has the same on both sides.
 std::vector<Edge> separatingEdges(const Region& region, const std::vector<Point2>& vertices) {
-    const auto indexOf = [&](Point2 p) {
+    const auto index_of = [&](Point2 p) {
         const auto it = std::lower_bound(vertices.begin(), vertices.end(), p,
                                          [](Point2 a, Point2 b) { return lexLess(a, b); });
         return static_cast<std::uint32_t>(it - vertices.begin());
     };
     std::vector<Edge> edges;
     region.forEachEdge([&](const Segment2& e) {
-        edges.push_back(std::minmax({indexOf(e.a), indexOf(e.b)}));
+        edges.push_back(std::minmax({index_of(e.a), index_of(e.b)}));
     });
     std::sort(edges.begin(), edges.end());
     std::vector<Edge> separating;

@@ -110,6 +110,7 @@ Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& s
 
     CandidatePool pool(scene, before.target, worlds, options, progress);
     std::vector<Choice> choices;
+    choices.reserve(sensors.size());
     for (const PendingLaser& sensor : sensors) choices.push_back({pool.candidatesFor(sensor)});
     const Placement placement = placeGreedily(choices, covered, progress);
 

@@ -42,12 +42,12 @@ Placement placeGreedily(const std::vector<Choice>& choices, const CellSet& cover
     placement.bound = reachable.count();
 
     // The best set adds to any set S at most the sum, over its sensors, of the best addition to S.
-    const auto boundFrom = [&](const std::map<const Candidates*, Best>& best) {
+    const auto bound_from = [&](const std::map<const Candidates*, Best>& best) {
         std::size_t sum = placement.covered.count();
         for (const Choice& choice : choices) sum += best.at(choice.candidates).gain;
         placement.bound = std::min(placement.bound, sum);
     };
-    const auto bestPerKind = [&] {
+    const auto best_per_kind = [&] {
         std::map<const Candidates*, Best> best;
         for (const Candidates* kind : kinds) best[kind] = bestOf(*kind, placement.covered);
         return best;
@@ -55,14 +55,14 @@ Placement placeGreedily(const std::vector<Choice>& choices, const CellSet& cover
 
     progress.begin("placing", static_cast<std::int64_t>(choices.size()));
     for (const Choice& choice : choices) {
-        const auto best = bestPerKind();
-        boundFrom(best);
+        const auto best = best_per_kind();
+        bound_from(best);
         const std::size_t index = best.at(choice.candidates).index;
         placement.chosen.push_back(index);
         placement.covered |= (*choice.candidates)[index].seen;
         progress.advance(1);
     }
-    boundFrom(bestPerKind());
+    bound_from(best_per_kind());
     progress.end();
     return placement;
 }

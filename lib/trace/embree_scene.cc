@@ -219,7 +219,8 @@ float distanceOf(const TriangleSoup& soup, unsigned triangle, Vec3 hit_normal, f
     const double slope = dot(hit_normal, direction);
     if (slope * slope >= kGrazing * kGrazing * dot(hit_normal, hit_normal)) return found;
     const auto exact = static_cast<float>(grazingDistance(soup, triangle, origin, direction));
-    return exact <= reach ? exact : kNoReturn;
+    if (exact > reach) return kNoReturn;
+    return exact;
 }
 
 /// Lanes that need not be set for each packet.
