@@ -10,7 +10,7 @@ namespace ispace {
 /// The commands that touched a stream, oldest first, without the leading "# ".
 ///
 /// A line holds the tool, its operands by base name and the options that change the result, so
-/// that equal work gives equal bytes on any machine.
+/// that equal work gives equal bytes wherever it is done.
 using History = std::vector<std::string>;
 
 /// `word` as a shell would need it: quoted if it holds anything but plain characters; control

@@ -2,6 +2,7 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <utility>
 
 #include "base/error.h"
@@ -102,12 +103,12 @@ void CommandLine::texts(const std::string& names, const std::string& value,
 
 void CommandLine::flag(const std::string& names, bool& variable, const std::string& help,
                        Enters enters) {
-    data_->keep(data_->app.add_flag(names, variable), "", help, enters);
+    data_->keep(data_->app.add_flag(names, variable)->disable_flag_override(), "", help, enters);
 }
 
 void CommandLine::flag(const std::string& names, int& variable, const std::string& help,
                        Enters enters) {
-    data_->keep(data_->app.add_flag(names, variable), "", help, enters);
+    data_->keep(data_->app.add_flag(names, variable)->disable_flag_override(), "", help, enters);
 }
 
 void CommandLine::switchFlag(const std::string& on, const std::string& off,
@@ -115,8 +116,10 @@ void CommandLine::switchFlag(const std::string& on, const std::string& off,
     const auto set = [&variable](bool value) {
         return [&variable, value](std::int64_t) { variable = value; };
     };
-    data_->keep(data_->app.add_flag_function(on, set(true)), "", help, Enters::Nothing);
-    data_->keep(data_->app.add_flag_function(off, set(false)), "", "do not", Enters::Nothing);
+    data_->keep(data_->app.add_flag_function(on, set(true))->disable_flag_override(), "", help,
+                Enters::Nothing);
+    data_->keep(data_->app.add_flag_function(off, set(false))->disable_flag_override(), "",
+                "do not", Enters::Nothing);
 }
 
 void CommandLine::parsed(const std::string& names, const std::string& value,
@@ -135,15 +138,23 @@ void CommandLine::parsed(const std::string& names, const std::string& value,
     data_->keep(data_->app.add_option_function<std::string>(names, guarded), value, help, enters);
 }
 
+namespace {
+
+int countFrom(const std::string& text, int lowest, int highest) {
+    const auto number = parseInteger(text);
+    if (!number || *number < lowest || *number > highest)
+        throw UsageError('`' + text + "` is not a whole number from " + std::to_string(lowest) +
+                         " to " + std::to_string(highest));
+    return static_cast<int>(*number);
+}
+
+}  // namespace
+
 void CommandLine::count(const std::string& names, const std::string& value,
                         std::optional<int>& variable, int lowest, int highest,
                         const std::string& help, Enters enters) {
     const auto take = [&variable, lowest, highest](const std::string& s) {
-        const auto number = parseInteger(s);
-        if (!number || *number < lowest || *number > highest)
-            throw UsageError('`' + s + "` is not a whole number from " + std::to_string(lowest) +
-                             " to " + std::to_string(highest));
-        variable = static_cast<int>(*number);
+        variable = countFrom(s, lowest, highest);
     };
     parsed(names, value, take, help, enters);
 }
@@ -151,11 +162,7 @@ void CommandLine::count(const std::string& names, const std::string& value,
 void CommandLine::count(const std::string& names, const std::string& value, int& variable,
                         int lowest, int highest, const std::string& help, Enters enters) {
     const auto take = [&variable, lowest, highest](const std::string& s) {
-        const auto number = parseInteger(s);
-        if (!number || *number < lowest || *number > highest)
-            throw UsageError('`' + s + "` is not a whole number from " + std::to_string(lowest) +
-                             " to " + std::to_string(highest));
-        variable = static_cast<int>(*number);
+        variable = countFrom(s, lowest, highest);
     };
     parsed(names, value, take, help + " (default " + std::to_string(variable) + ")", enters);
 }
@@ -252,11 +259,21 @@ void CommandLine::parse(int argc, const char* const* argv) {
     d.sortOut(rest);
 }
 
+bool isStream(const std::string& operand) {
+    if (operand == "-" || operand.starts_with("/dev/") || operand.starts_with("/proc/"))
+        return true;
+    std::error_code ignored;
+    const auto status = std::filesystem::status(operand, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
 bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
 
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
     std::string line = data_->tool;
-    for (const std::string& operand : operands) line += ' ' + shellQuote(baseName(operand));
+    for (const std::string& operand : operands) {
+        line += ' ' + (isStream(operand) ? "-" : shellQuote(baseName(operand)));
+    }
     for (const Data::Entry& entry : data_->entries) {
         const CLI::Option& option = *entry.option;
         if (entry.enters == Enters::Nothing || option.count() == 0) continue;

@@ -75,6 +75,9 @@ class CommandLine {
     std::unique_ptr<Data> data_;
 };
 
+/// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
+bool isStream(const std::string& operand);
+
 /// Options that every tool has.
 struct CommonOptions {
     std::string output = "-";
@@ -104,8 +107,8 @@ class ThreadLimit {
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
 std::string shareFolder();
 
-/// Format of a product: `to` if given, else the suffix of `output` if it is one of `known`, else
-/// the first of `known`.
+/// Format of a product: `to` if given, else the suffix of `output` (in any case) if it is one of
+/// `known`, else the first of `known`. \throws UsageError for the suffix of another format
 std::string outputFormat(const std::string& to, const std::string& output,
                          const std::vector<std::string>& known);
 

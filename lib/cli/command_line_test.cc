@@ -32,7 +32,7 @@ struct Tool {
         line.choice("--strategy", strategy, {"grid", "wall"}, "how", Enters::History);
         line.count("-X", "N", x, 1, 100, "lines", Enters::History);
         line.meters("--height", height, 0, 10, "where", Enters::History);
-        addGridOption(line, columns, rows);
+        addGridOption(line, "--grid", columns, rows, "cells");
         line.flag("--json", json, "as JSON", Enters::Nothing);
         addCommonOptions(line, common, "there");
     }
@@ -64,6 +64,17 @@ TEST(CommandLine, OptionsAndOperandsInAnyOrder) {
     EXPECT_TRUE(tool.common.quiet);
     EXPECT_TRUE(tool.line.given("--output"));
     EXPECT_FALSE(tool.line.given("--threads"));
+}
+
+TEST(CommandLine, FlagsTakeNoValue) {
+    EXPECT_NE(Tool().errorOf({"--json=false"}), "");
+    EXPECT_NE(Tool().errorOf({"--progress=false"}), "");
+}
+
+TEST(CommandLine, PipesAreStreamsInHistory) {
+    Tool tool;
+    tool.parse({"/dev/null"});
+    EXPECT_EQ(tool.line.historyLine(tool.operands), "tool -");
 }
 
 TEST(CommandLine, TwoDashesEndOptions) {
@@ -125,6 +136,10 @@ TEST(CommandLine, HelpFitsEightyColumnsAndNamesEveryOption) {
 
 TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {
     const std::vector<std::string> known{"glb", "env"};
+    EXPECT_EQ(outputFormat("", "x.ENV", known), "env");
+    EXPECT_EQ(outputFormat("glb", "x.csv", known), "glb");
+    for (const char* other : {"x.csv", "x.png", "x.yaml"})
+        EXPECT_THROW(outputFormat("", other, known), UsageError) << other;
     EXPECT_EQ(outputFormat("env", "x.glb", known), "env");
     EXPECT_EQ(outputFormat("", "x.env", known), "env");
     EXPECT_EQ(outputFormat("", "x.txt", known), "glb");

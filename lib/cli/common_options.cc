@@ -66,9 +66,20 @@ std::string shareFolder() {
 std::string outputFormat(const std::string& to, const std::string& output,
                          const std::vector<std::string>& known) {
     if (!to.empty()) return to;
-    const std::string suffix = std::filesystem::path(output).extension().string();
+    std::string suffix = std::filesystem::path(output).extension().string();
+    for (char& c : suffix)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     for (const std::string& format : known)
         if (suffix == '.' + format) return format;
+    std::string list;
+    for (const std::string& format : known) list += (list.empty() ? "" : ", ") + format;
+    // A suffix that names another format is a mistake, not a wish for the default.
+    for (const char* other :
+         {".glb", ".env", ".3dm", ".yaml", ".yml", ".json", ".jsonl", ".csv", ".png", ".svg",
+          ".pdf", ".html", ".obj", ".stl", ".ply", ".pcd", ".pgm", ".geojson", ".dxf"})
+        if (suffix == other)
+            throw UsageError(output + ": " + suffix.substr(1) +
+                             " is not written here; known: " + list);
     return known.front();
 }
 

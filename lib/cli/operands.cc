@@ -49,7 +49,8 @@ class OperandReader {
             takeLayoutFromStdin();
         }
         if (!environment_) findEnvironment();
-        checkDigest();
+        if (layout_ && !request_.any_environment)
+            checkDigest(*layout_, environment_->records, environment_operand_);
         const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
         Scene scene = makeScene(*environment_, layout_ ? &*layout_ : nullptr, devices);
         return {std::move(scene),           std::move(*environment_),
@@ -92,6 +93,8 @@ class OperandReader {
         if (!reference || reference->file.empty())
             throw UsageError(displayName(layout_operand_) +
                              " names no environment (`environment file=…`): give ENV");
+        if (reference->file == "-")
+            throw FormatError(reference->record.finding("file", "stdin cannot be named here"));
         const fs::path folder =
             layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
         const std::string operand = (folder / reference->file).string();
@@ -102,18 +105,6 @@ class OperandReader {
         take(operand, std::move(document));
     }
 
-    void checkDigest() const {
-        if (!layout_ || request_.any_environment) return;
-        const auto reference = environmentReference(*layout_);
-        if (!reference || reference->digest.empty()) return;
-        const std::string digest = environmentDigest(environment_->records);
-        if (digest == reference->digest) return;
-        throw FormatError(reference->record.finding(
-            "digest", "the layout was made for another environment than " +
-                          displayName(environment_operand_) + " (" + digest.substr(0, 15) +
-                          "…): arrange again, or go on with --any-environment"));
-    }
-
     const SceneRequest& request_;
     std::optional<Document> environment_, layout_;
     std::string environment_operand_, layout_operand_;
@@ -121,6 +112,18 @@ class OperandReader {
 };
 
 }  // namespace
+
+void checkDigest(const Document& layout, std::span<const Record> environment,
+                 const std::string& environment_operand) {
+    const auto reference = environmentReference(layout);
+    if (!reference || reference->digest.empty()) return;
+    const std::string digest = environmentDigest(environment);
+    if (digest == reference->digest) return;
+    throw FormatError(reference->record.finding(
+        "digest", "the layout was made for another environment than " +
+                      displayName(environment_operand) + " (" + digest.substr(0, 15) +
+                      "…): arrange again, or go on with --any-environment"));
+}
 
 std::string readStdin() {
     if (::isatty(STDIN_FILENO) != 0)
@@ -131,7 +134,8 @@ std::string readStdin() {
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand) {
-    if (environment_operand == "-") return "";
+    // Neither stdin nor a pipe by another name (/dev/stdin, <(…)) can be read again.
+    if (isStream(environment_operand)) return "";
     const fs::path folder = output == "-" ? fs::path() : fs::path(output).parent_path();
     const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
     // The environment itself may be a link that is meant: only its folder is resolved.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,11 +36,15 @@ struct SceneInput {
 ///         FormatError, std::system_error as the readers do, and for a digest that differs
 SceneInput readScene(const SceneRequest& request);
 
+/// \throws FormatError if `layout` names another digest than that of `environment`'s records
+void checkDigest(const Document& layout, std::span<const Record> environment,
+                 const std::string& environment_operand);
+
 /// Reads everything on stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
 
 /// `file=` of an `environment` record in a layout written to `output`: the way from its folder to
-/// ENV, never absolute; "" if ENV came from stdin.
+/// ENV, never absolute; "" if ENV came from stdin or another pipe.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
 
 }  // namespace ispace

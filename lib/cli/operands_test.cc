@@ -88,6 +88,8 @@ TEST_F(Operands, UsageIsChecked) {
 }
 
 TEST_F(Operands, TheWayToTheEnvironmentIsRelativeToTheLayout) {
+    writeAll("sub/room.glb", "");
+    EXPECT_EQ(environmentFileFor("best.3dm", "/dev/stdin"), "");
     EXPECT_EQ(environmentFileFor("-", "room.env"), "room.env");
     EXPECT_EQ(environmentFileFor("best.3dm", "room.env"), "room.env");
     EXPECT_EQ(environmentFileFor("sub/best.3dm", "room.env"), "../room.env");

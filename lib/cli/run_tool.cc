@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/utf8.h"
 
 namespace ispace {
 
@@ -21,7 +22,7 @@ namespace {
 enum Status { kDone = 0, kFailed = 1, kUsage = 2, kUnmet = 3 };
 
 void say(const std::string& tool, const std::string& line) {
-    std::cerr << tool << ": " << line << '\n';
+    std::cerr << tool << ": " << printable(line) << '\n';
 }
 
 /// "house.glb: error: No such file or directory" from what() = "house.glb: No such file …".

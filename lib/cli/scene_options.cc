@@ -6,20 +6,20 @@
 
 namespace ispace {
 
-void addGridOption(CommandLine& line, int& columns, int& rows) {
+void addGridOption(CommandLine& line, const std::string& name, int& columns, int& rows,
+                   const std::string& help) {
     constexpr std::int64_t kMostCells = 10000;
     const auto take = [&columns, &rows](const std::string& text) {
         const auto comma = text.find(',');
         const auto p = parseInteger(text.substr(0, comma));
         const auto q = comma == std::string::npos ? p : parseInteger(text.substr(comma + 1));
         if (!p || !q || *p < 1 || *q < 1 || *p > kMostCells || *q > kMostCells)
-            throw UsageError('`' + text + "` is not P,Q with whole numbers from 1 to " +
+            throw UsageError('`' + text + "` is not P or P,Q with whole numbers from 1 to " +
                              std::to_string(kMostCells));
         columns = static_cast<int>(*p);
         rows = static_cast<int>(*q);
     };
-    line.parsed("--grid", "P,Q", take, "cells over the limits that figures count (default 100,100)",
-                Enters::History);
+    line.parsed(name, "P[,Q]", take, help + " (default 100,100)", Enters::History);
 }
 
 void addAnyEnvironmentOption(CommandLine& line, bool& any_environment) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -53,10 +54,14 @@ class CandidatePool {
     std::vector<Candidate> make(const PendingLaser& sensor, const Pose3& mount) {
         const Environment& environment = scene_.environment;
         const GridSearch search = searchFor(environment.limits(), sensor.laser, options_);
-        std::vector<Point2> places = gridPlaces(environment.limits(), search);
-        const Slice slice = environment.slice(mount.position.z);
-        std::erase_if(places, [&](Point2 p) { return !isStandable(environment, slice, p); });
         const std::string grid = std::to_string(search.x) + " x " + std::to_string(search.y);
+        constexpr std::int64_t kMostPlaces = 1000000;
+        if (std::int64_t{search.x} * search.y > kMostPlaces)
+            throw UsageError("a grid of " + grid +
+                             " places is more than a million: use fewer lines " + "(-X, -Y)");
+        const Slice slice = environment.slice(mount.position.z);
+        const std::vector<Point2> places = standablePlaces(
+            environment, slice, gridPlaces(environment.limits(), search), progress_);
         if (places.empty())
             throw UnmetError("no place for " + sensor.id + ": none of the " + grid +
                              " grid points lies indoors and clear of objects at " +
@@ -65,7 +70,7 @@ class CandidatePool {
                   static_cast<double>(target_.grid.size()) / 8;
         if (bytes_ > kMostBytes)
             throw UsageError("the candidates take " + formatFixed(bytes_ / 1e9, 1) +
-                             " GB: use fewer places (-X, -Y), headings (--deg) or cells (--grid)");
+                             " GB: use fewer places (-X, -Y), headings (--deg) or cells (--reso)");
         return makeCandidates(target_.grid, target_.indoor, worlds_, sensor.laser, mount, places,
                               search.headings, progress_);
     }
@@ -85,11 +90,14 @@ std::vector<PendingLaser> sensorsToPlace(const Scene& scene, const std::vector<R
                                          const DeviceCatalogue& devices) {
     std::vector<PendingLaser> sensors = scene.pending;
     std::vector<Record> records = scene.records;
+    std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
     for (const Record& record : added) {
-        if (record.has("at"))
-            throw UsageError("a sensor to be arranged has no place yet: leave out `at`");
+        for (const char* key : {"at", "heading"})
+            if (record.has(key))
+                throw UsageError("a sensor to be arranged has no place yet: leave out `" +
+                                 std::string(key) + '`');
         const std::string id = record.writtenId();
-        if (!id.empty() && std::find(scene.ids.begin(), scene.ids.end(), id) != scene.ids.end())
+        if (!id.empty() && !taken.insert(id).second)
             throw UsageError("the id `" + id + "` is taken in this scene");
         records.push_back(record);
     }
@@ -121,12 +129,16 @@ Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& s
         result.placed.push_back({sensors[i].id, sensors[i].laser, pose});
         whole.lasers.push_back(result.placed.back());
     }
+    const Grid usual;  // as coverage reports without being told otherwise
     const CoverageReport report =
-        measureCoverage(whole, worlds, options.columns, options.rows, kScanHeight).report;
+        measureCoverage(whole, worlds, usual.columns, usual.rows, kScanHeight).report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
     const std::size_t cells = before.target.indoor.count();
-    if (cells > 0) result.bound = static_cast<double>(placement.bound) / static_cast<double>(cells);
+    const bool same_grid = options.columns == usual.columns && options.rows == usual.rows;
+    result.bound = same_grid && cells > 0
+                       ? static_cast<double>(placement.bound) / static_cast<double>(cells)
+                       : 1;
     return result;
 }
 

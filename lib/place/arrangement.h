@@ -15,7 +15,7 @@ namespace ispace {
 struct ArrangeOptions {
     std::optional<int> x, y;        ///< interior grid lines; default by eq. (4.1) and (4.2)
     int headings = 8;               ///< directions per place
-    int columns = 100, rows = 100;  ///< cells over the limits
+    int columns = 100, rows = 100;  ///< cells over the limits while searching
 };
 
 /// All sensors to be placed: those the scene has without place, then `added`, which get the next
@@ -29,7 +29,9 @@ struct Arrangement {
     std::vector<PlacedLaser> placed;  ///< in the order of the sensors given
     double coverage = 0;              ///< as `coverage` reports coverage.grid for the whole layout
     double area = 0;                  ///< total effective area by cells, m2, eq. (4.6)
-    double bound = 0;  ///< no choice of the same candidates covers a greater share on this grid
+    /// No choice of the same candidates covers a greater share; 1 where the search had another grid
+    /// than the report, as a bound holds for its grid only.
+    double bound = 0;
 };
 
 /// Ordinary Grid of the thesis (section 4.4.2), sensor after sensor, beside the lasers that the

@@ -151,6 +151,10 @@ TEST(Arrangement, RefusesIdsThatAreTakenAndPlacesThatAreGiven) {
     const Scene scene = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
     EXPECT_THROW(sensorsToPlace(scene, specs("laser,id=d1"), DeviceCatalogue()), UsageError);
     EXPECT_THROW(sensorsToPlace(scene, specs("laser,at=1,1"), DeviceCatalogue()), UsageError);
+    EXPECT_THROW(sensorsToPlace(scene, specs("laser,heading=30"), DeviceCatalogue()), UsageError);
+    std::vector<Record> twice = specs("laser,id=a");
+    twice.push_back(twice.front());
+    EXPECT_THROW(sensorsToPlace(scene, twice, DeviceCatalogue()), UsageError);
 }
 
 }  // namespace

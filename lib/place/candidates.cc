@@ -39,6 +39,21 @@ bool isStandable(const Environment& environment, const Slice& slice, Point2 p) {
     return environment.indoor().locate(p) == Side::Inside && !slice.blocked(p);
 }
 
+std::vector<Point2> standablePlaces(const Environment& environment, const Slice& slice,
+                                    const std::vector<Point2>& places, Progress& progress) {
+    std::vector<char> is_valid(places.size());
+    progress.begin("judging places", static_cast<std::int64_t>(places.size()));
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        is_valid[i] = isStandable(environment, slice, places[i]) ? 1 : 0;
+        progress.advance(1);
+    });
+    progress.end();
+    std::vector<Point2> valid;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (is_valid[i] != 0) valid.push_back(places[i]);
+    return valid;
+}
+
 std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target, Worlds& worlds,
                                       const Laser& laser, const Pose3& mount,
                                       const std::vector<Point2>& places, int headings,

@@ -27,6 +27,10 @@ std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
 /// True if a sensor at this height may stand at p: strictly indoors (Insider Judge), in no solid.
 bool isStandable(const Environment& environment, const Slice& slice, Point2 p);
 
+/// The places where isStandable holds, in their order; shared out over all cores.
+std::vector<Point2> standablePlaces(const Environment& environment, const Slice& slice,
+                                    const std::vector<Point2>& places, Progress& progress);
+
 /// A place and heading a sensor may take, with the cells of the target it would see.
 struct Candidate {
     Pose3 pose;

@@ -40,24 +40,48 @@ int nativeWidth(RTCDevice device) {
     return 4;
 }
 
-/// Planes through the origin of rays that stop none of them: those of the surfaces it touches.
-struct TouchedPlanes {
-    float contact = 0;          ///< metres
-    std::vector<Vec3> normals;  ///< unit length
+/// What rounding to float32 moves a corner by in a building, in metres.
+constexpr double kRounding = 5e-6;
 
-    /// True if a hit belongs to such a plane.
-    [[nodiscard]] bool contain(Vec3 hit_normal, Vec3 direction, float distance) const {
+/// Below this cosine between ray and normal (half a degree) float32 no longer tells where a surface
+/// is met to a tenth of a millimetre.
+constexpr float kGrazing = 0.01F;
+
+/// The plane of a triangle as seen from an origin.
+struct Plane {
+    Vec3 normal;    ///< unit length; null for a triangle without area
+    double height;  ///< of the plane over the origin, along the normal
+};
+
+Plane planeOf(const TriangleSoup& soup, std::size_t triangle, Point3 origin) {
+    const Point3 a = soup.corner(triangle, 0);
+    const Vec3 across = cross(soup.corner(triangle, 1) - a, soup.corner(triangle, 2) - a);
+    const double size = length(across);
+    const Vec3 normal = size > 0 ? (1 / size) * across : Vec3{};
+    return {normal, dot(normal, a - origin)};
+}
+
+/// The surfaces that stop no ray of an origin: those seen exactly from their edge, those in contact
+/// with the origin, and those that continue the plane of one in contact.
+struct Passed {
+    const TriangleSoup& soup;
+    Point3 origin;
+    double contact;
+    std::vector<Vec3> touched;  ///< unit normals of the surfaces in contact
+
+    [[nodiscard]] bool contain(std::size_t triangle) const {
         constexpr double kParallel = 1 - 1e-6;  // cosine
-        const double size = length(hit_normal);
-        if (std::fabs(dot(hit_normal, direction)) * distance > contact * size) return false;
-        return std::any_of(normals.begin(), normals.end(), [&](Vec3 normal) {
-            return std::fabs(dot(normal, hit_normal)) >= kParallel * size;
-        });
+        const Plane plane = planeOf(soup, triangle, origin);
+        const double height = std::fabs(plane.height);
+        if (height <= kRounding) return true;
+        return height <= contact && std::any_of(touched.begin(), touched.end(), [&](Vec3 normal) {
+                   return std::fabs(dot(normal, plane.normal)) >= kParallel;
+               });
     }
 };
 
-/// Skips what touched planes contain, for one ray at a time.
-void planeFilter(const RTCFilterFunctionNArguments* args);
+/// Skips what is passed.
+void passFilter(const RTCFilterFunctionNArguments* args);
 
 // One query of Embree 3 or 4, first so that the filter gets it back as its context.
 #if RTC_VERSION_MAJOR >= 4
@@ -65,15 +89,15 @@ constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENT
 struct Query {
     RTCRayQueryContext context;
     RTCIntersectArguments arguments;
-    const TouchedPlanes* skipped;  ///< null: nothing is skipped
+    const Passed* passed;  ///< null: nothing is
 
-    explicit Query(const TouchedPlanes* planes) : skipped(planes) {
+    explicit Query(const Passed* surfaces) : passed(surfaces) {
         rtcInitRayQueryContext(&context);
         rtcInitIntersectArguments(&arguments);
         arguments.context = &context;
         arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-        if (skipped == nullptr) return;
-        arguments.filter = planeFilter;
+        if (passed == nullptr) return;
+        arguments.filter = passFilter;
         arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }
     template <auto kCall, typename Rays>
@@ -86,12 +110,12 @@ struct Query {
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 struct Query {
     RTCIntersectContext context;
-    const TouchedPlanes* skipped;  ///< null: nothing is skipped
+    const Passed* passed;  ///< null: nothing is
 
-    explicit Query(const TouchedPlanes* planes) : skipped(planes) {
+    explicit Query(const Passed* surfaces) : passed(surfaces) {
         rtcInitIntersectContext(&context);
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        if (skipped != nullptr) context.filter = planeFilter;
+        if (passed != nullptr) context.filter = passFilter;
     }
     template <auto kCall, typename Rays>
     void trace(const int* valid, RTCScene scene, Rays* rays) {
@@ -101,17 +125,10 @@ struct Query {
 };
 #endif
 
-void planeFilter(const RTCFilterFunctionNArguments* args) {
-    const TouchedPlanes& skipped = *reinterpret_cast<const Query*>(args->context)->skipped;
-    for (unsigned i = 0; i < args->N; ++i) {
-        const Vec3 normal{RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
-                          RTCHitN_Ng_z(args->hit, args->N, i)};
-        const Vec3 direction{RTCRayN_dir_x(args->ray, args->N, i),
-                             RTCRayN_dir_y(args->ray, args->N, i),
-                             RTCRayN_dir_z(args->ray, args->N, i)};
-        if (skipped.contain(normal, direction, RTCRayN_tfar(args->ray, args->N, i)))
-            args->valid[i] = 0;
-    }
+void passFilter(const RTCFilterFunctionNArguments* args) {
+    const Passed& passed = *reinterpret_cast<const Query*>(args->context)->passed;
+    for (unsigned i = 0; i < args->N; ++i)
+        if (passed.contain(RTCHitN_primID(args->hit, args->N, i))) args->valid[i] = 0;
 }
 
 /// Surfaces whose bounds come near the point of a query.
@@ -120,31 +137,21 @@ bool collect(RTCPointQueryFunctionArguments* args) {
     return false;
 }
 
-/// Distance of a point from a triangle and the triangle's unit normal; nothing for one without
-/// area.
-struct Facing {
-    double distance;
-    Vec3 normal;
-};
-std::optional<Facing> facing(const TriangleSoup& soup, std::size_t triangle, Point3 p) {
-    const Point3 corners[] = {soup.corner(triangle, 0), soup.corner(triangle, 1),
-                              soup.corner(triangle, 2)};
-    const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const double size = length(across);
-    if (size == 0) return std::nullopt;
-    const Vec3 normal = (1 / size) * across;
+/// Distance of a point from the closed triangle with this plane.
+double distanceFrom(const TriangleSoup& soup, std::size_t triangle, const Plane& plane, Point3 p) {
     bool is_over = true;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 side = corners[(i + 1) % 3] - corners[i], way = p - corners[i];
-        if (dot(cross(normal, side), way) < 0) is_over = false;
+        const Point3 corner = soup.corner(triangle, i);
+        const Vec3 side = soup.corner(triangle, (i + 1) % 3) - corner, way = p - corner;
+        if (dot(cross(plane.normal, side), way) < 0) is_over = false;
         const double share = std::clamp(dot(way, side) / dot(side, side), 0.0, 1.0);
-        nearest = std::min(nearest, length(p - (corners[i] + share * side)));
+        nearest = std::min(nearest, length(p - (corner + share * side)));
     }
-    return Facing{is_over ? std::fabs(dot(normal, p - corners[0])) : nearest, normal};
+    return is_over ? std::fabs(plane.height) : nearest;
 }
 
-TouchedPlanes touchedBy(RTCScene scene, const TriangleSoup& soup, Point3 origin, double contact) {
+Passed passedFrom(RTCScene scene, const TriangleSoup& soup, Point3 origin, double contact) {
     RTCPointQuery query{};
     query.x = static_cast<float>(origin.x);
     query.y = static_cast<float>(origin.y);
@@ -154,12 +161,13 @@ TouchedPlanes touchedBy(RTCScene scene, const TriangleSoup& soup, Point3 origin,
     rtcInitPointQueryContext(&context);
     std::vector<unsigned> near;
     rtcPointQuery(scene, &query, &context, collect, &near);
-    TouchedPlanes planes{static_cast<float>(contact), {}};
+    Passed passed{soup, origin, contact, {}};
     for (const unsigned triangle : near) {
-        const auto found = facing(soup, triangle, origin);
-        if (found && found->distance <= contact) planes.normals.push_back(found->normal);
+        const Plane plane = planeOf(soup, triangle, origin);
+        if (plane.normal != Vec3{} && distanceFrom(soup, triangle, plane, origin) <= contact)
+            passed.touched.push_back(plane.normal);
     }
-    return planes;
+    return passed;
 }
 
 template <int kRays, typename RayHit, auto kIntersectCall>
@@ -172,36 +180,17 @@ using Packet4 = PacketOf<4, RTCRayHit4, rtcIntersect4>;
 using Packet8 = PacketOf<8, RTCRayHit8, rtcIntersect8>;
 using Packet16 = PacketOf<16, RTCRayHit16, rtcIntersect16>;
 
-/// Below this cosine between ray and normal (half a degree) float32 no longer tells where a surface
-/// is met to a tenth of a millimetre.
-constexpr float kGrazing = 0.01F;
-
-/// What rounding to float32 moves a corner by in a building, in metres.
-constexpr double kRounding = 5e-6;
-
-/// Where a ray meets a triangle that it grazes, in doubles: on its plane, but within its extent;
-/// one seen exactly from its edge is met at its near end.
-double grazingDistance(const TriangleSoup& soup, std::size_t triangle, Point3 origin,
-                       Vec3 direction) {
-    const Point3 a = soup.corner(triangle, 0), b = soup.corner(triangle, 1),
-                 c = soup.corner(triangle, 2);
-    const auto [near, far] = std::minmax(
-        {dot(a - origin, direction), dot(b - origin, direction), dot(c - origin, direction)});
-    const Vec3 normal = cross(b - a, c - a);
-    const double slope = dot(normal, direction);
-    const double height = dot(normal, a - origin);
-    const bool is_edge_on = std::fabs(height) <= kRounding * length(normal);
-    return std::max(0.0, is_edge_on ? near : std::clamp(height / slope, near, far));
-}
-
-/// One ray again, through what it skips.
-RTCRayHit hitBeyond(RTCScene scene, Point3 origin, Vec3 direction, float reach,
-                    const TouchedPlanes& skipped) {
-    Query query(&skipped);
+/// One ray again, through what it passes; the triangle it meets and where, or nothing.
+struct Met {
+    unsigned triangle;
+    float distance;
+};
+std::optional<Met> meetBeyond(RTCScene scene, const Passed& passed, Vec3 direction, float reach) {
+    Query query(&passed);
     RTCRayHit ray{};
-    ray.ray.org_x = static_cast<float>(origin.x);
-    ray.ray.org_y = static_cast<float>(origin.y);
-    ray.ray.org_z = static_cast<float>(origin.z);
+    ray.ray.org_x = static_cast<float>(passed.origin.x);
+    ray.ray.org_y = static_cast<float>(passed.origin.y);
+    ray.ray.org_z = static_cast<float>(passed.origin.z);
     ray.ray.dir_x = static_cast<float>(direction.x);
     ray.ray.dir_y = static_cast<float>(direction.y);
     ray.ray.dir_z = static_cast<float>(direction.z);
@@ -210,17 +199,29 @@ RTCRayHit hitBeyond(RTCScene scene, Point3 origin, Vec3 direction, float reach,
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     query.trace(scene, &ray);
-    return ray;
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return Met{ray.hit.primID, ray.ray.tfar};
 }
 
-/// The distance of a hit, exact where float32 is not.
-float distanceOf(const TriangleSoup& soup, unsigned triangle, Vec3 hit_normal, float found,
-                 Point3 origin, Vec3 direction, float reach) {
-    const double slope = dot(hit_normal, direction);
-    if (slope * slope >= kGrazing * kGrazing * dot(hit_normal, hit_normal)) return found;
-    const auto exact = static_cast<float>(grazingDistance(soup, triangle, origin, direction));
-    if (exact > reach) return kNoReturn;
-    return exact;
+/// The distance of a hit that needs a closer look: beyond what is passed, and in doubles, but
+/// within the triangle's extent, where the ray grazes it.
+float carefulDistance(RTCScene scene, const Passed& passed, Met met, Vec3 direction, float reach) {
+    if (passed.contain(met.triangle)) {
+        const auto beyond = meetBeyond(scene, passed, direction, reach);
+        if (!beyond) return kNoReturn;
+        met = *beyond;
+    }
+    const Plane plane = planeOf(passed.soup, met.triangle, passed.origin);
+    const double slope = dot(plane.normal, direction);
+    if (std::fabs(slope) >= kGrazing) return met.distance;
+    double near = std::numeric_limits<double>::infinity(), far = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double along = dot(passed.soup.corner(met.triangle, i) - passed.origin, direction);
+        near = std::min(near, along);
+        far = std::max(far, along);
+    }
+    const double exact = std::clamp(plane.height / slope, std::max(near, 0.0), far);
+    return exact <= static_cast<double>(reach) ? static_cast<float>(exact) : kNoReturn;
 }
 
 /// Lanes that need not be set for each packet.
@@ -239,14 +240,13 @@ void setOrigin(Rays& rays, std::size_t width, Point3 origin) {
 }
 
 template <typename Packet>
-void intersectWith(RTCScene scene, const TriangleSoup& soup, Point3 origin,
-                   std::span<const Vec3> directions, std::span<const float> reach,
-                   const TouchedPlanes& touched, std::span<float> distances) {
+void intersectWith(RTCScene scene, const Passed& passed, std::span<const Vec3> directions,
+                   std::span<const float> reach, std::span<float> distances) {
     constexpr std::size_t kWidth = Packet::kWidth;
     Query query(nullptr);
     typename Packet::Hits hits;
     auto& [ray, hit] = hits;
-    setOrigin(ray, kWidth, origin);
+    setOrigin(ray, kWidth, passed.origin);
     for (std::size_t first = 0; first < directions.size(); first += kWidth) {
         alignas(64) std::array<int, kWidth> valid{};
         const std::size_t lanes = std::min(kWidth, directions.size() - first);
@@ -265,18 +265,13 @@ void intersectWith(RTCScene scene, const TriangleSoup& soup, Point3 origin,
             const std::size_t i = first + lane;
             distances[i] = kNoReturn;
             if (hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-            const Vec3 normal{hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]};
-            if (!touched.normals.empty() &&
-                touched.contain(normal, directions[i], ray.tfar[lane])) {
-                const RTCRayHit beyond = hitBeyond(scene, origin, directions[i], reach[i], touched);
-                if (beyond.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-                distances[i] = distanceOf(soup, beyond.hit.primID,
-                                          {beyond.hit.Ng_x, beyond.hit.Ng_y, beyond.hit.Ng_z},
-                                          beyond.ray.tfar, origin, directions[i], reach[i]);
-                continue;
-            }
-            distances[i] = distanceOf(soup, hit.primID[lane], normal, ray.tfar[lane], origin,
-                                      directions[i], reach[i]);
+            const float x = hit.Ng_x[lane], y = hit.Ng_y[lane], z = hit.Ng_z[lane];
+            const float slope = x * ray.dir_x[lane] + y * ray.dir_y[lane] + z * ray.dir_z[lane];
+            const bool grazes = slope * slope < kGrazing * kGrazing * (x * x + y * y + z * z);
+            distances[i] = ray.tfar[lane];
+            if (grazes || !passed.touched.empty())
+                distances[i] = carefulDistance(scene, passed, {hit.primID[lane], distances[i]},
+                                               directions[i], reach[i]);
         }
     }
 }
@@ -296,6 +291,7 @@ void EmbreeScene::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDev
 void EmbreeScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 
 EmbreeScene::EmbreeScene(TriangleSoup soup, int packet_width) : soup_(std::move(soup)) {
+    soup_.finish();
     // Nothing but this line decides how Embree works: no file in the user's home does.
     device_.reset(rtcNewDevice("ignore_config_files=1"));
     throwOnError(device_.get());
@@ -330,13 +326,13 @@ void EmbreeScene::intersect(Point3 origin, std::span<const Vec3> directions,
                             std::span<const float> reach, double contact,
                             std::span<float> distances) const {
     RTCScene const scene = scene_.get();
-    const TouchedPlanes touched = touchedBy(scene, soup_, origin, contact);
+    const Passed passed = passedFrom(scene, soup_, origin, contact);
     if (width_ >= Packet16::kWidth)
-        intersectWith<Packet16>(scene, soup_, origin, directions, reach, touched, distances);
+        intersectWith<Packet16>(scene, passed, directions, reach, distances);
     else if (width_ >= Packet8::kWidth)
-        intersectWith<Packet8>(scene, soup_, origin, directions, reach, touched, distances);
+        intersectWith<Packet8>(scene, passed, directions, reach, distances);
     else
-        intersectWith<Packet4>(scene, soup_, origin, directions, reach, touched, distances);
+        intersectWith<Packet4>(scene, passed, directions, reach, distances);
 }
 
 }  // namespace ispace

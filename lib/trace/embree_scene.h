@@ -21,6 +21,8 @@ namespace ispace {
 class TriangleSoup {
   public:
     std::uint32_t add(Point3 corner);
+    /// Forgets what only add() needs.
+    void finish() { known_.clear(); }
 
     [[nodiscard]] Point3 corner(std::size_t triangle, std::size_t i) const {
         const auto& [x, y, z] = vertices[triangles[triangle][i]];
@@ -44,9 +46,9 @@ class EmbreeScene {
     /// \throws std::runtime_error if Embree fails
     EmbreeScene(TriangleSoup soup, int packet_width);
 
-    /// Distance of the first surface in (0, reach[i]] along unit vector i; +infinity without.
-    /// Surfaces within `contact` of the origin stop nothing, nor do those that continue their
-    /// plane. Neighbouring directions should be alike.
+    /// Distance of the first surface in (0, reach[i]] along unit vector i; +infinity without. A
+    /// surface seen exactly from its edge stops nothing, nor do surfaces within `contact` of the
+    /// origin and those that continue their plane. Neighbouring directions should be alike.
     void intersect(Point3 origin, std::span<const Vec3> directions, std::span<const float> reach,
                    double contact, std::span<float> distances) const;
 

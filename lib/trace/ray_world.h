@@ -18,12 +18,12 @@ constexpr double kContact = 1e-4;
 
 /// An Embree scene of a slice or of the whole mesh.
 ///
-/// One seen exactly from its edge is met at its near end or, where not even rounding gives it a
-/// width, passed. ROBUST, so that no ray slips between surfaces that share an edge
-/// or a corner, and that the packet width changes no range by more than rounding. Coordinates are
-/// kept relative to the middle of the plan: float32 then is exact to micrometres in a building,
-/// wherever its coordinates are counted from. Thread-safe once built; the number of threads changes
-/// nothing.
+/// Surfaces are closed sets without thickness: one seen exactly from its edge (within the rounding
+/// of float32) stops nothing. The scene is ROBUST, so that no ray slips between surfaces that share
+/// an edge or a corner, and that the packet width changes no range by more than rounding.
+/// Coordinates are kept relative to the middle of the plan: float32 then is exact to micrometres in
+/// a building, wherever its coordinates are counted from. Thread-safe once built; the number of
+/// threads changes nothing.
 class RayWorld {
   public:
     /// What a level sensor at `slice.height` meets: rays must start at that height and be level.
@@ -37,7 +37,7 @@ class RayWorld {
     ~RayWorld();
 
     /// Distance to the first surface along each unit vector, up to max_range inclusive; +infinity
-    /// if there is none. Fastest for neighbouring directions (16-wide coherent packets).
+    /// if there is none. Fastest for neighbouring directions (coherent packets).
     /// \pre ranges.size() == directions.size()
     void cast(Point3 origin, std::span<const Vec3> directions, double max_range,
               std::span<float> ranges) const;

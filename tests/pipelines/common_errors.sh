@@ -33,4 +33,4 @@ for tool in $tools; do
 done
 expect_status 1 envc <empty
 expect_status 1 coverage "$data/room.env" - <empty
-[ "$(ls)" = "$(printf '%s\n' empty err folder out short)" ] || fail "left behind: $(ls)"
+[ "$(ls -A)" = "$(printf '%s\n' empty err folder out short)" ] || fail "left behind: $(ls -A)"

@@ -30,7 +30,10 @@ through() {
         awk -v low="$3" '{ if ($1 * 100 < low || $1 > 1) exit 1; n++ } END { exit n != 1 }' ||
         fail "the coverage of $1 is not as expected: $(cat report.json)"
     # The layout says the same as the report.
-    grep '^result' best1.3dm
+    said=$(sed -n 's/^result.*coverage=\([0-9.e-]*\)%.*/\1/p' best1.3dm)
+    sed -n 's/.*"coverage":{"grid":\([0-9.e-]*\).*/\1/p' report.json |
+        awk -v said="$said" '{ d = $1 * 100 - said; if (said == "" || d > 1e-9 || d < -1e-9) exit 1 }' ||
+        fail "the layout says $said%, the report another coverage"
     cat pipe.txt
     cd ..
 }

@@ -16,6 +16,12 @@ arrange room.glb "${placing[@]}" | tee copy.3dm | coverage room.glb - -o dash.pn
 expect_same file.png dash.png "another picture with -"
 expect_same best.3dm copy.3dm "another layout on stdout than with -o"
 
+# Talk goes to stderr, and only if it is wanted.
+arrange room.glb "${placing[@]}" --progress 2>talk | cmp - best.3dm || fail "progress on stdout"
+[ -s talk ] || fail "--progress shows nothing"
+arrange room.glb "${placing[@]}" 2>talk | cmp - best.3dm || fail "another layout"
+[ ! -s talk ] || fail "talk without being asked: $(cat talk)"
+
 # ENV may be the source instead of the compiled form, or left to the layout.
 coverage "$scenes/ispace.env" best.3dm -o source.png >source.txt
 expect_same file.txt source.txt "another report from the source than from the compiled form"
@@ -31,8 +37,12 @@ arrange "$scratch/room.glb" "${placing[@]}" -o sub/best.3dm
 (cd / && coverage "$scratch/sub/best.3dm" >"$scratch/elsewhere.txt")
 expect_same file.txt elsewhere.txt "the environment is not found from another folder"
 ! grep -q "$scratch" sub/best.3dm best.3dm || fail "an absolute path in a layout"
-arrange - "${placing[@]}" <room.glb | grep '^environment' | grep -q 'file=' &&
-    fail "a file name for an environment from stdin"
+for stream in - /dev/stdin; do
+    arrange "$stream" "${placing[@]}" <room.glb >streamed.3dm
+    grep -q '^environment digest=' streamed.3dm ||
+        fail "not a digest alone for an environment from a stream: $(grep '^env' streamed.3dm)"
+    grep -q '^# arrange - ' streamed.3dm || fail "a stream is no - in history: $(sed -n 2p streamed.3dm)"
+done
 
 # Another room than the one the layout was made for is refused.
 expect_error 1 coverage "$scenes/facilities.env" best.3dm

@@ -26,10 +26,12 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
                 "interior grid lines across y (default: 5 per maximum range)", Enters::History);
     line_.count("--deg", "N", o.search.headings, 1, kMostHeadings,
                 "headings a place, 360/N degrees apart, the first 0", Enters::History);
-    addGridOption(line_, o.search.columns, o.search.rows);
+    addGridOption(line_, "--reso", o.search.columns, o.search.rows,
+                  "cells over the limits while searching");
     addAnyEnvironmentOption(line_, o.any_environment);
     addCommonOptions(line_, o.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
+    (void)outputFormat("", o.common.output, {"3dm"});  // refuses the suffix of another format
     if (o.strategy.empty())
         throw UsageError(
             "no strategy given: this version has --strategy grid (see arrange --help)");

@@ -23,7 +23,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                      "stdin unless ENV holds placed sensors. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
-    addGridOption(line, o.columns, o.rows);
+    addGridOption(line, "--grid", o.columns, o.rows, "cells over the limits that figures count");
     line.meters("--height", o.height, 0, 1000, "height at which free floor is judged",
                 Enters::History);
     const auto take_share = [&o](const std::string& text) {

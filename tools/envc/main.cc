@@ -29,14 +29,20 @@ Document readInputs(const EnvcOptions& options) {
         return a.kind == DocumentKind::Environment && b.kind == DocumentKind::Layout;
     });
     Document joined{documents.front().kind, {}, {}};
+    std::vector<Record> environment;  // before layouts are applied
     for (const Document& document : documents) {
         joined.history.insert(joined.history.end(), document.history.begin(),
                               document.history.end());
-        if (document.kind == DocumentKind::Layout)
+        if (document.kind == DocumentKind::Layout) {
+            const bool compiles = options.info || options.format == "glb";
+            if (compiles && !environment.empty() && !options.any_environment)
+                checkDigest(document, environment, "the environment given");
             joined.records = joinRecords(joined.records, document.records);
-        else
+        } else {
             joined.records.insert(joined.records.end(), document.records.begin(),
                                   document.records.end());
+            environment = joined.records;
+        }
     }
     checkIds(joined.records);
     joined.history.push_back(options.history_line);

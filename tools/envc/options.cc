@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "cli/scene_options.h"
 
 namespace ispace {
 
@@ -23,6 +24,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
+    addAnyEnvironmentOption(line, options.any_environment);
     addCommonOptions(line, options.common, "write the model there (default: stdout)");
     line.parse(argc, argv);
 
@@ -30,7 +32,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1)
         throw UsageError("stdin cannot be read twice: only one operand can be -");
     if (options.json && !options.info) throw UsageError("--json is the form of --info: give both");
-    options.format = outputFormat(to, options.common.output, {"glb", "env", "3dm"});
+    if (!options.info)
+        options.format = outputFormat(to, options.common.output, {"glb", "env", "3dm"});
     options.history_line = line.historyLine(options.inputs);
     return options;
 }

@@ -14,6 +14,7 @@ struct EnvcOptions {
     std::vector<std::string> inputs;  ///< "-" if none is given
     std::string format;               ///< glb, env or 3dm
     bool info = false, json = false;
+    bool any_environment = false;
     ImportOptions import;
     std::string history_line;
 };

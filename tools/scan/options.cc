@@ -11,11 +11,12 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
             "ENV holds placed sensors.") {
     ScanToolOptions& o = options_;
     line_.operands(o.operands, 2);
-    line_.choice("--to", o.format, {"jsonl"}, "format of the readings (default jsonl)",
-                 Enters::History);
+    std::string to;
+    line_.choice("--to", to, {"jsonl"}, "format of the readings (default jsonl)", Enters::History);
     addAnyEnvironmentOption(line_, o.any_environment);
     addCommonOptions(line_, o.common, "write the readings there (default: stdout)");
     line_.parse(argc, argv);
+    o.format = outputFormat(to, o.common.output, {"jsonl"});
 }
 
 }  // namespace ispace
