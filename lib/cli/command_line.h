@@ -90,6 +90,9 @@ struct CommonOptions {
 /// Declares -o -q -v -j --seed --progress; `output_help` says what the product is.
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
+/// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).
+void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
+
 /// Keeps the number of worker threads down to `threads` (0: cores of the affinity mask, or
 /// SLURM_CPUS_PER_TASK if that is less) while it lives.
 class ThreadLimit {

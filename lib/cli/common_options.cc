@@ -2,8 +2,11 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -42,7 +45,11 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
     line.parsed("--seed", "N", take_seed, "seed of all random numbers (default 0)",
                 Enters::History);
     line.switchFlag("--progress", "--no-progress", options.progress,
-                    "show progress on stderr (default: if that is a terminal)");
+                    "show progress of long work on stderr (default: if that is a terminal)");
+}
+
+void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
+    if (options.verbose > 0 && !options.quiet) std::cerr << tool << ": " << text << '\n';
 }
 
 struct ThreadLimit::Data {
@@ -71,15 +78,15 @@ std::string outputFormat(const std::string& to, const std::string& output,
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     for (const std::string& format : known)
         if (suffix == '.' + format) return format;
-    std::string list;
-    for (const std::string& format : known) list += (list.empty() ? "" : ", ") + format;
     // A suffix that names another format is a mistake, not a wish for the default.
-    for (const char* other :
-         {".glb", ".env", ".3dm", ".yaml", ".yml", ".json", ".jsonl", ".csv", ".png", ".svg",
-          ".pdf", ".html", ".obj", ".stl", ".ply", ".pcd", ".pgm", ".geojson", ".dxf"})
-        if (suffix == other)
-            throw UsageError(output + ": " + suffix.substr(1) +
-                             " is not written here; known: " + list);
+    constexpr const char* kOthers[] = {
+        ".glb", ".env",  ".3dm", ".yaml", ".yml", ".json", ".jsonl", ".csv",     ".png", ".svg",
+        ".pdf", ".html", ".obj", ".stl",  ".ply", ".pcd",  ".pgm",   ".geojson", ".dxf"};
+    if (std::find(std::begin(kOthers), std::end(kOthers), suffix) != std::end(kOthers)) {
+        std::string list;
+        for (const std::string& format : known) list += (list.empty() ? "" : ", ") + format;
+        throw UsageError(output + ": " + suffix.substr(1) + " is not written here; known: " + list);
+    }
     return known.front();
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -114,6 +115,29 @@ TEST(Mesh, EdgesAndCornersLetNoRayThrough) {
                 EXPECT_NEAR(range, length(way), 1e-4) << i << ' ' << k;
             }
         }
+    }
+}
+
+TEST(Mesh, TiltedRaysPassASheetSeenFromItsEdge) {
+    std::mt19937_64 random(23);
+    std::uniform_real_distribution<double> turn(0, 360), tilts(-30, 30);
+    for (int i = 0; i < 200; ++i) {
+        // A wall from 2 to 4 m along the heading, in a room whose walls are farther away.
+        const Angle heading = Angle::degrees(turn(random)), tilt = Angle::degrees(tilts(random));
+        const Vec2 along = unitVector(heading);
+        std::string wall = "wall height=2.5";
+        for (const double at : {2.0, 4.0})
+            wall += (at == 2.0 ? " from=" : " to=") + formatDouble(0.37 + at * along.x) + ',' +
+                    formatDouble(-0.21 + at * along.y);
+        const Scene scene =
+            testing::scene("ispace size=16,16,9 ceiling=yes\ninside at=0.37,-0.21\n" + wall + "\n");
+        Worlds worlds(scene.environment);
+        const Pose3 pose{{0.37, -0.21, 1.2}, heading, tilt, {}};
+        worlds.prepare(pose);
+        const float range = ahead(worlds, pose);
+        const double floor = tilt.degrees() < 0 ? 1.2 / -sin(tilt) : 1e9;
+        const double beyond = std::min(floor - 1e-4, 4 / cos(tilt));
+        EXPECT_GT(range, beyond) << heading.degrees() << ' ' << tilt.degrees();
     }
 }
 

@@ -11,18 +11,15 @@
 #include "place/sensor_spec.h"
 #include "record/text.h"
 
-#include <iostream>
-
 namespace {
 
 using namespace ispace;
 
 void report(const ArrangeToolOptions& options, const Arrangement& arrangement) {
-    if (options.common.quiet || options.common.verbose == 0) return;
-    std::cerr << "arrange: " << arrangement.placed.size() << " placed, coverage "
-              << formatFixed(arrangement.coverage * 100, 2) << " %, at most "
-              << formatFixed(arrangement.bound * 100, 2)
-              << " % with these candidates on this grid\n";
+    talk(options.common, "arrange",
+         std::to_string(arrangement.placed.size()) + " placed, coverage " +
+             formatFixed(arrangement.coverage * 100, 2) + " %, at most " +
+             formatFixed(arrangement.bound * 100, 2) + " % with these candidates on this grid");
 }
 
 void arrange(const ArrangeCommand& command) {

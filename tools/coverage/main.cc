@@ -31,6 +31,9 @@ void coverage(CoverageToolOptions options) {
         writeAll(options.common.output, drawCoverageMap(input.scene, measured, options.map));
     }
     writeAll("-", options.json ? coverageJson(measured.report) : coverageText(measured.report));
+    talk(options.common, "coverage",
+         std::to_string(measured.seen.size()) + " sensors measured on " +
+             std::to_string(measured.target.grid.size()) + " cells");
     checkRequired(options, measured.report);
 }
 

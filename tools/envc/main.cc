@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/file.h"
+#include "base/number.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
 #include "env/info.h"
@@ -67,7 +68,11 @@ void envc(const EnvcOptions& options) {
         std::erase_if(document.records,
                       [](const Record& record) { return record.keyword() == "environment"; });
         document.kind = DocumentKind::Environment;
-        writeAll(output, writeGlb(sceneOf(document), document));
+        const Scene scene = sceneOf(document);
+        writeAll(output, writeGlb(scene, document));
+        talk(options.common, "envc",
+             std::to_string(scene.records.size()) + " records compiled, indoor area " +
+                 formatFixed(scene.environment.indoor().area(), 2) + " m2");
     } else {
         document.kind = options.format == "env" ? DocumentKind::Environment : DocumentKind::Layout;
         writeAll(output, writeRecordText(document));

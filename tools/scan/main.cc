@@ -32,6 +32,7 @@ void scan(const ScanCommand& command) {
         text.clear();
     }
     output.commit();
+    talk(options.common, "scan", std::to_string(scans.size()) + " scans written");
 }
 
 }  // namespace
