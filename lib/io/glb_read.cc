@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -76,22 +77,19 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     std::optional<std::uint64_t> records;  ///< extras.ispace
     std::vector<View> views;
 
-    bool null() override { return true; }
-    bool boolean(bool /*value*/) override { return true; }
-    bool number_integer(number_integer_t /*value*/) override { return true; }
-    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-    bool string(string_t& /*value*/) override { return true; }
-    bool binary(binary_t& /*value*/) override { return true; }
+    /// Stands for a value that is no whole number from 0 on: beyond any file.
+    static constexpr std::uint64_t kWrong = std::numeric_limits<std::uint64_t>::max();
 
-    bool number_unsigned(number_unsigned_t value) override {
-        if (depth_ == 2 && section_ == "extras" && key_ == "ispace") records = value;
-        if (depth_ == 3 && section_ == "bufferViews" && !views.empty()) {
-            if (key_ == "buffer") views.back().buffer = value;
-            if (key_ == "byteOffset") views.back().offset = value;
-            if (key_ == "byteLength") views.back().length = value;
-        }
-        return true;
+    bool null() override { return take(kWrong); }
+    bool boolean(bool /*value*/) override { return take(kWrong); }
+    bool number_integer(number_integer_t /*value*/) override { return take(kWrong); }
+    bool number_unsigned(number_unsigned_t value) override { return take(value); }
+    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override {
+        return take(kWrong);
     }
+    bool string(string_t& /*value*/) override { return take(kWrong); }
+    bool binary(binary_t& /*value*/) override { return take(kWrong); }
+
     bool key(string_t& name) override {
         (depth_ == 1 ? section_ : key_) = name;
         return true;
@@ -111,6 +109,15 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     std::size_t error_position = 0;
 
   private:
+    bool take(std::uint64_t value) {
+        if (depth_ == 2 && section_ == "extras" && key_ == "ispace") records = value;
+        if (depth_ == 3 && section_ == "bufferViews" && !views.empty()) {
+            if (key_ == "buffer") views.back().buffer = value;
+            if (key_ == "byteOffset") views.back().offset = value;
+            if (key_ == "byteLength") views.back().length = value;
+        }
+        return true;
+    }
     bool open() {
         ++depth_;
         return true;
@@ -140,8 +147,8 @@ Document readGlb(std::string_view bytes, const std::string& name, const Schemas&
              "no ispace records in this glTF file: compile the environment with `envc … -o "
              "room.glb`");
     if (*finder.records >= finder.views.size())
-        fail(name, "damaged: extras.ispace names buffer view " + std::to_string(*finder.records) +
-                       " of " + std::to_string(finder.views.size()));
+        fail(name, "damaged: extras.ispace names none of the " +
+                       std::to_string(finder.views.size()) + " buffer views");
     const Finder::View view = finder.views[*finder.records];
     if (view.buffer != 0 || view.offset > chunks.binary.size() ||
         view.length > chunks.binary.size() - view.offset)

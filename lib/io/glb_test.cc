@@ -237,14 +237,18 @@ TEST(Glb, ForeignAndDamagedFiles) {
                   .find("no ispace records"),
               std::string::npos);
     EXPECT_EQ(errorOf(container(R"({"extras":{"ispace":1},"bufferViews":[{}]})", "")),
-              "room.glb: error: damaged: extras.ispace names buffer view 1 of 1");
-    EXPECT_EQ(
-        errorOf(container(R"({"extras":{"ispace":-1},"bufferViews":[{}]})", "")).substr(0, 36),
-        "room.glb: error: no ispace records i");
+              "room.glb: error: damaged: extras.ispace names none of the 1 buffer views");
+    for (const char* bad : {"-1", "0.5", "\"0\"", "null", "true"})
+        EXPECT_EQ(
+            errorOf(container(
+                std::string(R"({"extras":{"ispace":)") + bad + R"(},"bufferViews":[{}]})", "")),
+            "room.glb: error: damaged: extras.ispace names none of the 1 buffer views");
     const std::string view = R"({"extras":{"ispace":0},"bufferViews":[{"buffer":0,"byteOffset":)";
-    for (const char* bad : {R"(4,"byteLength":8}]})", R"(18446744073709551615,"byteLength":2}]})",
-                            R"(0,"byteLength":18446744073709551615}]})",
-                            R"(18446744073709551612,"byteLength":8}]})", R"(9,"byteLength":0}]})"})
+    for (const char* bad :
+         {R"(4,"byteLength":8}]})", R"(18446744073709551615,"byteLength":2}]})",
+          R"(0,"byteLength":18446744073709551615}]})", R"(18446744073709551612,"byteLength":8}]})",
+          R"(9,"byteLength":0}]})", R"(-5,"byteLength":8}]})", R"(0.7,"byteLength":8}]})",
+          R"("x","byteLength":8}]})", R"(0,"byteLength":-1}]})"})
         EXPECT_EQ(errorOf(container(view + bad, "12345678")),
                   "room.glb: error: damaged: the records lie outside of its 8 bytes of data");
     EXPECT_EQ(errorOf(container("{]", "")).substr(0, 34), "room.glb: error: damaged: bad JSON");
