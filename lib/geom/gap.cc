@@ -24,8 +24,6 @@ struct Closing {
     std::size_t a, b;  // the input lines it joins, a < b
 };
 
-bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-
 /// Each line's pieces without the doubles that overlapping lines leave.
 WeldedLines withoutDoubles(const WeldedLines& lines) {
     std::vector<std::tuple<double, double, double, double, std::size_t>> keys;

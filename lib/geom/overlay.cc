@@ -38,8 +38,6 @@ using Face = Arrangement::Face_handle;
 using Vertex = Arrangement::Vertex_handle;
 using ExactPoint = Arrangement::Point_2;
 
-bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-
 bool lexLess(const Polygon& a, const Polygon& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
                                         [](Point2 p, Point2 q) { return lexLess(p, q); });

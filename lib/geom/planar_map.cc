@@ -15,8 +15,6 @@ namespace ispace {
 
 namespace {
 
-bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-
 /// For each point the one that stands for all within kWeldDistance of it.
 ///
 /// Points are taken from left to right; each joins the nearest standing point in reach or becomes

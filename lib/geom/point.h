@@ -46,6 +46,8 @@ inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 /// through orientation() in predicates.h.
 inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 inline double length(Vec2 v) { return std::hypot(v.x, v.y); }
+/// An order of places without meaning but that it is one: by x, then by y.
+inline bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
 inline double distance(Point2 a, Point2 b) { return length(b - a); }
 /// v turned left by a quarter turn.
 inline Vec2 perpendicular(Vec2 v) { return {-v.y, v.x}; }

@@ -30,8 +30,6 @@ using Curves = CGAL::Constrained_triangulation_plus_2<Delaunay>;
 
 Point2 placeOf(Curves::Vertex_handle vertex) { return {vertex->point().x(), vertex->point().y()}; }
 
-bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-
 /// What removing a vertex costs: the squared distance of the original points, which stay in the
 /// net until the end, from the edge that would replace them. That is the displacement itself, not
 /// the one since the last step. None where it is beyond the tolerance or where that edge would

@@ -36,8 +36,6 @@ using Delaunay =
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-
 std::vector<Point2> distinctVertices(const Region& region) {
     std::vector<Point2> vertices;
     region.forEachEdge([&](const Segment2& e) { vertices.push_back(e.a); });

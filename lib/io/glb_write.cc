@@ -84,10 +84,6 @@ FloatVector gltfFloats(Vec3 v) {
     return floats;
 }
 
-Vec3 crossProduct(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// Triangles with a normal a face: vertices are shared only where the normal is the same.
 struct Surface {
     std::vector<FloatVector> positions, normals;
@@ -100,7 +96,7 @@ Surface surfaceOf(const Mesh& mesh, Point3 origin) {
     for (const auto& triangle : mesh.triangles) {
         std::array<Point3, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.vertices[triangle[i]];
-        const Vec3 normal = crossProduct(corners[1] - corners[0], corners[2] - corners[0]);
+        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
         const double area = length(normal);
         std::array<FloatVector, 3> floats;
         for (std::size_t i = 0; i < 3; ++i) floats[i] = gltfFloats(corners[i] - origin);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/utf8.h"
 #include "io/glb.h"
+#include "record/lexer.h"
 #include "record/text.h"
 #include "record/yaml.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr const char* kWanted = "wanted GLB, `#env 1`, `#3dm 1`, YAML or a ROS map";
 constexpr std::string_view kBlanks = " \t\r\n";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// UTF-8 without control characters other than those of plain text.
 bool isPlainText(std::string_view bytes) {
