@@ -26,7 +26,7 @@ Document read(const std::string& operand) {
 
 bool hasPlacedSensor(const Document& document) {
     return std::any_of(document.records.begin(), document.records.end(), [](const Record& r) {
-        return r.schema().type == RecordType::Placement && r.has("at");
+        return isSensor(r.schema()) && (r.has("at") || r.has("on"));
     });
 }
 

@@ -57,6 +57,14 @@ TEST_F(Operands, AnEnvironmentWithSensorsNeedsNoLayout) {
     EXPECT_EQ(input.scene.lasers.size(), 1U);
 }
 
+TEST_F(Operands, ASensorOnARobotIsPlaced) {
+    writeAll("riding.env", "#env 1\nispace size=4,4\nrobot id=r1 at=1,1\nlaser on=r1\n");
+    const SceneInput input = readScene({{"riding.env"}});
+    EXPECT_FALSE(input.layout);
+    EXPECT_EQ(input.scene.lasers.size(), 1U);
+    EXPECT_EQ(input.scene.robots.size(), 1U);
+}
+
 TEST_F(Operands, TheLayoutNamesItsEnvironmentRelativeToItself) {
     writeLayout("sub/layout.3dm", "environment file=../room.env\n");
     const SceneInput input = readScene({{"sub/layout.3dm"}});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -112,6 +113,14 @@ Body bodyOf(const Record& record) {
     const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
                                      [&](const Shape& s) { return s.keyword == record.keyword(); });
     return shape == std::end(kShapes) ? Body{} : shape->body(record);
+}
+
+double topOf(const Body& body) {
+    constexpr double kLowest = std::numeric_limits<double>::lowest();
+    double top = kLowest;
+    for (const Prism& prism : body.prisms) top = std::max(top, prism.top);
+    for (const Sheet& sheet : body.sheets) top = std::max(top, sheet.top);
+    return top == kLowest ? 0 : top;
 }
 
 Polygon zoneOutline(const Record& record) {

@@ -56,6 +56,9 @@ struct Body {
     std::vector<Plate> plates;
 };
 
+/// Height of the highest prism or sheet; 0 without any.
+double topOf(const Body& body);
+
 /// Greatest distance between a curve and the chords that stand for it, in metres: small enough for
 /// ranges to stay within 1 mm of the curve's for beams that meet it at up to 87 degrees.
 constexpr double kCurveTolerance = 0.00005;

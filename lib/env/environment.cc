@@ -21,13 +21,6 @@ bool isWall(const Record& record) {
     return keyword == "wall" || keyword == "fence" || keyword == "ispace";
 }
 
-double topOf(const Body& body) {
-    double top = 0;
-    for (const Prism& prism : body.prisms) top = std::max(top, prism.top);
-    for (const Sheet& sheet : body.sheets) top = std::max(top, sheet.top);
-    return top;
-}
-
 /// What a record is besides its walls: those follow from the lines of all records, welded.
 Body bodyBesideWalls(const Record& record) {
     if (!isWall(record)) return bodyOf(record);
@@ -60,6 +53,18 @@ const Record* insideRecord(std::span<const Element> elements, Diagnostics& findi
                                                 "); one point tells which room is meant"));
     }
     return inside;
+}
+
+/// Adds what stands anywhere between two heights to a Slice or a Band.
+template <typename Cut>
+void addStanding(std::span<const Element> elements, double bottom, double top, Cut& cut) {
+    const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
+    for (const Element& element : elements) {
+        for (const Sheet& sheet : element.body.sheets)
+            if (stands(sheet)) cut.sheets.push_back(sheet.line);
+        for (const Prism& prism : element.body.prisms)
+            if (stands(prism)) cut.solids.push_back(prism.footprint);
+    }
 }
 
 /// For findings about the file as a whole.
@@ -109,18 +114,19 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
 }
 
 Slice Environment::slice(double height) const {
-    const auto cut = [height](const auto& part) {
-        return part.bottom <= height && height <= part.top;
-    };
     Slice slice;
     slice.height = height;
-    for (const Element& element : elements_) {
-        for (const Sheet& sheet : element.body.sheets)
-            if (cut(sheet)) slice.sheets.push_back(sheet.line);
-        for (const Prism& prism : element.body.prisms)
-            if (cut(prism)) slice.solids.push_back(prism.footprint);
-    }
+    addStanding(elements_, height, height, slice);
     return slice;
+}
+
+Band Environment::band(double bottom, double top) const {
+    assert(bottom <= top);
+    Band band;
+    band.bottom = bottom;
+    band.top = top;
+    addStanding(elements_, bottom, top, band);
+    return band;
 }
 
 std::vector<Region> Environment::freeFloor(double height) const {

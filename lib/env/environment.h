@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "env/band.h"
 #include "env/body.h"
 #include "env/slice.h"
 #include "geom/polygon.h"
@@ -48,6 +49,8 @@ class Environment {
 
     /// What stands at this height (prisms are closed: their top and bottom count).
     [[nodiscard]] Slice slice(double height) const;
+    /// What stands anywhere between the two heights, ends included. \pre bottom <= top
+    [[nodiscard]] Band band(double bottom, double top) const;
     /// Indoor less the solids at this height.
     [[nodiscard]] std::vector<Region> freeFloor(double height) const;
 

@@ -209,6 +209,45 @@ TEST(Environment, SliceCutsWhatStandsAtItsHeight) {
     EXPECT_EQ(lines, 6 + 4);
 }
 
+TEST(Environment, BandHoldsWhatStandsBetweenItsHeights) {
+    const Environment env = environment(
+        "ispace size=6,6,2\n"
+        "wall from=-1,-1 to=1,-1 height=0.1\n"
+        "cube at=2,2,0 size=1,1,0.5\n"
+        "cube at=-2,2,0.8 size=1,1,0.5\n"
+        "floor size=2,2 kind=checker\n");
+    const Band low = env.band(0, 0.22);
+    EXPECT_EQ(low.bottom, 0);
+    EXPECT_EQ(low.top, 0.22);
+    EXPECT_EQ(low.sheets.size(), 5U);
+    ASSERT_EQ(low.solids.size(), 1U);
+    EXPECT_EQ(locate(low.solids[0], {2, 2}), Side::Inside);
+    int lines = 0;
+    low.forEachLine([&](const Segment2&) { ++lines; });
+    EXPECT_EQ(lines, 5 + 4);
+    EXPECT_EQ(env.band(0, 1).solids.size(), 2U);
+    // Between a thing's top and the underside of another; both ends count.
+    EXPECT_EQ(env.band(0.6, 0.7).solids.size(), 0U);
+    EXPECT_EQ(env.band(0.5, 0.7).solids.size(), 1U);
+    EXPECT_EQ(env.band(0.6, 0.8).solids.size(), 1U);
+    EXPECT_EQ(env.band(0.5, 0.8).solids.size(), 2U);
+    EXPECT_EQ(env.band(0.11, 0.2).sheets.size(), 4U);
+    EXPECT_EQ(env.band(2, 3).sheets.size(), 4U);
+    EXPECT_TRUE(env.band(2.01, 3).sheets.empty());
+    EXPECT_TRUE(env.band(-1, -0.01).sheets.empty());
+}
+
+TEST(Environment, ABandOfNoHeightIsTheSlice) {
+    const Environment env = environment(
+        "ispace size=8,8\ndesk at=2,2\ntable at=-2,2\nchair at=1,-2\npillar at=-2,-2 kind=round\n");
+    for (const double height : {0.0, 0.15, 0.42, 0.68, 0.7, 1.0, 2.5, 3.0}) {
+        const Slice slice = env.slice(height);
+        const Band band = env.band(height, height);
+        EXPECT_EQ(band.sheets, slice.sheets) << height;
+        EXPECT_EQ(band.solids, slice.solids) << height;
+    }
+}
+
 TEST(Environment, FreeFloorIsExact) {
     const std::string room = "ispace at=0,0 size=8,6\n";
     const auto free = [&](const std::string& things, double height = kScanHeight) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom only.
 #pragma once
 
 #include <algorithm>

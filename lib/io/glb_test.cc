@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -190,6 +191,44 @@ TEST(Glb, SensorsFaceAlongTheirBeam) {
         EXPECT_NEAR(length(Vec3{left.x - want_left.x, left.y - want_left.y, left.z - want_left.z}),
                     0, 1e-12);
     }
+}
+
+TEST(Glb, RobotsStandAtTheirStart) {
+    const std::string glb = compiled(
+        "#env 1\nispace size=8,8\n"
+        "robot id=box at=2,1 heading=90 size=0.6,0.4,0.3 center=0.1\n"
+        "robot id=twin at=-2,1 size=0.6,0.4,0.3 center=0.1\n"
+        "robot id=round at=0,-2 radius=0.25 height=0.5\n"
+        "laser id=l1 on=box at=0.2,0,0.3\n");
+    const Json json = jsonOf(glb);
+    std::map<std::string, Json> nodes;
+    for (const Json& node : json["nodes"]) nodes[node["name"]] = node;
+    EXPECT_EQ(nodes["box"]["translation"], Json({2.0, 0.0, -1.0}));
+    EXPECT_EQ(nodes["box"]["extras"]["keyword"], "robot");
+    const double half = std::sqrt(0.5);
+    const auto turn = nodes["box"]["rotation"].get<std::array<double, 4>>();
+    EXPECT_NEAR(turn[1], half, 1e-12);  // about glTF's Y
+    EXPECT_NEAR(turn[3], half, 1e-12);
+    EXPECT_EQ(nodes["box"]["mesh"], nodes["twin"]["mesh"]);
+    EXPECT_NE(nodes["box"]["mesh"], nodes["round"]["mesh"]);
+    EXPECT_EQ(nodes["l1"]["translation"][0], 2.0);
+    EXPECT_NEAR(nodes["l1"]["translation"][2].get<double>(), -1.2, 1e-12);
+
+    // In its own frame: the box about its middle, and a nose that stands out in front.
+    Box2 plan;
+    double top = 0;
+    std::vector<Point3> vertices = verticesOf(glb, "twin");
+    for (const Point3& p : vertices) {
+        plan.add(p.onFloor());
+        top = std::max(top, p.z);
+    }
+    EXPECT_NEAR(plan.low.x, -0.2, 1e-6);
+    EXPECT_NEAR(plan.high.x, 0.45, 1e-6);
+    EXPECT_NEAR(plan.low.y, -0.2, 1e-6);
+    EXPECT_NEAR(plan.high.y, 0.2, 1e-6);
+    EXPECT_NEAR(top, 0.3, 1e-6);
+    for (const Point3& p : verticesOf(glb, "round"))
+        EXPECT_TRUE(length(p.onFloor() - Point2()) < 0.25 + 1e-6 || (p.y == 0 && p.x > 0.25));
 }
 
 TEST(Glb, PlansFarFromTheOriginKeepTheirShape) {

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "env/mesh.h"
 #include "io/glb.h"
+#include "io/placed_meshes.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -39,6 +40,7 @@ struct Look {
 };
 
 constexpr Look kSensorLook{"sensor", {0.02, 0.02, 0.03}, 0, 0.5};
+constexpr Look kRobotLook{"robot", {0.45, 0.02, 0.02}, 0, 0.5};
 
 Look lookOf(Material material) {
     switch (material) {
@@ -114,21 +116,6 @@ Surface surfaceOf(const Mesh& mesh, Point3 origin) {
         }
     }
     return surface;
-}
-
-/// Body of a laser in its own frame, optical centre at the origin: a box with a nose that shows
-/// where it faces. Size of a URG-04LX.
-Mesh sensorMesh() {
-    constexpr double kHalf = 0.025, kHalfHeight = 0.035, kNose = 0.05;
-    Mesh mesh;
-    for (const double z : {-kHalfHeight, kHalfHeight})
-        for (const auto& [x, y] :
-             {Point2{-kHalf, -kHalf}, {kHalf, -kHalf}, {kHalf, kHalf}, {-kHalf, kHalf}})
-            mesh.vertices.push_back({x, y, z});
-    mesh.vertices.push_back({kNose, 0, 0});
-    mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {2, 3, 7},
-                      {2, 7, 6}, {3, 0, 4}, {3, 4, 7}, {1, 2, 8}, {2, 6, 8}, {6, 5, 8}, {5, 1, 8}};
-    return mesh;
 }
 
 using Quaternion = std::array<double, 4>;  // x, y, z, w as in glTF
@@ -341,21 +328,46 @@ void addFloor(const Environment& environment, Point3 origin, ModelBuilder& build
     nodes.push_back(builder.addNode(std::move(node)));
 }
 
+/// A mesh in a frame of its own, for nodes that stand somewhere.
+int addPlacedMesh(const std::string& name, const Mesh& body, const Look& look,
+                  ModelBuilder& builder) {
+    tinygltf::Mesh mesh;
+    mesh.name = name;
+    builder.addPrimitive(mesh, surfaceOf(body, Point3()), builder.material(look, false));
+    return builder.addMesh(std::move(mesh));
+}
+
+tinygltf::Node placedNode(const std::string& id, const std::string& keyword, int mesh,
+                          const Pose3& pose, Point3 origin) {
+    tinygltf::Node node = namedNode(id, keyword, mesh);
+    const auto place = gltfAxes(pose.position - origin);
+    const Quaternion rotation = rotationOf(pose);
+    node.translation.assign(place.begin(), place.end());
+    node.rotation.assign(rotation.begin(), rotation.end());
+    return node;
+}
+
 void addLasers(const std::vector<PlacedLaser>& lasers, Point3 origin, ModelBuilder& builder,
                std::vector<int>& nodes) {
     if (lasers.empty()) return;
-    tinygltf::Mesh mesh;
-    mesh.name = "laser";
-    builder.addPrimitive(mesh, surfaceOf(sensorMesh(), Point3()),
-                         builder.material(kSensorLook, false));
-    const int index = builder.addMesh(std::move(mesh));
-    for (const PlacedLaser& laser : lasers) {
-        tinygltf::Node node = namedNode(laser.id, "laser", index);
-        const auto place = gltfAxes(laser.pose.position - origin);
-        const Quaternion rotation = rotationOf(laser.pose);
-        node.translation.assign(place.begin(), place.end());
-        node.rotation.assign(rotation.begin(), rotation.end());
-        nodes.push_back(builder.addNode(std::move(node)));
+    const int mesh = addPlacedMesh("laser", sensorMesh(), kSensorLook, builder);
+    for (const PlacedLaser& laser : lasers)
+        nodes.push_back(builder.addNode(placedNode(laser.id, "laser", mesh, laser.pose, origin)));
+}
+
+void addRobots(const std::vector<PlacedRobot>& robots, Point3 origin, ModelBuilder& builder,
+               std::vector<int>& nodes) {
+    // Robots of the same build share a mesh.
+    std::map<std::array<double, 5>, int> meshes;
+    for (const PlacedRobot& robot : robots) {
+        const RobotModel& model = robot.model;
+        const auto [place, is_new] = meshes.try_emplace(
+            {model.radius, model.length, model.width, model.center, model.height}, -1);
+        if (is_new) place->second = addPlacedMesh("robot", robotMesh(model), kRobotLook, builder);
+        const Pose2& pose = robot.pose;
+        const Pose3 upright{{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+        nodes.push_back(
+            builder.addNode(placedNode(robot.id, "robot", place->second, upright, origin)));
     }
 }
 
@@ -373,6 +385,7 @@ std::string writeGlb(const Scene& scene, const Document& document) {
     addFloor(scene.environment, origin, builder, room.children);
     addElements(scene.environment, origin, builder, room.children);
     addLasers(scene.lasers, origin, builder, room.children);
+    addRobots(scene.robots, origin, builder, room.children);
     return builder.finish(builder.addNode(std::move(room)));
 }
 

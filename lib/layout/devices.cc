@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "base/suggest.h"
 #include "layout/laser.h"
+#include "layout/robot.h"
 #include "layout/schemas.h"
 #include "record/text.h"
 
@@ -15,8 +17,38 @@ namespace {
 
 /// What a device file may hold. A constant, as records point into it.
 const Schemas& deviceSchemas() {
-    static const Schemas schemas({laserDeviceSchema()});
+    static const Schemas schemas({laserDeviceSchema(), robotDeviceSchema()});
     return schemas;
+}
+
+/// Figures must fit each other.
+void checkFigures(const Record& device, Diagnostics& findings) {
+    try {
+        if (device.keyword() == "robot")
+            withFigures(RobotModel(), device);
+        else
+            withFigures(Laser(), device);
+    } catch (const FormatError& error) {
+        findings.add(error);
+    }
+}
+
+std::string unknownModel(const std::string& model, const std::string& keyword,
+                         const DeviceCatalogue& devices) {
+    const std::vector<std::string> known = devices.models(keyword);
+    std::string message = "unknown model `" + model + "`" + didYouMean(model, known);
+    constexpr std::size_t kShort = 12;
+    if (known.empty()) {
+        message += "; the device catalogue has no " + keyword;
+    } else if (known.size() <= kShort) {
+        message += " (known:";
+        for (const std::string& name : known) {
+            message += &name == known.data() ? " " : ", ";
+            message += name;
+        }
+        message += ')';
+    }
+    return message;
 }
 
 std::vector<std::string> deviceFiles(const std::string& folder) {
@@ -42,7 +74,7 @@ DeviceCatalogue DeviceCatalogue::load(const std::string& folder) {
                     findings.add(record.finding("model", "model `" + model + "` stands twice"));
                     continue;
                 }
-                withFigures({}, record);
+                checkFigures(record, findings);
                 catalogue.records_.push_back(std::move(record));
             }
         } catch (const FormatError& error) {
@@ -65,6 +97,27 @@ std::vector<std::string> DeviceCatalogue::models() const {
     names.reserve(records_.size());
     for (const Record& record : records_) names.push_back(record.text("model"));
     return names;
+}
+
+std::vector<std::string> DeviceCatalogue::models(std::string_view keyword) const {
+    std::vector<std::string> names;
+    names.reserve(records_.size());
+    for (const Record& record : records_)
+        if (record.keyword() == keyword) names.push_back(record.text("model"));
+    return names;
+}
+
+const Record* deviceOf(const Record& record, const DeviceCatalogue& devices) {
+    if (!record.has("model")) return nullptr;
+    const std::string& model = record.text("model");
+    const Record* device = devices.find(model);
+    if (device == nullptr)
+        throw FormatError(record.finding("model", unknownModel(model, record.keyword(), devices)));
+    if (device->keyword() != record.keyword())
+        throw FormatError(record.finding(
+            "model",
+            "model `" + model + "` is a " + device->keyword() + ", not a " + record.keyword()));
+    return device;
 }
 
 }  // namespace ispace

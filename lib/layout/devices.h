@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "record/record.h"
@@ -21,9 +22,16 @@ class DeviceCatalogue {
     [[nodiscard]] const Record* find(std::string_view model) const;
     /// All model names, in catalogue order.
     [[nodiscard]] std::vector<std::string> models() const;
+    /// Those of one keyword.
+    [[nodiscard]] std::vector<std::string> models(std::string_view keyword) const;
 
   private:
     std::vector<Record> records_;
 };
+
+/// The device that `model` of a record names, or null where the record has no model.
+/// \throws FormatError for an unknown model (with the nearest name of the record's kind) and for
+///         one of another kind
+const Record* deviceOf(const Record& record, const DeviceCatalogue& devices);
 
 }  // namespace ispace

@@ -39,11 +39,17 @@ const std::string kTail = " source=paper confidence=U\n";
 
 TEST(Devices, ProjectsOwnCatalogueLoads) {
     const std::vector<std::string> models = testing::devices().models();
-    EXPECT_EQ(models, (std::vector<std::string>{"urg-04lx", "utm-30lx"}));
+    EXPECT_EQ(models,
+              (std::vector<std::string>{"urg-04lx", "utm-30lx", "pioneer-2dx", "pioneer-3dx"}));
+    EXPECT_EQ(testing::devices().models("laser"),
+              (std::vector<std::string>{"urg-04lx", "utm-30lx"}));
+    EXPECT_EQ(testing::devices().models("robot"),
+              (std::vector<std::string>{"pioneer-2dx", "pioneer-3dx"}));
+    EXPECT_TRUE(testing::devices().models("desk").empty());
     for (const std::string& model : models) {
         const Record* device = testing::devices().find(model);
         ASSERT_NE(device, nullptr);
-        EXPECT_EQ(device->keyword(), "laser");
+        EXPECT_EQ(device->keyword(), model.starts_with("pioneer") ? "robot" : "laser");
         EXPECT_FALSE(device->text("source").empty());
         EXPECT_EQ(device->text("confidence").size(), 1U);
     }
@@ -74,6 +80,22 @@ TEST_F(DeviceFolder, DoubledModelsAndBadFiguresAreReportedTogether) {
     EXPECT_NE(text.find("model `one` stands twice"), std::string::npos) << text;
     EXPECT_NE(text.find("b.3dm:2:"), std::string::npos) << text;
     EXPECT_NE(text.find("c.3dm:2:"), std::string::npos) << text;
+}
+
+TEST_F(DeviceFolder, EachKindIsCheckedByItsOwnRules) {
+    write("a.3dm", "robot model=fast speed=2 max_speed=1" + kTail + "laser model=near range=3,2" +
+                       kTail + "robot model=near" + kTail);
+    const std::string text = loadFindings();
+    EXPECT_NE(text.find("a.3dm:2:24: error: speed 2 m/s is above max_speed 1 m/s"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("a.3dm:3:"), std::string::npos) << text;
+    write("a.3dm", "laser model=one" + kTail + "robot model=one" + kTail);
+    EXPECT_NE(loadFindings().find("model `one` stands twice"), std::string::npos);
+    write("a.3dm", "robot model=one at=1,2" + kTail);
+    EXPECT_NE(loadFindings().find("at"), std::string::npos);
+    write("a.3dm", "robot model=one\n");
+    EXPECT_NE(loadFindings().find("source"), std::string::npos);
 }
 
 TEST_F(DeviceFolder, DevicesHaveModelSourceAndConfidenceButNoPlace) {

@@ -2,9 +2,9 @@
 #include "layout/laser.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/number.h"
-#include "base/suggest.h"
 #include "env/environment.h"
 
 namespace ispace {
@@ -71,21 +71,6 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
             cause, "the beams cover " + formatDouble(span) + " degrees, more than a full turn"));
 }
 
-std::string unknownModel(const std::string& model, const DeviceCatalogue& devices) {
-    const std::vector<std::string> known = devices.models();
-    std::string message = "unknown model `" + model + "`" + didYouMean(model, known);
-    constexpr std::size_t kShort = 12;
-    if (known.empty()) {
-        message += "; the device catalogue is empty";
-    } else if (known.size() <= kShort) {
-        message += " (known:";
-        for (const std::string& name : known)
-            message += (&name == known.data() ? " " : ", ") + name;
-        message += ")";
-    }
-    return message;
-}
-
 }  // namespace
 
 bool Laser::sees(Angle bearing) const {
@@ -98,30 +83,37 @@ Laser withFigures(Laser base, const Record& record) {
     Diagnostics findings;
     applyRange(base, record, findings);
     applyBeams(base, record, findings);
+    if (record.has("rate")) base.rate = record.number("rate");
     findings.throwIfAny();
     return base;
 }
 
 Laser laserOf(const Record& record, const DeviceCatalogue& devices) {
-    if (!record.has("model")) return withFigures({}, record);
-    const std::string& model = record.text("model");
-    const Record* device = devices.find(model);
-    if (device == nullptr) throw FormatError(record.finding("model", unknownModel(model, devices)));
-    if (device->keyword() != record.keyword())
-        throw FormatError(record.finding(
-            "model",
-            "model `" + model + "` is a " + device->keyword() + ", not a " + record.keyword()));
-    Laser laser = withFigures({}, *device);
-    laser.model = model;
-    return withFigures(std::move(laser), record);
+    Laser base;
+    if (const Record* device = deviceOf(record, devices)) {
+        base = withFigures(Laser(), *device);
+        base.model = record.text("model");
+    }
+    return withFigures(std::move(base), record);
 }
 
 Pose3 poseOf(const Record& record) {
-    const Tuple& at = record.tuple("at");
+    const bool placed = record.has("at");
+    const Tuple at = placed ? record.tuple("at") : Tuple{0, 0};
     return {{at[0], at[1], at.size() > 2 ? at[2] : kScanHeight},
             record.angle("heading"),
             record.angle("tilt"),
             record.angle("roll")};
+}
+
+Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {
+    const Point2 place = world_from_robot * robot_from_sensor.position.onFloor();
+    // Adding 0 makes -0 plain 0.
+    const Angle heading = wrapped(world_from_robot.heading + robot_from_sensor.heading) + Angle();
+    return {{place.x, place.y, robot_from_sensor.position.z},
+            heading,
+            robot_from_sensor.tilt,
+            robot_from_sensor.roll};
 }
 
 }  // namespace ispace

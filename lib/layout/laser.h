@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "geom/pose.h"
@@ -19,6 +21,7 @@ struct Laser {
     double min_range = 0, max_range = 5;
     Angle first = Angle::degrees(-90), step = Angle::degrees(1);
     int beams = 181;
+    double rate = 10;  ///< scans a second
 
     [[nodiscard]] Angle bearing(int beam) const { return first + static_cast<double>(beam) * step; }
     [[nodiscard]] Angle last() const { return bearing(beams - 1); }
@@ -28,12 +31,22 @@ struct Laser {
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// A laser at its place.
+/// What carries a sensor that moves.
+struct Mount {
+    std::size_t robot = 0;    ///< index in Scene::robots
+    Pose3 robot_from_sensor;  ///< z counts from the floor, as the robot's frame lies there
+};
+
+/// A laser at its place; one on a robot where the robot starts.
 struct PlacedLaser {
     std::string id;
     Laser laser;
     Pose3 pose;
+    std::optional<Mount> mount = {};
 };
+
+/// World pose of a sensor on a robot, its heading within (-180, 180].
+Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor);
 
 /// Figures of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
@@ -47,7 +60,8 @@ Laser laserOf(const Record& record, const DeviceCatalogue& devices);
 /// \throws FormatError as laserOf
 Laser withFigures(Laser base, const Record& record);
 
-/// Pose of a `laser` record with `at`; without z it stands at kScanHeight.
+/// Pose that a `laser` record writes; without `at` at 0,0, without z at kScanHeight. With `on` it
+/// is a pose in the frame of what carries the sensor.
 Pose3 poseOf(const Record& record);
 
 }  // namespace ispace

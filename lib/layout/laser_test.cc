@@ -144,15 +144,33 @@ TEST(LaserOf, ModelGivesTheFiguresAndExplicitKeysWin) {
     EXPECT_EQ(laser("model=utm-30lx range=8").max_range, 8);
 }
 
+TEST(LaserOf, RateIsTheModelsElseTen) {
+    EXPECT_EQ(laser("").rate, 10);
+    EXPECT_EQ(laser("model=urg-04lx").rate, 10);
+    EXPECT_EQ(laser("model=utm-30lx").rate, 40);
+    EXPECT_EQ(laser("model=utm-30lx rate=12.5").rate, 12.5);
+    EXPECT_EQ(laser("rate=5Hz").rate, 5);
+    EXPECT_NE(laserFindings("rate=0").find("must be above 0"), std::string::npos);
+    EXPECT_NE(laserFindings("rate=-1"), "");
+    EXPECT_NE(laserFindings("rate=100001"), "");
+}
+
+TEST(LaserOf, AModelOfAnotherKindIsToldApart) {
+    EXPECT_NE(laserFindings("model=pioneer-2dx")
+                  .find("line:1:13: error: model `pioneer-2dx` is a robot, not a laser"),
+              std::string::npos);
+}
+
 TEST(LaserOf, UnknownModelNamesTheNearestAndTheOthers) {
     const std::string text = laserFindings("model=urg-4lx");
     EXPECT_NE(text.find("unknown model `urg-4lx`, did you mean `urg-04lx`?"), std::string::npos)
         << text;
     EXPECT_NE(text.find("utm-30lx"), std::string::npos);
+    EXPECT_EQ(text.find("pioneer"), std::string::npos) << "no laser";
     EXPECT_EQ(text.find("line:1:"), 0U) << text;
     EXPECT_NE(findings([] {
                   return laserOf(record("laser model=x"), DeviceCatalogue());
-              }).find("catalogue is empty"),
+              }).find("the device catalogue has no laser"),
               std::string::npos);
 }
 
@@ -192,6 +210,22 @@ TEST(PoseOf, HeightIsThatOfAStandingSensorIfNotGiven) {
     EXPECT_EQ(tilted.tilt.degrees(), -30);
     EXPECT_EQ(tilted.roll.degrees(), 5);
     EXPECT_FALSE(tilted.isLevel());
+    EXPECT_EQ(poseOf(record("laser on=r1 heading=5")),
+              (Pose3{{0, 0, kScanHeight}, Angle::degrees(5), {}, {}}));
+}
+
+TEST(MountedPose, IsTheRobotsTurnedAndMoved) {
+    const Pose3 local{{0.2, 0.1, 0.3}, Angle::degrees(45), Angle::degrees(-10), Angle::degrees(5)};
+    const Pose3 pose = mountedPose({{1, 2}, Angle::degrees(90)}, local);
+    EXPECT_DOUBLE_EQ(pose.position.x, 0.9);
+    EXPECT_DOUBLE_EQ(pose.position.y, 2.2);
+    EXPECT_EQ(pose.position.z, 0.3);
+    EXPECT_EQ(pose.heading.degrees(), 135);
+    EXPECT_EQ(pose.tilt.degrees(), -10);
+    EXPECT_EQ(pose.roll.degrees(), 5);
+    // Headings stay within half a turn, however often the robot has turned.
+    EXPECT_EQ(mountedPose({{}, Angle::degrees(720 + 170)}, local).heading.degrees(), -145);
+    EXPECT_FALSE(std::signbit(mountedPose({{}, Angle::degrees(-405)}, local).heading.degrees()));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "base/suggest.h"
+#include "env/body.h"
 #include "record/digest.h"
 #include "record/text.h"
 
@@ -13,6 +15,76 @@ namespace {
 
 bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
 
+/// Everything in a scene by its id: what `on` of a sensor may mean.
+class Carriers {
+  public:
+    Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
+        std::size_t robots = 0;
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            const bool is_robot = records[i].keyword() == "robot";
+            things_.emplace(ids[i], Thing{&records[i], robots});
+            if (is_robot) ++robots;
+            if (is_robot || isObject(records[i])) candidates_.push_back(ids[i]);
+        }
+    }
+
+    /// Where a sensor with `on` is. \throws FormatError if that names no carrier
+    [[nodiscard]] PlacedLaser place(const Record& sensor, std::string id, Laser laser) const {
+        const std::string& on = sensor.text("on");
+        const auto found = things_.find(on);
+        if (found == things_.end())
+            throw FormatError(sensor.finding(
+                "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
+        const auto& [record, robot] = found->second;
+        const Pose2 carrier = floorPoseOf(carrierRecord(sensor, *record));
+        Pose3 local = poseOf(sensor);
+        if (record->keyword() == "robot")
+            return {std::move(id), std::move(laser), mountedPose(carrier, local),
+                    Mount{robot, local}};
+        local.position.z += topOf(bodyOf(*record));
+        return {std::move(id), std::move(laser), mountedPose(carrier, local)};
+    }
+
+  private:
+    struct Thing {
+        const Record* record;
+        std::size_t robot;  // index among the robots, if it is one
+    };
+
+    /// Furniture, pillars and the like: they have a top, and stand somewhere.
+    static bool isObject(const Record& record) {
+        const RecordType type = record.schema().type;
+        return type == RecordType::Other || type == RecordType::Infra;
+    }
+
+    static const Record& carrierRecord(const Record& sensor, const Record& record) {
+        if (record.keyword() == "robot" || isObject(record)) return record;
+        throw FormatError(sensor.finding("on", "`on`: `" + sensor.text("on") + "` is a `" +
+                                                   record.keyword() +
+                                                   "`; only robots and objects carry sensors"));
+    }
+
+    std::map<std::string, Thing> things_;
+    std::vector<std::string> candidates_;  // ids, for hints
+};
+
+std::vector<PlacedRobot> resolveRobots(const std::vector<Record>& records,
+                                       const std::vector<std::string>& ids,
+                                       const DeviceCatalogue& devices, Diagnostics& findings) {
+    std::vector<PlacedRobot> robots;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const Record& record = records[i];
+        if (record.keyword() != "robot") continue;
+        try {
+            robots.push_back(
+                {ids[i], robotOf(record, devices), floorPoseOf(record), record.place()});
+        } catch (const FormatError& error) {
+            findings.add(error);
+        }
+    }
+    return robots;
+}
+
 struct Lasers {
     std::vector<PlacedLaser> placed;
     std::vector<PendingLaser> pending;
@@ -21,18 +93,15 @@ struct Lasers {
 Lasers resolveLasers(const std::vector<Record>& records, const std::vector<std::string>& ids,
                      const DeviceCatalogue& devices, Diagnostics& findings) {
     Lasers lasers;
+    const Carriers carriers(records, ids);
     for (std::size_t i = 0; i < records.size(); ++i) {
         const Record& record = records[i];
         if (record.keyword() != "laser") continue;
-        if (record.has("on")) {
-            findings.add(record.finding("on",
-                                        "`on` mounts a sensor on a robot or an object, which this "
-                                        "version does not have; give `at` instead"));
-            continue;
-        }
         try {
             Laser laser = laserOf(record, devices);
-            if (record.has("at")) {
+            if (record.has("on")) {
+                lasers.placed.push_back(carriers.place(record, ids[i], std::move(laser)));
+            } else if (record.has("at")) {
                 lasers.placed.push_back({ids[i], std::move(laser), poseOf(record)});
             } else {
                 lasers.pending.push_back({ids[i], record, std::move(laser)});
@@ -85,6 +154,7 @@ Scene makeScene(const Document& environment, const Document* layout,
     std::erase_if(records, isMeta);
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
+    std::vector<PlacedRobot> robots = resolveRobots(records, ids, devices, findings);
     Lasers lasers = resolveLasers(records, ids, devices, findings);
     Environment room = makeEnvironment(records, ids, findings);
     return {.records = std::move(records),
@@ -92,7 +162,8 @@ Scene makeScene(const Document& environment, const Document* layout,
             .environment = std::move(room),
             .digest = environmentDigest(environment.records),
             .lasers = std::move(lasers.placed),
-            .pending = std::move(lasers.pending)};
+            .pending = std::move(lasers.pending),
+            .robots = std::move(robots)};
 }
 
 std::optional<EnvironmentReference> environmentReference(const Document& layout) {

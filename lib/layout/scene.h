@@ -8,6 +8,7 @@
 #include "env/environment.h"
 #include "layout/devices.h"
 #include "layout/laser.h"
+#include "layout/robot.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -27,8 +28,9 @@ struct Scene {
     std::vector<std::string> ids;       ///< of each record
     Environment environment;            ///< of the joined records
     std::string digest;                 ///< of ENV alone, see environmentDigest
-    std::vector<PlacedLaser> lasers;    ///< with a place, in order
+    std::vector<PlacedLaser> lasers;    ///< with a place, or on what has one, in order
     std::vector<PendingLaser> pending;  ///< without a place, in order
+    std::vector<PlacedRobot> robots;    ///< in order
 };
 
 /// The records of LAYOUT put in the places of those of ENV with the same written id, the others
@@ -36,7 +38,8 @@ struct Scene {
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 
-/// \throws FormatError as Environment does, and for unknown models
+/// \throws FormatError as Environment does, for unknown models, and for sensors on what carries
+///         none
 Scene makeScene(const Document& environment, const Document* layout,
                 const DeviceCatalogue& devices);
 

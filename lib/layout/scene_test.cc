@@ -95,9 +95,75 @@ TEST(MakeScene, DoubledIdWithinOneFileIsAnError) {
     EXPECT_NE(findings([&] { return makeScene(good, &layout, devices()); }), "");
 }
 
-TEST(MakeScene, MountedSensorsAreRefusedAtTheirKey) {
-    const std::string text = sceneFindings(kRoom, "laser on=d at=0,0\n");
-    EXPECT_EQ(text.find("room.3dm:2:10: error: `on`"), 0U) << text;
+TEST(MakeScene, RobotsInOrder) {
+    const Scene made =
+        scene(kRoom + "robot at=1,1\n", "robot id=b model=pioneer-2dx at=2,4 heading=-90\nrobot\n");
+    EXPECT_EQ(made.ids, (std::vector<std::string>{"room", "desk1", "d", "robot1", "b", "robot2"}));
+    ASSERT_EQ(made.robots.size(), 3U);
+    EXPECT_EQ(made.robots[0].id, "robot1");
+    EXPECT_EQ(made.robots[0].model, RobotModel());
+    EXPECT_EQ(made.robots[0].pose, (Pose2{{1, 1}, {}}));
+    EXPECT_EQ(made.robots[1].id, "b");
+    EXPECT_EQ(made.robots[1].model.model, "pioneer-2dx");
+    EXPECT_EQ(made.robots[1].pose, (Pose2{{2, 4}, Angle::degrees(-90)}));
+    EXPECT_EQ(made.robots[1].place.line, 2);
+    EXPECT_EQ(made.robots[2].id, "robot2");
+    EXPECT_EQ(made.robots[2].pose, Pose2());
+    EXPECT_EQ(made.digest, scene(kRoom).digest) << "robots belong to the layout";
+    EXPECT_TRUE(made.lasers.empty());
+}
+
+TEST(MakeScene, SensorsOnRobotsInAnyOrder) {
+    const Scene made = scene(kRoom,
+                             "laser id=a on=r2 at=0.2,0.1 heading=10 tilt=-5\n"
+                             "robot at=1,1\n"
+                             "robot id=r2 at=2,4 heading=90\n"
+                             "laser id=b on=robot1\n"
+                             "laser id=c on=r2 at=0,0,0.5\n");
+    ASSERT_EQ(made.lasers.size(), 3U);
+    EXPECT_TRUE(made.pending.empty());
+    const PlacedLaser& a = made.lasers[0];
+    ASSERT_TRUE(a.mount);
+    EXPECT_EQ(a.mount->robot, 1U);
+    EXPECT_EQ(a.mount->robot_from_sensor,
+              (Pose3{{0.2, 0.1, kScanHeight}, Angle::degrees(10), Angle::degrees(-5), {}}));
+    EXPECT_EQ(a.pose, mountedPose(made.robots[1].pose, a.mount->robot_from_sensor));
+    EXPECT_DOUBLE_EQ(a.pose.position.x, 1.9);
+    EXPECT_DOUBLE_EQ(a.pose.position.y, 4.2);
+    EXPECT_EQ(a.pose.heading.degrees(), 100);
+    const PlacedLaser& b = made.lasers[1];
+    ASSERT_TRUE(b.mount);
+    EXPECT_EQ(b.mount->robot, 0U);
+    EXPECT_EQ(b.pose.position, (Point3{1, 1, kScanHeight}));
+    EXPECT_EQ(made.lasers[2].pose.position, (Point3{2, 4, 0.5}));
+}
+
+TEST(MakeScene, SensorsOnObjectsStandOnTheirTop) {
+    const Scene made =
+        scene(kRoom + "cube id=c at=3,3,0.5 size=1,1,0.4 heading=90\npillar id=p at=7,1 height=2\n",
+              "laser on=d\nlaser on=c at=0.25,0,0.1 heading=-90\nlaser on=p at=0,0,-0.5\n");
+    ASSERT_EQ(made.lasers.size(), 3U);
+    for (const PlacedLaser& laser : made.lasers) EXPECT_FALSE(laser.mount);
+    EXPECT_EQ(made.lasers[0].pose.position.onFloor(), (Point2{5, 4}));
+    EXPECT_DOUBLE_EQ(made.lasers[0].pose.position.z, 0.7 + kScanHeight);
+    EXPECT_EQ(made.lasers[1].pose.position.onFloor(), (Point2{3, 3.25}));
+    EXPECT_DOUBLE_EQ(made.lasers[1].pose.position.z, 1);
+    EXPECT_EQ(made.lasers[1].pose.heading.degrees(), 0);
+    EXPECT_DOUBLE_EQ(made.lasers[2].pose.position.z, 1.5);
+}
+
+TEST(MakeScene, OnMustNameACarrier) {
+    const std::string unknown = sceneFindings(kRoom, "robot id=rover\nlaser on=rovre at=0,0\n");
+    EXPECT_EQ(unknown,
+              "room.3dm:3:10: error: `on`: nothing has the id `rovre`, did you mean `rover`?\n");
+    const std::string chain = sceneFindings(kRoom, "laser id=a on=d\nlaser on=a\n");
+    EXPECT_EQ(chain.find("room.3dm:3:10: error: `on`: `a` is a `laser`"), 0U) << chain;
+    EXPECT_NE(sceneFindings(kRoom, "laser id=a on=a\n"), "");
+    EXPECT_NE(sceneFindings(kRoom, "laser on=room\n").find("is a `ispace`"), std::string::npos);
+    EXPECT_NE(sceneFindings(kRoom + "wall id=w from=0,1 to=1,1\n", "laser on=w\n"), "");
+    // A robot with a finding of its own is there all the same.
+    const std::string one = sceneFindings(kRoom, "robot id=r model=pionee\nlaser on=r\n");
+    EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1) << one;
 }
 
 TEST(MakeScene, FindingsOfSensorsAndRoomComeTogether) {
@@ -140,7 +206,7 @@ TEST(SceneSchemas, EveryKeywordOnceAndIdFirst) {
         ASSERT_FALSE(schema.keys.empty());
         EXPECT_EQ(schema.keys.front().name, "id") << schema.keyword;
     }
-    for (const char* keyword : {"ispace", "desk", "laser", "environment", "result"})
+    for (const char* keyword : {"ispace", "desk", "laser", "robot", "environment", "result"})
         EXPECT_NE(sceneSchemas().find(keyword), nullptr) << keyword;
     EXPECT_EQ(&sceneSchemas(), &sceneSchemas());
 }
@@ -149,12 +215,23 @@ TEST(SceneSchemas, CanonicalFormOfTheDesignsExample) {
     const std::string lines =
         "environment file=room.glb digest=sha256:00\n"
         "laser id=l1 model=urg-04lx at=-0.67,1.45,0.15 heading=-90\n"
+        "laser at=0.2,0 rate=20 on=r1\n"
+        "robot id=r1 model=pioneer-2dx at=0.5,2 heading=-90 size=0.4,0.3 center=0 speed=0.3\n"
         "result coverage=97.4% area=12.5 bound=99% strategy=wall complete=no\n";
     EXPECT_EQ(writeRecordText(layoutDocument(lines)), "#3dm 1\n" + lines);
     // Defaults are left out.
     EXPECT_EQ(
         writeRecordText(layoutDocument("laser tilt=0 roll=0 heading=0\nresult complete=yes\n")),
         "#3dm 1\nlaser\nresult\n");
+    EXPECT_EQ(writeRecordText(layoutDocument("robot at=0,0 heading=0deg radius=25cm\n")),
+              "#3dm 1\nrobot radius=0.25\n");
+}
+
+TEST(SceneSchemas, LasersAreSensorsAndRobotsAreNot) {
+    std::vector<std::string> sensors;
+    for (const Schema& schema : sceneSchemas().all())
+        if (isSensor(schema)) sensors.push_back(schema.keyword);
+    EXPECT_EQ(sensors, std::vector<std::string>{"laser"});
 }
 
 }  // namespace

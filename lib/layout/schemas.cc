@@ -13,6 +13,9 @@ namespace {
 
 /// As in the environment: plans lie within this of the origin, in metres.
 constexpr double kFarthest = 1e6;
+/// Above what any robot is or does: metres, metres a second (a second), degrees a second (a
+/// second).
+constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
 
 KeySpec idKey() { return {.name = "id", .type = KeyType::Word, .help = "name of the record"}; }
 
@@ -60,6 +63,66 @@ void addLaserFigures(std::vector<KeySpec>& keys) {
                     .help = "number of beams",
                     .lower = 1,
                     .upper = kMostBeams});
+    keys.push_back({.name = "rate",
+                    .type = KeyType::Number,
+                    .unit = Unit::Frequency,
+                    .help = "scans a second",
+                    .lower = 0,
+                    .upper = 1e5,
+                    .lower_open = true});
+}
+
+/// A number above 0 without default.
+KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = unit,
+            .help = std::move(help),
+            .lower = 0,
+            .upper = upper,
+            .lower_open = true};
+}
+
+/// As addLaserFigures. Speeds are lengths and angles a second, with the suffixes of those.
+void addRobotFigures(std::vector<KeySpec>& keys) {
+    keys.push_back(positiveKey("radius", Unit::Length,
+                               "of the circle about the centre of rotation that hits things",
+                               kLargest));
+    keys.push_back({.name = "size",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "length,width[,height] of the body; without it a cylinder of radius",
+                    .min_count = 2,
+                    .max_count = 3,
+                    .lower = 0,
+                    .upper = kLargest,
+                    .lower_open = true});
+    keys.push_back({.name = "center",
+                    .type = KeyType::Number,
+                    .unit = Unit::Length,
+                    .help = "how far the middle of the body lies ahead of the centre of rotation",
+                    .lower = -kLargest,
+                    .upper = kLargest});
+    keys.push_back(
+        positiveKey("height", Unit::Length, "height of the body where size gives none", kLargest));
+    keys.push_back(
+        positiveKey("speed", Unit::Length, "metres a second of FORWARD and BACKWARD", kFastest));
+    keys.push_back(
+        positiveKey("rotspeed", Unit::Angle, "degrees a second of LEFT and RIGHT", kFastestTurn));
+    keys.push_back(
+        positiveKey("max_speed", Unit::Length, "greatest speed, metres a second", kFastest));
+    keys.push_back(positiveKey("max_rotspeed", Unit::Angle,
+                               "greatest speed of turning, degrees a second", kFastestTurn));
+    keys.push_back(positiveKey("accel", Unit::Length,
+                               "speeding up and braking, metres a second a second", kFastest));
+    keys.push_back(positiveKey("rotaccel", Unit::Angle,
+                               "the same for turning, degrees a second a second", kFastestTurn));
+}
+
+KeySpec modelKey() {
+    return {.name = "model",
+            .type = KeyType::Word,
+            .help = "device of the catalogue that gives the figures not written"};
 }
 
 Schema laserSchema() {
@@ -68,13 +131,12 @@ Schema laserSchema() {
                   .help = "planar laser range finder; bare: range=0,5 fov=180 step=1",
                   .keys = {}};
     schema.keys.push_back(idKey());
-    schema.keys.push_back({.name = "model",
-                           .type = KeyType::Word,
-                           .help = "device of the catalogue that gives the figures not written"});
+    schema.keys.push_back(modelKey());
     schema.keys.push_back({.name = "at",
                            .type = KeyType::Tuple,
                            .unit = Unit::Length,
-                           .help = "optical centre; height 0.15 without z; left out: to be placed",
+                           .help = "optical centre; height 0.15 without z; left out: to be placed, "
+                                   "or with `on` 0,0",
                            .min_count = 2,
                            .max_count = 3,
                            .lower = -kFarthest,
@@ -85,7 +147,32 @@ Schema laserSchema() {
     schema.keys.push_back(angleKey("roll", "left side up", -180, 180));
     addLaserFigures(schema.keys);
     schema.keys.push_back(
-        {.name = "on", .type = KeyType::Word, .help = "id of what the sensor is mounted on"});
+        {.name = "on",
+         .type = KeyType::Word,
+         .help = "id of the robot or object that carries it: `at` and `heading` are in its frame, "
+                 "z counts from the floor or from the object's top"});
+    return schema;
+}
+
+Schema robotSchema() {
+    Schema schema{.keyword = "robot",
+                  .type = RecordType::Placement,
+                  .help = "a robot with two driven wheels; bare: a cylinder of radius 0.3",
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(modelKey());
+    schema.keys.push_back({.name = "at",
+                           .type = KeyType::Tuple,
+                           .unit = Unit::Length,
+                           .help = "centre of rotation x,y at the start",
+                           .default_value = Tuple{0, 0},
+                           .min_count = 2,
+                           .max_count = 2,
+                           .lower = -kFarthest,
+                           .upper = kFarthest});
+    schema.keys.push_back(
+        angleKey("heading", "where it faces at the start, from +x", -kFarthest, kFarthest));
+    addRobotFigures(schema.keys);
     return schema;
 }
 
@@ -130,22 +217,20 @@ Schema resultSchema() {
                   .default_value = true}}};
 }
 
-}  // namespace
-
-std::vector<Schema> layoutSchemas() { return {laserSchema(), environmentSchema(), resultSchema()}; }
-
-Schema laserDeviceSchema() {
-    Schema schema{.keyword = "laser",
+/// The schema of a device file's record: `add_figures` between what it is and who says so.
+Schema deviceSchema(std::string keyword, std::string help,
+                    void (*add_figures)(std::vector<KeySpec>&)) {
+    Schema schema{.keyword = std::move(keyword),
                   .type = RecordType::Placement,
-                  .help = "a planar laser range finder one can buy",
+                  .help = std::move(help),
                   .keys = {}};
     schema.keys.push_back(idKey());
     schema.keys.push_back({.name = "model",
                            .type = KeyType::Word,
-                           .help = "what laser records call it",
+                           .help = "what " + schema.keyword + " records call it",
                            .required = true});
     schema.keys.push_back({.name = "name", .type = KeyType::Text, .help = "maker and type"});
-    addLaserFigures(schema.keys);
+    add_figures(schema.keys);
     schema.keys.push_back({.name = "source",
                            .type = KeyType::Text,
                            .help = "public documents the figures come from",
@@ -157,6 +242,20 @@ Schema laserDeviceSchema() {
                            .required = true});
     return schema;
 }
+
+}  // namespace
+
+std::vector<Schema> layoutSchemas() {
+    return {laserSchema(), robotSchema(), environmentSchema(), resultSchema()};
+}
+
+Schema laserDeviceSchema() {
+    return deviceSchema("laser", "a planar laser range finder one can buy", addLaserFigures);
+}
+
+Schema robotDeviceSchema() { return deviceSchema("robot", "a robot one can buy", addRobotFigures); }
+
+bool isSensor(const Schema& schema) { return schema.keyword == "laser"; }
 
 const Schemas& sceneSchemas() {
     static const Schemas schemas = [] {

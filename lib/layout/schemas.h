@@ -8,12 +8,17 @@
 
 namespace ispace {
 
-/// laser, environment, result.
+/// laser, robot, environment, result.
 std::vector<Schema> layoutSchemas();
 
 /// The `laser` of a device file: the figures of a laser record, with model, source and confidence
 /// required, and without a place.
 Schema laserDeviceSchema();
+/// The same for a `robot`.
+Schema robotDeviceSchema();
+
+/// True for the keywords of what sees: what arrange places, and scan and coverage read.
+bool isSensor(const Schema& schema);
 
 /// Every keyword of `.env` and `.3dm`: environmentSchemas() and layoutSchemas(). A constant.
 const Schemas& sceneSchemas();

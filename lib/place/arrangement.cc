@@ -92,7 +92,7 @@ std::vector<PendingLaser> sensorsToPlace(const Scene& scene, const std::vector<R
     std::vector<Record> records = scene.records;
     std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
     for (const Record& record : added) {
-        for (const char* key : {"at", "heading"})
+        for (const char* key : {"at", "heading", "on"})
             if (record.has(key))
                 throw UsageError("a sensor to be arranged has no place yet: leave out `" +
                                  std::string(key) + '`');

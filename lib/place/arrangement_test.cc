@@ -124,6 +124,33 @@ TEST(Arrangement, SensorsAlreadyPlacedCount) {
     EXPECT_EQ(rest.placed[0].pose, both.placed[1].pose);
 }
 
+TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
+    const std::string kept =
+        "robot id=r1 at=2,2 heading=-90 max_speed=1\n"
+        "laser id=own at=0.1,0 range=2 on=r1\n"
+        "laser id=top range=2 on=d1\n";
+    const Document layout = layoutFrom(kept + "laser id=todo range=3\n");
+    const Scene scene = makeScene(environmentDocument(), &layout, DeviceCatalogue());
+    ASSERT_EQ(scene.pending.size(), 1U);
+    const auto sensors = sensorsToPlace(scene, {}, DeviceCatalogue());
+    SilentProgress progress;
+    ArrangeOptions options;
+    options.x = options.y = 3;
+    const Arrangement arrangement = arrangeOnGrid(scene, sensors, options, progress);
+    const std::string text =
+        writeRecordText(layoutDocument(parts(scene), &layout, sensors, arrangement));
+    EXPECT_NE(text.find(kept), std::string::npos) << text;
+
+    // What they see counts, and the result is what coverage measures.
+    const Document written = readRecordText(text, "best.3dm", sceneSchemas());
+    const Scene again = makeScene(environmentDocument(), &written, DeviceCatalogue());
+    Worlds worlds(again.environment);
+    EXPECT_EQ(measureCoverage(again, worlds, 100, 100, kScanHeight).report.coverage.grid,
+              arrangement.coverage);
+    ASSERT_EQ(again.lasers.size(), 3U);
+    EXPECT_EQ(again.robots.size(), 1U);
+}
+
 TEST(Arrangement, TiltedSensorsArePlacedToo) {
     const Scene scene = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
     const auto sensors = sensorsToPlace(scene, specs("laser,tilt=10,range=4"), DeviceCatalogue());
@@ -152,6 +179,7 @@ TEST(Arrangement, RefusesIdsThatAreTakenAndPlacesThatAreGiven) {
     EXPECT_THROW(sensorsToPlace(scene, specs("laser,id=d1"), DeviceCatalogue()), UsageError);
     EXPECT_THROW(sensorsToPlace(scene, specs("laser,at=1,1"), DeviceCatalogue()), UsageError);
     EXPECT_THROW(sensorsToPlace(scene, specs("laser,heading=30"), DeviceCatalogue()), UsageError);
+    EXPECT_THROW(sensorsToPlace(scene, specs("laser,on=d1"), DeviceCatalogue()), UsageError);
     std::vector<Record> twice = specs("laser,id=a");
     twice.push_back(twice.front());
     EXPECT_THROW(sensorsToPlace(scene, twice, DeviceCatalogue()), UsageError);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/sensor_spec.h"
 
+#include <utility>
+
 #include "base/error.h"
 #include "base/number.h"
 #include "base/suggest.h"
+#include "layout/schemas.h"
 
 namespace ispace {
 
@@ -36,18 +39,33 @@ std::vector<std::string> settings(const std::vector<std::string>& pieces) {
     return joined;
 }
 
+/// What `--sensor` can name: devices first, then bare kinds.
+std::vector<std::string> knownSensors(const Schemas& schemas, const DeviceCatalogue& devices) {
+    std::vector<std::string> known, kinds;
+    for (const Schema& schema : schemas.all()) {
+        if (!isSensor(schema)) continue;
+        kinds.push_back(schema.keyword);
+        for (std::string& model : devices.models(schema.keyword)) known.push_back(std::move(model));
+    }
+    known.insert(known.end(), kinds.begin(), kinds.end());
+    return known;
+}
+
+UsageError unknownSensor(const std::string& model, const Schemas& schemas,
+                         const DeviceCatalogue& devices) {
+    const std::vector<std::string> known = knownSensors(schemas, devices);
+    std::string list;
+    for (const std::string& name : known) list.append(list.empty() ? "" : ", ").append(name);
+    return UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) +
+                      " (known: " + list + ")");
+}
+
 Record recordFor(const std::string& model, const Schemas& schemas, const DeviceCatalogue& devices) {
     const Schema* const kind = schemas.find(model);
-    if (kind != nullptr && kind->type == RecordType::Placement) return Record(*kind);
+    if (kind != nullptr && isSensor(*kind)) return Record(*kind);
     const Record* const device = devices.find(model);
-    if (device == nullptr) {
-        std::vector<std::string> known = devices.models();
-        known.emplace_back("laser");
-        std::string list;
-        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-        throw UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) +
-                         " (known: " + list + ")");
-    }
+    if (device == nullptr || !isSensor(device->schema()))
+        throw unknownSensor(model, schemas, devices);
     Record record(*schemas.find(device->keyword()));
     record.set("model", Value(model));
     return record;

@@ -54,6 +54,11 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
     EXPECT_NE(errorOf(""), "");
     EXPECT_NE(errorOf("desk"), "") << "furniture is no sensor";
     EXPECT_NE(errorOf("result"), "");
+    for (const char* robot : {"robot", "pioneer-2dx"}) {
+        const std::string message = errorOf(robot);
+        EXPECT_EQ(message.find("unknown sensor"), 0U) << message;
+        EXPECT_NE(message.find("(known: urg-04lx, utm-30lx, laser)"), std::string::npos) << message;
+    }
 }
 
 }  // namespace

@@ -35,6 +35,15 @@ std::vector<Vec3> beamDirections(const PlacedLaser& sensor) {
     return directions;
 }
 
+/// Surfaces in the blind zone give no return, and hide what lies behind them all the same.
+void applyBlindZone(const Laser& laser, std::vector<float>& ranges) {
+    // As float32, as max_range is: a surface exactly at min_range is seen.
+    const auto blind = static_cast<float>(laser.min_range);
+    for (float& range : ranges) {
+        if (range < blind) range = std::numeric_limits<float>::infinity();
+    }
+}
+
 }  // namespace
 
 std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
@@ -47,22 +56,56 @@ std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
 Scan castScan(const RayWorld& world, const PlacedLaser& sensor) {
     Scan scan;
     scan.ranges = castBeams(world, sensor);
-    // As float32, as max_range is: a surface exactly at min_range is seen.
-    const auto blind = static_cast<float>(sensor.laser.min_range);
-    for (float& range : scan.ranges) {
-        if (range < blind) range = std::numeric_limits<float>::infinity();
-    }
+    applyBlindZone(sensor.laser, scan.ranges);
     return scan;
 }
 
-std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors) {
+Scan castScan(const RayWorld& world, const PlacedLaser& sensor, const MovingBodies& bodies) {
+    const Laser& laser = sensor.laser;
+    const std::vector<Vec3> directions = beamDirections(sensor);
+    Scan scan;
+    scan.ranges.resize(directions.size());
+    world.cast(sensor.pose.position, directions, laser.max_range, scan.ranges);
+    const std::uint32_t own =
+        sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody;
+    bodies.shorten(sensor.pose, laser.first, laser.step, directions, laser.max_range, own,
+                   scan.ranges);
+    applyBlindZone(laser, scan.ranges);
+    return scan;
+}
+
+std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors,
+                            const MovingBodies& bodies) {
     for (const PlacedLaser& sensor : sensors) worlds.prepare(sensor.pose);
     const Worlds& ready = worlds;
     std::vector<Scan> scans(sensors.size());
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
-        scans[i] = castScan(ready.at(sensors[i].pose), sensors[i]);
+        scans[i] = castScan(ready.at(sensors[i].pose), sensors[i], bodies);
     });
     return scans;
+}
+
+MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {
+    MovingBody body;
+    body.pose = {pose * Point2{model.center, 0}, pose.heading};
+    if (model.length > 0) {
+        body.half_length = model.length / 2;
+        body.half_width = model.width / 2;
+    } else {
+        body.radius = model.radius;
+    }
+    body.top = model.height;
+    body.owner = owner;
+    return body;
+}
+
+std::vector<MovingBody> robotBodies(std::span<const PlacedRobot> robots) {
+    std::vector<MovingBody> bodies;
+    bodies.reserve(robots.size());
+    for (const PlacedRobot& robot : robots)
+        bodies.push_back(
+            robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
+    return bodies;
 }
 
 double sliceArea(const Laser& laser, std::span<const float> ranges) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "layout/laser.h"
+#include "layout/robot.h"
+#include "trace/moving_bodies.h"
 #include "trace/worlds.h"
 
 namespace ispace {
@@ -26,8 +28,16 @@ std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor);
 /// What the sensor reads: castBeams with the blind zone applied.
 Scan castScan(const RayWorld& world, const PlacedLaser& sensor);
 
+/// The same with bodies in the way; those of the robot that carries the sensor are not.
+Scan castScan(const RayWorld& world, const PlacedLaser& sensor, const MovingBodies& bodies);
+
 /// One scan of each sensor, in order, shared out over all cores.
-std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors);
+std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors,
+                            const MovingBodies& bodies = {});
+
+/// The bodies of robots at their poses; each is owned by the index of its robot.
+std::vector<MovingBody> robotBodies(std::span<const PlacedRobot> robots);
+MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
 
 /// Eq. (4.4) of the thesis over all beams: sum of step * pi * dist^2 / 360 with no return counted
 /// as max_range. `ranges` as of castBeams.

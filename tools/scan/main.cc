@@ -20,7 +20,8 @@ void scan(const ScanCommand& command) {
         throw FormatError({displayName(input.layout_operand), 0, 0,
                            "no placed sensor: give one `at=x,y`, or let arrange place it"});
     Worlds worlds(scene.environment);
-    const std::vector<Scan> scans = castScans(worlds, scene.lasers);
+    const MovingBodies bodies(robotBodies(scene.robots));
+    const std::vector<Scan> scans = castScans(worlds, scene.lasers, bodies);
 
     History history = input.layout ? input.layout->history : History();
     history.push_back(command.historyLine(input.named));

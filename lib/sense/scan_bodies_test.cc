@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scans with robots in the way.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "layout/test_layout.h"
+#include "sense/scan.h"
+
+namespace ispace {
+namespace {
+
+const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
+
+/// What the sensors of a scene read with its robots at their start.
+std::vector<Scan> scansOf(const Scene& scene) {
+    Worlds worlds(scene.environment);
+    return castScans(worlds, scene.lasers, MovingBodies(robotBodies(scene.robots)));
+}
+
+std::vector<Scan> scansOf(const std::string& layout) {
+    return scansOf(testing::scene(kRoom, layout));
+}
+
+TEST(RobotBody, IsABoxAboutItsMiddleOrACylinder) {
+    RobotModel model;
+    model.length = 0.44;
+    model.width = 0.38;
+    model.center = -0.04;
+    model.height = 0.22;
+    const MovingBody box = robotBody(model, {{1, 2}, Angle::degrees(90)}, 3);
+    EXPECT_EQ(box.pose, (Pose2{{1, 1.96}, Angle::degrees(90)}));
+    EXPECT_EQ(box.half_length, 0.22);
+    EXPECT_EQ(box.half_width, 0.19);
+    EXPECT_EQ(box.radius, 0);
+    EXPECT_EQ(box.bottom, 0);
+    EXPECT_EQ(box.top, 0.22);
+    EXPECT_EQ(box.owner, 3U);
+    const MovingBody round = robotBody(RobotModel(), {{1, 2}, {}}, 0);
+    EXPECT_EQ(round.radius, 0.3);
+    EXPECT_EQ(round.half_length, 0);
+}
+
+TEST(ScanOfRobots, ALevelLaserSeesTheFaceOfTheBody) {
+    const auto scans = scansOf(
+        "laser at=1,3 heading=0\n"
+        "laser at=1,3,0.22\n"
+        "laser at=1,3,0.23\n"
+        "robot model=pioneer-2dx at=4,3\n"
+        "robot at=1,5 radius=0.25\n");
+    // Its back is at 4 - 0.04 - 0.22, the round one lies to the left.
+    EXPECT_FLOAT_EQ(scans[0].ranges[90], 2.74F);
+    EXPECT_FLOAT_EQ(scans[0].ranges[180], 1.75F);
+    EXPECT_EQ(scans[0].ranges[0], 3);
+    // At its top it is seen, above it the wall behind is out of range.
+    EXPECT_FLOAT_EQ(scans[1].ranges[90], 2.74F);
+    EXPECT_TRUE(std::isinf(scans[2].ranges[90]));
+}
+
+TEST(ScanOfRobots, ATiltedLaserSeesThemFromAbove) {
+    const auto scans = scansOf("laser at=4,3,1.22 tilt=-90\nrobot at=4,3 height=0.22 radius=0.3\n");
+    EXPECT_FLOAT_EQ(scans[0].ranges[90], 1);
+}
+
+TEST(ScanOfRobots, OnesOwnRobotIsNotSeen) {
+    const auto scans = scansOf(
+        "robot id=r1 at=2,3\n"
+        "robot id=r2 at=5,3 heading=180\n"
+        "laser on=r1 at=0.1,0\n"
+        "laser on=r2\n"
+        "laser at=2.1,3\n");
+    EXPECT_FLOAT_EQ(scans[0].ranges[90], 2.6F);  // r2
+    EXPECT_FLOAT_EQ(scans[1].ranges[90], 2.7F);  // r1
+    EXPECT_FLOAT_EQ(scans[2].ranges[90], 0.2F);  // from within r1
+}
+
+TEST(ScanOfRobots, TheBlindZoneIsAppliedLast) {
+    // What it hides hides what lies behind it all the same.
+    const auto scans =
+        scansOf("laser at=1,3 range=1,8\nlaser at=1,3 range=0.5,8\nrobot at=2,3 radius=0.5\n");
+    EXPECT_TRUE(std::isinf(scans[0].ranges[90]));
+    EXPECT_EQ(scans[1].ranges[90], 0.5F);
+    EXPECT_EQ(scans[0].ranges[0], 3);
+}
+
+TEST(ScanOfRobots, WithoutBodiesNothingChanges) {
+    const Scene scene = testing::scene(kRoom + "desk at=3,3\n", "laser at=1,3\nrobot at=2,3\n");
+    Worlds worlds(scene.environment);
+    const std::vector<Scan> plain = castScans(worlds, scene.lasers);
+    const PlacedLaser& sensor = scene.lasers[0];
+    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor).ranges);
+    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor, {}).ranges);
+    EXPECT_NE(plain[0].ranges, scansOf(scene)[0].ranges);
+}
+
+TEST(ScanOfRobots, SameForAnyNumberOfThreads) {
+    std::string layout;
+    for (int i = 0; i < 40; ++i) {
+        const std::string x = std::to_string(1 + i % 7), y = std::to_string(1 + i % 5);
+        layout.append("robot at=").append(x).append(",").append(y).append(" radius=0.1\n");
+        layout.append("laser on=robot").append(std::to_string(i + 1)).append("\n");
+    }
+    const Scene scene = testing::scene(kRoom, layout);
+    const std::vector<Scan> many = scansOf(scene);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    const std::vector<Scan> one = scansOf(scene);
+    ASSERT_EQ(many.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(many[i].ranges, one[i].ranges);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geom/box.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// An upright box or cylinder that moves about on the floor: what rays see of robots and people.
+struct MovingBody {
+    Pose2 pose;                              ///< of its middle
+    double half_length = 0, half_width = 0;  ///< of a box, along and across the heading
+    double radius = 0;                       ///< of a cylinder; 0: a box
+    double bottom = 0, top = 0;              ///< closed: both heights count
+    std::uint32_t owner = 0;                 ///< whose sensors do not see it
+
+    /// Of the smallest circle about its middle that holds it.
+    [[nodiscard]] double reach() const;
+    /// Distance along the ray to where it first meets the surface, +infinity if it does not. From
+    /// inside that is where it leaves. \pre direction is a unit vector
+    [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
+};
+
+/// Finds what is near on the floor: a uniform grid over the places of moving things, made anew by
+/// counting sort, O(n + cells), whenever they have moved. Cells are about as many as things (at
+/// most 2 n + 1), and no smaller than the widest of them.
+class FloorGrid {
+  public:
+    /// `reach`: how far the widest thing extends from its place. \pre places are finite
+    void rebuild(std::span<const Point2> places, double reach);
+    /// Calls visit(index) for all things that may extend into the box, in no useful order but a
+    /// fixed one, each once.
+    template <typename Visit>
+    void forEachNear(const Box2& box, Visit visit) const;
+    [[nodiscard]] bool empty() const { return indices_.empty(); }
+
+  private:
+    [[nodiscard]] std::size_t cellOf(double offset, std::size_t count) const;
+
+    Box2 box_;
+    double size_ = 1, reach_ = 0;
+    std::size_t columns_ = 1, rows_ = 1;
+    std::vector<std::uint32_t> first_ = {0, 0}, indices_;
+};
+
+/// The bodies of one moment, for rays. Nothing of the environment is touched when they move.
+class MovingBodies {
+  public:
+    static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+
+    MovingBodies() = default;
+    explicit MovingBodies(std::vector<MovingBody> bodies);
+    /// Takes new bodies, or new places of the old ones. \pre `bodies` are not those in here
+    void rebuild(std::span<const MovingBody> bodies);
+    [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
+
+    /// Shortens the ranges of a fan of rays to the bodies in their way: ray k has bearing
+    /// first + k * step in the plane of `sensor` and direction directions[k]. Bodies of `own` are
+    /// left out. \pre directions.size() == ranges.size()
+    void shorten(const Pose3& sensor, Angle first, Angle step, std::span<const Vec3> directions,
+                 double max_range, std::uint32_t own, std::span<float> ranges) const;
+
+  private:
+    void index();
+
+    std::vector<MovingBody> bodies_;
+    std::vector<Point2> places_;  // of the bodies; kept for its memory
+    FloorGrid grid_;
+};
+
+template <typename Visit>
+void FloorGrid::forEachNear(const Box2& box, Visit visit) const {
+    if (indices_.empty() || box.empty()) return;
+    const std::size_t left = cellOf(box.low.x - reach_ - box_.low.x, columns_);
+    const std::size_t right = cellOf(box.high.x + reach_ - box_.low.x, columns_);
+    const std::size_t low = cellOf(box.low.y - reach_ - box_.low.y, rows_);
+    const std::size_t high = cellOf(box.high.y + reach_ - box_.low.y, rows_);
+    for (std::size_t row = low; row <= high; ++row) {
+        // The cells of a row lie behind each other.
+        const std::uint32_t begin = first_[row * columns_ + left];
+        const std::uint32_t end = first_[row * columns_ + right + 1];
+        for (std::uint32_t i = begin; i < end; ++i) visit(std::size_t{indices_[i]});
+    }
+}
+
+}  // namespace ispace
