@@ -70,6 +70,11 @@ std::string formatDouble(double value) {
     return std::string(shortest(value, buffer));
 }
 
+void appendDouble(std::string& out, double value) {
+    std::array<char, kBuffer> buffer;
+    out += shortest(value, buffer);
+}
+
 std::string formatFloat(float value) {
     std::array<char, kBuffer> buffer;
     return std::string(shortest(value, buffer));

@@ -22,6 +22,8 @@ std::optional<std::int64_t> parseInteger(std::string_view text);
 /// otherwise with exponent; -0 is "0".
 /// \pre value is finite
 std::string formatDouble(double value);
+/// Appends formatDouble(value); for long lists.
+void appendDouble(std::string& out, double value);
 
 /// The same for a float: shortest text that reads back as the same float.
 std::string formatFloat(float value);

@@ -103,6 +103,19 @@ TEST(FormatFloat, RoundTripsAndIsShorterThanTheDouble) {
     }
 }
 
+TEST(AppendDouble, AppendsWhatFormatDoubleGives) {
+    std::mt19937_64 random(5);
+    std::string appended = "x";
+    appendDouble(appended, -0.0);
+    EXPECT_EQ(appended, "x0");
+    for (int i = 0; i < 1000; ++i) {
+        const double value = anyFinite(random);
+        appended = "x";
+        appendDouble(appended, value);
+        ASSERT_EQ(appended, "x" + formatDouble(value));
+    }
+}
+
 TEST(FormatFixed, HasNoMinusZero) {
     EXPECT_EQ(formatFixed(1.25, 3), "1.250");
     EXPECT_EQ(formatFixed(-0.0001, 3), "0.000");

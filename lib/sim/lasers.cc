@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/lasers.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+constexpr __int128 kSecond = 1'000'000'000;
+
+}  // namespace
+
+Periods::Periods(double rate) {
+    constexpr double kDecimals = 1e9;
+    // Slower than a period in three hundred years.
+    if (rate < 1e-10) return;
+    const auto decimal = static_cast<std::int64_t>(std::llround(rate * kDecimals));
+    if (static_cast<double>(decimal) / kDecimals == rate) {
+        numerator_ = decimal;
+        denominator_ = kSecond * kSecond;
+        return;
+    }
+    int exponent = 0;
+    const double mantissa = std::frexp(rate, &exponent);
+    constexpr int kBits = std::numeric_limits<double>::digits;
+    numerator_ = static_cast<std::int64_t>(std::ldexp(mantissa, kBits));
+    denominator_ = kSecond;
+    // Up to 2^53 every fraction of two has its shift to the right.
+    denominator_ <<= std::max(0, kBits - exponent);
+    numerator_ <<= std::max(0, exponent - kBits);
+}
+
+std::int64_t Periods::newest(SimTime time) const {
+    return static_cast<std::int64_t>(time.count() * numerator_ / denominator_);
+}
+
+SimTime Periods::begin(std::int64_t k) const {
+    if (numerator_ == 0) return k == 0 ? SimTime(0) : SimTime::max();
+    const __int128 begin = (k * denominator_ + numerator_ - 1) / numerator_;
+    constexpr __int128 kMost = std::numeric_limits<SimTime::rep>::max();
+    return SimTime(static_cast<SimTime::rep>(std::min(begin, kMost)));
+}
+
+LaserReader::LaserReader(const Scene& scene)
+    : scene_(&scene), worlds_(scene.environment), due_(scene.lasers.size()) {
+    periods_.reserve(scene.lasers.size());
+    readings_.reserve(scene.lasers.size());
+    for (const PlacedLaser& laser : scene.lasers) {
+        periods_.emplace_back(laser.laser.rate);
+        readings_.push_back({.sensor = laser, .scan = {}});
+        worlds_.prepare(laser.pose);
+    }
+    latest_.reserve(scene.lasers.size());
+    places_.resize(scene.robots.size());
+}
+
+void LaserReader::read(SimTime time, std::span<const Motion> robots) {
+    latest_.clear();
+    for (std::size_t i = 0; i < due_.size(); ++i) {
+        if (due_[i] <= time) latest_.push_back(i);
+    }
+    if (latest_.empty()) return;
+    update(time, robots);
+    const Worlds& worlds = worlds_;
+    tbb::parallel_for(std::size_t{0}, latest_.size(), [&](std::size_t k) {
+        SensorReading& reading = readings_[latest_[k]];
+        reading.scan = castScan(worlds.at(reading.sensor.pose), reading.sensor, bodies_);
+        reading.scan.time = seconds(time);
+        constexpr std::int64_t kLast = std::numeric_limits<int>::max();
+        reading.scan.frame = static_cast<int>(std::min(reading.seq, kLast));
+    });
+}
+
+/// All that does not depend on rays: times, poses, bodies.
+void LaserReader::update(SimTime time, std::span<const Motion> robots) {
+    for (const std::size_t i : latest_) {
+        SensorReading& reading = readings_[i];
+        reading.time = time;
+        reading.seq = periods_[i].newest(time);
+        due_[i] = periods_[i].begin(reading.seq + 1);
+        if (const auto& mount = reading.sensor.mount)
+            reading.sensor.pose = mountedPose(robots[mount->robot].pose, mount->robot_from_sensor);
+    }
+    if (!std::exchange(moved_, false)) return;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        places_[i] =
+            robotBody(scene_->robots[i].model, robots[i].pose, static_cast<std::uint32_t>(i));
+    }
+    bodies_.rebuild(places_);
+}
+
+}  // namespace ispace

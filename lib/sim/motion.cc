@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+/// Seconds: moments nearer to each other are one.
+constexpr double kInstant = 1e-13;
+/// A way to stop that misses its goal by this share is exact but for rounding.
+constexpr double kStopTolerance = 1e-12;
+/// A piece of quadrature turns by at most so many radians, and its rate changes at most so much
+/// (square root of the radians that makes): five points are then good to 1e-14 of the way.
+constexpr double kMostTurn = 0.25, kMostBend = 0.3;
+
+/// A time of constant acceleration.
+struct Phase {
+    double duration, accel;
+    double speed;  // at its end
+};
+
+/// What an axis does from now on: phases, the last of them without end.
+class Profile {
+  public:
+    explicit Profile(double speed) : speed_(speed) {}
+    void rampTo(double speed, double accel) {
+        if (speed == speed_) return;
+        const double duration = std::abs(speed - speed_) / accel;
+        phases_[size_++] = {duration, speed > speed_ ? accel : -accel, speed};
+        speed_ = speed;
+    }
+    void hold(double duration) {
+        if (duration > 0) phases_[size_++] = {duration, 0, speed_};
+    }
+    [[nodiscard]] const Phase& operator[](std::size_t i) const { return phases_[i]; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+
+  private:
+    std::array<Phase, 6> phases_;
+    std::size_t size_ = 0;
+    double speed_;
+};
+
+Profile speedProfile(const Axis& axis, const AxisLimits& limits) {
+    Profile profile(axis.speed);
+    profile.rampTo(std::clamp(axis.goal.value, -limits.max, limits.max), limits.accel);
+    profile.hold(kForever);
+    return profile;
+}
+
+Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
+    const double accel = limits.accel;
+    double left = axis.goal.value, speed = axis.speed;
+    Profile profile(speed);
+    const double to_rest = speed * std::abs(speed) / (2 * accel);
+    const double slack = kStopTolerance * std::max({1.0, std::abs(left), std::abs(to_rest)});
+    if (std::abs(left - to_rest) <= slack) {
+        profile.rampTo(0, accel);
+        profile.hold(kForever);
+        return profile;
+    }
+    // Brake first if it goes the wrong way, or beyond.
+    if (speed != 0 && (speed * left <= 0 || std::abs(to_rest) > std::abs(left))) {
+        profile.rampTo(0, accel);
+        left -= to_rest;
+        speed = 0;
+    }
+    const double sign = left < 0 ? -1 : 1;
+    left = std::abs(left);
+    speed = std::abs(speed);
+    if (speed > limits.top) {
+        profile.rampTo(sign * limits.top, accel);
+        left -= (speed - limits.top) * (speed + limits.top) / (2 * accel);
+        speed = limits.top;
+    }
+    const double peak =
+        std::max(speed, std::min(limits.top, std::sqrt(accel * left + speed * speed / 2)));
+    profile.rampTo(sign * peak, accel);
+    profile.hold((left - (peak * peak - speed * speed / 2) / accel) / peak);
+    profile.rampTo(0, accel);
+    profile.hold(kForever);
+    return profile;
+}
+
+/// An axis on its way through its profile.
+class Run {
+  public:
+    Run(const Axis& axis, const AxisLimits& limits)
+        : profile_(axis.goal.kind == AxisGoal::Kind::Speed ? speedProfile(axis, limits)
+                                                           : distanceProfile(axis, limits)),
+          rest_(profile_[0].duration),
+          speed_(axis.speed),
+          fastest_(std::abs(axis.speed)),
+          came_with_(axis.speed) {}
+
+    /// Seconds until the acceleration changes.
+    [[nodiscard]] double rest() const { return rest_; }
+    [[nodiscard]] double speed() const { return speed_; }
+    [[nodiscard]] double accel() const { return profile_[phase_].accel; }
+    [[nodiscard]] bool atGoal() const { return phase_ + 1 == profile_.size(); }
+    /// How far it goes in a time. \pre time <= rest()
+    [[nodiscard]] double way(double time) const { return time * (speed_ + accel() * time / 2); }
+
+    /// \pre time <= rest()
+    void pass(double time) {
+        const Phase& phase = profile_[phase_];
+        way_ += way(time);
+        path_ += pathOf(time);
+        hardest_ = std::max(hardest_, std::abs(phase.accel));
+        rest_ -= time;
+        if (rest_ <= kInstant) {
+            speed_ = phase.speed;
+            rest_ = profile_[++phase_].duration;
+        } else {
+            speed_ += phase.accel * time;
+        }
+        fastest_ = std::max(fastest_, std::abs(speed_));
+        reverses_ = reverses_ || speed_ * came_with_ < 0;
+        if (speed_ != 0) came_with_ = speed_;
+    }
+
+    /// The axis after all that was passed.
+    [[nodiscard]] Axis after(const Axis& from) const {
+        Axis axis{from.goal, speed_, accel()};
+        if (axis.goal.kind == AxisGoal::Kind::Distance)
+            axis.goal.value = atGoal() ? 0 : axis.goal.value - way_;
+        return axis;
+    }
+    [[nodiscard]] double path() const { return path_; }
+    [[nodiscard]] double fastest() const { return fastest_; }  // of all speeds so far
+    [[nodiscard]] double hardest() const { return hardest_; }  // of all accelerations so far
+    [[nodiscard]] bool reverses() const { return reverses_; }
+
+  private:
+    [[nodiscard]] double pathOf(double time) const {
+        const double end = speed_ + accel() * time;
+        if (speed_ * end >= 0) return std::abs(way(time));
+        return (speed_ * speed_ + end * end) / (2 * std::abs(accel()));
+    }
+
+    Profile profile_;
+    std::size_t phase_ = 0;
+    double rest_, speed_;
+    double way_ = 0, path_ = 0, fastest_, hardest_ = 0;
+    double came_with_;  // the last speed that was not 0
+    bool reverses_ = false;
+};
+
+double sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
+
+/// Displacement while speed and rate of turning (radians) change, in a frame that faces along the
+/// heading of the start.
+Vec2 quadrature(double speed, double accel, double rate, double rate_accel, double time) {
+    constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0,
+                                              0.5384693101056831, 0.9061798459386640};
+    constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
+                                                0.5688888888888889, 0.4786286704993665,
+                                                0.2369268850561891};
+    const double fastest = std::max(std::abs(rate), std::abs(rate + rate_accel * time));
+    const double pieces = std::ceil(std::max(
+        {1.0, fastest * time / kMostTurn, std::sqrt(std::abs(rate_accel)) * time / kMostBend}));
+    const double half = time / pieces / 2;
+    Vec2 sum;
+    for (double piece = 0; piece < pieces; ++piece) {
+        for (std::size_t i = 0; i < kNodes.size(); ++i) {
+            const double t = half * (2 * piece + 1 + kNodes[i]);
+            const double weight = half * kWeights[i] * (speed + accel * t);
+            const double angle = t * (rate + rate_accel * t / 2);
+            sum = sum + weight * Vec2{std::cos(angle), std::sin(angle)};
+        }
+    }
+    return sum;
+}
+
+Vec2 displacement(Angle heading, const Run& drive, const Run& turn, double time) {
+    if (drive.speed() == 0 && drive.accel() == 0) return {};
+    const bool constant = drive.accel() == 0 && turn.accel() == 0;
+    if (constant || (turn.speed() == 0 && turn.accel() == 0)) {
+        // Along the heading in the middle of an arc; a straight way is an arc of no turn.
+        const Angle half = Angle::degrees(turn.way(time) / 2);
+        return drive.way(time) * sinc(half.radians()) * unitVector(heading + half);
+    }
+    const Vec2 local =
+        quadrature(drive.speed(), drive.accel(), Angle::degrees(turn.speed()).radians(),
+                   Angle::degrees(turn.accel()).radians(), time);
+    const Vec2 forward = unitVector(heading);
+    return local.x * forward + local.y * perpendicular(forward);
+}
+
+void setDeviation(Advance& to, const Run& drive, const Run& turn, double duration) {
+    // A motion whose acceleration is at most a strays from an even one by at most a T^2 / 8.
+    const double rate = Angle::degrees(turn.fastest()).radians();
+    const double accel = drive.hardest() + drive.fastest() * rate;
+    to.lag = std::min(accel * duration * duration / 8, to.path);
+    const bool straight = rate == 0 && !drive.reverses();
+    to.bulge = straight ? 0 : std::min(to.lag, to.path / 2);
+}
+
+}  // namespace
+
+MotionLimits limitsOf(const RobotModel& model, double friction) {
+    const double share = 1 - friction;
+    return {{share * model.speed, share * model.max_speed, share * model.accel},
+            {share * model.rotspeed.degrees(), share * model.max_rotspeed.degrees(),
+             share * model.rotaccel.degrees()}};
+}
+
+void Motion::command(const Command& command) {
+    const auto speed_of = [](const Axis& axis) {
+        return axis.goal.kind == AxisGoal::Kind::Speed ? axis.goal : AxisGoal{};
+    };
+    const auto turn_by = [&](double degrees) {
+        drive.goal = {};
+        turn.goal = {AxisGoal::Kind::Distance, degrees};
+        turn_end = wrapped(pose.heading + Angle::degrees(degrees));
+    };
+    const auto drive_by = [&](double metres) {
+        drive.goal = {AxisGoal::Kind::Distance, metres};
+        turn.goal = {};
+    };
+    switch (command.verb) {
+        case Verb::Forward:
+            return drive_by(command.value);
+        case Verb::Backward:
+            return drive_by(-command.value);
+        case Verb::Left:
+            return turn_by(command.value);
+        case Verb::Right:
+            return turn_by(-command.value);
+        case Verb::Speed:
+            turn.goal = speed_of(turn);
+            drive.goal = {AxisGoal::Kind::Speed, command.value};
+            return;
+        case Verb::Rotspeed:
+            drive.goal = speed_of(drive);
+            turn.goal = {AxisGoal::Kind::Speed, command.value};
+            return;
+        case Verb::Stop:
+            drive.goal = turn.goal = {};
+            return;
+    }
+}
+
+bool Motion::arrived() const {
+    const auto rests = [](const Axis& axis) { return axis.speed == 0 && axis.goal.value == 0; };
+    return rests(drive) && rests(turn);
+}
+
+void Motion::halt() { drive = turn = {}; }
+
+Advance advance(const Motion& from, const MotionLimits& limits, const double duration) {
+    Advance to{.motion = from};
+    if (!(limits.drive.accel > 0 && limits.turn.accel > 0)) {
+        to.motion.drive = {.goal = from.drive.goal};
+        to.motion.turn = {.goal = from.turn.goal};
+        return to;
+    }
+    Run drive(from.drive, limits.drive), turn(from.turn, limits.turn);
+    Pose2& pose = to.motion.pose;
+    double left = duration;
+    while (left > 0) {
+        const double time = std::min({left, drive.rest(), turn.rest()});
+        pose.position = pose.position + displacement(pose.heading, drive, turn, time);
+        pose.heading = pose.heading + Angle::degrees(turn.way(time));
+        drive.pass(time);
+        turn.pass(time);
+        left -= time;
+    }
+    to.motion.drive = drive.after(from.drive);
+    to.motion.turn = turn.after(from.turn);
+    const bool turned = from.turn.goal.kind == AxisGoal::Kind::Distance && turn.atGoal();
+    if (turned)
+        pose.heading = from.turn_end;
+    else if (std::abs(pose.heading.degrees()) >= 180)  // as a rule it is not: a remainder is dear
+        pose.heading = wrapped(pose.heading);
+    to.path = drive.path();
+    setDeviation(to, drive, turn, duration);
+    return to;
+}
+
+}  // namespace ispace

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/recorder.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <exception>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "base/file.h"
+#include "base/number.h"
+#include "sense/scan_jsonl.h"
+
+namespace ispace {
+
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr auto kFlushEvery = std::chrono::milliseconds(100);
+constexpr std::size_t kMostPending = std::size_t{1} << 20;  // bytes of a file
+
+[[noreturn]] void fail(const std::string& name, int error) {
+    throw std::system_error(error, std::generic_category(), name);
+}
+
+std::string_view wholeLines(std::string_view text) {
+    return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
+}
+
+/// A file that grows by whole lines.
+class LineFile {
+  public:
+    explicit LineFile(std::string name)
+        : name_(std::move(name)),
+          fd_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+        if (fd_ < 0) fail(name_, errno);
+    }
+    ~LineFile() { ::close(fd_); }
+    LineFile(const LineFile&) = delete;
+    LineFile& operator=(const LineFile&) = delete;
+
+    /// What the next flush writes, up to the last newline.
+    std::string pending;
+
+    /// After an error nothing more is written and each call throws it again: lines behind a gap
+    /// would pass for the whole.
+    void flush() {
+        if (error_ == 0 && !pending.empty()) write();
+        pending.clear();
+        if (error_ != 0) fail(name_, error_);
+    }
+
+  private:
+    void write() {
+        // An exception while a line was put together may have left a piece of one.
+        const std::string_view lines = wholeLines(pending);
+        std::string_view rest = lines;
+        while (!rest.empty()) {
+            const ssize_t n = ::write(fd_, rest.data(), rest.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n < 0) {
+                error_ = errno;
+                takeBackTornLine(lines.substr(0, lines.size() - rest.size()));
+                return;
+            }
+            rest.remove_prefix(static_cast<std::size_t>(n));
+        }
+        size_ += static_cast<off_t>(lines.size());
+    }
+
+    /// A full disk may have taken a piece of the last line. Devices and pipes refuse to be cut and
+    /// have nothing to keep.
+    void takeBackTornLine(std::string_view written) {
+        const off_t whole = size_ + static_cast<off_t>(wholeLines(written).size());
+        static_cast<void>(!::ftruncate(fd_, whole));
+    }
+
+    std::string name_;
+    int fd_;
+    int error_ = 0;
+    off_t size_ = 0;  // bytes of whole lines in the file
+};
+
+/// `folder`, made if it is missing.
+const std::string& madeFolder(const std::string& folder) {
+    if (::mkdir(folder.c_str(), 0777) != 0) {
+        if (errno != EEXIST) fail(folder, errno);
+        struct stat info {};
+        if (::stat(folder.c_str(), &info) != 0) fail(folder, errno);
+        if (!S_ISDIR(info.st_mode)) fail(folder, ENOTDIR);
+    }
+    return folder;
+}
+
+std::string fileIn(const std::string& folder, const char* name) {
+    return (std::filesystem::path(folder) / name).string();
+}
+
+}  // namespace
+
+struct Recorder::Data {
+    explicit Data(const std::string& folder)
+        : robots(fileIn(madeFolder(folder), "robots.csv")),
+          scans(fileIn(folder, "scans.jsonl")),
+          timing(fileIn(folder, "timing.csv")),
+          info(fileIn(folder, "info.csv")) {}
+
+    LineFile robots, scans, timing;
+    std::string info;  // name of a file that is small and always written whole
+    steady_clock::time_point started = steady_clock::now(), flushed = started;
+    // As of the last record, for what the destructor writes.
+    SimTime time{}, step_length{};
+    std::int64_t steps = 0;
+    bool flushed_all = false;  // nothing was recorded since the last flush
+
+    void remember(const World& world);
+    void appendRobots(const World& world);
+    void appendScans(const World& world);
+    void flush();
+};
+
+void Recorder::Data::remember(const World& world) {
+    time = world.time();
+    step_length = world.stepLength();
+    steps = world.steps();
+    flushed_all = false;
+}
+
+void Recorder::Data::appendRobots(const World& world) {
+    const std::string t = formatSimTime(world.time());
+    std::string& out = robots.pending;
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const RobotStatus status = world.status(i);
+        out += t;
+        out += ',';
+        out += world.robots()[i].id;  // a word: nothing to quote
+        for (const double value :
+             {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
+              status.speed, status.rotspeed.degrees(), status.accel, status.rotaccel.degrees()}) {
+            out += ',';
+            appendDouble(out, value);
+        }
+        out += status.stall ? ",1\n" : ",0\n";
+    }
+}
+
+void Recorder::Data::appendScans(const World& world) {
+    for (const std::size_t laser : world.read()) {
+        const SensorReading& reading = world.reading(laser);
+        appendScanLine(scans.pending, reading.sensor, reading.scan);
+        // One step of many lasers may be more than should be held.
+        if (scans.pending.size() > kMostPending) scans.flush();
+    }
+}
+
+void Recorder::Data::flush() {
+    flushed = steady_clock::now();
+    robots.flush();
+    scans.flush();
+    const std::string dt = formatSimTime(step_length);
+    // Commands take effect at every step: the control interval is that of the steps.
+    std::string text = "dt,control_interval,steps\n";
+    text.append(dt).append(",").append(dt).append(",").append(std::to_string(steps)).append("\n");
+    writeAll(info, text);
+    const std::chrono::duration<double> wall = flushed - started;
+    timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
+    timing.pending.append(",").append(std::to_string(steps)).append("\n");
+    timing.flush();
+    flushed_all = true;
+}
+
+Recorder::Recorder(const std::string& folder, const World& world, const History& history,
+                   std::uint64_t seed)
+    : data_(std::make_unique<Data>(folder)) {
+    data_->robots.pending = "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
+    data_->scans.pending = scanHeaderLine(history, seed);
+    data_->timing.pending = "t,wall,steps\n";
+    record(world);
+    // What cannot be written should be known before the run.
+    flush(world);
+}
+
+Recorder::~Recorder() {
+    try {
+        if (!data_->flushed_all) data_->flush();
+    } catch (const std::exception&) {
+        // flush() tells those who ask.
+    }
+}
+
+void Recorder::record(const World& world) {
+    Data& data = *data_;
+    data.remember(world);
+    data.appendRobots(world);
+    data.appendScans(world);
+    const bool much = data.robots.pending.size() > kMostPending;
+    if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
+}
+
+void Recorder::flush(const World& world) {
+    data_->remember(world);
+    data_->flush();
+}
+
+}  // namespace ispace

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/history.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// Records of a run in a folder (thesis, table 3.4):
+///
+/// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
+///   time 0 and after each step
+/// - scans.jsonl: every scan, as `scan` writes them
+/// - info.csv: dt,control_interval,steps
+/// - timing.csv: t,wall,steps at each flush; wall-clock seconds, all that may differ between runs
+///
+/// Bytes go out whole lines at a time, at least every 0.1 s of wall time while record() is called:
+/// a run that is killed leaves whole lines.
+class Recorder {
+  public:
+    /// Makes the folder if it is missing (not its parents) and starts the files anew.
+    /// \throws std::system_error naming the file
+    Recorder(const std::string& folder, const World& world, const History& history,
+             std::uint64_t seed);
+    ~Recorder();
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+    /// The state after a step; flushes if 0.1 s have passed.
+    void record(const World& world);
+    /// Writes out what is pending. \throws std::system_error, also for a full disk
+    void flush(const World& world);
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/sim: the simulated world, its commands, clock and records. Uses sense and below; TBB inside.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ispace {
+
+/// Simulated time, a whole number of nanoseconds from the start of the run.
+using SimTime = std::chrono::nanoseconds;
+
+/// The nearest double, for formats that want seconds as a number.
+double seconds(SimTime time);
+
+/// "2.5", "5ms", "200us": seconds without unit, rounded to nanoseconds. Nothing for what is no
+/// number, negative, or above a hundred years.
+std::optional<SimTime> parseSimTime(std::string_view text);
+
+/// Exact and shortest, in seconds: "0.005".
+std::string formatSimTime(SimTime time);
+
+/// Seconds with three decimals, as the protocol has it: "12.300".
+std::string formatMilliseconds(SimTime time);
+
+}  // namespace ispace

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/simulation.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/suggest.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+using std::chrono::nanoseconds;
+using std::chrono::steady_clock;
+
+constexpr double kFastestRate = 1e6;
+constexpr nanoseconds kLongestLag = std::chrono::milliseconds(250);
+constexpr std::string_view kReal = "real:";
+
+double parseRate(std::string_view text) {
+    const auto rate = parseDouble(text);
+    if (!rate || *rate <= 0 || *rate > kFastestRate) {
+        throw UsageError(excerpt(text) +
+                         " is no rate of the clock, wanted simulated seconds in a "
+                         "second, above 0 and at most " +
+                         formatDouble(kFastestRate) + ", like real:20");
+    }
+    return *rate;
+}
+
+}  // namespace
+
+Clock parseClock(const std::string& text) {
+    if (text == "real") return {Clock::Kind::Real, 1};
+    if (text == "fast") return {Clock::Kind::Fast, 1};
+    if (text == "step") return {Clock::Kind::Step, 1};
+    if (text.starts_with(kReal))
+        return {Clock::Kind::Real, parseRate(std::string_view(text).substr(kReal.size()))};
+    const std::string hint = didYouMean(text, {"real", "fast", "step"});
+    throw UsageError("unknown clock " + excerpt(text) +
+                     (hint.empty() ? ", wanted real, real:RATE, fast or step" : hint));
+}
+
+Simulation::Simulation(World& world, std::vector<TimedCommand> script, Recorder* recorder,
+                       Clock clock, std::optional<SimTime> until)
+    : world_(&world),
+      script_(std::move(script)),
+      recorder_(recorder),
+      clock_(clock),
+      until_(until),
+      paused_(clock.kind == Clock::Kind::Step) {
+    endIfReached();
+}
+
+void Simulation::resume(WallTime now) {
+    assert(clock_.kind != Clock::Kind::Step);
+    paused_ = false;
+    owed_ = 0;
+    startAt(now);
+}
+
+void Simulation::allow(std::int64_t count) {
+    assert(paused_ && count >= 0);
+    // A client that asks for all the steps there are may ask again.
+    owed_ += std::min(count, std::numeric_limits<std::int64_t>::max() - owed_);
+}
+
+void Simulation::endIfReached() {
+    if (until_ && world_->time() >= *until_) finished_ = true;
+}
+
+void Simulation::giveScripted() {
+    for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_)
+        world_->command(script_[next_].robot, script_[next_].command);
+}
+
+void Simulation::step() {
+    giveScripted();
+    world_->step();
+    // Before the next commands: one of motion would wipe out the stall flag of this step.
+    if (recorder_ != nullptr) recorder_->record(*world_);
+    endIfReached();
+    if (!finished_) giveScripted();
+    for (const auto& observer : observers_) observer();
+}
+
+void Simulation::startAt(WallTime now) {
+    started_ = now;
+    start_time_ = world_->time();
+}
+
+WallTime Simulation::dueAt() const {
+    // From the start each time, so that no rounding adds up. 64 bits hold every nanosecond, and a
+    // slow clock may have its next step beyond all of them.
+    constexpr long double kFarthest = 3e18L;  // 95 years
+    const auto simulated = (world_->time() - start_time_ + world_->stepLength()).count();
+    const long double wall =
+        std::ceil(static_cast<long double>(simulated) / static_cast<long double>(clock_.rate));
+    return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kFarthest)));
+}
+
+void Simulation::forgive(WallTime now) {
+    const auto lag = now - dueAt();
+    if (lag <= kLongestLag) return;
+    started_.value() += lag;
+    lost_ += lag;
+}
+
+bool Simulation::isDue(WallTime now) const {
+    if (finished_) return false;
+    if (paused_) return owed_ > 0;
+    return clock_.kind != Clock::Kind::Real || dueAt() <= now;
+}
+
+std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
+    if (finished_) return std::nullopt;
+    const bool follows = clock_.kind == Clock::Kind::Real;
+    if (follows && !started_) startAt(now);
+    if (follows && !paused_) forgive(now);
+    const auto began = steady_clock::now();
+    while (isDue(now)) {
+        if (paused_) --owed_;
+        step();
+        if (steady_clock::now() - began >= budget) break;
+    }
+    if (isDue(now)) return now;
+    if (finished_ || paused_) return std::nullopt;
+    return dueAt();
+}
+
+}  // namespace ispace

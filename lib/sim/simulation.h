@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/recorder.h"
+#include "sim/script.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+using WallTime = std::chrono::steady_clock::time_point;
+
+/// How simulated time follows wall time.
+struct Clock {
+    enum class Kind {
+        Real,  ///< `rate` simulated seconds in a second
+        Fast,  ///< as fast as it goes
+        Step   ///< only when told to
+    } kind = Kind::Real;
+    double rate = 1;
+};
+
+/// `real`, `real:20`, `fast`, `step`. \throws UsageError
+Clock parseClock(const std::string& text);
+
+/// A world and what drives it: script, clock, pause, end.
+class Simulation {
+  public:
+    /// `script` in the order of time; `recorder` may be null; `until`: the last step is the first
+    /// one that ends there or later. What the script has from then on is not given.
+    Simulation(World& world, std::vector<TimedCommand> script, Recorder* recorder, Clock clock,
+               std::optional<SimTime> until);
+
+    [[nodiscard]] World& world() { return *world_; }
+    [[nodiscard]] const World& world() const { return *world_; }
+    [[nodiscard]] const Clock& clock() const { return clock_; }
+
+    /// Adds to what is called after every step, when it is recorded and the script's commands for
+    /// the next one are given: what a server tells its clients. Its subjects must outlive the
+    /// simulation's last step.
+    void onStep(std::function<void()> observer) { observers_.push_back(std::move(observer)); }
+
+    /// With the clock Step always true.
+    [[nodiscard]] bool paused() const { return paused_; }
+    /// Steps allowed and not taken are dropped.
+    void pause() {
+        paused_ = true;
+        owed_ = 0;
+    }
+    /// The same. \pre the clock is not Step
+    void resume(WallTime now);
+    /// Lets a paused world take `count` more steps. \pre paused(), count >= 0
+    void allow(std::int64_t count);
+    /// Steps allowed and not taken yet.
+    [[nodiscard]] std::int64_t owed() const { return owed_; }
+
+    void finish() { finished_ = true; }
+    [[nodiscard]] bool finished() const { return finished_; }
+
+    /// Takes the steps that are due, for about `budget` of wall time (one step at least, if one is
+    /// due). With the clock Real a world that lags more than a quarter of a second gives up what it
+    /// lags: time goes slower instead of faster later.
+    /// \returns when to come back: at once, at a time, or (nothing) when told to
+    std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
+    /// Wall time given up so far because steps took too long.
+    [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
+
+  private:
+    void giveScripted();
+    void step();
+    void endIfReached();
+    /// Lets simulated time follow wall time from here on.
+    void startAt(WallTime now);
+    /// When the next step is due by the clock Real. \pre it is started
+    [[nodiscard]] WallTime dueAt() const;
+    /// Gives up a lag that is too long.
+    void forgive(WallTime now);
+    /// True if a step is to be taken now.
+    [[nodiscard]] bool isDue(WallTime now) const;
+
+    World* world_;
+    std::vector<TimedCommand> script_;
+    std::size_t next_ = 0;  // of script_
+    Recorder* recorder_;
+    Clock clock_;
+    std::optional<SimTime> until_;
+    std::vector<std::function<void()>> observers_;
+    bool paused_ = false, finished_ = false;
+    std::int64_t owed_ = 0;
+    std::optional<WallTime> started_;  // wall time of start_time_
+    SimTime start_time_{};
+    std::chrono::nanoseconds lost_{};
+};
+
+}  // namespace ispace

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/world.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/number.h"
+#include "sim/collision.h"
+#include "sim/friction.h"
+#include "sim/lasers.h"
+#include "sim/motion.h"
+#include "sim/start.h"
+#include "sim/traffic.h"
+
+namespace ispace {
+
+namespace {
+
+/// Ends of commands that were given between two steps are kept up to so many and one a robot: a
+/// client that never lets the world go on must not fill the memory.
+constexpr std::size_t kMostEnds = 4096;
+
+/// Metres around a robot within which obstacles are looked for: farther ones are looked for again
+/// when it has gone as far.
+constexpr double kLookout = 1;
+
+/// What a robot is besides its motion.
+struct Mover {
+    const Obstacles* obstacles = nullptr;
+    MotionLimits limits;
+    double clearance = 0;  // it may go at least as far before it meets an obstacle
+    int ids = 0;           // given so far
+    int running = 0;       // id of the command that comes to an end, or 0
+    bool stall = false;
+    bool blocked = false;  // its move runs into what stands there
+};
+
+std::map<std::string_view, std::size_t> indexById(const auto& things) {
+    std::map<std::string_view, std::size_t> index;
+    for (std::size_t i = 0; i < things.size(); ++i) index.emplace(things[i].id, i);
+    return index;
+}
+
+std::optional<std::size_t> find(const std::map<std::string_view, std::size_t>& index,
+                                std::string_view id) {
+    const auto found = index.find(id);
+    return found == index.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+struct World::Data {
+    Data(const Scene& room, SimTime step_length);
+
+    void propose(std::size_t robot);
+    [[nodiscard]] bool runsIntoThings(std::size_t robot);
+    void settle();
+    void collide(std::size_t robot, std::optional<std::size_t> other);
+    void apply();
+    void end(std::size_t robot, Outcome outcome);
+
+    const Scene* scene;
+    SimTime step_length, time{};
+    std::int64_t steps = 0;
+
+    std::map<std::string_view, std::size_t> robot_index, laser_index;
+    ObstacleSets obstacles;
+    FrictionMap friction;
+    std::vector<std::size_t> order;  // in which moves are settled
+    std::vector<Motion> motions;
+    std::vector<Mover> movers;
+    std::vector<Move> moves;
+    Traffic traffic;
+    bool moved = true;  // since the traffic was looked at
+    LaserReader lasers;
+
+    std::vector<CommandEnd> ends;
+    std::vector<Collision> collisions;
+};
+
+World::Data::Data(const Scene& room, SimTime length)
+    : scene(&room),
+      step_length(length),
+      robot_index(indexById(room.robots)),
+      laser_index(indexById(room.lasers)),
+      obstacles(obstaclesOf(room)),
+      friction(room.environment),
+      order(settlingOrder(room.robots)),
+      motions(room.robots.size()),
+      movers(room.robots.size()),
+      moves(room.robots.size()),
+      traffic(room.robots, order, seconds(length)),
+      lasers(room) {
+    checkStart(room, obstacles);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const PlacedRobot& robot = room.robots[i];
+        motions[i].pose = {robot.pose.position, wrapped(robot.pose.heading)};
+        movers[i].obstacles = &obstacles.at(robot.model.height);
+        movers[i].limits = limitsOf(robot.model, 0);
+        moves[i].from = &motions[i];
+        moves[i].limits = &movers[i].limits;
+        moves[i].duration = seconds(length);
+        moves[i].radius = robot.model.radius;
+    }
+    lasers.read(time, motions);
+}
+
+/// Independent of all other robots.
+void World::Data::propose(std::size_t robot) {
+    Move& move = moves[robot];
+    const Motion& motion = motions[robot];
+    movers[robot].blocked = false;
+    if (motion.arrived()) {
+        move.to = {.motion = motion};
+        return;
+    }
+    if (!friction.empty()) {
+        movers[robot].limits =
+            limitsOf(scene->robots[robot].model, friction.at(motion.pose.position));
+    }
+    move.to = advance(motion, movers[robot].limits, move.duration);
+    movers[robot].blocked = runsIntoThings(robot);
+}
+
+bool World::Data::runsIntoThings(std::size_t robot) {
+    const Move& move = moves[robot];
+    Mover& mover = movers[robot];
+    if (move.to.path == 0) return false;
+    if (mover.clearance < move.to.path) {
+        const double around = move.radius + kLookout;
+        mover.clearance = mover.obstacles->nearest(move.start(), around) - move.radius - kTouch;
+        if (mover.clearance < move.to.path && collides(move, *mover.obstacles)) return true;
+    }
+    mover.clearance -= move.to.path;
+    return false;
+}
+
+/// One after another: each move depends on what became of those before it.
+void World::Data::settle() {
+    const bool any =
+        std::any_of(moves.begin(), moves.end(), [](const Move& move) { return move.to.path > 0; });
+    if (!any) return;
+    if (moved) traffic.rebuild(moves);
+    moved = false;
+    for (const std::size_t robot : order) {
+        if (moves[robot].to.path == 0) continue;
+        if (movers[robot].blocked) {
+            collide(robot, std::nullopt);
+        } else if (const auto other = traffic.hit(moves, robot)) {
+            collide(robot, other);
+        }
+    }
+}
+
+void World::Data::collide(std::size_t robot, std::optional<std::size_t> other) {
+    moves[robot].cancel();
+    movers[robot].stall = true;
+    collisions.push_back({robot, other, time});
+}
+
+void World::Data::apply() {
+    for (const std::size_t robot : order) {
+        Motion& motion = motions[robot];
+        if (moves[robot].to.motion.pose != motion.pose) {
+            moved = true;
+            lasers.robotsMoved();
+        }
+        motion = moves[robot].to.motion;
+        if (movers[robot].running == 0) continue;
+        if (movers[robot].stall) {
+            end(robot, Outcome::Stall);
+        } else if (motion.arrived()) {
+            end(robot, Outcome::Done);
+            motion.halt();
+        }
+    }
+}
+
+void World::Data::end(std::size_t robot, Outcome outcome) {
+    ends.push_back({robot, std::exchange(movers[robot].running, 0), outcome, time});
+}
+
+World::World(const Scene& scene, SimTime step) : data_(std::make_unique<Data>(scene, step)) {
+    assert(kShortestStep <= step && step <= kLongestStep);
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+SimTime World::time() const { return data_->time; }
+SimTime World::stepLength() const { return data_->step_length; }
+std::int64_t World::steps() const { return data_->steps; }
+std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
+std::span<const PlacedLaser> World::lasers() const { return data_->scene->lasers; }
+std::span<const CommandEnd> World::ends() const { return data_->ends; }
+std::span<const Collision> World::collisions() const { return data_->collisions; }
+std::span<const std::size_t> World::read() const { return data_->lasers.latest(); }
+
+std::optional<std::size_t> World::robotNamed(std::string_view id) const {
+    return find(data_->robot_index, id);
+}
+
+std::optional<std::size_t> World::laserNamed(std::string_view id) const {
+    return find(data_->laser_index, id);
+}
+
+RobotStatus World::status(std::size_t robot) const {
+    const Motion& motion = data_->motions[robot];
+    return {.pose = motion.pose,
+            .speed = motion.drive.speed,
+            .rotspeed = Angle::degrees(motion.turn.speed),
+            .accel = motion.drive.accel,
+            .rotaccel = Angle::degrees(motion.turn.accel),
+            .stall = data_->movers[robot].stall};
+}
+
+const SensorReading& World::reading(std::size_t laser) const {
+    return data_->lasers.reading(laser);
+}
+
+std::string World::refusal(std::size_t robot, const Command& command) const {
+    const auto& [id, model, pose, place] = data_->scene->robots[robot];
+    const double value = command.value;
+    if (command.verb == Verb::Speed && !(std::abs(value) <= model.max_speed))
+        return id + " goes at most " + formatDouble(model.max_speed) + " m/s";
+    if (command.verb == Verb::Rotspeed && !(std::abs(value) <= model.max_rotspeed.degrees()))
+        return id + " turns at most " + formatDouble(model.max_rotspeed.degrees()) + " deg/s";
+    if (comesToAnEnd(command.verb) && !(std::isfinite(value) && value >= 0))
+        return std::string(nameOf(command.verb)) + " takes no negative value";
+    return "";
+}
+
+int World::command(std::size_t robot, const Command& command) {
+    assert(refusal(robot, command).empty());
+    Data& data = *data_;
+    Mover& mover = data.movers[robot];
+    if (mover.running != 0) {
+        if (data.ends.size() >= kMostEnds + data.movers.size()) data.ends.erase(data.ends.begin());
+        data.end(robot, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
+    }
+    mover.stall = false;
+    data.motions[robot].command(command);
+    if (comesToAnEnd(command.verb)) mover.running = ++mover.ids;
+    return mover.running;
+}
+
+void World::step() {
+    Data& data = *data_;
+    data.ends.clear();
+    data.collisions.clear();
+    data.time += data.step_length;
+    ++data.steps;
+    for (std::size_t i = 0; i < data.moves.size(); ++i) data.propose(i);
+    data.settle();
+    data.apply();
+    data.lasers.read(data.time, data.motions);
+}
+
+}  // namespace ispace

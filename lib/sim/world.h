@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "layout/scene.h"
+#include "sense/scan.h"
+#include "sim/command.h"
+#include "sim/sim_time.h"
+
+namespace ispace {
+
+/// What can be seen of a robot at one moment. Poses are true ones.
+struct RobotStatus {
+    Pose2 pose;          ///< heading within (-180, 180]
+    double speed = 0;    ///< m/s, forward
+    Angle rotspeed;      ///< a second, counter-clockwise
+    double accel = 0;    ///< m/s^2 at the end of the last step
+    Angle rotaccel;      ///< a second a second
+    bool stall = false;  ///< it ran into something; stays until the next motion command
+};
+
+/// How a command that comes to an end came to it.
+enum class Outcome { Done, Stall, Replaced, Stopped };
+
+/// The end of a command with an id.
+struct CommandEnd {
+    std::size_t robot = 0;
+    int id = 0;
+    Outcome outcome = Outcome::Done;
+    SimTime time{};
+};
+
+/// A robot ran into something and its step was cancelled.
+struct Collision {
+    std::size_t robot = 0;
+    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: what stands there
+    SimTime time{};
+};
+
+/// The latest scan of a laser: `scan.time` is that of the step it was taken at, `scan.frame` counts
+/// its periods from 0.
+struct SensorReading {
+    SimTime time{};
+    std::int64_t seq = 0;
+    PlacedLaser sensor;  ///< with its pose at that time
+    Scan scan;
+};
+
+/// Robots and sensors in an environment, in fixed steps.
+///
+/// A step from t to t + dt: every robot proposes a move by its command from its state at t; moves
+/// are settled in the order of the robots' ids, one that would run into the environment or another
+/// robot is cancelled; sensors that are due at t + dt are read. Commands take effect when they are
+/// given, between steps. The same commands between the same steps give the same world, for any
+/// number of threads.
+///
+/// A robot in motion follows eq. (5.1)-(5.4) of the thesis exactly: accelerations are constant
+/// between the moments where a speed reaches its goal, which may lie within a step.
+class World {
+  public:
+    /// The greatest and least step.
+    static constexpr SimTime kLongestStep = std::chrono::seconds(1);
+    static constexpr SimTime kShortestStep = std::chrono::microseconds(1);
+
+    /// Sensors take their first reading at time 0. The scene must outlive the world.
+    /// \throws FormatError with all findings if a robot stands in something, or in another robot
+    /// \pre kShortestStep <= step <= kLongestStep
+    World(const Scene& scene, SimTime step);
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    [[nodiscard]] SimTime time() const;
+    [[nodiscard]] SimTime stepLength() const;
+    [[nodiscard]] std::int64_t steps() const;  ///< taken so far
+
+    /// Robots and lasers keep the order of the scene.
+    [[nodiscard]] std::span<const PlacedRobot> robots() const;
+    [[nodiscard]] std::span<const PlacedLaser> lasers() const;
+    [[nodiscard]] std::optional<std::size_t> robotNamed(std::string_view id) const;
+    [[nodiscard]] std::optional<std::size_t> laserNamed(std::string_view id) const;
+
+    [[nodiscard]] RobotStatus status(std::size_t robot) const;
+    [[nodiscard]] const SensorReading& reading(std::size_t laser) const;
+
+    /// Why this robot cannot do it ("r1 goes at most 1.6 m/s"), or "".
+    [[nodiscard]] std::string refusal(std::size_t robot, const Command& command) const;
+    /// Gives a command; what was running ends as Replaced (Stopped by Stop). Speed and Rotspeed
+    /// keep the goal the other one has set. \returns the id of a command that comes to an end,
+    /// counting from 1 for each robot; else 0. \pre refusal() is empty
+    int command(std::size_t robot, const Command& command);
+
+    void step();
+
+    /// Commands that ended in the last step or since it, in order: step() begins anew. Those of a
+    /// step come in the order of the robots' ids. A robot never uses an id twice, so a reader looks
+    /// for the robot and the id it waits for: after step() anywhere, after its own command() at the
+    /// end. Of those that commands ended since the last step only the newest few thousand are kept.
+    [[nodiscard]] std::span<const CommandEnd> ends() const;
+    /// Cancelled moves of the last step, in the order of the robots' ids: each began to stall.
+    [[nodiscard]] std::span<const Collision> collisions() const;
+    /// Lasers read in the last step (before the first step: all), ascending.
+    [[nodiscard]] std::span<const std::size_t> read() const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace
