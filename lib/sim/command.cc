@@ -72,8 +72,8 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
     const auto value = parseDouble(text);
     if (!value) {
         return refuse(CommandError::Kind::Syntax,
-                      join({excerpt(text), " is no number, ", facts.name, " takes ",
-                            facts.value_name, " in ", facts.unit, ", without unit"}));
+                      join({excerpt(text), " is no number, ", facts.name, " wants its ",
+                            facts.value_name, " in ", facts.unit, ", like ", facts.name, " 1.5"}));
     }
     if (comesToAnEnd(facts.verb) && *value < 0) {
         return refuse(
@@ -113,8 +113,9 @@ ParsedCommand parseCommand(std::string_view text) {
     const VerbFacts& facts = factsOf(*verb);
     const std::size_t wanted = facts.value_name.empty() ? 1 : 2;
     if (words.size() < wanted) {
-        return refuse(CommandError::Kind::Syntax, join({facts.name, " wants ", facts.value_name,
-                                                        " in ", facts.unit, " behind it"}));
+        return refuse(CommandError::Kind::Syntax,
+                      join({facts.name, " wants its ", facts.value_name, " in ", facts.unit,
+                            ", like ", facts.name, " 1.5"}));
     }
     if (words.size() > wanted) {
         return refuse(CommandError::Kind::Syntax,

@@ -71,11 +71,12 @@ TEST(ParseCommand, HelpsWithUnknownOnes) {
 TEST(ParseCommand, WantsExactlyOneNumber) {
     expectRefused("", Kind::Syntax, "no command, wanted one like FORWARD 1.5");
     expectRefused(" \t", Kind::Syntax, "no command, wanted one like FORWARD 1.5");
-    expectRefused("FORWARD", Kind::Syntax, "FORWARD wants distance in metres behind it");
+    expectRefused("FORWARD", Kind::Syntax,
+                  "FORWARD wants its distance in metres, like FORWARD 1.5");
     expectRefused("LEFT 1 2", Kind::Syntax, "LEFT takes one number, found `2` behind it");
     expectRefused("STOP 0", Kind::Syntax, "STOP takes no value, found `0` behind it");
     expectRefused("FORWARD 1m", Kind::Syntax,
-                  "`1m` is no number, FORWARD takes distance in metres, without unit");
+                  "`1m` is no number, FORWARD wants its distance in metres, like FORWARD 1.5");
     for (const char* bad : {"nan", "inf", "-inf", "0x10", "1,5", "1e999", ".", "--1", "1.5x"})
         EXPECT_EQ(parseCommand(std::string("SPEED ") + bad).error.kind, Kind::Syntax) << bad;
 }
@@ -93,7 +94,7 @@ TEST(ParseCommand, EchoesInputPrintable) {
     const std::string_view nul("STOP\0", 5);
     EXPECT_EQ(parseCommand(nul).error.message, "unknown command `STOP?`, did you mean `STOP`?");
     EXPECT_EQ(parseCommand("SPEED \x1b[2J\xff").error.message,
-              "`?[2J?` is no number, SPEED takes speed in metres a second, without unit");
+              "`?[2J?` is no number, SPEED wants its speed in metres a second, like SPEED 1.5");
 }
 
 TEST(ParseCommand, AnswersHugeLinesShortly) {

@@ -115,7 +115,8 @@ TEST_F(ScriptTest, NamesBadCommands) {
               "run.txt:1:16: error: FORWARD takes no negative distance, use BACKWARD\n");
     EXPECT_EQ(errors("0 r1 STOP 1\n"),
               "run.txt:1:11: error: STOP takes no value, found `1` behind it\n");
-    EXPECT_EQ(errors("0 r1 LEFT\n"), "run.txt:1:6: error: LEFT wants angle in degrees behind it\n");
+    EXPECT_EQ(errors("0 r1 LEFT\n"),
+              "run.txt:1:6: error: LEFT wants its angle in degrees, like LEFT 1.5\n");
 }
 
 TEST_F(ScriptTest, NamesWhatTheRobotCannotDo) {

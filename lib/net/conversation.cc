@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/conversation.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <limits>
+
+#include "base/number.h"
+#include "base/suggest.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+std::vector<std::string_view> split(std::string_view line) {
+    std::vector<std::string_view> words;
+    words.reserve(4);
+    for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+        words.push_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(kBlanks, end);
+    }
+    return words;
+}
+
+std::string upperCase(std::string_view word) {
+    std::string out(word);
+    for (char& c : out)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return out;
+}
+
+std::string_view nameOf(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::Done:
+            return "done";
+        case Outcome::Stall:
+            return "stall";
+        case Outcome::Replaced:
+            return "replaced";
+        case Outcome::Stopped:
+            return "stopped";
+    }
+    return "";
+}
+
+template <typename Things>
+std::vector<std::string> idsOf(const Things& things) {
+    std::vector<std::string> ids;
+    ids.reserve(things.size());
+    for (const auto& thing : things) ids.push_back(thing.id);
+    return ids;
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+    std::string out;
+    for (const std::string& word : words) {
+        if (!out.empty()) out += separator;
+        out += word;
+    }
+    return out;
+}
+
+/// "no robot `r9`" with what may have been meant, or what there is.
+std::string unknownThing(std::string_view kind, std::string_view id,
+                         const std::vector<std::string>& known) {
+    constexpr std::size_t kFew = 12;
+    std::string out = "no ";
+    out.append(kind).append(" ").append(excerpt(id));
+    if (known.empty()) return out.append(": there is none");
+    if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
+    if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
+    return out.append("; there is ").append(joined(known, ", "));
+}
+
+}  // namespace
+
+/// What can be asked for. A verb may have several rows with different roles.
+struct Conversation::Request {
+    std::string_view verb;
+    std::string_view arguments;  // for people
+    std::optional<Role> role;    // at which it is possible; nothing: at any
+    std::size_t least, most;     // number of arguments
+    void (Conversation::*answer)(Words words);
+};
+
+std::span<const Conversation::Request> Conversation::requests() {
+    using C = Conversation;
+    // Commands are checked by parseCommand.
+    constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+    static constexpr auto kRequests = std::to_array<Request>({
+        {"ROBOT", "id", Role::None, 1, 1, &C::takeRobot},
+        {"LASER", "id", Role::None, 1, 1, &C::takeLaser},
+        {"WORLD", "", Role::None, 0, 0, &C::takeWorld},
+        {"FORWARD", "m", Role::Robot, 0, kAny, &C::command},
+        {"BACKWARD", "m", Role::Robot, 0, kAny, &C::command},
+        {"LEFT", "deg", Role::Robot, 0, kAny, &C::command},
+        {"RIGHT", "deg", Role::Robot, 0, kAny, &C::command},
+        {"SPEED", "m/s", Role::Robot, 0, kAny, &C::command},
+        {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
+        {"STOP", "", Role::Robot, 0, kAny, &C::command},
+        {"STATUS", "", Role::Robot, 0, 0, &C::status},
+        {"SCAN", "id", Role::Robot, 1, 1, &C::scanOfRobot},
+        {"SCAN", "", Role::Laser, 0, 0, &C::scan},
+        {"STREAM", "[every=k]", Role::Laser, 0, 1, &C::stream},
+        {"STOP", "", Role::Laser, 0, 0, &C::stopStream},
+        {"BINARY", "on|off", Role::Laser, 1, 1, &C::binary},
+        {"LIST", "", Role::World, 0, 0, &C::list},
+        {"TIME", "", Role::World, 0, 0, &C::time},
+        {"POSES", "", Role::World, 0, 0, &C::poses},
+        {"PAUSE", "", Role::World, 0, 0, &C::pause},
+        {"RESUME", "", Role::World, 0, 0, &C::resume},
+        {"STEP", "[n]", Role::World, 0, 1, &C::step},
+        {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown},
+        {"HELP", "", std::nullopt, 0, 0, &C::help},
+        {"QUIT", "", std::nullopt, 0, 0, &C::quit},
+    });
+    return kRequests;
+}
+
+Conversation::~Conversation() { leave(); }
+
+std::string Conversation::greeting() { return "ISPACE 1\n"; }
+
+void Conversation::request(std::string_view line) {
+    const std::vector<std::string_view> words = split(line);
+    if (words.empty()) return;
+    const auto all = requests();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
+        return request.verb == words.front() && request.role.value_or(role_) == role_;
+    });
+    if (found == all.end()) return refuse(words.front());
+    const std::size_t arguments = words.size() - 1;
+    if (arguments < found->least)
+        return error(400,
+                     {found->verb, " wants an argument: ", found->verb, " ", found->arguments});
+    if (arguments > found->most)
+        return error(400, {"unexpected ", excerpt(words[found->most + 1]), " behind ", found->verb,
+                           found->most == 0 ? "" : " ", found->most == 0 ? "" : found->arguments});
+    (this->*found->answer)(words);
+    tellEnds();
+}
+
+void Conversation::tooLong(std::size_t limit) {
+    error(413, {"a request has at most ", std::to_string(limit), " bytes before its end of line"});
+    leave();
+    closing_ = true;
+}
+
+void Conversation::stepped() {
+    tellEnds();
+    if (every_ > 0) {
+        const std::int64_t seq = world().reading(subject_).seq;
+        if (seq != seq_ && seq % every_ == 0) scan_ = hall_->scan(subject_, true, binary_);
+        seq_ = seq;
+    }
+    if (step_end_) {
+        const Simulation& simulation = hall_->simulation();
+        const std::int64_t left = *step_end_ - world().steps();
+        // Nothing more comes after the end, nor if somebody else has cut the steps short.
+        if (left <= 0 || simulation.finished() || (simulation.paused() && simulation.owed() == 0))
+            answerStep(left);
+    }
+}
+
+std::string Conversation::roleText() const {
+    switch (role_) {
+        case Role::None:
+            return "no role";
+        case Role::Robot:
+            return "the role ROBOT " + world().robots()[subject_].id;
+        case Role::Laser:
+            return "the role LASER " + world().lasers()[subject_].id;
+        case Role::World:
+            return "the role WORLD";
+    }
+    return "";
+}
+
+void Conversation::error(int code, std::initializer_list<std::string_view> text) {
+    out_.append("ERR ").append(std::to_string(code)).append(" ");
+    for (const std::string_view piece : text) out_ += printable(piece);
+    out_ += '\n';
+}
+
+/// Why a verb is no request, or none now.
+void Conversation::refuse(std::string_view verb) {
+    std::vector<std::string> verbs;
+    verbs.reserve(requests().size());
+    std::string roles;
+    for (const Request& request : requests()) {
+        verbs.emplace_back(request.verb);
+        if (request.verb != verb) continue;
+        if (!roles.empty()) roles += " or ";
+        roles += request.role == Role::Robot   ? "ROBOT"
+                 : request.role == Role::Laser ? "LASER"
+                 : request.role == Role::World ? "WORLD"
+                                               : "";
+    }
+    if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
+        const std::string hint = didYouMean(upperCase(verb), verbs);
+        return error(400, {"unknown request ", excerpt(verb), hint, hint.empty() ? ";" : "",
+                           " HELP lists what there is"});
+    }
+    if (role_ == Role::None) return error(405, {"take a role first: ROBOT id, LASER id or WORLD"});
+    if (roles.empty())
+        return error(405, {"this connection has ", roleText(), ": open another one for ", verb});
+    error(405, {verb, " is for the role ", roles, ", this connection has ", roleText(),
+                ": open another one"});
+}
+
+/// Gives up what the client holds.
+void Conversation::leave() {
+    if (role_ == Role::Robot) hall_->release(subject_);
+    role_ = Role::None;
+    running_.clear();
+    every_ = 0;
+    scan_.reset();
+}
+
+void Conversation::tellEnds() {
+    if (running_.empty()) return;
+    for (const CommandEnd& end : world().ends()) {
+        if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;
+        const bool done = end.outcome == Outcome::Done;
+        out_.append(done ? "DONE id=" : "FAIL id=").append(std::to_string(end.id));
+        if (!done) out_.append(" reason=").append(nameOf(end.outcome));
+        out_.append(" t=").append(formatMilliseconds(end.time)).append("\n");
+    }
+}
+
+void Conversation::answerStep(std::int64_t left) {
+    const std::int64_t taken = std::clamp<std::int64_t>(step_count_ - left, 0, step_count_);
+    out_.append("OK STEP n=").append(std::to_string(taken));
+    out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
+    step_end_.reset();
+}
+
+/// A scan that was due before a request is sent before its answer.
+void Conversation::sendPendingScan() {
+    if (scan_) out_ += *takeScan();
+}
+
+std::string Conversation::unknownLaser(std::string_view id) const {
+    return unknownThing("laser", id, idsOf(world().lasers()));
+}
+
+void Conversation::takeRobot(Words words) {
+    const auto robot = world().robotNamed(words[1]);
+    if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
+    if (!hall_->hold(*robot)) return error(409, {"robot ", words[1], " is held by another client"});
+    role_ = Role::Robot;
+    subject_ = *robot;
+    const RobotModel& model = world().robots()[*robot].model;
+    out_.append("OK ROBOT ").append(words[1]);
+    out_.append(" model=").append(model.model.empty() ? "-" : model.model);
+    out_.append(" radius=").append(formatDouble(model.radius)).append("\n");
+}
+
+void Conversation::takeLaser(Words words) {
+    const auto found = world().laserNamed(words[1]);
+    if (!found) return error(404, {unknownLaser(words[1])});
+    role_ = Role::Laser;
+    subject_ = *found;
+    const Laser& laser = world().lasers()[*found].laser;
+    out_.append("OK LASER ").append(words[1]);
+    out_.append(" angle_min=").append(formatDouble(laser.first.degrees()));
+    out_.append(" angle_max=").append(formatDouble(laser.last().degrees()));
+    out_.append(" step=").append(formatDouble(laser.step.degrees()));
+    out_.append(" n=").append(std::to_string(laser.beams));
+    out_.append(" range_min=").append(formatDouble(laser.min_range));
+    out_.append(" range_max=").append(formatDouble(laser.max_range));
+    out_.append(" rate=").append(formatDouble(laser.rate)).append("\n");
+}
+
+void Conversation::takeWorld(Words /*words*/) {
+    role_ = Role::World;
+    const Clock& clock = hall_->simulation().clock();
+    out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
+    out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
+    switch (clock.kind) {
+        case Clock::Kind::Real:
+            out_.append("real rate=").append(formatDouble(clock.rate));
+            break;
+        case Clock::Kind::Fast:
+            out_ += "fast";
+            break;
+        case Clock::Kind::Step:
+            out_ += "step";
+            break;
+    }
+    out_ += '\n';
+}
+
+void Conversation::help(Words /*words*/) {
+    std::string_view separator = " ";
+    out_ += "OK HELP";
+    for (const Request& request : requests()) {
+        if (request.role.value_or(role_) != role_) continue;
+        out_.append(separator).append(request.verb);
+        if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
+        separator = " | ";
+    }
+    out_ += '\n';
+}
+
+void Conversation::quit(Words /*words*/) {
+    out_ += "OK QUIT\n";
+    leave();
+    closing_ = true;
+}
+
+}  // namespace ispace

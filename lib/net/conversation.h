@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "net/hall.h"
+
+namespace ispace {
+
+/// One client's side of the Simulator TCP Protocol, version 1, without a transport: lines in, bytes
+/// out. See simrun(1) for the language.
+class Conversation {
+  public:
+    explicit Conversation(Hall& hall) : hall_(&hall) {}
+    /// Frees the robot it holds.
+    ~Conversation();
+    Conversation(const Conversation&) = delete;
+    Conversation& operator=(const Conversation&) = delete;
+
+    /// "ISPACE 1\n"
+    static std::string greeting();
+    /// Answers one request (without its end of line). Blank lines are no requests.
+    /// \pre !waiting() and !closing()
+    void request(std::string_view line);
+    /// Answers a request of more than the allowed length, and closes.
+    void tooLong(std::size_t limit);
+    /// Events and scans for this client, and the answer to STEP: to be called after each step of
+    /// the world, and while waiting() also after other clients' requests. Calls without anything
+    /// new do nothing.
+    void stepped();
+
+    /// True while a STEP is not done: later requests wait for its answer.
+    [[nodiscard]] bool waiting() const { return step_end_.has_value(); }
+    /// True after QUIT and what closes a connection: nothing is read any more.
+    [[nodiscard]] bool closing() const { return closing_; }
+    /// Moves away what is to be sent, in order.
+    std::string take() { return std::exchange(out_, {}); }
+    /// The newest scan of a stream, to be sent when all else is; null if there is none.
+    std::shared_ptr<const std::string> takeScan() { return std::exchange(scan_, nullptr); }
+
+  private:
+    enum class Role { None, Robot, Laser, World };
+    using Words = std::span<const std::string_view>;  // a request, the verb first
+    struct Request;
+    static std::span<const Request> requests();
+
+    [[nodiscard]] World& world() const { return hall_->simulation().world(); }
+    [[nodiscard]] std::string roleText() const;
+    [[nodiscard]] std::string unknownLaser(std::string_view id) const;
+    void error(int code, std::initializer_list<std::string_view> text);
+    void refuse(std::string_view verb);
+    void leave();
+    void tellEnds();
+    void answerStep(std::int64_t left);
+    void sendPendingScan();
+
+    void takeRobot(Words words);
+    void takeLaser(Words words);
+    void takeWorld(Words words);
+    void help(Words words);
+    void quit(Words words);
+    void command(Words words);
+    void status(Words words);
+    void scanOfRobot(Words words);
+    void scan(Words words);
+    void stream(Words words);
+    void stopStream(Words words);
+    void binary(Words words);
+    void list(Words words);
+    void time(Words words);
+    void poses(Words words);
+    void pause(Words words);
+    void resume(Words words);
+    void step(Words words);
+    void shutdown(Words words);
+
+    Hall* hall_;
+    Role role_ = Role::None;
+    std::size_t subject_ = 0;  // index of the robot or laser
+    std::string out_;
+    std::vector<int> running_;  // commands whose end is still to be told
+    // The stream: every how many scans (0: none), the last one considered, the one to be sent.
+    std::int64_t every_ = 0, seq_ = 0;
+    bool binary_ = false;
+    std::shared_ptr<const std::string> scan_;
+    std::int64_t step_count_ = 0;
+    std::optional<std::int64_t> step_end_;  // steps of the world at which STEP is answered
+    bool closing_ = false;
+};
+
+}  // namespace ispace

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What clients that have a role can ask for.
+#include <chrono>
+#include <initializer_list>
+
+#include "base/number.h"
+#include "base/utf8.h"
+#include "net/conversation.h"
+
+namespace ispace {
+
+namespace {
+
+/// Far more than anybody waits for; sums of them stay far from overflow.
+constexpr std::int64_t kMostCount = 1'000'000'000;
+
+std::string measured(double value) { return formatFixed(value, 3); }
+
+/// Of an angle within (-180, 180], still so when rounded.
+std::string headingText(Angle heading) {
+    std::string text = measured(heading.degrees());
+    if (text == "-180.000") text.erase(0, 1);
+    return text;
+}
+
+/// A whole number from 1 to kMostCount, or what is wrong with it.
+struct Count {
+    std::int64_t value = 0;
+    int code = 0;  // of the error; 0: none
+    std::string message;
+};
+
+Count parseCount(std::string_view text, std::string_view what) {
+    const auto value = parseInteger(text);
+    std::string found = ", found ";
+    found += excerpt(text);
+    std::string message(what);
+    if (!value) return {0, 400, message.append(" is a whole number").append(found)};
+    if (*value < 1 || *value > kMostCount) {
+        message.append(" is from 1 to ").append(std::to_string(kMostCount)).append(found);
+        return {0, 416, message};
+    }
+    return {*value, 0, ""};
+}
+
+template <typename Things>
+std::string idsOf(const Things& things) {
+    std::string out;
+    for (const auto& thing : things) {
+        if (!out.empty()) out += ',';
+        out += thing.id;
+    }
+    return out;
+}
+
+}  // namespace
+
+// The role ROBOT.
+
+void Conversation::command(Words words) {
+    const char* const begin = words.front().data();
+    const char* const end = words.back().data() + words.back().size();
+    const ParsedCommand parsed =
+        parseCommand(std::string_view(begin, static_cast<std::size_t>(end - begin)));
+    if (!parsed.command) {
+        const bool range = parsed.error.kind == CommandError::Kind::Range;
+        return error(range ? 416 : 400, {parsed.error.message});
+    }
+    const std::string refusal = world().refusal(subject_, *parsed.command);
+    if (!refusal.empty()) return error(416, {refusal});
+    const int id = world().command(subject_, *parsed.command);
+    out_.append("OK ").append(words.front());
+    if (id != 0) {
+        running_.push_back(id);
+        out_.append(" id=").append(std::to_string(id));
+    }
+    if (const std::string_view name = valueNameOf(parsed.command->verb); !name.empty())
+        out_.append(" ").append(name).append("=").append(formatDouble(parsed.command->value));
+    out_ += '\n';
+}
+
+void Conversation::status(Words /*words*/) {
+    const RobotStatus status = world().status(subject_);
+    out_.append("OK STATUS t=").append(formatMilliseconds(world().time()));
+    out_.append(" x=").append(measured(status.pose.position.x));
+    out_.append(" y=").append(measured(status.pose.position.y));
+    out_.append(" heading=").append(headingText(status.pose.heading));
+    out_.append(" speed=").append(measured(status.speed));
+    out_.append(" rotspeed=").append(measured(status.rotspeed.degrees()));
+    out_.append(" accel=").append(formatDouble(status.accel));
+    out_.append(" rotaccel=").append(formatDouble(status.rotaccel.degrees()));
+    out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
+}
+
+void Conversation::scanOfRobot(Words words) {
+    const auto laser = world().laserNamed(words[1]);
+    if (!laser) return error(404, {unknownLaser(words[1])});
+    const auto& mount = world().lasers()[*laser].mount;
+    if (!mount || mount->robot != subject_)
+        return error(404, {"laser ", words[1], " is not on this robot: open another connection ",
+                           "and take the role LASER ", words[1]});
+    out_ += *hall_->scan(*laser, false, false);
+}
+
+// The role LASER.
+
+void Conversation::scan(Words /*words*/) { out_ += *hall_->scan(subject_, false, binary_); }
+
+void Conversation::stream(Words words) {
+    std::int64_t every = 1;
+    if (words.size() > 1) {
+        constexpr std::string_view kKey = "every=";
+        if (!words[1].starts_with(kKey))
+            return error(400, {"unexpected ", excerpt(words[1]), " behind STREAM [every=k]"});
+        const Count count = parseCount(words[1].substr(kKey.size()), "every");
+        if (count.code != 0) return error(count.code, {count.message});
+        every = count.value;
+    }
+    sendPendingScan();
+    if (every_ == 0) seq_ = world().reading(subject_).seq;
+    every_ = every;
+    out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
+}
+
+void Conversation::stopStream(Words /*words*/) {
+    sendPendingScan();
+    every_ = 0;
+    out_ += "OK STOP\n";
+}
+
+void Conversation::binary(Words words) {
+    if (words[1] != "on" && words[1] != "off")
+        return error(400, {"BINARY is on or off, found ", excerpt(words[1])});
+    sendPendingScan();
+    binary_ = words[1] == "on";
+    out_.append("OK BINARY ").append(words[1]).append("\n");
+}
+
+// The role WORLD.
+
+void Conversation::list(Words /*words*/) {
+    out_.append("OK LIST robots=").append(idsOf(world().robots()));
+    out_.append(" lasers=").append(idsOf(world().lasers())).append("\n");
+}
+
+void Conversation::time(Words /*words*/) {
+    out_.append("OK TIME t=").append(formatMilliseconds(world().time()));
+    out_.append(" steps=").append(std::to_string(world().steps())).append("\n");
+}
+
+void Conversation::poses(Words /*words*/) {
+    const auto robots = world().robots();
+    out_.append("OK POSES t=").append(formatMilliseconds(world().time()));
+    out_.append(" n=").append(std::to_string(robots.size())).append(" poses=");
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        const Pose2 pose = world().status(i).pose;
+        if (i > 0) out_ += ';';
+        out_.append(robots[i].id).append(",").append(measured(pose.position.x));
+        out_.append(",").append(measured(pose.position.y));
+        out_.append(",").append(headingText(pose.heading));
+    }
+    out_ += '\n';
+}
+
+void Conversation::pause(Words /*words*/) {
+    // A STEP under way ends here too, or nobody could end one of too many steps.
+    hall_->simulation().pause();
+    out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
+}
+
+void Conversation::resume(Words /*words*/) {
+    Simulation& simulation = hall_->simulation();
+    if (simulation.clock().kind == Clock::Kind::Step)
+        return error(405, {"the clock is `step`: use STEP n"});
+    if (simulation.paused()) simulation.resume(std::chrono::steady_clock::now());
+    out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
+}
+
+void Conversation::step(Words words) {
+    step_count_ = 1;
+    if (words.size() > 1) {
+        const Count count = parseCount(words[1], "the number of steps");
+        if (count.code != 0) return error(count.code, {count.message});
+        step_count_ = count.value;
+    }
+    Simulation& simulation = hall_->simulation();
+    if (!simulation.paused()) return error(405, {"the world is running: PAUSE comes before STEP"});
+    simulation.allow(step_count_);
+    step_end_ = world().steps() + simulation.owed();
+}
+
+void Conversation::shutdown(Words /*words*/) {
+    out_.append("OK SHUTDOWN t=").append(formatMilliseconds(world().time())).append("\n");
+    hall_->simulation().finish();
+    leave();
+    closing_ = true;
+}
+
+}  // namespace ispace
