@@ -46,6 +46,10 @@ void appendWrapped(std::string& out, const std::string& text, std::size_t used,
     out += '\n';
 }
 
+std::string fileInHistory(const std::string& operand) {
+    return isStream(operand) ? "-" : shellQuote(baseName(operand));
+}
+
 }  // namespace
 
 struct CommandLine::Data {
@@ -271,9 +275,7 @@ bool CommandLine::given(const std::string& name) const { return data_->app.count
 
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
     std::string line = data_->tool;
-    for (const std::string& operand : operands) {
-        line += ' ' + (isStream(operand) ? "-" : shellQuote(baseName(operand)));
-    }
+    for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
     for (const Data::Entry& entry : data_->entries) {
         const CLI::Option& option = *entry.option;
         if (entry.enters == Enters::Nothing || option.count() == 0) continue;
@@ -283,8 +285,10 @@ std::string CommandLine::historyLine(const std::vector<std::string>& operands) c
             line += ' ' + name;
             continue;
         }
-        for (const std::string& value : option.results())
-            line += ' ' + name + ' ' + shellQuote(value);
+        for (const std::string& value : option.results()) {
+            line += ' ' + name + ' ';
+            line += entry.enters == Enters::BaseName ? fileInHistory(value) : shellQuote(value);
+        }
     }
     return line;
 }

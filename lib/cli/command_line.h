@@ -12,8 +12,9 @@
 
 namespace ispace {
 
-/// Whether an option changes the bytes of the product: only those enter its history line.
-enum class Enters { History, Nothing };
+/// Whether an option changes the bytes of the product: only those enter its history line, a file by
+/// its base name.
+enum class Enters { History, BaseName, Nothing };
 
 /// One tool's options and operands. Each option is declared once, in the man page's order, bound
 /// to its variable; `--help` and the history line come from that table.
@@ -87,7 +88,8 @@ struct CommonOptions {
     std::uint64_t seed = 0;
     std::optional<bool> progress;
 };
-/// Declares -o -q -v -j --seed --progress; `output_help` says what the product is.
+/// Declares -o -q -v -j --seed --progress; `output_help` says what the product is. Without it there
+/// is no -o: the tool writes elsewhere.
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
 /// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).

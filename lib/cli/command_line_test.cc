@@ -94,6 +94,18 @@ TEST(CommandLine, HistoryHoldsWhatChangesTheResultInTheTablesOrder) {
     EXPECT_EQ(tool.line.historyLine({"-"}).substr(0, 6), "tool -");
 }
 
+TEST(CommandLine, HistoryNamesFilesWithoutTheirFolders) {
+    for (const auto& [given, named] : {std::pair("/tmp/dir/go.txt", "go.txt"), {"-", "-"}}) {
+        CommandLine line("tool", "ENV", "A tool.");
+        std::string file;
+        line.text("--script", "FILE", file, "commands", Enters::BaseName);
+        const std::vector<const char*> words = {"tool", "--script", given};
+        line.parse(static_cast<int>(words.size()), words.data());
+        EXPECT_EQ(file, given);
+        EXPECT_EQ(line.historyLine({}), std::string("tool --script ") + named);
+    }
+}
+
 TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
     EXPECT_NE(Tool().errorOf({"--stratgy", "grid"}).find("did you mean `--strategy`"),
               std::string::npos);

@@ -31,7 +31,8 @@ int availableThreads() {
 }  // namespace
 
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help) {
-    line.text("-o,--output", "FILE", options.output, output_help, Enters::Nothing);
+    if (!output_help.empty())
+        line.text("-o,--output", "FILE", options.output, output_help, Enters::Nothing);
     line.flag("-q,--quiet", options.quiet, "say nothing but errors", Enters::Nothing);
     line.flag("-v,--verbose", options.verbose, "say more about the work", Enters::Nothing);
     line.count("-j,--threads", "N", options.threads, 0, kMostThreads,

@@ -6,7 +6,7 @@ set -euo pipefail
 source_dir=${ISPACE_SOURCE_DIR:?run by ctest}
 data=$source_dir/tests/data
 scenes=$source_dir/share/scenes
-tools="envc arrange scan coverage"
+tools="envc arrange scan coverage simrun"
 binary_dir=${ISPACE_BINARY_DIR:?run by ctest}
 
 mkdir -p "$binary_dir/tests/scratch"

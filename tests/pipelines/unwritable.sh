@@ -13,7 +13,7 @@ declare -A product=(
     [coverage]="coverage $room $layout --to png"
 )
 mkdir folder
-for tool in $tools; do
+for tool in "${!product[@]}"; do
     # shellcheck disable=SC2086
     for target in missing/folder/file folder; do
         expect_status 1 ${product[$tool]} -o $target

@@ -41,7 +41,7 @@ for tool in $tools; do
 
     # Every example runs, in a folder with the scenes.
     mkdir "$tool"
-    cp "$scenes"/*.env "$tool"
+    cp "$scenes"/*.env "$scenes"/*.3dm "$tool"
     plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
         code { print } inside && /^\.EX/ { code = 1 }' >"$tool/examples.sh"
     [ -s "$tool/examples.sh" ] || fail "$tool: no examples"

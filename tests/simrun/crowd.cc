@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+namespace ispace::testing {
+
+namespace {
+
+double distanceTo(const Segment2& line, Point2 p) {
+    const Vec2 along = line.b - line.a;
+    const double square = dot(along, along);
+    const double t = square > 0 ? std::clamp(dot(p - line.a, along) / square, 0.0, 1.0) : 0;
+    return distance(p, line.a + t * along);
+}
+
+bool isClear(const Band& band, Point2 p, double radius) {
+    bool clear = true;
+    band.forEachLine([&](const Segment2& line) { clear &= distanceTo(line, p) > radius; });
+    return clear && std::none_of(band.solids.begin(), band.solids.end(), [p](const Polygon& solid) {
+               return locate(solid, p) != Side::Outside;
+           });
+}
+
+/// Nearest reading within a part of the beams.
+float nearest(const Scan& scan, double from, double to) {
+    const auto count = static_cast<double>(scan.ranges.size());
+    const auto begin = scan.ranges.begin() + static_cast<std::ptrdiff_t>(from * count);
+    const auto end = scan.ranges.begin() + static_cast<std::ptrdiff_t>(to * count);
+    return *std::min_element(begin, end);
+}
+
+}  // namespace
+
+std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel& model,
+                               std::size_t count, double gap, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    const Band band = environment.band(0, model.height);
+    const Box2 box = bounds(environment.indoor().outline);
+    std::uniform_real_distribution<double> x(box.low.x, box.high.x), y(box.low.y, box.high.y);
+    std::uniform_real_distribution<double> heading(-180, 180);
+    std::vector<PlacedRobot> robots;
+    robots.reserve(count);
+    for (std::size_t tries = 0; robots.size() < count && tries < 1000 * count; ++tries) {
+        const Point2 p{x(random), y(random)};
+        const Angle faces = Angle::degrees(heading(random));
+        const bool apart = std::none_of(robots.begin(), robots.end(), [&](const PlacedRobot& r) {
+            return distance(r.pose.position, p) < 2 * model.radius + gap;
+        });
+        if (!apart || environment.indoor().locate(p) != Side::Inside ||
+            !isClear(band, p, model.radius + gap))
+            continue;
+        robots.push_back({"r" + std::to_string(robots.size() + 1), model, {p, faces}, {}});
+    }
+    return robots;
+}
+
+void mountLasers(Scene& scene, const Laser& laser) {
+    for (std::size_t i = 0; i < scene.robots.size(); ++i) {
+        const Pose3 mount{{0, 0, kScanHeight}, {}, {}, {}};
+        scene.lasers.push_back({"l" + std::to_string(i + 1), laser,
+                                mountedPose(scene.robots[i].pose, mount), Mount{i, mount}});
+    }
+}
+
+void wander(World& world) {
+    constexpr float kNear = 0.8F;
+    for (const std::size_t i : world.read()) {
+        const Scan& scan = world.reading(i).scan;
+        const bool is_free = nearest(scan, 0.3, 0.7) > kNear && nearest(scan, 0.1, 0.9) > kNear / 2;
+        const bool left = nearest(scan, 0.5, 0.8) > nearest(scan, 0.2, 0.5);
+        world.command(i, {Verb::Speed, is_free ? 0.5 : 0.0});
+        world.command(i, {Verb::Rotspeed, is_free ? 0.0 : left ? 60.0 : -60.0});
+    }
+}
+
+void stumble(World& world, std::uint64_t seed) {
+    // Each robot thinks again every half second, not all at the same step.
+    const auto step = static_cast<std::uint64_t>(world.steps());
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        if ((step + 7 * i) % 100 != 0) continue;
+        std::mt19937_64 random(seed ^ (step << 20U) ^ i);
+        const RobotModel& model = world.robots()[i].model;
+        const double range = std::uniform_real_distribution<double>(-1, 1)(random);
+        const double turn = std::uniform_real_distribution<double>(-1, 1)(random);
+        world.command(i, {Verb::Speed, range * model.max_speed});
+        world.command(i, {Verb::Rotspeed, turn * model.max_rotspeed.degrees()});
+    }
+}
+
+}  // namespace ispace::testing

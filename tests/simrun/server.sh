@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=bash
+# Read after pipelines/common.sh by scripts that talk to simrun through nc.
+command -v nc >/dev/null || skip "no nc here (Debian: netcat-openbsd)"
+
+server=
+clients=()
+trap 'for process in $server "${clients[@]}"; do kill -9 "$process" 2>/dev/null || true; done; cleanup' EXIT
+
+# eventually WHAT COMMAND…: waits until the command succeeds, for a minute at most.
+eventually() {
+    local what=$1 i
+    shift
+    for ((i = 0; i < 3000; ++i)); do
+        if "$@"; then return 0; fi
+        sleep 0.02
+    done
+    fail "in vain: $what (simrun says: $(head -n 5 simrun.err))"
+}
+
+# start ARGUMENT…: simrun in the background; sets server and port. What it says is in simrun.err.
+start() {
+    rm -f port
+    simrun "$@" --port-file port >announced 2>simrun.err &
+    server=$!
+    eventually "the port file" test -s port
+    port=$(cat port)
+    grep -qx '{"schema":"ispace-simrun/1","listen":"127.0.0.1:'"$port"'","p2os":{},"scip":{}}' \
+        announced || fail "first line: $(cat announced)"
+}
+
+# The server has ended, with status $1.
+ended() {
+    local status=0
+    wait "$server" || status=$?
+    server=
+    [ "$status" -eq "$1" ] || fail "simrun ended with $status, expected $1: $(cat simrun.err)"
+}
+
+stop() {
+    kill -"${1:-TERM}" "$server"
+    ended 0
+}
+
+# dial NAME: a client that stays; its lines are in NAME.out.
+dial() {
+    mkfifo "$1.in"
+    nc 127.0.0.1 "$port" <"$1.in" >"$1.out" &
+    clients+=($!)
+    eval "exec {${1}_in}>$1.in"
+    eval "${1}_asked=0"
+    eventually "the greeting of $1" grep -q '^ISPACE 1$' "$1.out"
+}
+
+hang_up() {
+    eval "exec {${1}_in}>&-"
+    rm "$1.in"
+}
+
+replies() { grep -aE '^(OK|ERR|SCAN)' "$1" | grep -av ' stream=1 '; }
+has_reply() { [ "$(replies "$1" | wc -l)" -ge "$2" ]; }
+
+# ask NAME REQUEST: sends it; the reply is in $reply.
+ask() {
+    local fd count
+    eval "fd=\${${1}_in} count=\$((${1}_asked + 1)); ${1}_asked=\$count"
+    printf '%s\n' "$2" >&"$fd"
+    eventually "an answer to $2" has_reply "$1.out" "$count"
+    reply=$(replies "$1.out" | sed -n "${count}p")
+}
+
+# expect NAME REQUEST PATTERN: the reply is as the extended pattern says.
+expect() {
+    ask "$1" "$2"
+    grep -qEx "$3" <<<"$reply" || fail "$1: $2 is answered: $reply"
+}
+
+# value KEY: of $reply
+value() { sed -n "s/.* $1=\([^ ]*\).*/\1/p" <<<"$reply"; }
+
+# near A B TOLERANCE WHAT
+near() {
+    awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { d = a - b; exit !(a != "" && d <= e && d >= -e) }' ||
+        fail "$4: $1, expected $2 within $3"
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simrun/options.h"
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/utf8.h"
+#include "cli/scene_options.h"
+
+namespace ispace {
+
+namespace {
+
+SimTime simTime(const std::string& text, SimTime least, SimTime most) {
+    const auto time = parseSimTime(text);
+    if (!time || *time < least || *time > most)
+        throw UsageError(excerpt(text) + " is no time from " + formatSimTime(least) + " to " +
+                         formatSimTime(most) + " s (`0.005`, `5ms`)");
+    return *time;
+}
+
+}  // namespace
+
+SimrunCommand::SimrunCommand(int argc, const char* const* argv)
+    : line_("simrun", "ENV [LAYOUT]",
+            "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
+            "output says where; TERM, INT and the request SHUTDOWN end the run.") {
+    line_.operands(options_.operands, 2);
+    declareRun();
+    declareServer();
+    addAnyEnvironmentOption(line_, options_.any_environment);
+    addCommonOptions(line_, options_.common, "");
+    line_.parse(argc, argv);
+}
+
+void SimrunCommand::declareRun() {
+    SimrunOptions& o = options_;
+    line_.parsed(
+        "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
+        "real[:RATE], fast, or step: simulated time follows wall time (RATE times as fast), runs "
+        "as fast as it can, or waits for STEP requests (default real)",
+        Enters::Nothing);
+    line_.parsed(
+        "--dt", "SECONDS",
+        [&o](const std::string& text) {
+            o.step = simTime(text, World::kShortestStep, World::kLongestStep);
+        },
+        "length of a step (default 0.005)", Enters::History);
+    line_.parsed(
+        "--until", "SECONDS",
+        [&o](const std::string& text) {
+            o.until = simTime(text, SimTime(0), std::chrono::hours(24 * 365 * 100));
+        },
+        "end the run at this simulated time", Enters::History);
+    line_.text("--script", "FILE", o.script,
+               "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
+               Enters::BaseName);
+    line_.text("--record", "DIR", o.record,
+               "write robots.csv, scans.jsonl, info.csv and timing.csv there", Enters::Nothing);
+}
+
+void SimrunCommand::declareServer() {
+    SimrunOptions& o = options_;
+    constexpr int kMostClients = 100'000;
+    line_.parsed(
+        "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
+        "where clients connect; port 0: one the system gives (default 127.0.0.1:0)",
+        Enters::Nothing);
+    line_.text("--port-file", "FILE", o.port_file,
+               "write the port number there when clients can connect", Enters::Nothing);
+    line_.parsed(
+        "--max-clients", "N",
+        [&o](const std::string& text) {
+            const auto count = parseInteger(text);
+            if (!count || *count < 1 || *count > kMostClients)
+                throw UsageError(excerpt(text) + " is not a whole number from 1 to " +
+                                 std::to_string(kMostClients));
+            o.limits.clients = static_cast<std::size_t>(*count);
+        },
+        "clients served at once; more are refused (default 256)", Enters::Nothing);
+}
+
+}  // namespace ispace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "net/server.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+struct SimrunOptions {
+    CommonOptions common;
+    std::vector<std::string> operands;
+    bool any_environment = false;
+    Clock clock;
+    SimTime step = std::chrono::milliseconds(5);
+    std::optional<SimTime> until;
+    std::string script;     ///< "" without; "-" is stdin
+    std::string record;     ///< folder; "" without
+    std::string port_file;  ///< "" without
+    Endpoint listen;
+    ServerLimits limits;
+};
+
+/// The command line of simrun, kept for its history line.
+class SimrunCommand {
+  public:
+    /// Opens no file. \throws UsageError, TextRequested
+    SimrunCommand(int argc, const char* const* argv);
+    [[nodiscard]] const SimrunOptions& options() const { return options_; }
+    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
+        return line_.historyLine(operands);
+    }
+
+  private:
+    void declareRun();
+    void declareServer();
+
+    SimrunOptions options_;
+    CommandLine line_;
+};
+
+}  // namespace ispace
