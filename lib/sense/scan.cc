@@ -11,30 +11,6 @@ namespace ispace {
 
 namespace {
 
-/// Unit vectors of all beams in the world frame.
-std::vector<Vec3> beamDirections(const PlacedLaser& sensor) {
-    const Laser& laser = sensor.laser;
-    const Pose3& pose = sensor.pose;
-    std::vector<Vec3> directions(static_cast<std::size_t>(laser.beams));
-    if (pose.isLevel()) {
-        // Degrees add up exactly where their cosines do not: a beam at 45 degrees of a sensor that
-        // faces 45 degrees runs along y.
-        for (int k = 0; k < laser.beams; ++k) {
-            const Vec2 direction = unitVector(pose.heading + laser.bearing(k));
-            directions[static_cast<std::size_t>(k)] = {direction.x, direction.y, 0};
-        }
-        return directions;
-    }
-    const Vec3 forward = pose.beam({}), left = pose.beam(Angle::degrees(90));
-    for (int k = 0; k < laser.beams; ++k) {
-        const Vec2 local = unitVector(laser.bearing(k));
-        directions[static_cast<std::size_t>(k)] = {local.x * forward.x + local.y * left.x,
-                                                   local.x * forward.y + local.y * left.y,
-                                                   local.x * forward.z + local.y * left.z};
-    }
-    return directions;
-}
-
 /// Surfaces in the blind zone give no return, and hide what lies behind them all the same.
 void applyBlindZone(const Laser& laser, std::vector<float>& ranges) {
     // As float32, as max_range is: a surface exactly at min_range is seen.
@@ -46,8 +22,45 @@ void applyBlindZone(const Laser& laser, std::vector<float>& ranges) {
 
 }  // namespace
 
+Beams::Beams(const PlacedLaser& sensor)
+    : first_(sensor.laser.first), step_(sensor.laser.step), rides_(sensor.mount.has_value()) {
+    const auto count = static_cast<std::size_t>(sensor.laser.beams);
+    directions_.resize(count);
+    if (isSum(sensor.pose)) return;
+    local_.reserve(count);
+    for (int k = 0; k < sensor.laser.beams; ++k)
+        local_.push_back(unitVector(sensor.laser.bearing(k)));
+}
+
+std::span<const Vec3> Beams::at(const Pose3& pose) {
+    if (!known_ || pose.heading != heading_ || pose.tilt != tilt_ || pose.roll != roll_)
+        point(pose);
+    return directions_;
+}
+
+void Beams::point(const Pose3& pose) {
+    known_ = true;
+    heading_ = pose.heading;
+    tilt_ = pose.tilt;
+    roll_ = pose.roll;
+    if (isSum(pose)) {
+        for (std::size_t k = 0; k < directions_.size(); ++k) {
+            const Vec2 flat = unitVector(heading_ + (first_ + static_cast<double>(k) * step_));
+            directions_[k] = {flat.x, flat.y, 0};
+        }
+        return;
+    }
+    const Vec3 forward = pose.beam({}), left = pose.beam(Angle::degrees(90));
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+        const auto [x, y] = local_[k];
+        directions_[k] = {x * forward.x + y * left.x, x * forward.y + y * left.y,
+                          x * forward.z + y * left.z};
+    }
+}
+
 std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
-    const std::vector<Vec3> directions = beamDirections(sensor);
+    Beams beams(sensor);
+    const std::span<const Vec3> directions = beams.at(sensor.pose);
     std::vector<float> ranges(directions.size());
     world.cast(sensor.pose.position, directions, sensor.laser.max_range, ranges);
     return ranges;
@@ -60,9 +73,10 @@ Scan castScan(const RayWorld& world, const PlacedLaser& sensor) {
     return scan;
 }
 
-Scan castScan(const RayWorld& world, const PlacedLaser& sensor, const MovingBodies& bodies) {
+Scan castScan(const RayWorld& world, const PlacedLaser& sensor, Beams& beams,
+              const MovingBodies& bodies) {
     const Laser& laser = sensor.laser;
-    const std::vector<Vec3> directions = beamDirections(sensor);
+    const std::span<const Vec3> directions = beams.at(sensor.pose);
     Scan scan;
     scan.ranges.resize(directions.size());
     world.cast(sensor.pose.position, directions, laser.max_range, scan.ranges);
@@ -80,7 +94,8 @@ std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors
     const Worlds& ready = worlds;
     std::vector<Scan> scans(sensors.size());
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
-        scans[i] = castScan(ready.at(sensors[i].pose), sensors[i], bodies);
+        Beams beams(sensors[i]);
+        scans[i] = castScan(ready.at(sensors[i].pose), sensors[i], beams, bodies);
     });
     return scans;
 }

@@ -21,6 +21,30 @@ struct Scan {
     std::vector<float> ranges;
 };
 
+/// Where the beams of one sensor point, kept from scan to scan: the cosines are computed once.
+///
+/// Degrees add up exactly where their cosines do not: a level beam at 45 degrees of a sensor that
+/// faces 45 degrees runs along y. A sensor that rides on a robot faces anywhere, and turns its
+/// beams.
+class Beams {
+  public:
+    explicit Beams(const PlacedLaser& sensor);
+    /// Unit vectors of all beams in the world frame, of the sensor at this pose; valid until the
+    /// next call. \pre the pose is level if and only if that of the constructor's sensor was
+    std::span<const Vec3> at(const Pose3& pose);
+
+  private:
+    [[nodiscard]] bool isSum(const Pose3& pose) const { return pose.isLevel() && !rides_; }
+    void point(const Pose3& pose);
+
+    Angle first_, step_;
+    bool rides_;
+    std::vector<Vec2> local_;  // unit vectors in the sensor's frame, where they are turned
+    std::vector<Vec3> directions_;
+    bool known_ = false;  // directions_ are those of:
+    Angle heading_, tilt_, roll_;
+};
+
 /// Distance to the first surface of every beam up to max_range, whatever min_range is; +infinity
 /// if there is none. What figures are computed from.
 std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor);
@@ -29,7 +53,9 @@ std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor);
 Scan castScan(const RayWorld& world, const PlacedLaser& sensor);
 
 /// The same with bodies in the way; those of the robot that carries the sensor are not.
-Scan castScan(const RayWorld& world, const PlacedLaser& sensor, const MovingBodies& bodies);
+/// \pre the beams are those of the sensor
+Scan castScan(const RayWorld& world, const PlacedLaser& sensor, Beams& beams,
+              const MovingBodies& bodies);
 
 /// One scan of each sensor, in order, shared out over all cores.
 std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors,

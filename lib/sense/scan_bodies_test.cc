@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "layout/test_layout.h"
@@ -90,7 +91,8 @@ TEST(ScanOfRobots, WithoutBodiesNothingChanges) {
     const std::vector<Scan> plain = castScans(worlds, scene.lasers);
     const PlacedLaser& sensor = scene.lasers[0];
     EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor).ranges);
-    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor, {}).ranges);
+    Beams beams(sensor);
+    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor, beams, {}).ranges);
     EXPECT_NE(plain[0].ranges, scansOf(scene)[0].ranges);
 }
 
@@ -107,6 +109,41 @@ TEST(ScanOfRobots, SameForAnyNumberOfThreads) {
     const std::vector<Scan> one = scansOf(scene);
     ASSERT_EQ(many.size(), one.size());
     for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(many[i].ranges, one[i].ranges);
+}
+
+/// Largest distance of the directions of a sensor's beams to those of Pose3::beam.
+double worstDirection(Beams& beams, const PlacedLaser& sensor) {
+    double worst = 0;
+    const std::span<const Vec3> directions = beams.at(sensor.pose);
+    for (int k = 0; k < sensor.laser.beams; ++k) {
+        const Vec3 wanted = sensor.pose.beam(sensor.laser.bearing(k));
+        const Vec3 found = directions[static_cast<std::size_t>(k)];
+        worst = std::max({worst, std::abs(wanted.x - found.x), std::abs(wanted.y - found.y),
+                          std::abs(wanted.z - found.z)});
+    }
+    return worst;
+}
+
+TEST(Beams, FollowThePose) {
+    for (const double tilt : {0.0, 20.0}) {
+        for (const bool rides : {false, true}) {
+            PlacedLaser sensor;
+            sensor.pose = {{1, 2, 0.5}, {}, Angle::degrees(tilt), {}};
+            if (rides) sensor.mount = Mount{};
+            Beams beams(sensor);
+            for (const double heading : {0.0, 33.0, 33.0, -170.5, 90.0}) {
+                sensor.pose.heading = Angle::degrees(heading);
+                EXPECT_LT(worstDirection(beams, sensor), 1e-15) << tilt << rides << heading;
+            }
+        }
+    }
+}
+
+TEST(Beams, DegreesOfASensorThatStandsAddUpExactly) {
+    PlacedLaser sensor;
+    sensor.pose.heading = Angle::degrees(30);
+    Beams beams(sensor);
+    EXPECT_EQ(beams.at(sensor.pose)[150], (Vec3{0, 1, 0}));  // bearing 60
 }
 
 }  // namespace

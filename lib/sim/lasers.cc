@@ -51,9 +51,11 @@ LaserReader::LaserReader(const Scene& scene)
     : scene_(&scene), worlds_(scene.environment), due_(scene.lasers.size()) {
     periods_.reserve(scene.lasers.size());
     readings_.reserve(scene.lasers.size());
+    beams_.reserve(scene.lasers.size());
     for (const PlacedLaser& laser : scene.lasers) {
         periods_.emplace_back(laser.laser.rate);
         readings_.push_back({.sensor = laser, .scan = {}});
+        beams_.emplace_back(laser);
         worlds_.prepare(laser.pose);
     }
     latest_.reserve(scene.lasers.size());
@@ -70,7 +72,8 @@ void LaserReader::read(SimTime time, std::span<const Motion> robots) {
     const Worlds& worlds = worlds_;
     tbb::parallel_for(std::size_t{0}, latest_.size(), [&](std::size_t k) {
         SensorReading& reading = readings_[latest_[k]];
-        reading.scan = castScan(worlds.at(reading.sensor.pose), reading.sensor, bodies_);
+        reading.scan =
+            castScan(worlds.at(reading.sensor.pose), reading.sensor, beams_[latest_[k]], bodies_);
         reading.scan.time = seconds(time);
         constexpr std::int64_t kLast = std::numeric_limits<int>::max();
         reading.scan.frame = static_cast<int>(std::min(reading.seq, kLast));

@@ -56,8 +56,8 @@ struct Stretch {
 /// A body as rays from one place meet it: what they share is computed once.
 class BodyFrom {
   public:
-    BodyFrom(const MovingBody& body, Point3 origin)
-        : body_(body), axes_(cosSin(body.pose.heading)), height_(origin.z) {
+    BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
+        : body_(body), axes_(axes), height_(origin.z) {
         offset_ = turned(origin.onFloor() - body.pose.position);
     }
 
@@ -96,7 +96,10 @@ class Fan {
           step_(step.degrees()),
           directions_(directions),
           far_(max_range),
-          ranges_(ranges) {}
+          ranges_(ranges) {
+        const double span = step_ * (static_cast<double>(ranges.size()) - 1);
+        if (span <= 180) ahead_ = unitVector(Angle::degrees(first_ + span / 2));
+    }
 
     /// All that may be met lies on this part of the floor.
     [[nodiscard]] Box2 box() const {
@@ -106,10 +109,12 @@ class Fan {
     }
 
     /// Level rays: a body is met at its height only, and by the beams that point at it only.
-    void meetLevel(const MovingBody& body) {
+    void meetLevel(const MovingBody& body, const BodyExtent& extent) {
         const double height = sensor_.position.z;
-        if (height < body.bottom || height > body.top || !approach(body)) return;
-        const BodyFrom from(body, sensor_.position);
+        if (height < body.bottom || height > body.top || !approach(body, extent)) return;
+        // Behind all beams: half of what is near, and cheaper to tell than where it is.
+        if (dot(way_, ahead_) < -reach_ * (1 + kFarSlack)) return;
+        const BodyFrom from(body, extent.axes, sensor_.position);
         if (distance_ <= reach_ * (1 + kFarSlack)) {
             meetBeams(from, 0, ranges_.size());
         } else {
@@ -118,16 +123,17 @@ class Fan {
         }
     }
 
-    void meetTilted(const MovingBody& body) {
-        if (approach(body)) meetBeams(BodyFrom(body, sensor_.position), 0, ranges_.size());
+    void meetTilted(const MovingBody& body, const BodyExtent& extent) {
+        if (approach(body, extent))
+            meetBeams(BodyFrom(body, extent.axes, sensor_.position), 0, ranges_.size());
     }
 
   private:
     /// Takes the body's place on the floor. \return false if it is too far away
-    bool approach(const MovingBody& body) {
+    bool approach(const MovingBody& body, const BodyExtent& extent) {
         way_ = body.pose.position - sensor_.position.onFloor();
         distance_ = std::sqrt(dot(way_, way_));
-        reach_ = body.reach();
+        reach_ = extent.reach;
         return distance_ - reach_ <= far_ * (1 + kFarSlack);
     }
 
@@ -163,6 +169,7 @@ class Fan {
     std::span<const Vec3> directions_;
     double far_;
     std::span<float> ranges_;
+    Vec2 ahead_;  // no beam points away from it; null if there is no such direction
     // Of the body at hand, on the floor.
     Vec2 way_;
     double distance_ = 0, reach_ = 0;
@@ -175,7 +182,7 @@ double MovingBody::reach() const {
 }
 
 double MovingBody::meet(Point3 origin, Vec3 direction) const {
-    return BodyFrom(*this, origin).meet(direction);
+    return BodyFrom(*this, cosSin(pose.heading), origin).meet(direction);
 }
 
 void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
@@ -225,10 +232,13 @@ void MovingBodies::rebuild(std::span<const MovingBody> bodies) {
 void MovingBodies::index() {
     places_.clear();
     places_.reserve(bodies_.size());
+    extents_.clear();
+    extents_.reserve(bodies_.size());
     double reach = 0;
     for (const MovingBody& body : bodies_) {
         places_.push_back(body.pose.position);
-        reach = std::max(reach, body.reach());
+        extents_.push_back({cosSin(body.pose.heading), body.reach()});
+        reach = std::max(reach, extents_.back().reach);
     }
     grid_.rebuild(places_, reach);
 }
@@ -244,9 +254,9 @@ void MovingBodies::shorten(const Pose3& sensor, Angle first, Angle step,
         const MovingBody& body = bodies_[i];
         if (body.owner == own) return;
         if (level)
-            fan.meetLevel(body);
+            fan.meetLevel(body, extents_[i]);
         else
-            fan.meetTilted(body);
+            fan.meetTilted(body, extents_[i]);
     });
 }
 

@@ -27,6 +27,12 @@ struct MovingBody {
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
 };
 
+/// What all rays need of a body, computed once for them.
+struct BodyExtent {
+    CosSin axes;       ///< of its heading
+    double reach = 0;  ///< MovingBody::reach()
+};
+
 /// Finds what is near on the floor: a uniform grid over the places of moving things, made anew by
 /// counting sort, O(n + cells), whenever they have moved. Cells are about as many as things (at
 /// most 2 n + 1), and no smaller than the widest of them.
@@ -70,6 +76,7 @@ class MovingBodies {
     void index();
 
     std::vector<MovingBody> bodies_;
+    std::vector<BodyExtent> extents_;
     std::vector<Point2> places_;  // of the bodies; kept for its memory
     FloorGrid grid_;
 };
