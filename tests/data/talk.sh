@@ -5,7 +5,7 @@ server=$!
 tries=0
 until [ -s port ] || [ $((tries += 1)) -gt 600 ]; do sleep 0.05; done
 nc -N 127.0.0.1 "$(cat port)"
-kill -TERM $server
+kill -TERM $server 2>/dev/null # it may have ended by SHUTDOWN
 wait $server
 status=$?
 rm -f port announced
