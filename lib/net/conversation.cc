@@ -67,10 +67,10 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 
 /// "no robot `r9`" with what may have been meant, or what there is.
 std::string unknownThing(std::string_view kind, std::string_view id,
-                         const std::vector<std::string>& known) {
+                         const std::vector<std::string>& known, std::string_view where = "") {
     constexpr std::size_t kFew = 12;
     std::string out = "no ";
-    out.append(kind).append(" ").append(excerpt(id));
+    out.append(kind).append(" ").append(excerpt(id)).append(where);
     if (known.empty()) return out.append(": there is none");
     if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
     if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
@@ -161,10 +161,14 @@ void Conversation::stepped() {
     if (step_end_) {
         const Simulation& simulation = hall_->simulation();
         const std::int64_t left = *step_end_ - world().steps();
-        // Nothing more comes after the end, nor if somebody else has cut the steps short.
-        if (left <= 0 || simulation.finished() || (simulation.paused() && simulation.owed() == 0))
-            answerStep(left);
+        // Nothing more comes after the end, nor if a PAUSE or RESUME has cut the steps short.
+        if (left <= 0 || simulation.finished() || simulation.owed() == 0) answerStep(left);
     }
+}
+
+void Conversation::finish() {
+    if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
+    stepped();
 }
 
 std::string Conversation::roleText() const {
@@ -246,7 +250,11 @@ void Conversation::sendPendingScan() {
 }
 
 std::string Conversation::unknownLaser(std::string_view id) const {
-    return unknownThing("laser", id, idsOf(world().lasers()));
+    std::vector<std::string> known;
+    for (const PlacedLaser& laser : world().lasers())
+        if (role_ != Role::Robot || (laser.mount && laser.mount->robot == subject_))
+            known.push_back(laser.id);
+    return unknownThing("laser", id, known, role_ == Role::Robot ? " on this robot" : "");
 }
 
 void Conversation::takeRobot(Words words) {

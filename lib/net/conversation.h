@@ -38,6 +38,9 @@ class Conversation {
     /// new do nothing.
     void stepped();
 
+    /// The run is over: ends what is under way, and tells so.
+    void finish();
+
     /// True while a STEP is not done: later requests wait for its answer.
     [[nodiscard]] bool waiting() const { return step_end_.has_value(); }
     /// True after QUIT and what closes a connection: nothing is read any more.

@@ -35,8 +35,11 @@ Count parseCount(std::string_view text, std::string_view what) {
     std::string found = ", found ";
     found += excerpt(text);
     std::string message(what);
-    if (!value) return {0, 400, message.append(" is a whole number").append(found)};
-    if (*value < 1 || *value > kMostCount) {
+    // Too many digits for an integer are a number all the same.
+    const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!is_whole || text.empty())
+        return {0, 400, message.append(" is a whole number").append(found)};
+    if (!value || *value < 1 || *value > kMostCount) {
         message.append(" is from 1 to ").append(std::to_string(kMostCount)).append(found);
         return {0, 416, message};
     }

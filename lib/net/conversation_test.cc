@@ -305,7 +305,7 @@ TEST(Conversation, RobotReadsItsOwnLasers) {
     EXPECT_EQ(talk.ask(robot, "SCAN l1"),
               "ERR 404 laser l1 is not on this robot: open another connection and take the role "
               "LASER l1\n");
-    EXPECT_EQ(talk.ask(robot, "SCAN l7"), "ERR 404 no laser `l7`, did you mean `l1`?\n");
+    EXPECT_EQ(talk.ask(robot, "SCAN l7"), "ERR 404 no laser `l7` on this robot, did you mean `l2`?\n");
     EXPECT_EQ(talk.ask(robot, "SCAN"), "ERR 400 SCAN wants an argument: SCAN id\n");
 }
 
@@ -434,7 +434,7 @@ TEST(Conversation, WorldTellsWhatThereIs) {
 TEST(Conversation, EmptyWorld) {
     const Scene scene = testing::scene("ispace size=8,6\n", "");
     World world(scene, std::chrono::milliseconds(5));
-    Simulation simulation(world, {}, nullptr, {Clock::Kind::Fast, 1}, {});
+    Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
     Hall hall(simulation);
     Conversation client(hall);
     EXPECT_EQ(Talk::ask(client, "ROBOT r1"), "ERR 404 no robot `r1`: there is none\n");
@@ -447,7 +447,7 @@ TEST(Conversation, HeadingsStayAboveMinus180) {
     const Scene scene = testing::scene(
         "ispace size=8,6\n", "robot id=r1 at=0,0 heading=-179.9999\nrobot id=r2 at=-0.0001,2\n");
     World world(scene, std::chrono::milliseconds(5));
-    Simulation simulation(world, {}, nullptr, {Clock::Kind::Fast, 1}, {});
+    Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
     Hall hall(simulation);
     Conversation client(hall);
     Talk::ask(client, "WORLD");

@@ -6,10 +6,8 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/post.hpp>
-#include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
 #include <atomic>
-#include <csignal>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -216,7 +214,11 @@ void Session::discard() {
 
 void Session::end() {
     ending_ = true;
-    conversation_.reset();
+    if (conversation_) {
+        conversation_->finish();
+        out_.append(conversation_->take());
+        conversation_.reset();
+    }
     if (closed()) return;
     lingering_ ? discard() : pump();
 }
@@ -251,7 +253,6 @@ struct Server::Data {
     tcp::acceptor acceptor{io};
     asio::steady_timer accept_pause{io}, alarm{io};
     std::optional<WallTime> alarm_time;
-    asio::signal_set signals{io, SIGTERM, SIGINT};
     tcp::endpoint local;
     std::vector<std::shared_ptr<Session>> sessions;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
@@ -356,9 +357,6 @@ Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLim
         // Asio's own category knows no std::errc.
         throw std::system_error(error.code().value(), std::system_category(), where);
     }
-    data_->signals.async_wait([data = data_.get()](std::error_code aborted, int /*signal*/) {
-        if (!aborted) data->simulation.finish();
-    });
     data_->accept();
 }
 

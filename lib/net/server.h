@@ -47,10 +47,10 @@ class Server {
     /// Those that are served now; may be asked from any thread.
     [[nodiscard]] std::size_t clients() const;
 
-    /// Runs, once, until the simulation is finished, or TERM or INT arrives; then sends what
-    /// clients are still to get, for half a second at most, and closes.
+    /// Runs, once, until the simulation is finished; then sends what clients are still to get, for
+    /// half a second at most, and closes.
     void run();
-    /// The same from another thread.
+    /// Finishes the simulation, from any thread; also before run(), which then ends at once.
     void stop();
 
   private:

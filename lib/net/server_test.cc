@@ -528,15 +528,26 @@ TEST(Server, ClientThatReadsNothingDoesNotHinderTheEnd) {
     EXPECT_EQ(running.server().clients(), 0U);
 }
 
-TEST(Server, SignalsEndTheRun) {
-    for (const int signal : {SIGTERM, SIGINT}) {
-        Running running;
-        Client client(running.port());
-        client.take("WORLD");
-        ::kill(::getpid(), signal);
-        running.join();
-        EXPECT_EQ(client.rest(), "");
-    }
+TEST(Server, EndOfTheRunEndsMotionsAndSteps) {
+    Running running;
+    Client driver(running.port()), world(running.port());
+    EXPECT_EQ(driver.take("ROBOT r1").ask("FORWARD 1").substr(0, 15), "OK FORWARD id=1");
+    EXPECT_EQ(step(world.take("WORLD"), 10), "OK STEP n=10 t=1.000");
+    running.server().stop();
+    running.join();
+    EXPECT_EQ(driver.rest(), "FAIL id=1 reason=stopped t=1.000\n");
+    EXPECT_EQ(world.rest(), "");
+}
+
+TEST(Server, ResumeAnswersTheStepItCutsShort) {
+    Running running({Clock::Kind::Real, 1});
+    Client stepper(running.port()), other(running.port());
+    EXPECT_EQ(stepper.take("WORLD").ask("PAUSE").substr(0, 8), "OK PAUSE");
+    stepper.send("STEP 1000000000\nTIME\n");
+    EXPECT_TRUE(comes(other.take("WORLD"), "TIME", "OK TIME t=1"));
+    EXPECT_EQ(other.ask("RESUME").substr(0, 9), "OK RESUME");
+    EXPECT_EQ(stepper.line().substr(0, 10), "OK STEP n=");
+    EXPECT_EQ(stepper.line().substr(0, 7), "OK TIME");
 }
 
 TEST(Server, RealClockRunsByItself) {

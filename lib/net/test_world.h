@@ -24,7 +24,7 @@ struct TestWorld {
                                "laser id=l1 at=-3,-2 fov=4 step=2 range=0.1,7.002\n"
                                "laser id=l2 on=r1 at=0.1,0,0.5 fov=1 range=20 rate=2.5\n")),
           world(scene, std::chrono::milliseconds(100)),
-          simulation(world, readScript(script, "run.txt", world), nullptr, clock, until) {}
+          simulation(world, readScript(script, "run.txt", world), clock, until) {}
 
     Scene scene;
     World world;

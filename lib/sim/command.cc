@@ -23,17 +23,18 @@ struct VerbFacts {
     std::string_view value_name;
     std::string_view unit;      // of the value
     std::string_view opposite;  // what goes the other way, where the value is not negative
+    std::string_view example;
 };
 
 /// In the order of Verb.
 constexpr std::array<VerbFacts, 7> kVerbs = {{
-    {Verb::Forward, "FORWARD", "distance", "metres", "BACKWARD"},
-    {Verb::Backward, "BACKWARD", "distance", "metres", "FORWARD"},
-    {Verb::Left, "LEFT", "angle", "degrees", "RIGHT"},
-    {Verb::Right, "RIGHT", "angle", "degrees", "LEFT"},
-    {Verb::Speed, "SPEED", "speed", "metres a second", ""},
-    {Verb::Rotspeed, "ROTSPEED", "rotspeed", "degrees a second", ""},
-    {Verb::Stop, "STOP", "", "", ""},
+    {Verb::Forward, "FORWARD", "distance", "metres", "BACKWARD", "FORWARD 1.5"},
+    {Verb::Backward, "BACKWARD", "distance", "metres", "FORWARD", "BACKWARD 1.5"},
+    {Verb::Left, "LEFT", "angle", "degrees", "RIGHT", "LEFT 90"},
+    {Verb::Right, "RIGHT", "angle", "degrees", "LEFT", "RIGHT 90"},
+    {Verb::Speed, "SPEED", "speed", "metres a second", "", "SPEED 0.3"},
+    {Verb::Rotspeed, "ROTSPEED", "rotspeed", "degrees a second", "", "ROTSPEED 30"},
+    {Verb::Stop, "STOP", "", "", "", "STOP"},
 }};
 
 const VerbFacts& factsOf(Verb verb) { return kVerbs[static_cast<std::size_t>(verb)]; }
@@ -73,7 +74,7 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
     if (!value) {
         return refuse(CommandError::Kind::Syntax,
                       join({excerpt(text), " is no number, ", facts.name, " wants its ",
-                            facts.value_name, " in ", facts.unit, ", like ", facts.name, " 1.5"}));
+                            facts.value_name, " in ", facts.unit, ", like ", facts.example}));
     }
     if (comesToAnEnd(facts.verb) && *value < 0) {
         return refuse(
@@ -115,7 +116,7 @@ ParsedCommand parseCommand(std::string_view text) {
     if (words.size() < wanted) {
         return refuse(CommandError::Kind::Syntax,
                       join({facts.name, " wants its ", facts.value_name, " in ", facts.unit,
-                            ", like ", facts.name, " 1.5"}));
+                            ", like ", facts.example}));
     }
     if (words.size() > wanted) {
         return refuse(CommandError::Kind::Syntax,

@@ -94,7 +94,7 @@ TEST(ParseCommand, EchoesInputPrintable) {
     const std::string_view nul("STOP\0", 5);
     EXPECT_EQ(parseCommand(nul).error.message, "unknown command `STOP?`, did you mean `STOP`?");
     EXPECT_EQ(parseCommand("SPEED \x1b[2J\xff").error.message,
-              "`?[2J?` is no number, SPEED wants its speed in metres a second, like SPEED 1.5");
+              "`?[2J?` is no number, SPEED wants its speed in metres a second, like SPEED 0.3");
 }
 
 TEST(ParseCommand, AnswersHugeLinesShortly) {

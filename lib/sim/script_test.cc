@@ -116,7 +116,7 @@ TEST_F(ScriptTest, NamesBadCommands) {
     EXPECT_EQ(errors("0 r1 STOP 1\n"),
               "run.txt:1:11: error: STOP takes no value, found `1` behind it\n");
     EXPECT_EQ(errors("0 r1 LEFT\n"),
-              "run.txt:1:6: error: LEFT wants its angle in degrees, like LEFT 1.5\n");
+              "run.txt:1:6: error: LEFT wants its angle in degrees, like LEFT 90\n");
 }
 
 TEST_F(ScriptTest, NamesWhatTheRobotCannotDo) {

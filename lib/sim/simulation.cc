@@ -46,11 +46,10 @@ Clock parseClock(const std::string& text) {
                      (hint.empty() ? ", wanted real, real:RATE, fast or step" : hint));
 }
 
-Simulation::Simulation(World& world, std::vector<TimedCommand> script, Recorder* recorder,
-                       Clock clock, std::optional<SimTime> until)
+Simulation::Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
+                       std::optional<SimTime> until)
     : world_(&world),
       script_(std::move(script)),
-      recorder_(recorder),
       clock_(clock),
       until_(until),
       paused_(clock.kind == Clock::Kind::Step) {

@@ -33,9 +33,9 @@ Clock parseClock(const std::string& text);
 /// A world and what drives it: script, clock, pause, end.
 class Simulation {
   public:
-    /// `script` in the order of time; `recorder` may be null; `until`: the last step is the first
-    /// one that ends there or later. What the script has from then on is not given.
-    Simulation(World& world, std::vector<TimedCommand> script, Recorder* recorder, Clock clock,
+    /// `script` in the order of time; `until`: the last step is the first one that ends there or
+    /// later. What the script has from then on is not given.
+    Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);
 
     [[nodiscard]] World& world() { return *world_; }
@@ -46,6 +46,9 @@ class Simulation {
     /// the next one are given: what a server tells its clients. Its subjects must outlive the
     /// simulation's last step.
     void onStep(std::function<void()> observer) { observers_.push_back(std::move(observer)); }
+
+    /// Records every step from now on. The recorder must outlive the last one.
+    void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
     /// With the clock Step always true.
     [[nodiscard]] bool paused() const { return paused_; }
@@ -88,7 +91,7 @@ class Simulation {
     World* world_;
     std::vector<TimedCommand> script_;
     std::size_t next_ = 0;  // of script_
-    Recorder* recorder_;
+    Recorder* recorder_ = nullptr;
     Clock clock_;
     std::optional<SimTime> until_;
     std::vector<std::function<void()>> observers_;

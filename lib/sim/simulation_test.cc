@@ -35,7 +35,7 @@ class SimulationTest : public ::testing::Test {
     void start(SimTime step) { world_ = std::make_unique<World>(scene_, step); }
     Simulation simulation(Clock clock, std::optional<SimTime> until = {},
                           const std::string& script = "") {
-        return {*world_, readScript(script, "run.txt", *world_), nullptr, clock, until};
+        return {*world_, readScript(script, "run.txt", *world_), clock, until};
     }
     Scene scene_;
     std::unique_ptr<World> world_;
@@ -319,8 +319,9 @@ std::string recorded(const Scene& scene, const std::string& script) {
     {
         World world(scene, milliseconds(50));
         Recorder recorder(folder, world, {}, 0);
-        Simulation simulation(world, readScript(script, "run.txt", world), &recorder, kFast,
+        Simulation simulation(world, readScript(script, "run.txt", world), kFast,
                               std::chrono::seconds(1));
+        simulation.recordWith(recorder);
         simulation.run(kStart, kLong);
     }
     std::string robots = readAll(folder + "/robots.csv");
@@ -349,10 +350,10 @@ TEST(SimulationRecord, IsTheSameForAnyClock) {
     EXPECT_EQ(recorded(scene, script), fast);
 
     World world(scene, milliseconds(50));
-    Simulation simulation(world, readScript(script, "run.txt", world), nullptr, {}, {});
+    Simulation simulation(world, readScript(script, "run.txt", world), {}, {});
     for (int i = 0; i <= 100; ++i) simulation.run(kStart + milliseconds(10 * i), kLong);
     World other(scene, milliseconds(50));
-    Simulation stepped(other, readScript(script, "run.txt", other), nullptr, kByStep, {});
+    Simulation stepped(other, readScript(script, "run.txt", other), kByStep, {});
     stepped.allow(20);
     stepped.run(kStart, kLong);
     EXPECT_EQ(world.steps(), 20);

@@ -6,11 +6,16 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
 
 namespace {
+
+double apart(const PlacedRobot& a, const PlacedRobot& b) {
+    return distance(a.pose.position, b.pose.position);
+}
 
 /// What an element puts between the floor and a height.
 Band bandOf(const Element& element, double top) {
@@ -88,10 +93,14 @@ void checkStart(const Scene& scene, const ObstacleSets& obstacles) {
         const PlacedRobot& robot = scene.robots[i];
         const std::string name = "robot " + robot.id;
         if (obstacles.at(robot.model.height).overlap(robot.pose.position, robot.model.radius))
-            findings.add(robot.place.finding(name + " stands in " + nameOfObstacle(scene, robot)));
+            findings.add(robot.place.finding(name + " stands in " + nameOfObstacle(scene, robot) +
+                                             " (its radius is " + formatDouble(robot.model.radius) +
+                                             " m)"));
         if (const auto other = neighbours.before(i)) {
             findings.add(robot.place.finding("robots " + scene.robots[*other].id + " and " +
-                                             robot.id + " overlap"));
+                                             robot.id + " overlap: their centres are " +
+                                             formatFixed(apart(robot, scene.robots[*other]), 3) +
+                                             " m apart, less than their radii together"));
         }
     }
     findings.throwIfAny();

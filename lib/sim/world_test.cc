@@ -55,9 +55,10 @@ TEST(World, RobotsMustStandFree) {
                    "robot id=b at=0,0\n"
                    "robot id=c at=3.8,0\n"
                    "robot id=d at=0.5,0\n"),
-              "room.3dm:2:1: error: robot a stands in box\n"
-              "room.3dm:4:1: error: robot c stands in room\n"
-              "room.3dm:5:1: error: robots b and d overlap\n");
+              "room.3dm:2:1: error: robot a stands in box (its radius is 0.3 m)\n"
+              "room.3dm:4:1: error: robot c stands in room (its radius is 0.3 m)\n"
+              "room.3dm:5:1: error: robots b and d overlap: their centres are 0.500 m "
+              "apart, less than their radii together\n");
     // Over the robot's head.
     EXPECT_EQ(text("robot id=a at=0,2 height=0.5\n"), "");
     std::string heap;
