@@ -24,6 +24,7 @@ start() {
     simrun "$@" --port-file port >announced 2>simrun.err &
     server=$!
     eventually "the port file" test -s port
+    eventually "the first line" test -s announced
     port=$(cat port)
     grep -qx '{"schema":"ispace-simrun/1","listen":"127.0.0.1:'"$port"'","p2os":{},"scip":{}}' \
         announced || fail "first line: $(cat announced)"

@@ -2,69 +2,48 @@
 // simrun: simulates the robots and sensors of a scene and serves them over TCP.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <iostream>
+#include <memory>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_writer.h"
-#include "base/number.h"
+#include "cli/line_guard.h"
 #include "cli/operands.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
+#include "cli/stop_signals.h"
 #include "net/server.h"
 #include "simrun/options.h"
+#include "simrun/warnings.h"
 
 namespace {
 
 using namespace ispace;
 
-/// Says on stderr what robots run into, up to a number of lines that nobody reads beyond.
-class CollisionLog {
-  public:
-    CollisionLog(const World& world, bool quiet) : world_(&world), quiet_(quiet) {}
-
-    void takeNew() {
-        for (const Collision& collision : world_->collisions()) {
-            if (!quiet_ && ++count_ <= kMost) say(collision);
-            if (!quiet_ && count_ == kMost) std::cerr << "simrun: warning: no more of these\n";
-        }
-    }
-
-  private:
-    static constexpr int kMost = 100;
-
-    void say(const Collision& collision) const {
-        const auto& robots = world_->robots();
-        const Point2 place = world_->status(collision.robot).pose.position;
-        std::cerr << "simrun: warning: t=" << formatMilliseconds(collision.time) << ' '
-                  << robots[collision.robot].id << " at " << formatFixed(place.x, 3) << ','
-                  << formatFixed(place.y, 3) << " ran into "
-                  << (collision.other ? robots[*collision.other].id : "what stands there") << '\n';
-    }
-
-    const World* world_;
-    bool quiet_;
-    int count_ = 0;
-};
-
 /// The first line of output, and the port file: clients can connect now.
 void announce(const Server& server, const std::string& port_file) {
+    if (!port_file.empty()) writeAll(port_file, std::to_string(server.port()) + '\n');
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-simrun/1");
     json.key("listen").value(server.address());
     json.key("p2os").beginObject().endObject();
     json.key("scip").beginObject().endObject().endObject();
     writeAll("-", json.take() + '\n');
-    if (!port_file.empty()) writeAll(port_file, std::to_string(server.port()) + '\n');
 }
 
-/// One file descriptor a client: as many as this process may have.
-void raiseFileLimit() {
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-    limit.rlim_cur = limit.rlim_max;
-    ::setrlimit(RLIMIT_NOFILE, &limit);
+/// A client takes a file descriptor: as many as this process may have, less what it needs itself.
+ServerLimits withinFileLimit(ServerLimits limits) {
+    constexpr rlim_t kOwn = 32;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return limits;
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    const rlim_t most = files.rlim_cur > kOwn ? files.rlim_cur - kOwn : 1;
+    limits.clients = static_cast<std::size_t>(std::min<rlim_t>(limits.clients, most));
+    return limits;
 }
 
 std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
@@ -78,42 +57,59 @@ std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInpu
     return readScript(readAll(options.script), options.script, world);
 }
 
+/// Files of the record that grow.
+std::vector<std::string> recordedLines(const std::string& folder) {
+    std::vector<std::string> files;
+    for (const char* name : {"robots.csv", "scans.jsonl", "timing.csv"})
+        files.push_back((std::filesystem::path(folder) / name).string());
+    return files;
+}
+
+std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
+    if (!options.until) return std::make_unique<SilentProgress>();
+    auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
+    progress->begin("steps", (*options.until + options.step - SimTime(1)) / options.step);
+    simulation.onStep([bar = progress.get()] { bar->advance(1); });
+    return progress;
+}
+
+void report(const Simulation& simulation, const SimrunOptions& options) {
+    const World& world = simulation.world();
+    talk(options.common, "simrun",
+         std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
+    if (const SimTime lost = simulation.lost(); lost > SimTime(0))
+        talk(options.common, "simrun",
+             "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
+}
+
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     const ThreadLimit threads(options.common.threads);
-    // A port file of an earlier run must not lead anyone to a server that is gone.
-    std::error_code ignored;
-    if (!options.port_file.empty()) std::filesystem::remove(options.port_file, ignored);
-
     const SceneInput input = readScene({options.operands, options.any_environment, false});
+    warnOfPending(input.scene, options.common.quiet);
     World world(input.scene, options.step);
-    std::vector<TimedCommand> script = scriptOf(options, input, world);
+    Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
+    CollisionLog collisions(world, options.common.quiet);
+    simulation.onStep([&collisions] { collisions.tell(); });
+
+    Server server(simulation, options.listen, withinFileLimit(options.limits));
+    const StopSignals signals([&server] { server.stop(); });
+    // Only a run that can begin replaces the records of the one before.
     History history = input.layout ? input.layout->history : History();
     history.push_back(command.historyLine(input.named));
     std::optional<Recorder> recorder;
-    if (!options.record.empty())
+    std::optional<LineGuard> guard;
+    if (!options.record.empty()) {
         recorder.emplace(options.record, world, history, options.common.seed);
-
-    Simulation simulation(world, std::move(script), recorder ? &*recorder : nullptr, options.clock,
-                          options.until);
-    CollisionLog collisions(world, options.common.quiet);
-    simulation.onStep([&collisions] { collisions.takeNew(); });
-    const auto progress =
-        makeProgress("simrun", options.until ? options.common.progress : std::optional(false),
-                     options.common.quiet);
-    if (options.until) {
-        progress->begin("steps", (*options.until + options.step - SimTime(1)) / options.step);
-        simulation.onStep([&progress] { progress->advance(1); });
+        guard.emplace(recordedLines(options.record));
+        simulation.recordWith(*recorder);
     }
-
-    raiseFileLimit();
-    Server server(simulation, options.listen, options.limits);
+    const auto progress = progressOf(simulation, options);
     announce(server, options.port_file);
     server.run();
     progress->end();
     if (recorder) recorder->flush(world);
-    talk(options.common, "simrun",
-         std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
+    report(simulation, options);
 }
 
 }  // namespace

@@ -30,6 +30,12 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     addAnyEnvironmentOption(line_, options_.any_environment);
     addCommonOptions(line_, options_.common, "");
     line_.parse(argc, argv);
+    // An empty variable of a shell script, most likely: the run must not go on without its files.
+    for (const auto& [name, value] : {std::pair("--script", &options_.script),
+                                      {"--record", &options_.record},
+                                      {"--port-file", &options_.port_file}})
+        if (line_.given(name) && value->empty())
+            throw UsageError(std::string(name) + ": the name is empty");
 }
 
 void SimrunCommand::declareRun() {

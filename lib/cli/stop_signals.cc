@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/stop_signals.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+constexpr char kStop = 's', kQuit = 'q';
+/// Where the handler tells the listener; a handler reaches nothing but what is global.
+std::atomic<int> write_end = -1;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void tell(char word) {
+    // A full pipe holds enough words already.
+    static_cast<void>(!::write(write_end, &word, 1));
+}
+
+void onSignal(int /*signal*/) {
+    const int error = errno;
+    tell(kStop);
+    errno = error;
+}
+
+char nextWord(int fd) {
+    char word = kQuit;
+    while (::read(fd, &word, 1) < 0 && errno == EINTR) continue;
+    return word;
+}
+
+void handle(void (*handler)(int)) {
+    struct sigaction action = {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : {SIGTERM, SIGINT}) ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+StopSignals::StopSignals(std::function<void()> stop) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+        throw std::system_error(errno, std::generic_category(), "pipe for signals");
+    read_end_ = ends[0];
+    write_end = ends[1];
+    listener_ = std::thread([fd = read_end_, stop = std::move(stop)] {
+        while (nextWord(fd) == kStop) stop();
+    });
+    handle(onSignal);
+}
+
+StopSignals::~StopSignals() {
+    handle(SIG_IGN);
+    tell(kQuit);
+    listener_.join();
+    ::close(write_end.exchange(-1));
+    ::close(read_end_);
+}
+
+}  // namespace ispace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <thread>
+
+namespace ispace {
+
+/// Turns TERM and INT into a request to end. While it lives neither ends the process by itself, and
+/// after it both are ignored: what is left to do then is to exit. One at a time in a process.
+class StopSignals {
+  public:
+    /// `stop` is called from another thread, at each signal. \throws std::system_error
+    explicit StopSignals(std::function<void()> stop);
+    ~StopSignals();
+    StopSignals(const StopSignals&) = delete;
+    StopSignals& operator=(const StopSignals&) = delete;
+
+  private:
+    int read_end_ = -1;
+    std::thread listener_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/stop_signals.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+namespace ispace {
+
+namespace {
+
+TEST(StopSignals, AskToEndAndAreIgnoredAfterwards) {
+    for (int round = 0; round < 2; ++round) {
+        std::atomic<int> asked = 0;
+        {
+            const StopSignals signals([&asked] { ++asked; });
+            for (const int signal : {SIGTERM, SIGINT, SIGTERM}) {
+                const int before = asked;
+                std::raise(signal);
+                while (asked == before) std::this_thread::yield();
+            }
+            EXPECT_EQ(asked, 3);
+        }
+        std::raise(SIGTERM);
+        std::raise(SIGINT);
+        EXPECT_EQ(asked, 3);
+    }
+    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+}
+
+TEST(StopSignals, EndsWithoutASignal) {
+    int asked = 0;
+    {
+        const StopSignals signals([&asked] { ++asked; });
+    }
+    EXPECT_EQ(asked, 0);
+    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+}
+
+}  // namespace
+
+}  // namespace ispace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "layout/scene.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// Says on stderr what robots run into, up to a number of lines that nobody reads beyond.
+class CollisionLog {
+  public:
+    CollisionLog(const World& world, bool quiet) : world_(&world), quiet_(quiet) {}
+    /// Tells the collisions of the world's last step.
+    void tell();
+
+  private:
+    const World* world_;
+    bool quiet_;
+    int count_ = 0;
+};
+
+/// Sensors that nobody has placed yet take no part.
+void warnOfPending(const Scene& scene, bool quiet);
+
+}  // namespace ispace
