@@ -68,11 +68,14 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// "no robot `r9`" with what may have been meant, or what there is.
 std::string unknownThing(std::string_view kind, std::string_view id,
                          const std::vector<std::string>& known, std::string_view where = "") {
-    constexpr std::size_t kFew = 12;
+    constexpr std::size_t kFew = 12, kMany = 256;
     std::string out = "no ";
     out.append(kind).append(" ").append(excerpt(id)).append(where);
     if (known.empty()) return out.append(": there is none");
-    if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
+    // Among thousands of names one is always near, and it would take long to find.
+    if (known.size() <= kMany) {
+        if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
+    }
     if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
     return out.append("; there is ").append(joined(known, ", "));
 }
@@ -129,6 +132,12 @@ std::string Conversation::greeting() { return "ISPACE 1\n"; }
 void Conversation::request(std::string_view line) {
     const std::vector<std::string_view> words = split(line);
     if (words.empty()) return;
+    // A web page can make a browser send requests to ports of its machine: lines of them might pass
+    // for those of a client.
+    if (role_ == Role::None && words.back().starts_with("HTTP/")) {
+        closing_ = true;
+        return error(400, {"this is no web server, simrun(1) has its protocol"});
+    }
     const auto all = requests();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;

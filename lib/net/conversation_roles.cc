@@ -107,7 +107,10 @@ void Conversation::scanOfRobot(Words words) {
 
 // The role LASER.
 
-void Conversation::scan(Words /*words*/) { out_ += *hall_->scan(subject_, false, binary_); }
+void Conversation::scan(Words /*words*/) {
+    sendPendingScan();
+    out_ += *hall_->scan(subject_, false, binary_);
+}
 
 void Conversation::stream(Words words) {
     std::int64_t every = 1;

@@ -305,7 +305,8 @@ TEST(Conversation, RobotReadsItsOwnLasers) {
     EXPECT_EQ(talk.ask(robot, "SCAN l1"),
               "ERR 404 laser l1 is not on this robot: open another connection and take the role "
               "LASER l1\n");
-    EXPECT_EQ(talk.ask(robot, "SCAN l7"), "ERR 404 no laser `l7` on this robot, did you mean `l2`?\n");
+    EXPECT_EQ(talk.ask(robot, "SCAN l7"),
+              "ERR 404 no laser `l7` on this robot, did you mean `l2`?\n");
     EXPECT_EQ(talk.ask(robot, "SCAN"), "ERR 400 SCAN wants an argument: SCAN id\n");
 }
 

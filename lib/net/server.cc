@@ -2,7 +2,6 @@
 #include "net/server.h"
 
 #include <algorithm>
-#include <array>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/post.hpp>
@@ -12,9 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "net/conversation.h"
-#include "net/line_buffer.h"
-#include "net/outbox.h"
+#include "net/session.h"
 
 namespace ispace {
 
@@ -23,212 +20,14 @@ namespace {
 using asio::ip::tcp;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kBlock = 4096;
 /// Of the world, and of the clients, before it is the other's turn.
 constexpr auto kTurn = std::chrono::milliseconds(2);
-/// Requests of one client before it is the next one's turn.
-constexpr int kRequestsInTurn = 256;
 /// What the system may hold for a client: much of it would be scans that are no longer new.
 constexpr int kSendBuffer = 1 << 16;
-/// How long a connection that was told of its end may take to close, what it still sends unread.
-constexpr auto kLinger = std::chrono::seconds(1);
-/// Connections in that state beyond those that are served.
+/// Connections beyond those that are served, which are told of their end.
 constexpr std::size_t kMostLingering = 64;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kLastFlush = std::chrono::milliseconds(500);
-
-bool wouldBlock(const std::error_code& error) {
-    return error == asio::error::would_block || error == asio::error::try_again ||
-           error == asio::error::interrupted;
-}
-
-/// One connection. It reads, answers, writes, and at the end waits for the other side to close;
-/// handlers keep it alive until then.
-class Session : public std::enable_shared_from_this<Session> {
-  public:
-    Session(tcp::socket socket, const ServerLimits& limits)
-        : socket_(std::move(socket)),
-          timer_(socket_.get_executor()),
-          limits_(limits),
-          lines_(limits.line) {}
-
-    void serve(Hall& hall) {
-        conversation_.emplace(hall);
-        out_.append(Conversation::greeting());
-        pump();
-    }
-    /// Sends a text and closes.
-    void refuse(std::string_view text) {
-        out_.append(text);
-        pump();
-    }
-    /// The world took a step.
-    void stepped();
-    [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
-    [[nodiscard]] bool serving() const { return conversation_.has_value(); }
-    [[nodiscard]] bool closed() const { return !socket_.is_open(); }
-    /// Sends what is pending and closes, without waiting for the other side.
-    void end();
-    void close();
-
-  private:
-    [[nodiscard]] bool mayAnswer() const {
-        return conversation_ && !conversation_->waiting() && !conversation_->closing() &&
-               out_.unsent() <= limits_.pending;
-    }
-    void pump();
-    void pumpLater();
-    void answer();
-    void flush();
-    std::string_view nextPiece();
-    void listen();
-    void receive();
-    void linger();
-    void discard();
-
-    tcp::socket socket_;
-    asio::steady_timer timer_;  // of lingering
-    ServerLimits limits_;
-    LineBuffer lines_;
-    std::optional<Conversation> conversation_;  // none: the connection is about to end
-    Outbox out_;
-    bool reading_ = false, writing_ = false, posted_ = false;  // handlers on their way
-    bool eof_ = false, lingering_ = false, ending_ = false;
-};
-
-/// Does all that can be done now, and arranges to be called when more can.
-void Session::pump() {
-    answer();
-    flush();
-    if (closed()) return;
-    if (conversation_ && !conversation_->waiting()) {
-        const bool left = eof_ && !lines_.ready();
-        if (left || conversation_->closing()) conversation_.reset();
-    }
-    if (!conversation_ && !writing_) return linger();
-    if (mayAnswer() && lines_.ready()) return pumpLater();
-    listen();
-}
-
-void Session::pumpLater() {
-    if (std::exchange(posted_, true)) return;
-    asio::post(socket_.get_executor(), [self = shared_from_this()] {
-        self->posted_ = false;
-        if (!self->closed()) self->pump();
-    });
-}
-
-void Session::answer() {
-    for (int i = 0; i < kRequestsInTurn && mayAnswer(); ++i) {
-        if (lines_.tooLong())
-            conversation_->tooLong(limits_.line);
-        else if (lines_.ready())
-            conversation_->request(lines_.take());
-        else
-            return;
-        out_.append(conversation_->take());
-    }
-}
-
-void Session::stepped() {
-    if (!conversation_) return;
-    const bool waited = conversation_->waiting();
-    conversation_->stepped();
-    out_.append(conversation_->take());
-    flush();
-    if (waited && !closed() && !conversation_->waiting()) pumpLater();
-}
-
-/// What to send next; a scan only when there is nothing else.
-std::string_view Session::nextPiece() {
-    if (out_.front().empty() && conversation_) out_.put(conversation_->takeScan());
-    return out_.front();
-}
-
-/// Writes as much as the system takes; a handler goes on with the rest.
-void Session::flush() {
-    while (!writing_ && !closed()) {
-        const std::string_view piece = nextPiece();
-        if (piece.empty()) return;
-        std::error_code error;
-        out_.pop(socket_.write_some(asio::buffer(piece), error));
-        if (wouldBlock(error)) {
-            writing_ = true;
-            socket_.async_wait(tcp::socket::wait_write, [self = shared_from_this()](auto failed) {
-                self->writing_ = false;
-                if (!failed && !self->closed()) self->pump();
-            });
-        } else if (error) {
-            close();
-        }
-    }
-}
-
-void Session::listen() {
-    if (reading_ || eof_ || !mayAnswer()) return;
-    reading_ = true;
-    socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
-        self->reading_ = false;
-        if (!failed && !self->closed() && self->conversation_) self->receive();
-    });
-}
-
-void Session::receive() {
-    std::array<char, kBlock> block;
-    std::error_code error;
-    const std::size_t size = socket_.read_some(asio::buffer(block), error);
-    if (error == asio::error::eof)
-        eof_ = true;
-    else if (error && !wouldBlock(error))
-        return close();
-    lines_.append({block.data(), size});
-    pump();
-}
-
-/// Closing with unread input would reset the connection, and the other side might lose what it was
-/// told last.
-void Session::linger() {
-    if (std::exchange(lingering_, true)) return;
-    if (eof_) return close();
-    std::error_code ignored;
-    socket_.shutdown(tcp::socket::shutdown_send, ignored);
-    timer_.expires_after(kLinger);
-    timer_.async_wait([self = shared_from_this()](auto) { self->close(); });
-    discard();
-}
-
-void Session::discard() {
-    constexpr int kBlocksInTurn = 16;
-    std::array<char, kBlock> block;
-    for (int i = 0; i < kBlocksInTurn; ++i) {
-        std::error_code error;
-        socket_.read_some(asio::buffer(block), error);
-        if (wouldBlock(error)) break;
-        if (error) return close();
-    }
-    if (ending_) return close();
-    socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
-        if (!failed && !self->closed()) self->discard();
-    });
-}
-
-void Session::end() {
-    ending_ = true;
-    if (conversation_) {
-        conversation_->finish();
-        out_.append(conversation_->take());
-        conversation_.reset();
-    }
-    if (closed()) return;
-    lingering_ ? discard() : pump();
-}
-
-void Session::close() {
-    std::error_code ignored;
-    timer_.cancel();
-    socket_.close(ignored);
-    conversation_.reset();
-}
 
 }  // namespace
 
@@ -279,8 +78,8 @@ void Server::Data::welcome(tcp::socket socket) {
     socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
     socket.non_blocking(true, ignored);
     sweep();
+    if (sessions.size() >= limits.clients + kMostLingering) return;
     const bool full = serving >= limits.clients;
-    if (full && sessions.size() >= limits.clients + kMostLingering) return;
     const auto session = std::make_shared<Session>(std::move(socket), limits);
     sessions.push_back(session);
     if (!full) {

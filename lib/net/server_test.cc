@@ -528,6 +528,41 @@ TEST(Server, ClientThatReadsNothingDoesNotHinderTheEnd) {
     EXPECT_EQ(running.server().clients(), 0U);
 }
 
+TEST(Server, ClientsThatQuitWithoutReadingAreBounded) {
+    ServerLimits limits;
+    limits.clients = 4;
+    Running running({Clock::Kind::Step, 1}, limits);
+    std::string flood = "WORLD\n";
+    for (int i = 0; i < 5000; ++i) flood += "POSES\n";
+    flood += "QUIT\n";
+    std::vector<std::unique_ptr<Client>> clients;
+    std::size_t closed = 0;
+    for (int i = 0; i < 120; ++i) {
+        clients.push_back(std::make_unique<Client>(running.port(), 2048));
+        // What is beyond all limits is closed without a word, and may not take the request.
+        if (!clients.back()->connect().send(flood)) ++closed;
+    }
+    // Those that stay do not keep others out for ever.
+    clients.clear();
+    const auto welcome = [&] {
+        Client last(running.port());
+        return last.connect().line() == "ISPACE 1" && last.ask("WORLD").starts_with("OK WORLD");
+    };
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!welcome()) ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+}
+
+TEST(Server, IsNoWebServer) {
+    Running running;
+    Client browser(running.port());
+    EXPECT_EQ(browser.connect().line(), "ISPACE 1");
+    browser.send("POST / HTTP/1.1\r\nContent-Type: text/plain\r\n\r\nWORLD\nSHUTDOWN\n");
+    EXPECT_EQ(browser.line().substr(0, 8), "ERR 400 ");
+    EXPECT_EQ(browser.rest(), "");
+    Client world(running.port());
+    EXPECT_EQ(world.take("WORLD").ask("TIME"), "OK TIME t=0.000 steps=0");
+}
+
 TEST(Server, EndOfTheRunEndsMotionsAndSteps) {
     Running running;
     Client driver(running.port()), world(running.port());

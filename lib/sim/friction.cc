@@ -8,7 +8,10 @@ namespace ispace {
 FrictionMap::FrictionMap(const Environment& environment) {
     for (const Element& element : environment.elements()) {
         const Record& record = element.record;
-        if (record.keyword() != "floor" || record.number("friction") == 0) continue;
+        // Below the first rough one a smooth floor is as good as none.
+        const bool tells =
+            record.keyword() == "floor" && (!floors_.empty() || record.number("friction") != 0);
+        if (!tells) continue;
         const Tuple& at = record.tuple("at");
         const Tuple& size = record.tuple("size");
         floors_.push_back({{at[0], at[1]},

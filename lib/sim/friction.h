@@ -12,8 +12,8 @@ class FrictionMap {
   public:
     explicit FrictionMap(const Environment& environment);
 
-    /// That of the last `floor` record, in file order, that holds the point, edges included; 0 if
-    /// there is none. Records without friction say nothing.
+    /// That of the last `floor` record, in file order, that holds the point, edges included: later
+    /// ones lie on top. 0 if there is none.
     [[nodiscard]] double at(Point2 p) const;
     /// True if it is 0 everywhere.
     [[nodiscard]] bool empty() const { return floors_.empty(); }

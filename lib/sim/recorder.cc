@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/file.h"
 #include "base/number.h"
 #include "sense/scan_jsonl.h"
 
@@ -46,6 +45,13 @@ class LineFile {
 
     /// What the next flush writes, up to the last newline.
     std::string pending;
+
+    /// Puts `text` in place of the whole content, which must not have been longer. Of less than a
+    /// page, it is written whole or not at all.
+    void rewrite(std::string_view text) {
+        if (error_ == 0 && ::pwrite(fd_, text.data(), text.size(), 0) < 0) error_ = errno;
+        if (error_ != 0) fail(name_, error_);
+    }
 
     /// After an error nothing more is written and each call throws it again: lines behind a gap
     /// would pass for the whole.
@@ -110,8 +116,7 @@ struct Recorder::Data {
           timing(fileIn(folder, "timing.csv")),
           info(fileIn(folder, "info.csv")) {}
 
-    LineFile robots, scans, timing;
-    std::string info;  // name of a file that is small and always written whole
+    LineFile robots, scans, timing, info;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
     SimTime time{}, step_length{};
@@ -166,7 +171,7 @@ void Recorder::Data::flush() {
     // Commands take effect at every step: the control interval is that of the steps.
     std::string text = "dt,control_interval,steps\n";
     text.append(dt).append(",").append(dt).append(",").append(std::to_string(steps)).append("\n");
-    writeAll(info, text);
+    info.rewrite(text);
     const std::chrono::duration<double> wall = flushed - started;
     timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
     timing.pending.append(",").append(std::to_string(steps)).append("\n");
@@ -205,6 +210,14 @@ void Recorder::record(const World& world) {
 void Recorder::flush(const World& world) {
     data_->remember(world);
     data_->flush();
+}
+
+std::optional<steady_clock::time_point> Recorder::flushDue(steady_clock::time_point now) {
+    if (data_->flushed_all) return std::nullopt;
+    const auto due = data_->flushed + kFlushEvery;
+    if (now < due) return due;
+    data_->flush();
+    return std::nullopt;
 }
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/history.h"
@@ -19,8 +20,8 @@ namespace ispace {
 /// - info.csv: dt,control_interval,steps
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, all that may differ between runs
 ///
-/// Bytes go out whole lines at a time, at least every 0.1 s of wall time while record() is called:
-/// a run that is killed leaves whole lines.
+/// Bytes go out whole lines at a time, at least every 0.1 s of wall time while record() or
+/// flushDue() is called.
 class Recorder {
   public:
     /// Makes the folder if it is missing (not its parents) and starts the files anew.
@@ -35,6 +36,10 @@ class Recorder {
     void record(const World& world);
     /// Writes out what is pending. \throws std::system_error, also for a full disk
     void flush(const World& world);
+    /// Writes out what has been pending for 0.1 s. \returns when to call it again; nothing if
+    /// nothing is pending
+    std::optional<std::chrono::steady_clock::time_point> flushDue(
+        std::chrono::steady_clock::time_point now);
 
   private:
     struct Data;

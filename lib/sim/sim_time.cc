@@ -9,7 +9,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::int64_t kMost = std::int64_t{36525} * 24 * 3600 * 1'000'000'000;
+constexpr std::int64_t kMost = kLongestTime.count();
 constexpr std::uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 
 /// Powers of ten from nanoseconds to the unit at the end of `text`, which is cut off.

@@ -12,6 +12,9 @@ namespace ispace {
 /// Simulated time, a whole number of nanoseconds from the start of the run.
 using SimTime = std::chrono::nanoseconds;
 
+/// No run goes on beyond that: a hundred years.
+constexpr SimTime kLongestTime = std::chrono::hours(24) * 36525;
+
 /// The nearest double, for formats that want seconds as a number.
 double seconds(SimTime time);
 

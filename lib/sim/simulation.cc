@@ -51,9 +51,10 @@ Simulation::Simulation(World& world, std::vector<TimedCommand> script, Clock clo
     : world_(&world),
       script_(std::move(script)),
       clock_(clock),
-      until_(until),
+      until_(std::min(until.value_or(kLongestTime), kLongestTime)),
       paused_(clock.kind == Clock::Kind::Step) {
     endIfReached();
+    if (!finished_) giveScripted();
 }
 
 void Simulation::resume(WallTime now) {
@@ -70,7 +71,7 @@ void Simulation::allow(std::int64_t count) {
 }
 
 void Simulation::endIfReached() {
-    if (until_ && world_->time() >= *until_) finished_ = true;
+    if (world_->time() >= until_) finished_ = true;
 }
 
 void Simulation::giveScripted() {
@@ -79,7 +80,6 @@ void Simulation::giveScripted() {
 }
 
 void Simulation::step() {
-    giveScripted();
     world_->step();
     // Before the next commands: one of motion would wipe out the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
@@ -128,8 +128,11 @@ std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
         if (steady_clock::now() - began >= budget) break;
     }
     if (isDue(now)) return now;
-    if (finished_ || paused_) return std::nullopt;
-    return dueAt();
+    if (finished_) return std::nullopt;
+    const auto flush =
+        recorder_ == nullptr ? std::nullopt : recorder_->flushDue(steady_clock::now());
+    if (paused_) return flush;
+    return std::min(dueAt(), flush.value_or(WallTime::max()));
 }
 
 }  // namespace ispace

@@ -34,7 +34,7 @@ Clock parseClock(const std::string& text);
 class Simulation {
   public:
     /// `script` in the order of time; `until`: the last step is the first one that ends there or
-    /// later. What the script has from then on is not given.
+    /// later. What the script has from then on is not given. Without it a run ends at kLongestTime.
     Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);
 
@@ -93,7 +93,7 @@ class Simulation {
     std::size_t next_ = 0;  // of script_
     Recorder* recorder_ = nullptr;
     Clock clock_;
-    std::optional<SimTime> until_;
+    SimTime until_;
     std::vector<std::function<void()>> observers_;
     bool paused_ = false, finished_ = false;
     std::int64_t owed_ = 0;

@@ -343,6 +343,46 @@ TEST(SimulationRecord, HoldsEachStepBeforeTheNextCommands) {
     EXPECT_EQ(out.find(",1\n", mark + 1), std::string::npos) << out;
 }
 
+TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
+    const Scene scene = testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n");
+    std::string folder = (fs::temp_directory_path() / "ispace_simulation_XXXXXX").string();
+    ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+    World world(scene, milliseconds(50));
+    Recorder recorder(folder, world, {}, 0);
+    Simulation simulation(world, {}, kByStep, {});
+    simulation.recordWith(recorder);
+    simulation.allow(3);
+    auto again = simulation.run(kStart, kLong);
+    for (int i = 0; again && i < 10; ++i) {
+        std::this_thread::sleep_until(*again);
+        again = simulation.run(*again, kLong);
+    }
+    EXPECT_FALSE(again);  // nothing pending, nothing to do
+    EXPECT_NE(readAll(folder + "/robots.csv").find("\n0.15,r1,"), std::string::npos);
+    EXPECT_EQ(readAll(folder + "/info.csv"), "dt,control_interval,steps\n0.05,0.05,3\n");
+    fs::remove_all(folder);
+}
+
+TEST(Simulation, ScriptOfTimeZeroIsGivenBeforeAnyClient) {
+    const Scene scene = testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n");
+    World world(scene, milliseconds(50));
+    Simulation simulation(world, readScript("0 r1 FORWARD 1\n", "run.txt", world), kByStep, {});
+    EXPECT_EQ(world.command(0, {Verb::Forward, 2}), 2);
+    ASSERT_EQ(world.ends().size(), 1U);
+    EXPECT_EQ(world.ends()[0].id, 1);
+    simulation.allow(1);
+    simulation.run(kStart, kLong);
+    EXPECT_TRUE(world.ends().empty());
+}
+
+TEST(Simulation, EndsAfterAHundredYears) {
+    const Scene scene = testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n");
+    World world(scene, milliseconds(50));
+    EXPECT_FALSE(Simulation(world, {}, kFast, {}).finished());
+    EXPECT_TRUE(Simulation(world, {}, kFast, SimTime(0)).finished());
+    EXPECT_LT(kLongestTime + World::kLongestStep, SimTime::max());
+}
+
 TEST(SimulationRecord, IsTheSameForAnyClock) {
     const Scene scene = testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n");
     const std::string script = "0 r1 SPEED 0.4\n0.3 r1 ROTSPEED 50\n";

@@ -43,7 +43,8 @@ class Lines {
         if (found == buckets_.end()) return least;
         for (const auto& [a, b] : found->second) {
             const Vec2 along = b - a;
-            const double t = std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
+            const double square = dot(along, along);
+            const double t = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
             least = std::min(least, distance(p, a + t * along));
         }
         return least;

@@ -13,6 +13,7 @@ eventually() {
     shift
     for ((i = 0; i < 3000; ++i)); do
         if "$@"; then return 0; fi
+        [ -z "$server" ] || kill -0 "$server" 2>/dev/null || break
         sleep 0.02
     done
     fail "in vain: $what (simrun says: $(head -n 5 simrun.err))"
@@ -68,6 +69,13 @@ ask() {
     printf '%s\n' "$2" >&"$fd"
     eventually "an answer to $2" has_reply "$1.out" "$count"
     reply=$(replies "$1.out" | sed -n "${count}p")
+}
+
+# send NAME REQUESTS: as printf writes them, in one piece, one answer each.
+send() {
+    eval "fd=\${${1}_in}; ${1}_asked=\$((${1}_asked + $(printf "$2" | wc -l)))"
+    # shellcheck disable=SC2059,SC2154
+    printf "$2" >&"$fd"
 }
 
 # expect NAME REQUEST PATTERN: the reply is as the extended pattern says.

@@ -53,9 +53,7 @@ void SimrunCommand::declareRun() {
         "length of a step (default 0.005)", Enters::History);
     line_.parsed(
         "--until", "SECONDS",
-        [&o](const std::string& text) {
-            o.until = simTime(text, SimTime(0), std::chrono::hours(24 * 365 * 100));
-        },
+        [&o](const std::string& text) { o.until = simTime(text, SimTime(0), kLongestTime); },
         "end the run at this simulated time", Enters::History);
     line_.text("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/session.h"
+
+#include <array>
+#include <asio/post.hpp>
+#include <chrono>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+using asio::ip::tcp;
+using std::chrono::steady_clock;
+
+constexpr std::size_t kBlock = 4096;
+/// Requests of one client, and time for them, before it is the next one's turn.
+constexpr int kRequestsInTurn = 256;
+constexpr auto kTurn = std::chrono::milliseconds(1);
+/// How long a connection that is to end may take to read what it was told, and then to close, what
+/// it still sends unread.
+constexpr auto kLastWords = std::chrono::seconds(10);
+constexpr auto kLinger = std::chrono::seconds(1);
+
+bool wouldBlock(const std::error_code& error) {
+    return error == asio::error::would_block || error == asio::error::try_again ||
+           error == asio::error::interrupted;
+}
+
+}  // namespace
+
+/// Does all that can be done now, and arranges to be called when more can.
+void Session::pump() {
+    answer();
+    flush();
+    if (closed()) return;
+    if (conversation_ && !conversation_->waiting()) {
+        const bool left = eof_ && !lines_.ready();
+        if (left || conversation_->closing()) conversation_.reset();
+    }
+    if (!conversation_) return linger();
+    if (mayAnswer() && lines_.ready()) return pumpLater();
+    listen();
+}
+
+void Session::pumpLater() {
+    if (std::exchange(posted_, true)) return;
+    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+        self->posted_ = false;
+        if (!self->closed()) self->pump();
+    });
+}
+
+void Session::answer() {
+    const auto end = steady_clock::now() + kTurn;
+    for (int i = 0; i < kRequestsInTurn && mayAnswer() && steady_clock::now() < end; ++i) {
+        if (lines_.tooLong())
+            conversation_->tooLong(limits_.line);
+        else if (lines_.ready())
+            conversation_->request(lines_.take());
+        else
+            return;
+        out_.append(conversation_->take());
+    }
+}
+
+void Session::stepped() {
+    if (!conversation_) return;
+    const bool waited = conversation_->waiting();
+    conversation_->stepped();
+    out_.append(conversation_->take());
+    flush();
+    if (waited && !closed() && !conversation_->waiting()) pumpLater();
+}
+
+/// What to send next; a scan only when there is nothing else.
+std::string_view Session::nextPiece() {
+    if (out_.front().empty() && conversation_) out_.put(conversation_->takeScan());
+    return out_.front();
+}
+
+/// Writes as much as the system takes; a handler goes on with the rest.
+void Session::flush() {
+    while (!writing_ && !closed()) {
+        const std::string_view piece = nextPiece();
+        if (piece.empty()) return;
+        std::error_code error;
+        out_.pop(socket_.write_some(asio::buffer(piece), error));
+        if (wouldBlock(error)) {
+            writing_ = true;
+            socket_.async_wait(tcp::socket::wait_write, [self = shared_from_this()](auto failed) {
+                self->writing_ = false;
+                if (!failed && !self->closed()) self->pump();
+            });
+        } else if (error) {
+            close();
+        }
+    }
+}
+
+void Session::listen() {
+    if (reading_ || eof_ || !mayAnswer()) return;
+    reading_ = true;
+    socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
+        self->reading_ = false;
+        if (!failed && !self->closed() && self->conversation_) self->receive();
+    });
+}
+
+void Session::receive() {
+    std::array<char, kBlock> block;
+    std::error_code error;
+    const std::size_t size = socket_.read_some(asio::buffer(block), error);
+    if (error == asio::error::eof)
+        eof_ = true;
+    else if (error && !wouldBlock(error))
+        return close();
+    lines_.append({block.data(), size});
+    pump();
+}
+
+/// Sends what there is; then closes. With unread input that would reset the
+/// connection, and the other side might lose what it was told last.
+void Session::linger() {
+    if (!std::exchange(ending_, true)) closeAfter(kLastWords);
+    if (writing_ || std::exchange(discarding_, true)) return;
+    if (eof_) return close();
+    closeAfter(kLinger);
+    std::error_code ignored;
+    socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    discard();
+}
+
+void Session::closeAfter(std::chrono::nanoseconds time) {
+    timer_.expires_after(time);
+    timer_.async_wait([self = shared_from_this()](auto aborted) {
+        if (!aborted) self->close();
+    });
+}
+
+void Session::discard() {
+    constexpr int kBlocksInTurn = 16;
+    std::array<char, kBlock> block;
+    for (int i = 0; i < kBlocksInTurn; ++i) {
+        std::error_code error;
+        socket_.read_some(asio::buffer(block), error);
+        if (wouldBlock(error)) break;
+        if (error) return close();
+    }
+    if (last_) return close();
+    socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
+        if (!failed && !self->closed()) self->discard();
+    });
+}
+
+void Session::end() {
+    last_ = true;
+    if (conversation_) {
+        conversation_->finish();
+        out_.append(conversation_->take());
+        conversation_.reset();
+    }
+    if (closed()) return;
+    discarding_ ? discard() : pump();
+}
+
+void Session::close() {
+    std::error_code ignored;
+    timer_.cancel();
+    socket_.close(ignored);
+    conversation_.reset();
+}
+
+}  // namespace ispace

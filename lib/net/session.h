@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/net only: it brings Asio.
+#pragma once
+
+#include <asio/ip/tcp.hpp>
+#include <asio/steady_timer.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "net/conversation.h"
+#include "net/line_buffer.h"
+#include "net/outbox.h"
+#include "net/server.h"
+
+namespace ispace {
+
+/// One connection. It reads, answers, writes, and at the end waits for the other side to close;
+/// handlers keep it alive until then.
+class Session : public std::enable_shared_from_this<Session> {
+  public:
+    Session(asio::ip::tcp::socket socket, const ServerLimits& limits)
+        : socket_(std::move(socket)),
+          timer_(socket_.get_executor()),
+          limits_(limits),
+          lines_(limits.line) {}
+
+    void serve(Hall& hall) {
+        conversation_.emplace(hall);
+        out_.append(Conversation::greeting());
+        pump();
+    }
+    /// Sends a text and closes.
+    void refuse(std::string_view text) {
+        out_.append(text);
+        pump();
+    }
+    /// The world took a step.
+    void stepped();
+    [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
+    [[nodiscard]] bool serving() const { return conversation_.has_value(); }
+    [[nodiscard]] bool closed() const { return !socket_.is_open(); }
+    /// Sends what is pending and closes, without waiting for the other side.
+    void end();
+    void close();
+
+  private:
+    [[nodiscard]] bool mayAnswer() const {
+        return conversation_ && !conversation_->waiting() && !conversation_->closing() &&
+               out_.unsent() <= limits_.pending;
+    }
+    void pump();
+    void pumpLater();
+    void answer();
+    void flush();
+    std::string_view nextPiece();
+    void listen();
+    void receive();
+    void linger();
+    void discard();
+    void closeAfter(std::chrono::nanoseconds time);
+
+    asio::ip::tcp::socket socket_;
+    asio::steady_timer timer_;  // of lingering
+    ServerLimits limits_;
+    LineBuffer lines_;
+    std::optional<Conversation> conversation_;  // none: the connection is about to end
+    Outbox out_;
+    bool reading_ = false, writing_ = false, posted_ = false;  // handlers on their way
+    bool eof_ = false;
+    bool ending_ = false;      // closes when all is sent, or after a while
+    bool discarding_ = false;  // all is sent: waits for the other side
+    bool last_ = false;        // waits no more
+};
+
+}  // namespace ispace
