@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -58,11 +59,22 @@ void cutTornLine(int fd) {
     if (whole >= 0 && whole < size) static_cast<void>(!::ftruncate(fd, whole));
 }
 
-[[noreturn]] void guard(int life, const std::vector<int>& files) {
+/// Closes all but `kept`, which ascend: what the other process serves must end with it, and whoever
+/// reads what it says must not wait for this one.
+void closeOthers(const std::vector<int>& kept) {
+    unsigned int first = 0;
+    for (const int fd : kept) {
+        const auto next = static_cast<unsigned int>(fd);
+        if (next > first) ::close_range(first, next - 1, 0);
+        first = next + 1;
+    }
+    ::close_range(first, ~0U, 0);
+}
+
+[[noreturn]] void guard(int life, const std::vector<int>& files, const std::vector<int>& kept) {
     ::setsid();
+    closeOthers(kept);
     for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) ::signal(signal, SIG_IGN);
-    // Whoever reads what the other process says must not wait for this one.
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
     char nothing = 0;
     while (::read(life, &nothing, 1) < 0 && errno == EINTR) continue;
     for (const int fd : files) cutTornLine(fd);
@@ -75,11 +87,11 @@ LineGuard::LineGuard(const std::vector<std::string>& files) {
     const std::vector<int> open = openRegular(files);
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) fail("pipe to the guard of the records");
+    std::vector<int> kept = open;
+    kept.push_back(ends[0]);
+    std::sort(kept.begin(), kept.end());
     guard_ = ::fork();
-    if (guard_ == 0) {
-        ::close(ends[1]);
-        guard(ends[0], open);
-    }
+    if (guard_ == 0) guard(ends[0], open, kept);
     const int error = errno;
     ::close(ends[0]);
     for (const int fd : open) ::close(fd);

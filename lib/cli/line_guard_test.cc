@@ -51,6 +51,17 @@ TEST_F(LineGuardTest, CutsATornLineAtTheEnd) {
     EXPECT_FALSE(fs::exists(file("missing")));
 }
 
+TEST_F(LineGuardTest, HoldsNothingElseOpen) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    writeAll(file("lines"), "one\n");
+    const LineGuard guard({file("lines")});
+    ::close(ends[1]);
+    char nothing = 0;
+    EXPECT_EQ(::read(ends[0], &nothing, 1), 0);  // the guard would keep the pipe from ending
+    ::close(ends[0]);
+}
+
 TEST_F(LineGuardTest, OutlivesAKilledProcess) {
     writeAll(file("lines"), "one\ntw");
     const pid_t child = ::fork();
