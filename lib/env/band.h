@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "geom/polygon.h"
@@ -13,6 +14,8 @@ struct Band {
     double bottom = 0, top = 0;
     std::vector<Segment2> sheets;  ///< walls without thickness
     std::vector<Polygon> solids;   ///< closed sets, counter-clockwise; may overlap
+    /// Whose they are: indices in Environment::elements().
+    std::vector<std::size_t> sheet_owners = {}, solid_owners = {};
 
     /// Calls visit(Segment2) for each sheet, then for each edge of the solids.
     template <typename Visit>

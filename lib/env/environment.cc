@@ -55,15 +55,17 @@ const Record* insideRecord(std::span<const Element> elements, Diagnostics& findi
     return inside;
 }
 
-/// Adds what stands anywhere between two heights to a Slice or a Band.
-template <typename Cut>
-void addStanding(std::span<const Element> elements, double bottom, double top, Cut& cut) {
+/// Calls on_sheet(line, element) and on_solid(footprint, element) for what stands anywhere between
+/// two heights.
+template <typename OnSheet, typename OnSolid>
+void forEachStanding(std::span<const Element> elements, double bottom, double top, OnSheet on_sheet,
+                     OnSolid on_solid) {
     const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
-    for (const Element& element : elements) {
-        for (const Sheet& sheet : element.body.sheets)
-            if (stands(sheet)) cut.sheets.push_back(sheet.line);
-        for (const Prism& prism : element.body.prisms)
-            if (stands(prism)) cut.solids.push_back(prism.footprint);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        for (const Sheet& sheet : elements[i].body.sheets)
+            if (stands(sheet)) on_sheet(sheet.line, i);
+        for (const Prism& prism : elements[i].body.prisms)
+            if (stands(prism)) on_solid(prism.footprint, i);
     }
 }
 
@@ -116,7 +118,10 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
 Slice Environment::slice(double height) const {
     Slice slice;
     slice.height = height;
-    addStanding(elements_, height, height, slice);
+    forEachStanding(
+        elements_, height, height,
+        [&](const Segment2& line, std::size_t /*owner*/) { slice.sheets.push_back(line); },
+        [&](const Polygon& solid, std::size_t /*owner*/) { slice.solids.push_back(solid); });
     return slice;
 }
 
@@ -125,7 +130,15 @@ Band Environment::band(double bottom, double top) const {
     Band band;
     band.bottom = bottom;
     band.top = top;
-    addStanding(elements_, bottom, top, band);
+    const auto add_sheet = [&](const Segment2& line, std::size_t owner) {
+        band.sheets.push_back(line);
+        band.sheet_owners.push_back(owner);
+    };
+    const auto add_solid = [&](const Polygon& solid, std::size_t owner) {
+        band.solids.push_back(solid);
+        band.solid_owners.push_back(owner);
+    };
+    forEachStanding(elements_, bottom, top, add_sheet, add_solid);
     return band;
 }
 

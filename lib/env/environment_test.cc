@@ -222,6 +222,8 @@ TEST(Environment, BandHoldsWhatStandsBetweenItsHeights) {
     EXPECT_EQ(low.sheets.size(), 5U);
     ASSERT_EQ(low.solids.size(), 1U);
     EXPECT_EQ(locate(low.solids[0], {2, 2}), Side::Inside);
+    EXPECT_EQ(low.sheet_owners, (std::vector<std::size_t>{0, 0, 0, 0, 1}));
+    EXPECT_EQ(low.solid_owners, std::vector<std::size_t>{2});
     int lines = 0;
     low.forEachLine([&](const Segment2&) { ++lines; });
     EXPECT_EQ(lines, 5 + 4);

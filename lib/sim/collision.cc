@@ -2,6 +2,7 @@
 #include "sim/collision.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "geom/predicates.h"
 
@@ -37,34 +38,45 @@ double distance(const Segment2& s, const Segment2& t) {
 }
 
 Obstacles::Obstacles(const Band& band)
-    : solids_(band.solids), lines_(linesOf(band)), grid_(lines_, 0) {
+    : solids_(band.solids),
+      lines_(linesOf(band)),
+      solid_owners_(band.solid_owners),
+      grid_(lines_, 0) {
     boxes_.reserve(solids_.size());
     for (const Polygon& solid : solids_) boxes_.push_back(bounds(solid));
+    // In the order of Band::forEachLine.
+    line_owners_ = band.sheet_owners;
+    for (std::size_t i = 0; i < solids_.size(); ++i)
+        line_owners_.insert(line_owners_.end(), solids_[i].size(), solid_owners_[i]);
+    assert(line_owners_.size() == lines_.size());
 }
 
-/// True if the test holds for any line that comes nearer than `reach` to p.
+/// The owner of a line that comes nearer than `reach` to p and for which the test holds.
 template <typename Test>
-bool Obstacles::any(Point2 p, double reach, Test test) const {
-    bool found = false;
+std::optional<std::size_t> Obstacles::find(Point2 p, double reach, Test test) const {
+    std::optional<std::size_t> owner;
     const auto visit = [&](std::span<const std::uint32_t> cell) {
         for (const std::uint32_t i : cell) {
-            if (found) return;
-            found = test(lines_[i]);
+            if (owner) return;
+            if (test(lines_[i])) owner = line_owners_[i];
         }
     };
-    grid_.searchFrom(p, visit, [&](double seen) { return found || seen >= reach; });
-    return found;
+    grid_.searchFrom(p, visit, [&](double seen) { return owner || seen >= reach; });
+    return owner;
 }
 
-bool Obstacles::overlap(Point2 center, double radius) const {
-    if (near({center, center}, radius - kTouch)) return true;
+std::optional<std::size_t> Obstacles::overlap(Point2 center, double radius) const {
+    const double allowed = radius - kTouch;
+    const auto owner = find(center, allowed,
+                            [&](const Segment2& line) { return distance(center, line) < allowed; });
+    if (owner) return owner;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
         const auto& [low, high] = boxes_[i];
         const bool in_box =
             low.x <= center.x && center.x <= high.x && low.y <= center.y && center.y <= high.y;
-        if (in_box && locate(solids_[i], center) != Side::Outside) return true;
+        if (in_box && locate(solids_[i], center) != Side::Outside) return solid_owners_[i];
     }
-    return false;
+    return std::nullopt;
 }
 
 double Obstacles::nearest(Point2 p, double farthest) const {
@@ -78,15 +90,16 @@ double Obstacles::nearest(Point2 p, double farthest) const {
 
 bool Obstacles::near(const Segment2& way, double distance) const {
     const double reach = distance + ispace::distance(way.a, way.b);
-    return any(way.a, reach, [&](const Segment2& line) {
+    const auto owner = find(way.a, reach, [&](const Segment2& line) {
         return ispace::distance(way.a, line) < reach && ispace::distance(way, line) < distance;
     });
+    return owner.has_value();
 }
 
-bool Obstacles::stop(const Segment2& way, double radius) const {
+std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) const {
     const double allowed = radius - kTouch;
     const double reach = allowed + distance(way.a, way.b);
-    return any(way.a, reach, [&](const Segment2& line) {
+    return find(way.a, reach, [&](const Segment2& line) {
         const double start = distance(way.a, line);
         if (start >= reach) return false;
         const double least = distance(way, line);
@@ -105,16 +118,16 @@ void Move::cancel() {
     to.motion.halt();
 }
 
-bool collides(const Move& move, const Obstacles& obstacles) {
-    if (!obstacles.near(move.chord(), move.radius - kTouch + move.to.bulge)) return false;
+std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles) {
+    if (!obstacles.near(move.chord(), move.radius - kTouch + move.to.bulge)) return std::nullopt;
     if (move.to.bulge == 0) return obstacles.stop(move.chord(), move.radius);
     Point2 last = move.start();
     for (int part = 1; part <= Move::kParts; ++part) {
         const Point2 next = move.place(part);
-        if (obstacles.stop({last, next}, move.radius)) return true;
+        if (const auto owner = obstacles.stop({last, next}, move.radius)) return owner;
         last = next;
     }
-    return false;
+    return std::nullopt;
 }
 
 bool collides(const Move& move, const Move& other, bool other_moves) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "env/band.h"
@@ -19,26 +21,29 @@ double distance(const Segment2& s, const Segment2& t);
 /// Thread-safe.
 class Obstacles {
   public:
+    /// \pre the band's pieces have owners
     explicit Obstacles(const Band& band);
 
-    /// True if a circle reaches into a line, or lies within a solid.
-    [[nodiscard]] bool overlap(Point2 center, double radius) const;
+    /// An element of Environment::elements() whose line a circle reaches into, or in whose solid it
+    /// lies.
+    [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
     /// Distance to the nearest line, `farthest` if none is nearer than that. Costs less the nearer
     /// the line is.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
     /// True if the way comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
-    /// True if a circle whose centre goes that way is stopped: it reaches into a line, deeper than
-    /// at its start. Whoever stands in a line by rounding may leave it.
-    [[nodiscard]] bool stop(const Segment2& way, double radius) const;
+    /// An element that stops a circle whose centre goes that way: it reaches into a line, deeper
+    /// than at its start. Whoever stands in a line by rounding may leave it.
+    [[nodiscard]] std::optional<std::size_t> stop(const Segment2& way, double radius) const;
 
   private:
     template <typename Test>
-    [[nodiscard]] bool any(Point2 p, double reach, Test test) const;
+    [[nodiscard]] std::optional<std::size_t> find(Point2 p, double reach, Test test) const;
 
     std::vector<Polygon> solids_;
     std::vector<Box2> boxes_;  // of the solids
     std::vector<Segment2> lines_;
+    std::vector<std::size_t> solid_owners_, line_owners_;
     SegmentGrid grid_;
 };
 
@@ -60,9 +65,9 @@ struct Move {
     void cancel();
 };
 
-/// True if the move runs into an obstacle. Swept along the chord if that is clear by more than the
+/// The element that the move runs into. Swept along the chord if that is clear by more than the
 /// way may bulge, else along the chords of its parts.
-bool collides(const Move& move, const Obstacles& obstacles);
+std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles);
 
 /// True if the move runs into another robot that moves at the same time, or stands at its start.
 bool collides(const Move& move, const Move& other, bool other_moves);

@@ -23,6 +23,8 @@ Band room() {
     forEachEdge(square({0, 0}, 5), [&](const Segment2& line) { band.sheets.push_back(line); });
     band.sheets.push_back({{2, 0}, {2, 5}});
     band.solids.push_back(square({-2, -2}, 1));
+    band.sheet_owners = {0, 0, 0, 0, 1};
+    band.solid_owners = {2};
     return band;
 }
 
@@ -60,7 +62,8 @@ TEST(Collision, CirclesMayTouch) {
     EXPECT_TRUE(obstacles.overlap({1.7 + 1e-8, 2}, 0.3));
     EXPECT_FALSE(obstacles.overlap({-4.7, -4.7}, 0.3));
     EXPECT_TRUE(obstacles.overlap({-4.71, 0}, 0.3));
-    EXPECT_TRUE(obstacles.overlap({2, -0.29}, 0.3));
+    EXPECT_EQ(obstacles.overlap({2, -0.29}, 0.3), 1U);
+    EXPECT_EQ(obstacles.overlap({-1.5, -2}, 0.2), 2U);
     // Within a solid, far from its edges.
     EXPECT_TRUE(obstacles.overlap({-2, -2}, 0.1));
     EXPECT_FALSE(Obstacles(Band{}).overlap({0, 0}, 1));
@@ -93,7 +96,7 @@ TEST(Collision, NearestLineIsWhatAllSay) {
 TEST(Collision, StraightMovesStopAtThings) {
     const Obstacles obstacles(room());
     EXPECT_FALSE(collides(Step({0, 2}, 0, 1.7, 0, 1).move, obstacles));
-    EXPECT_TRUE(collides(Step({0, 2}, 0, 1.7001, 0, 1).move, obstacles));
+    EXPECT_EQ(collides(Step({0, 2}, 0, 1.7001, 0, 1).move, obstacles), 1U);
     // Through a sheet in one step, from far and to far.
     EXPECT_TRUE(collides(Step({1, 2}, 0, 2.5, 0, 1).move, obstacles));
     EXPECT_TRUE(collides(Step({2.9, -2}, 180, 4, 0, 1).move, obstacles));

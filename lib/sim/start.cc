@@ -17,28 +17,6 @@ double apart(const PlacedRobot& a, const PlacedRobot& b) {
     return distance(a.pose.position, b.pose.position);
 }
 
-/// What an element puts between the floor and a height.
-Band bandOf(const Element& element, double top) {
-    Band band{.bottom = 0, .top = top, .sheets = {}, .solids = {}};
-    const auto stands = [&](const auto& part) { return part.bottom <= top && part.top >= 0; };
-    for (const Sheet& sheet : element.body.sheets) {
-        if (stands(sheet)) band.sheets.push_back(sheet.line);
-    }
-    for (const Prism& prism : element.body.prisms) {
-        if (stands(prism)) band.solids.push_back(prism.footprint);
-    }
-    return band;
-}
-
-/// The id of what a robot stands in.
-std::string nameOfObstacle(const Scene& scene, const PlacedRobot& robot) {
-    for (const Element& element : scene.environment.elements()) {
-        const Obstacles obstacles(bandOf(element, robot.model.height));
-        if (obstacles.overlap(robot.pose.position, robot.model.radius)) return element.id;
-    }
-    return "something";
-}
-
 /// Finds robots that stand in others before them in the scene.
 class Neighbours {
   public:
@@ -92,10 +70,12 @@ void checkStart(const Scene& scene, const ObstacleSets& obstacles) {
     for (std::size_t i = 0; i < scene.robots.size() && !findings.full(); ++i) {
         const PlacedRobot& robot = scene.robots[i];
         const std::string name = "robot " + robot.id;
-        if (obstacles.at(robot.model.height).overlap(robot.pose.position, robot.model.radius))
-            findings.add(robot.place.finding(name + " stands in " + nameOfObstacle(scene, robot) +
-                                             " (its radius is " + formatDouble(robot.model.radius) +
-                                             " m)"));
+        const Obstacles& things = obstacles.at(robot.model.height);
+        if (const auto element = things.overlap(robot.pose.position, robot.model.radius)) {
+            findings.add(robot.place.finding(
+                name + " stands in " + scene.environment.elements()[*element].id +
+                " (its radius is " + formatDouble(robot.model.radius) + " m)"));
+        }
         if (const auto other = neighbours.before(i)) {
             findings.add(robot.place.finding("robots " + scene.robots[*other].id + " and " +
                                              robot.id + " overlap: their centres are " +

@@ -35,7 +35,7 @@ struct Mover {
     int ids = 0;           // given so far
     int running = 0;       // id of the command that comes to an end, or 0
     bool stall = false;
-    bool blocked = false;  // its move runs into what stands there
+    std::optional<std::size_t> blocked;  // by an element of the environment
 };
 
 std::map<std::string_view, std::size_t> indexById(const auto& things) {
@@ -55,10 +55,13 @@ std::optional<std::size_t> find(const std::map<std::string_view, std::size_t>& i
 struct World::Data {
     Data(const Scene& room, SimTime step_length);
 
+    [[nodiscard]] const std::vector<Element>& elements() const {
+        return scene->environment.elements();
+    }
     void propose(std::size_t robot);
-    [[nodiscard]] bool runsIntoThings(std::size_t robot);
+    [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t robot);
     void settle();
-    void collide(std::size_t robot, std::optional<std::size_t> other);
+    void collide(const Collision& collision);
     void apply();
     void end(std::size_t robot, Outcome outcome);
 
@@ -112,7 +115,7 @@ World::Data::Data(const Scene& room, SimTime length)
 void World::Data::propose(std::size_t robot) {
     Move& move = moves[robot];
     const Motion& motion = motions[robot];
-    movers[robot].blocked = false;
+    movers[robot].blocked.reset();
     if (motion.arrived()) {
         move.to = {.motion = motion};
         return;
@@ -122,20 +125,22 @@ void World::Data::propose(std::size_t robot) {
             limitsOf(scene->robots[robot].model, friction.at(motion.pose.position));
     }
     move.to = advance(motion, movers[robot].limits, move.duration);
-    movers[robot].blocked = runsIntoThings(robot);
+    movers[robot].blocked = elementAhead(robot);
 }
 
-bool World::Data::runsIntoThings(std::size_t robot) {
+std::optional<std::size_t> World::Data::elementAhead(std::size_t robot) {
     const Move& move = moves[robot];
     Mover& mover = movers[robot];
-    if (move.to.path == 0) return false;
+    if (move.to.path == 0) return std::nullopt;
     if (mover.clearance < move.to.path) {
         const double around = move.radius + kLookout;
         mover.clearance = mover.obstacles->nearest(move.start(), around) - move.radius - kTouch;
-        if (mover.clearance < move.to.path && collides(move, *mover.obstacles)) return true;
+        if (mover.clearance < move.to.path) {
+            if (const auto element = collides(move, *mover.obstacles)) return element;
+        }
     }
     mover.clearance -= move.to.path;
-    return false;
+    return std::nullopt;
 }
 
 /// One after another: each move depends on what became of those before it.
@@ -148,17 +153,17 @@ void World::Data::settle() {
     for (const std::size_t robot : order) {
         if (moves[robot].to.path == 0) continue;
         if (movers[robot].blocked) {
-            collide(robot, std::nullopt);
+            collide({robot, std::nullopt, elements()[*movers[robot].blocked].id, time});
         } else if (const auto other = traffic.hit(moves, robot)) {
-            collide(robot, other);
+            collide({robot, other, scene->robots[*other].id, time});
         }
     }
 }
 
-void World::Data::collide(std::size_t robot, std::optional<std::size_t> other) {
-    moves[robot].cancel();
-    movers[robot].stall = true;
-    collisions.push_back({robot, other, time});
+void World::Data::collide(const Collision& collision) {
+    moves[collision.robot].cancel();
+    movers[collision.robot].stall = true;
+    collisions.push_back(collision);
 }
 
 void World::Data::apply() {

@@ -41,6 +41,7 @@ struct CommandEnd {
 struct Collision {
     std::size_t robot = 0;
     std::optional<std::size_t> other;  ///< the robot it ran into; nothing: what stands there
+    std::string_view into;             ///< id of that robot, or of the element that stands there
     SimTime time{};
 };
 

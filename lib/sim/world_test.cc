@@ -176,6 +176,7 @@ TEST(World, AWallCancelsTheStep) {
     ASSERT_EQ(world.collisions().size(), 1U);
     EXPECT_EQ(world.collisions()[0].robot, 0U);
     EXPECT_EQ(world.collisions()[0].other, std::nullopt);
+    EXPECT_EQ(world.collisions()[0].into, "room");
     EXPECT_EQ(world.collisions()[0].time, world.time());
     ASSERT_EQ(world.ends().size(), 1U);
     EXPECT_EQ(world.ends()[0].id, id);
@@ -214,6 +215,7 @@ TEST(World, RobotsMeetHeadOn) {
     ASSERT_EQ(world.collisions().size(), 1U);
     const std::size_t first = world.collisions()[0].robot;
     EXPECT_EQ(world.collisions()[0].other, 1 - first);
+    EXPECT_EQ(world.collisions()[0].into, world.robots()[1 - first].id);
     const auto gap = [&] {
         return distance(world.status(0).pose.position, world.status(1).pose.position) - 0.6;
     };

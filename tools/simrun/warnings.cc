@@ -13,12 +13,10 @@ constexpr int kMostCollisions = 100;
 constexpr const char* kWarning = "simrun: warning: ";
 
 void say(const World& world, const Collision& collision) {
-    const auto robots = world.robots();
     const Point2 place = world.status(collision.robot).pose.position;
     std::cerr << kWarning << "t=" << formatMilliseconds(collision.time) << ' '
-              << robots[collision.robot].id << " at " << formatFixed(place.x, 3) << ','
-              << formatFixed(place.y, 3) << " ran into "
-              << (collision.other ? robots[*collision.other].id : "what stands there") << '\n';
+              << world.robots()[collision.robot].id << " at " << formatFixed(place.x, 3) << ','
+              << formatFixed(place.y, 3) << " ran into " << collision.into << '\n';
 }
 
 }  // namespace
