@@ -2,6 +2,7 @@
 #include "cli/line_guard.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -73,6 +74,8 @@ void closeOthers(const std::vector<int>& kept) {
 
 [[noreturn]] void guard(int life, const std::vector<int>& files, const std::vector<int>& kept) {
     ::setsid();
+    // Not to be taken for the process it guards by who kills by name.
+    ::prctl(PR_SET_NAME, "line-guard");
     closeOthers(kept);
     for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) ::signal(signal, SIG_IGN);
     char nothing = 0;
@@ -83,12 +86,13 @@ void closeOthers(const std::vector<int>& kept) {
 
 }  // namespace
 
-LineGuard::LineGuard(const std::vector<std::string>& files) {
+LineGuard::LineGuard(const std::vector<std::string>& files, int lock) {
     const std::vector<int> open = openRegular(files);
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) fail("pipe to the guard of the records");
     std::vector<int> kept = open;
     kept.push_back(ends[0]);
+    if (lock >= 0) kept.push_back(lock);
     std::sort(kept.begin(), kept.end());
     guard_ = ::fork();
     if (guard_ == 0) guard(ends[0], open, kept);

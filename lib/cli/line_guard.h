@@ -17,9 +17,10 @@ namespace ispace {
 /// killed at once.
 class LineGuard {
   public:
-    /// Regular files that exist; others (devices, pipes) are left out.
-    /// \throws std::system_error if there can be no other process
-    explicit LineGuard(const std::vector<std::string>& files);
+    /// Regular files that exist; others (devices, pipes) are left out. `lock`: a descriptor to be
+    /// kept until they are looked after, or -1: what locks the files. \throws std::system_error if
+    /// there can be no other process
+    explicit LineGuard(const std::vector<std::string>& files, int lock = -1);
     /// Waits until the files are looked after.
     ~LineGuard();
     LineGuard(const LineGuard&) = delete;

@@ -20,13 +20,22 @@ std::atomic<int> write_end = -1;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void tell(char word) {
-    // A full pipe holds enough words already.
+    // It does not wait: a full pipe holds enough words already.
     static_cast<void>(!::write(write_end, &word, 1));
 }
 
-void onSignal(int /*signal*/) {
+void handle(int signal, void (*handler)(int)) {
+    struct sigaction action = {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(signal, &action, nullptr);
+}
+
+void onSignal(int signal) {
     const int error = errno;
     tell(kStop);
+    // A person who presses the keys again does not want to wait.
+    if (signal == SIGINT) handle(signal, SIG_DFL);
     errno = error;
 }
 
@@ -34,13 +43,6 @@ char nextWord(int fd) {
     char word = kQuit;
     while (::read(fd, &word, 1) < 0 && errno == EINTR) continue;
     return word;
-}
-
-void handle(void (*handler)(int)) {
-    struct sigaction action = {};
-    action.sa_handler = handler;
-    action.sa_flags = SA_RESTART;
-    for (const int signal : {SIGTERM, SIGINT}) ::sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
@@ -51,14 +53,17 @@ StopSignals::StopSignals(std::function<void()> stop) {
         throw std::system_error(errno, std::generic_category(), "pipe for signals");
     read_end_ = ends[0];
     write_end = ends[1];
+    ::fcntl(write_end, F_SETFL, O_NONBLOCK);
     listener_ = std::thread([fd = read_end_, stop = std::move(stop)] {
         while (nextWord(fd) == kStop) stop();
     });
-    handle(onSignal);
+    for (const int signal : {SIGTERM, SIGINT}) handle(signal, onSignal);
 }
 
 StopSignals::~StopSignals() {
-    handle(SIG_IGN);
+    for (const int signal : {SIGTERM, SIGINT}) handle(signal, SIG_IGN);
+    // Waits, unlike a handler: without this word the listener would not end.
+    ::fcntl(write_end, F_SETFL, 0);
     tell(kQuit);
     listener_.join();
     ::close(write_end.exchange(-1));

@@ -6,8 +6,9 @@
 
 namespace ispace {
 
-/// Turns TERM and INT into a request to end. While it lives neither ends the process by itself, and
-/// after it both are ignored: what is left to do then is to exit. One at a time in a process.
+/// Turns TERM and INT into a request to end. While it lives neither ends the process by itself, but
+/// for a second INT; after it both are ignored: what is left to do then is to exit. One at a time
+/// in a process.
 class StopSignals {
   public:
     /// `stop` is called from another thread, at each signal. \throws std::system_error

@@ -167,11 +167,9 @@ void Conversation::stepped() {
         if (seq != seq_ && seq % every_ == 0) scan_ = hall_->scan(subject_, true, binary_);
         seq_ = seq;
     }
-    if (step_end_) {
-        const Simulation& simulation = hall_->simulation();
-        const std::int64_t left = *step_end_ - world().steps();
-        // Nothing more comes after the end, nor if a PAUSE or RESUME has cut the steps short.
-        if (left <= 0 || simulation.finished() || simulation.owed() == 0) answerStep(left);
+    if (steps_) {
+        hall_->steps().settle();
+        if (steps_->over) answerStep();
     }
 }
 
@@ -229,6 +227,7 @@ void Conversation::refuse(std::string_view verb) {
 /// Gives up what the client holds.
 void Conversation::leave() {
     if (role_ == Role::Robot) hall_->release(subject_);
+    hall_->steps().drop(std::exchange(steps_, nullptr));
     role_ = Role::None;
     running_.clear();
     every_ = 0;
@@ -246,11 +245,10 @@ void Conversation::tellEnds() {
     }
 }
 
-void Conversation::answerStep(std::int64_t left) {
-    const std::int64_t taken = std::clamp<std::int64_t>(step_count_ - left, 0, step_count_);
-    out_.append("OK STEP n=").append(std::to_string(taken));
+void Conversation::answerStep() {
+    out_.append("OK STEP n=").append(std::to_string(steps_->count - steps_->left));
     out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
-    step_end_.reset();
+    steps_.reset();
 }
 
 /// A scan that was due before a request is sent before its answer.

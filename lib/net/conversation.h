@@ -42,7 +42,7 @@ class Conversation {
     void finish();
 
     /// True while a STEP is not done: later requests wait for its answer.
-    [[nodiscard]] bool waiting() const { return step_end_.has_value(); }
+    [[nodiscard]] bool waiting() const { return steps_ != nullptr; }
     /// True after QUIT and what closes a connection: nothing is read any more.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Moves away what is to be sent, in order.
@@ -63,7 +63,7 @@ class Conversation {
     void refuse(std::string_view verb);
     void leave();
     void tellEnds();
-    void answerStep(std::int64_t left);
+    void answerStep();
     void sendPendingScan();
 
     void takeRobot(Words words);
@@ -95,8 +95,7 @@ class Conversation {
     std::int64_t every_ = 0, seq_ = 0;
     bool binary_ = false;
     std::shared_ptr<const std::string> scan_;
-    std::int64_t step_count_ = 0;
-    std::optional<std::int64_t> step_end_;  // steps of the world at which STEP is answered
+    std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
     bool closing_ = false;
 };
 

@@ -170,6 +170,7 @@ void Conversation::poses(Words /*words*/) {
 
 void Conversation::pause(Words /*words*/) {
     // A STEP under way ends here too, or nobody could end one of too many steps.
+    hall_->steps().cut();
     hall_->simulation().pause();
     out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
 }
@@ -178,21 +179,21 @@ void Conversation::resume(Words /*words*/) {
     Simulation& simulation = hall_->simulation();
     if (simulation.clock().kind == Clock::Kind::Step)
         return error(405, {"the clock is `step`: use STEP n"});
+    hall_->steps().cut();
     if (simulation.paused()) simulation.resume(std::chrono::steady_clock::now());
     out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
 void Conversation::step(Words words) {
-    step_count_ = 1;
+    std::int64_t steps = 1;
     if (words.size() > 1) {
         const Count count = parseCount(words[1], "the number of steps");
         if (count.code != 0) return error(count.code, {count.message});
-        step_count_ = count.value;
+        steps = count.value;
     }
-    Simulation& simulation = hall_->simulation();
-    if (!simulation.paused()) return error(405, {"the world is running: PAUSE comes before STEP"});
-    simulation.allow(step_count_);
-    step_end_ = world().steps() + simulation.owed();
+    if (!hall_->simulation().paused())
+        return error(405, {"the world is running: PAUSE comes before STEP"});
+    steps_ = hall_->steps().ask(steps);
 }
 
 void Conversation::shutdown(Words /*words*/) {

@@ -7,6 +7,7 @@ namespace ispace {
 
 Hall::Hall(Simulation& simulation)
     : simulation_(&simulation),
+      steps_(simulation),
       held_(simulation.world().robots().size()),
       texts_(simulation.world().lasers().size()) {}
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/simulation.h"
+#include "net/step_queue.h"
 
 namespace ispace {
 
@@ -24,6 +24,8 @@ class Hall {
     /// Frees a robot and stops it.
     void release(std::size_t robot);
 
+    [[nodiscard]] StepQueue& steps() { return steps_; }
+
     /// The newest scan of a laser as scanText writes it. Until there is a newer one all readers get
     /// the same string.
     std::shared_ptr<const std::string> scan(std::size_t laser, bool stream, bool binary);
@@ -34,6 +36,7 @@ class Hall {
         std::shared_ptr<const std::string> bytes;
     };
     Simulation* simulation_;
+    StepQueue steps_;
     std::vector<bool> held_;
     std::vector<std::array<Text, 4>> texts_;  // of each laser, by stream and binary
 };

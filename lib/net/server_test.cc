@@ -56,6 +56,12 @@ class Client {
         EXPECT_EQ(ask(role).substr(0, 3), "OK ");
         return *this;
     }
+    /// Closes so that the other side is told at once that nobody is here.
+    void reset() {
+        const linger at_once{1, 0};
+        ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+        close();
+    }
     /// False if the other side has closed.
     bool send(std::string_view text) {
         while (!text.empty()) {
@@ -550,6 +556,37 @@ TEST(Server, ClientsThatQuitWithoutReadingAreBounded) {
     };
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (!welcome()) ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+}
+
+TEST(Server, StepsOfAClientThatIsGoneAreNotTaken) {
+    ServerLimits limits;
+    limits.clients = 2;
+    Running running({Clock::Kind::Step, 1}, limits);
+    for (int i = 0; i < 5; ++i) {
+        Client gone(running.port());
+        gone.take("WORLD").send("STEP 1000000000\n");
+        gone.reset();
+    }
+    Client world(running.port());
+    EXPECT_EQ(step(world.take("WORLD"), 1).substr(0, 11), "OK STEP n=1");
+    const std::string time = world.ask("TIME");
+    EXPECT_EQ(world.ask("TIME"), time);
+}
+
+TEST(Server, StepsOfAClientThatClosedItsSideTakeNobodysPlace) {
+    ServerLimits limits;
+    limits.clients = 2;
+    Running running({Clock::Kind::Step, 1}, limits);
+    std::vector<std::unique_ptr<Client>> waiting;
+    for (int i = 0; i < 4; ++i) {
+        waiting.push_back(std::make_unique<Client>(running.port()));
+        waiting.back()->take("WORLD").send("STEP 1000000000\n");
+        waiting.back()->finishSending();
+        while (running.server().clients() > 0) std::this_thread::yield();
+    }
+    Client world(running.port());
+    EXPECT_EQ(world.take("WORLD").ask("PAUSE").substr(0, 8), "OK PAUSE");
+    for (const auto& client : waiting) EXPECT_EQ(client->rest().substr(0, 10), "OK STEP n=");
 }
 
 TEST(Server, IsNoWebServer) {

@@ -101,7 +101,9 @@ void Session::flush() {
 }
 
 void Session::listen() {
-    if (reading_ || eof_ || !mayAnswer()) return;
+    // While a STEP is under way only to see the end of the connection, as long as there is room.
+    const bool waits = waiting() && !lines_.ready() && !lines_.tooLong();
+    if (reading_ || eof_ || !(mayAnswer() || waits)) return;
     reading_ = true;
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
         self->reading_ = false;

@@ -39,7 +39,8 @@ class Session : public std::enable_shared_from_this<Session> {
     /// The world took a step.
     void stepped();
     [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
-    [[nodiscard]] bool serving() const { return conversation_.has_value(); }
+    /// One that waits for STEP and will not ask for more takes nobody's place: it may be gone.
+    [[nodiscard]] bool serving() const { return conversation_ && !(eof_ && waiting()); }
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
     /// Sends what is pending and closes, without waiting for the other side.
     void end();

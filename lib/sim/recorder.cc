@@ -2,6 +2,7 @@
 #include "sim/recorder.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,7 +11,9 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <thread>
 
+#include "base/error.h"
 #include "base/number.h"
 #include "sense/scan_jsonl.h"
 
@@ -36,8 +39,10 @@ class LineFile {
   public:
     explicit LineFile(std::string name)
         : name_(std::move(name)),
-          fd_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+          // Not to wait for a reader, should it be a pipe.
+          fd_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666)) {
         if (fd_ < 0) fail(name_, errno);
+        ::fcntl(fd_, F_SETFL, O_WRONLY);
     }
     ~LineFile() { ::close(fd_); }
     LineFile(const LineFile&) = delete;
@@ -49,7 +54,10 @@ class LineFile {
     /// Puts `text` in place of the whole content, which must not have been longer. Of less than a
     /// page, it is written whole or not at all.
     void rewrite(std::string_view text) {
-        if (error_ == 0 && ::pwrite(fd_, text.data(), text.size(), 0) < 0) error_ = errno;
+        if (error_ == 0) {
+            const ssize_t n = ::pwrite(fd_, text.data(), text.size(), 0);
+            if (n != static_cast<ssize_t>(text.size())) error_ = n < 0 ? errno : ENOSPC;
+        }
         if (error_ != 0) fail(name_, error_);
     }
 
@@ -103,6 +111,35 @@ const std::string& madeFolder(const std::string& folder) {
     return folder;
 }
 
+/// The lock of a folder that is recorded into.
+class FolderLock {
+  public:
+    /// Waits a moment for a run that is just ending. \throws FormatError if another run goes on
+    /// there
+    explicit FolderLock(const std::string& folder)
+        : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        constexpr int kTries = 100;
+        // File systems without locks do without.
+        for (int tries = 0; fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+            if (errno != EWOULDBLOCK) return;
+            if (tries == kTries) {
+                ::close(fd_);
+                throw FormatError({folder, 0, 0, "another run is being recorded here"});
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
+    ~FolderLock() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    [[nodiscard]] int descriptor() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
 std::string fileIn(const std::string& folder, const char* name) {
     return (std::filesystem::path(folder) / name).string();
 }
@@ -111,11 +148,13 @@ std::string fileIn(const std::string& folder, const char* name) {
 
 struct Recorder::Data {
     explicit Data(const std::string& folder)
-        : robots(fileIn(madeFolder(folder), "robots.csv")),
+        : lock(madeFolder(folder)),
+          robots(fileIn(folder, "robots.csv")),
           scans(fileIn(folder, "scans.jsonl")),
           timing(fileIn(folder, "timing.csv")),
           info(fileIn(folder, "info.csv")) {}
 
+    FolderLock lock;
     LineFile robots, scans, timing, info;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
@@ -206,6 +245,8 @@ void Recorder::record(const World& world) {
     const bool much = data.robots.pending.size() > kMostPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
+
+int Recorder::lock() const { return data_->lock.descriptor(); }
 
 void Recorder::flush(const World& world) {
     data_->remember(world);

@@ -24,8 +24,8 @@ namespace ispace {
 /// flushDue() is called.
 class Recorder {
   public:
-    /// Makes the folder if it is missing (not its parents) and starts the files anew.
-    /// \throws std::system_error naming the file
+    /// Makes the folder if it is missing (not its parents), locks it, and starts the files anew.
+    /// \throws std::system_error naming the file, FormatError if another run is recorded there
     Recorder(const std::string& folder, const World& world, const History& history,
              std::uint64_t seed);
     ~Recorder();
@@ -36,6 +36,9 @@ class Recorder {
     void record(const World& world);
     /// Writes out what is pending. \throws std::system_error, also for a full disk
     void flush(const World& world);
+    /// The descriptor that holds the lock, or -1 on a file system without: a process that inherits
+    /// it keeps the folder locked.
+    [[nodiscard]] int lock() const;
     /// Writes out what has been pending for 0.1 s. \returns when to call it again; nothing if
     /// nothing is pending
     std::optional<std::chrono::steady_clock::time_point> flushDue(

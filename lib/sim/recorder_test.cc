@@ -68,6 +68,24 @@ void recordRun(const std::string& folder, bool flush_at_the_end = true) {
     if (flush_at_the_end) recorder.flush(world);
 }
 
+TEST_F(RecorderTest, OneRunAtATimeInAFolder) {
+    const Scene scene = testing::scene(kRoom, kRobots);
+    World world(scene, milliseconds(5));
+    const auto second = [&] { const Recorder recorder(path("run"), world, {"second"}, 7); };
+    {
+        const Recorder first(path("run"), world, {"first"}, 7);
+        EXPECT_GE(first.lock(), 0);
+        EXPECT_EQ(testing::findings([&] {
+                      second();
+                      return 0;
+                  }),
+                  path("run") + ": error: another run is being recorded here\n");
+        EXPECT_NE(text("run/scans.jsonl").find("first"), std::string::npos);
+    }
+    second();
+    EXPECT_NE(text("run/scans.jsonl").find("second"), std::string::npos);
+}
+
 TEST_F(RecorderTest, WritesTheRobotsOfEachStep) {
     recordRun(path("run"));
     EXPECT_EQ(text("run/robots.csv"), std::string(kHeader) +

@@ -61,6 +61,8 @@ class Simulation {
     void resume(WallTime now);
     /// Lets a paused world take `count` more steps. \pre paused(), count >= 0
     void allow(std::int64_t count);
+    /// Takes back that many of the steps allowed. \pre count <= owed()
+    void forgo(std::int64_t count) { owed_ -= count; }
     /// Steps allowed and not taken yet.
     [[nodiscard]] std::int64_t owed() const { return owed_; }
 

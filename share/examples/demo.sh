@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # demo.sh [FOLDER]: a room, three lasers placed in it, what they read and what they see, for two
-# rooms of the thesis, and robots in one of them. Needs the tools in PATH; leaves its files in FOLDER (default: ispace-demo).
+# rooms of the thesis, and robots in one of them. Needs the tools in PATH; leaves its files in FOLDER
+# (default: ispace-demo).
 set -eu
 scenes=$(cd "$(dirname "$0")/../scenes" && pwd)
 mkdir -p "${1:-ispace-demo}"
@@ -31,6 +32,7 @@ run simrun ispace.glb "$scenes/ispace.3dm" --clock fast --until 36 \
 echo
 result=$(sed -n 's/^result.*coverage=\([^ ]*\).*/\1/p' facilities.3dm)
 echo "coverage of the furnished room by three lasers: $result"
-way=$(tail -n +2 drive/robots.csv | awk -F, '$2 == "r1" { place = $3 + 0 ", " $4 + 0 } END { print place }')
-echo "robot r1 drove from 0.5, 2 to $way; $(($(wc -l <drive/scans.jsonl) - 1)) scans in drive/scans.jsonl"
+way=$(awk -F, '$2 == "r1" { place = $3 + 0 ", " $4 + 0 } END { print place }' drive/robots.csv)
+scans=$(($(wc -l <drive/scans.jsonl) - 1))
+echo "robot r1 drove from 0.5, 2 to $way; $scans scans in drive/scans.jsonl"
 echo "open the map: $(pwd)/facilities.png"

@@ -75,10 +75,8 @@ whole() {
 }
 for signal in TERM INT KILL KILL KILL KILL KILL KILL KILL KILL KILL KILL; do
     rm -rf "$signal"
-    set -m # a background job would ignore INT
     simrun "${scene[@]}" --clock fast --record "$signal" >/dev/null 2>err &
     server=$!
-    set +m
     eventually "records" begun "$signal"
     kill -"$signal" "$server"
     ended "$([ "$signal" = KILL ] && echo 137 || echo 0)"
@@ -90,6 +88,22 @@ for signal in TERM INT KILL KILL KILL KILL KILL KILL KILL KILL KILL KILL; do
     awk -F, 'NF != 10 { exit 1 }' "$signal/robots.csv" || fail "not ten columns after $signal"
     [ "$(wc -l <"$signal/info.csv")" -eq 2 ] || fail "no info after $signal"
 done
+
+# A folder takes one run at a time, and keeps its records from a run that cannot begin.
+start "${scene[@]}" --clock step --record one
+cp one/robots.csv before.csv
+for second in "" "--listen 127.0.0.1:$port" "--port-file missing/port"; do
+    # shellcheck disable=SC2086
+    expect_status 1 simrun "${scene[@]}" --record one --until 1 $second
+done
+grep -q '^simrun: missing/port: error: ' err || fail "$(cat err)"
+expect_status 1 simrun "${scene[@]}" --record one --until 1
+grep -q '^simrun: one: error: another run is being recorded here$' err || fail "$(cat err)"
+expect_same before.csv one/robots.csv "the second run wrote into the records of the first"
+stop TERM
+expect_status 1 simrun "${scene[@]}" --record one --until 1 --port-file missing/port
+expect_same before.csv one/robots.csv "a run that could not begin replaced the records"
+simrun "${scene[@]}" --record one --clock fast --until 1 >/dev/null || fail "the folder is still taken"
 
 # A full disk ends the run.
 if [ -c /dev/full ]; then

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -23,15 +24,16 @@ namespace {
 
 using namespace ispace;
 
-/// The first line of output, and the port file: clients can connect now.
-void announce(const Server& server, const std::string& port_file) {
-    if (!port_file.empty()) writeAll(port_file, std::to_string(server.port()) + '\n');
+/// The first line of output: clients can connect now.
+void announce(const Server& server) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-simrun/1");
     json.key("listen").value(server.address());
     json.key("p2os").beginObject().endObject();
     json.key("scip").beginObject().endObject().endObject();
     writeAll("-", json.take() + '\n');
+    // Clients are not cut off because nobody reads the warnings any more.
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 /// A client takes a file descriptor: as many as this process may have, less what it needs itself.
@@ -94,18 +96,25 @@ void simrun(const SimrunCommand& command) {
 
     Server server(simulation, options.listen, withinFileLimit(options.limits));
     const StopSignals signals([&server] { server.stop(); });
-    // Only a run that can begin replaces the records of the one before.
+    std::optional<OutputFile> port_file;
+    if (!options.port_file.empty()) {
+        port_file.emplace(options.port_file);
+        port_file->write(std::to_string(server.port()) + '\n');
+    }
+    // Only now, when all that may go wrong has gone well, the records of the run before are
+    // replaced.
     History history = input.layout ? input.layout->history : History();
     history.push_back(command.historyLine(input.named));
     std::optional<Recorder> recorder;
     std::optional<LineGuard> guard;
     if (!options.record.empty()) {
         recorder.emplace(options.record, world, history, options.common.seed);
-        guard.emplace(recordedLines(options.record));
+        guard.emplace(recordedLines(options.record), recorder->lock());
         simulation.recordWith(*recorder);
     }
     const auto progress = progressOf(simulation, options);
-    announce(server, options.port_file);
+    announce(server);
+    if (port_file) port_file->commit();
     server.run();
     progress->end();
     if (recorder) recorder->flush(world);
