@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For the tests of this folder: conversations without a transport.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "net/conversation.h"
+#include "net/scan_text.h"
+#include "net/test_world.h"
+
+namespace ispace::testing {
+
+constexpr std::chrono::nanoseconds kLong = std::chrono::hours(1);
+
+/// A hall and who is in it.
+struct Talk {
+    explicit Talk(Clock clock = {Clock::Kind::Step, 1}, std::optional<SimTime> until = {},
+                  const std::string& script = "")
+        : room(clock, until, script), hall(room.simulation) {
+        room.simulation.onStep([this] {
+            for (Conversation& client : clients) client.stepped();
+        });
+    }
+    Conversation& client(std::string_view role = "") {
+        Conversation& added = clients.emplace_back(hall);
+        if (!role.empty()) {
+            EXPECT_TRUE(ask(added, role).starts_with("OK "));
+        }
+        return added;
+    }
+    static std::string ask(Conversation& client, std::string_view request) {
+        client.request(request);
+        return client.take();
+    }
+    /// Takes the steps that are allowed.
+    void run() {
+        room.simulation.run(WallTime{}, kLong);
+        for (Conversation& client : clients)
+            if (client.waiting()) client.stepped();
+    }
+    void step(std::int64_t count) {
+        room.simulation.allow(count);
+        run();
+    }
+    std::string scan(std::size_t laser, bool stream, bool binary) {
+        return scanText(room.world.reading(laser), stream, binary);
+    }
+
+    TestWorld room;
+    Hall hall;
+    std::list<Conversation> clients;
+};
+
+inline std::string streamed(Conversation& client) {
+    const auto scan = client.takeScan();
+    return scan ? *scan : "";
+}
+
+}  // namespace ispace::testing
