@@ -76,6 +76,7 @@ TEST(Collision, NearestLineIsWhatAllSay) {
     for (int i = 0; i < 200; ++i) {
         const Point2 a{place(random), place(random)};
         band.sheets.push_back({a, a + Vec2{extent(random), extent(random)}});
+        band.sheet_owners.push_back(3);
     }
     const Obstacles obstacles(band);
     EXPECT_EQ(Obstacles(Band{}).nearest({0, 0}, 1.3), 1.3);
