@@ -2,6 +2,8 @@
 #include "cli/stop_signals.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -29,6 +31,22 @@ TEST(StopSignals, AskToEndAndAreIgnoredAfterwards) {
     }
     std::signal(SIGTERM, SIG_DFL);
     std::signal(SIGINT, SIG_DFL);
+}
+
+TEST(StopSignals, ASecondIntEndsTheProcess) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const StopSignals signals([] {});
+        std::raise(SIGTERM);
+        std::raise(SIGTERM);
+        std::raise(SIGINT);
+        std::raise(SIGINT);
+        ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), SIGINT);
 }
 
 TEST(StopSignals, EndsWithoutASignal) {

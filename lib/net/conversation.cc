@@ -9,30 +9,12 @@
 #include "base/number.h"
 #include "base/suggest.h"
 #include "base/utf8.h"
+#include "net/id_list.h"
+#include "sim/words.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr std::string_view kBlanks = " \t";
-
-std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> words;
-    words.reserve(4);
-    for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-        words.push_back(line.substr(begin, end - begin));
-        begin = line.find_first_not_of(kBlanks, end);
-    }
-    return words;
-}
-
-std::string upperCase(std::string_view word) {
-    std::string out(word);
-    for (char& c : out)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return out;
-}
 
 std::string_view nameOf(Outcome outcome) {
     switch (outcome) {
@@ -46,23 +28,6 @@ std::string_view nameOf(Outcome outcome) {
             return "stopped";
     }
     return "";
-}
-
-template <typename Things>
-std::vector<std::string> idsOf(const Things& things) {
-    std::vector<std::string> ids;
-    ids.reserve(things.size());
-    for (const auto& thing : things) ids.push_back(thing.id);
-    return ids;
-}
-
-std::string joined(const std::vector<std::string>& words, std::string_view separator) {
-    std::string out;
-    for (const std::string& word : words) {
-        if (!out.empty()) out += separator;
-        out += word;
-    }
-    return out;
 }
 
 /// "no robot `r9`" with what may have been meant, or what there is.
@@ -130,7 +95,8 @@ Conversation::~Conversation() { leave(); }
 std::string Conversation::greeting() { return "ISPACE 1\n"; }
 
 void Conversation::request(std::string_view line) {
-    const std::vector<std::string_view> words = split(line);
+    std::vector<std::string_view> words;
+    for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.

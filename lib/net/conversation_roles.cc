@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "net/conversation.h"
+#include "net/id_list.h"
 
 namespace ispace {
 
@@ -44,16 +45,6 @@ Count parseCount(std::string_view text, std::string_view what) {
         return {0, 416, message};
     }
     return {*value, 0, ""};
-}
-
-template <typename Things>
-std::string idsOf(const Things& things) {
-    std::string out;
-    for (const auto& thing : things) {
-        if (!out.empty()) out += ',';
-        out += thing.id;
-    }
-    return out;
 }
 
 }  // namespace
@@ -145,8 +136,8 @@ void Conversation::binary(Words words) {
 // The role WORLD.
 
 void Conversation::list(Words /*words*/) {
-    out_.append("OK LIST robots=").append(idsOf(world().robots()));
-    out_.append(" lasers=").append(idsOf(world().lasers())).append("\n");
+    out_.append("OK LIST robots=").append(joined(idsOf(world().robots()), ","));
+    out_.append(" lasers=").append(joined(idsOf(world().lasers()), ",")).append("\n");
 }
 
 void Conversation::time(Words /*words*/) {

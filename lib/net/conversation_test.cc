@@ -51,6 +51,20 @@ TEST(Conversation, UnknownThings) {
     EXPECT_EQ(talk.ask(client, "ROBOT r1"), "OK ROBOT r1 model=pioneer-2dx radius=0.25\n");
 }
 
+TEST(Conversation, DoesNotSearchThousandsOfNames) {
+    std::string robots;
+    for (int i = 0; i < 300; ++i)
+        robots +=
+            "robot radius=0.01 at=" + std::to_string(i % 20) + ',' + std::to_string(i / 20) + "\n";
+    const Scene scene = testing::scene("ispace at=10,8 size=30,30\n", robots);
+    World world(scene, std::chrono::milliseconds(100));
+    Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
+    Hall hall(simulation);
+    Conversation client(hall);
+    client.request("ROBOT robot1x");
+    EXPECT_EQ(client.take(), "ERR 404 no robot `robot1x`; LIST of the role WORLD names all\n");
+}
+
 TEST(Conversation, RobotHasOneHolder) {
     Talk talk;
     Conversation& first = talk.client("ROBOT r1");

@@ -51,13 +51,10 @@ ParsedCommand refuse(CommandError::Kind kind, std::string message) {
 }
 
 std::string unknownCommand(std::string_view name) {
-    std::string upper(name);
-    for (char& c : upper)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
     std::vector<std::string> known;
     known.reserve(kVerbs.size());
     for (const VerbFacts& facts : kVerbs) known.emplace_back(facts.name);
-    std::string hint = didYouMean(upper, known);
+    std::string hint = didYouMean(upperCase(name), known);
     if (hint.empty()) {
         hint = ", wanted one of";
         for (const std::string& verb : known) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands and scripts have in common.
+// What commands, scripts and requests have in common.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,14 @@ inline std::vector<Piece> wordsOf(std::string_view line) {
         end = std::min(line.find_first_of(kBlanks, start), line.size());
         words.push_back({line.substr(start, end - start), static_cast<int>(start) + 1});
     }
+}
+
+/// With its letters a to z as capitals: verbs are, and a person may forget it.
+inline std::string upperCase(std::string_view word) {
+    std::string out(word);
+    for (char& c : out)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return out;
 }
 
 }  // namespace ispace
