@@ -87,3 +87,22 @@ grep -a '^SCAN' reader.out | sed 's/.* seq=\([0-9]*\) .*/\1/' |
     awk 'NR > 1 && $1 != before + 1 { print "after " before " came " $1; bad = 1 } { before = $1 }
         END { exit bad || NR < 100 }' || fail "the reader missed a scan"
 stop INT
+
+# Few descriptors: fewer clients, each told so.
+set +e
+(ulimit -n 40 && exec simrun "$data/square.env" many.3dm --clock step --port-file few >announced 2>simrun.err) &
+server=$!
+set -e
+eventually "the port file" test -s few
+open=()
+refused=0
+for _ in $(seq 12); do
+    exec {fd}<>"/dev/tcp/127.0.0.1/$(cat few)" && open+=("$fd")
+done
+for fd in "${open[@]}"; do
+    read -r -t 10 line <&"$fd" || fail "neither a greeting nor a refusal"
+    [[ $line == 'ERR 429 '* ]] && refused=$((refused + 1))
+done
+[ "$refused" -eq 4 ] || fail "$refused of 12 clients refused with 40 descriptors, expected 4"
+for fd in "${open[@]}"; do exec {fd}>&-; done
+stop TERM

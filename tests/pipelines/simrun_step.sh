@@ -6,37 +6,85 @@
 . "$(dirname "$0")/../simrun/server.sh"
 scene=("$data/square.env" "$data/session.3dm")
 
-# A whole dialogue by two clients, one drives, one steps.
-dialogue() {
-    start "${scene[@]}" --clock step --record "$1" -j "$2"
+# The session of simrun_nc.sh by steps: one client drives, one steps, three read a laser.
+cat >hall.env <<'END'
+#env 1
+ispace at=0,0 size=12,4
+END
+cat >hall.3dm <<'END'
+#3dm 1
+robot id=r1 model=pioneer-2dx at=-5,0
+laser id=l1 at=0,-1.9 heading=90 range=8
+laser id=l2 on=r1
+END
+# steps RUN N: all readers have the scans of these steps before the next request.
+steps() {
+    local reader
+    expect "world$1" "STEP $2" "OK STEP n=$2 t=[0-9.]*"
+    ask "world$1" TIME
+    # l1 is read every 20 steps.
+    last=$(($(value steps) / 20))
+    for reader in one two three; do
+        eventually "scan $last" grep -aq "^SCAN l1 .* seq=$last " "$reader$1.out"
+    done
+}
+session() {
+    start hall.env hall.3dm --clock step --record "$1" -j "$2"
+    local reader request
+    for reader in one two three; do
+        dial "$reader$1"
+        ask "$reader$1" "LASER l1"
+        ask "$reader$1" STREAM
+    done
     dial "driver$1"
+    dial "other$1"
     dial "world$1"
-    ask "driver$1" "ROBOT r1"
-    ask "driver$1" "FORWARD 0.5"
     expect "world$1" WORLD 'OK WORLD t=0\.000 dt=0\.005 clock=step'
     expect "world$1" RESUME 'ERR 405 .*STEP.*'
-    expect "world$1" "STEP 200" 'OK STEP n=200 t=1\.000'
-    ask "driver$1" STATUS
+    ask "driver$1" "ROBOT r1"
+    expect "other$1" "ROBOT r1" 'ERR 409 .*'
+    for request in "SPEED 0.3" STATUS; do ask "driver$1" "$request"; done
+    steps "$1" 400
+    for request in STATUS STOP; do ask "driver$1" "$request"; done
+    steps "$1" 100
+    expect "driver$1" STATUS '.* speed=0\.150 .* accel=-0\.3 .*'
+    steps "$1" 300
+    expect "driver$1" "FORWARD 1.5" 'OK FORWARD id=1 distance=1\.5'
+    steps "$1" 400
     ask "driver$1" "SCAN l2"
-    ask "driver$1" "SPEED 1"
-    ask "driver$1" "ROTSPEED 20"
-    expect "world$1" "STEP 1000" 'OK STEP n=1000 t=6\.000'
+    steps "$1" 600
+    for request in STATUS "GO WEST" "FORWARD much" "LEFT 90"; do ask "driver$1" "$request"; done
+    steps "$1" 400
+    expect "driver$1" STATUS '.* heading=90\.000 speed=0\.000 .* stall=0'
+    ask "driver$1" "FORWARD 5"
+    steps "$1" 500
+    steps "$1" 500
+    expect "driver$1" STATUS '.* speed=0\.000 .* stall=1'
+    for request in "BACKWARD 1" "SPEED -1" "ROTSPEED 20"; do ask "driver$1" "$request"; done
+    steps "$1" 40
     ask "driver$1" STATUS
-    expect "world$1" POSES 'OK POSES t=6\.000 n=2 poses=r1,[-0-9.,]*;r2,1\.000,1\.000,180\.000'
-    expect "world$1" SHUTDOWN 'OK SHUTDOWN t=6\.000'
+    ask "driver$1" QUIT
+    expect "other$1" "ROBOT r1" 'OK ROBOT r1 .*'
+    expect "world$1" POSES 'OK POSES t=16\.200 n=1 poses=r1,[-0-9.,]*'
+    expect "world$1" SHUTDOWN 'OK SHUTDOWN t=16\.200'
     ended 0
-    hang_up "driver$1"
-    hang_up "world$1"
-    mv simrun.err "$1.err"
+    for reader in one two three driver other world; do hang_up "$reader$1"; done
+    mv simrun.err "err$1"
 }
-dialogue a 1
-dialogue b 2
-expect_same drivera.out driverb.out "another dialogue the second time"
-expect_same worlda.out worldb.out "another dialogue the second time"
+session a 1
+session b 2
+for client in one two three driver other world; do
+    expect_same "${client}a.out" "${client}b.out" "another dialogue of $client the second time"
+done
+expect_same onea.out twoa.out "other scans for another reader"
+[ "$(grep -ac '^SCAN' onea.out)" -eq 162 ] || fail "$(grep -ac '^SCAN' onea.out) scans, expected 162"
+for end in 'DONE id=1 t=8\.670' 'DONE id=2 .*' 'FAIL id=3 reason=stall .*' 'FAIL id=4 reason=replaced .*'; do
+    grep -qx "$end" drivera.out || fail "no $end: $(cat drivera.out)"
+done
+expect_same erra errb "other warnings the second time"
 rm a/timing.csv b/timing.csv
 diff -r a b || fail "other records the second time"
-grep -q 'FAIL id=1 reason=replaced' drivera.out || fail "$(cat drivera.out)"
-[ "$(wc -l <a/robots.csv)" -eq $((1 + 2 * 1201)) ] || fail "$(wc -l a/robots.csv)"
+[ "$(wc -l <a/robots.csv)" -eq $((1 + 3241)) ] || fail "$(wc -l a/robots.csv)"
 
 # A script, as fast as it goes.
 cat >script.txt <<'END'
@@ -104,6 +152,15 @@ stop TERM
 expect_status 1 simrun "${scene[@]}" --record one --until 1 --port-file missing/port
 expect_same before.csv one/robots.csv "a run that could not begin replaced the records"
 simrun "${scene[@]}" --record one --clock fast --until 1 >/dev/null || fail "the folder is still taken"
+
+# Nobody reads the warnings: clients are served all the same.
+: >status
+{
+    printf '0 r1 SPEED 1\n' | simrun "${scene[@]}" --clock fast --until 8 --script - 2>&1 >first || true
+    echo "${PIPESTATUS[1]}" >status
+} | true
+eventually "the end of the run" test -s status
+[ "$(cat status)" = 0 ] || fail "status $(cat status) where nobody reads the warnings"
 
 # A full disk ends the run.
 if [ -c /dev/full ]; then
