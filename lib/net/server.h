@@ -2,6 +2,7 @@
 // lib/net: the Simulator TCP Protocol and its server. Uses sim and below; Asio inside.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,8 @@ struct ServerLimits {
     std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
     std::size_t pending = std::size_t{1} << 18;  ///< replies in bytes a client may leave unread
                                                  ///< before its requests have to wait
+    /// For a connection that is to end to read what it was told.
+    std::chrono::nanoseconds patience = std::chrono::seconds(10);
 };
 
 /// A TCP endpoint "127.0.0.1:0"; port 0: one the system gives.

@@ -19,9 +19,7 @@ constexpr std::size_t kBlock = 4096;
 /// Requests of one client, and time for them, before it is the next one's turn.
 constexpr int kRequestsInTurn = 256;
 constexpr auto kTurn = std::chrono::milliseconds(1);
-/// How long a connection that is to end may take to read what it was told, and then to close, what
-/// it still sends unread.
-constexpr auto kLastWords = std::chrono::seconds(10);
+/// How long a connection that was told of its end may take to close, what it still sends unread.
 constexpr auto kLinger = std::chrono::seconds(1);
 
 bool wouldBlock(const std::error_code& error) {
@@ -126,7 +124,7 @@ void Session::receive() {
 /// Sends what there is; then closes. With unread input that would reset the
 /// connection, and the other side might lose what it was told last.
 void Session::linger() {
-    if (!std::exchange(ending_, true)) closeAfter(kLastWords);
+    if (!std::exchange(ending_, true)) closeAfter(limits_.patience);
     if (writing_ || std::exchange(discarding_, true)) return;
     if (eof_) return close();
     closeAfter(kLinger);

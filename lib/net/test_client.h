@@ -154,12 +154,18 @@ class Running {
     std::thread thread_;
 };
 
-/// Asks until the answer is the one that is wanted.
-inline bool comes(Client& client, const std::string& request, std::string_view wanted) {
+/// Waits until it is so.
+template <typename Condition>
+bool soon(Condition is_so) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kPatience);
     while (std::chrono::steady_clock::now() < deadline)
-        if (client.ask(request).starts_with(wanted)) return true;
+        if (is_so()) return true;
     return false;
+}
+
+/// Asks until the answer is the one that is wanted.
+inline bool comes(Client& client, const std::string& request, std::string_view wanted) {
+    return soon([&] { return client.ask(request).starts_with(wanted); });
 }
 
 inline std::string step(Client& world, int count) {
