@@ -7,13 +7,14 @@ server=
 clients=()
 trap 'for process in $server "${clients[@]}"; do kill -9 "$process" 2>/dev/null || true; done; cleanup' EXIT
 
-# eventually WHAT COMMAND…: waits until the command succeeds, for a minute at most.
+# eventually WHAT COMMAND…: waits until the command succeeds, for a minute at most; for a few seconds
+# once the server is gone, as what it said last may be on its way.
 eventually() {
     local what=$1 i
     shift
     for ((i = 0; i < 3000; ++i)); do
         if "$@"; then return 0; fi
-        [ -z "$server" ] || kill -0 "$server" 2>/dev/null || break
+        [ -z "$server" ] || [ "$i" -gt 2750 ] || kill -0 "$server" 2>/dev/null || i=2750
         sleep 0.02
     done
     fail "in vain: $what (simrun says: $(head -n 5 simrun.err))"
