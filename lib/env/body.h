@@ -5,27 +5,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "env/material.h"
+#include "env/mesh.h"
 #include "geom/polygon.h"
 #include "record/record.h"
 
 namespace ispace {
-
-/// What a surface is made of, as far as pictures and viewers care.
-enum class Material {
-    Floor,
-    FloorDark,
-    Wall,
-    Wood,
-    WoodDark,
-    Brick,
-    Concrete,
-    Metal,
-    Fabric,
-    Barrier,
-    Box,
-    Pillar,
-    Ceiling
-};
 
 /// A closed upright prism: footprint (simple, counter-clockwise, world frame) from bottom to top.
 struct Prism {
@@ -39,6 +24,7 @@ struct Sheet {
     Segment2 line;
     double bottom = 0, top = 0;
     Material material = Material::Wall;
+    bool clear = false;  ///< glass that beams pass: drawn, and stops robots, but in no slice
 };
 
 /// A level sheet without thickness at height z: floors, ceilings. Never part of a slice.
@@ -54,9 +40,10 @@ struct Body {
     std::vector<Prism> prisms;
     std::vector<Sheet> sheets;
     std::vector<Plate> plates;
+    std::vector<Mesh> meshes;  ///< of files, in the world frame
 };
 
-/// Height of the highest prism or sheet; 0 without any.
+/// Height of the highest prism, sheet or mesh; 0 without any.
 double topOf(const Body& body);
 
 /// Greatest distance between a curve and the chords that stand for it, in metres: small enough for

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "env/body.h"
 #include "geom/predicates.h"
 #include "geom/triangulate.h"
 
@@ -92,6 +93,7 @@ std::vector<Mesh> meshesOf(const Body& body, bool with_visual) {
     for (const Sheet& sheet : body.sheets) addSheet(of(sheet.material), sheet);
     for (const Plate& plate : body.plates)
         if (with_visual || !plate.visual_only) addPlate(of(plate.material), plate);
+    meshes.insert(meshes.end(), body.meshes.begin(), body.meshes.end());
     return meshes;
 }
 

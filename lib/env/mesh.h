@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "env/body.h"
-#include "geom/point.h"
+#include "env/material.h"
+#include "geom/polygon.h"
 
 namespace ispace {
+
+struct Body;
 
 /// Triangles of one material, counter-clockwise seen from outside; sheets and plates once (they
 /// are seen from both sides).

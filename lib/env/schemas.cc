@@ -27,14 +27,21 @@ KeySpec lengths(std::string name, std::string help, std::size_t min_count, std::
             .upper = kFarthest};
 }
 
+KeySpec pointKey(std::string name, std::string help) {
+    KeySpec key = lengths(std::move(name), std::move(help), 2, 2);
+    key.role = Role::Place;
+    return key;
+}
+
 KeySpec atKey() {
     KeySpec key = lengths("at", "centre of the footprint x,y and height of the underside z", 2, 3);
+    key.role = Role::Place;
     key.default_value = Tuple{0, 0};
     return key;
 }
 
 KeySpec floorAtKey() {
-    KeySpec key = lengths("at", "centre x,y", 2, 2);
+    KeySpec key = pointKey("at", "centre x,y");
     key.default_value = Tuple{0, 0};
     return key;
 }
@@ -46,7 +53,8 @@ KeySpec headingKey() {
             .help = "direction of the length, counter-clockwise from +x",
             .default_value = 0.0,
             .lower = -kFarthest,
-            .upper = kFarthest};
+            .upper = kFarthest,
+            .role = Role::Heading};
 }
 
 /// Extents, each above 0.
@@ -106,6 +114,7 @@ KeySpec flagKey(std::string name, std::string help) {
 KeySpec pathKey(std::string help) {
     KeySpec key = lengths("path", std::move(help), 2, 2);
     key.type = KeyType::TupleList;
+    key.role = Role::Place;
     return key;
 }
 
@@ -119,7 +128,7 @@ void addSpaces(std::vector<Schema>& out) {
         "ispace", RecordType::Space, "a room: floor and four walls",
         {floorAtKey(), headingKey(), sizeKey("length,width[,height] of the room", 2, 3, {8, 8}),
          heightKey(kWallHeight), flagKey("ceiling", "close it with a ceiling")}));
-    KeySpec inside_at = lengths("at", "the point x,y", 2, 2);
+    KeySpec inside_at = pointKey("at", "the point x,y");
     inside_at.required = true;
     out.push_back(schema("inside", RecordType::Space, "a point known to be inside the room",
                          {std::move(inside_at)}));
@@ -148,16 +157,115 @@ void addWalls(std::vector<Schema>& out) {
     wall_size.lower = 0;
     out.push_back(
         schema("wall", RecordType::Wall, "a straight wall, by its ends or by centre and length",
-               {lengths("from", "one end of the mid-line", 2, 2),
-                lengths("to", "the other end", 2, 2), atKey(), headingKey(), std::move(wall_size),
-                heightKey(kWallHeight), thicknessKey("thickness where size gives none"),
+               {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"),
+                atKey(), headingKey(), std::move(wall_size), heightKey(kWallHeight),
+                thicknessKey("thickness where size gives none"),
                 kindKey("what it is made of", {"plain", "brick", "wood", "concrete"})}));
-    out.push_back(schema("fence", RecordType::Wall,
-                         "walls along a path, as drawn in the fast construct mode",
-                         {pathKey("corners of the mid-line, two or more"),
-                          lengths("from", "one end", 2, 2), lengths("to", "the other end", 2, 2),
-                          flagKey("closed", "join the last point to the first"),
-                          heightKey(kWallHeight, "height"), thicknessKey("thickness")}));
+    out.push_back(schema(
+        "fence", RecordType::Wall, "walls along a path, as drawn in the fast construct mode",
+        {pathKey("corners of the mid-line, two or more"), pointKey("from", "one end"),
+         pointKey("to", "the other end"), flagKey("closed", "join the last point to the first"),
+         heightKey(kWallHeight, "height"), thicknessKey("thickness")}));
+}
+
+KeySpec countKey(std::string name, std::string help, double standard, double most) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = 1,
+            .upper = most,
+            .whole = true};
+}
+
+/// Where a door or a window is: on its wall, or at a place that tells the wall.
+std::vector<KeySpec> openingKeys(double standard_width) {
+    KeySpec heading = headingKey();
+    heading.help = "direction of the wall, where several are near";
+    heading.default_value.reset();
+    return {{.name = "wall",
+             .type = KeyType::Word,
+             .help = "id of the wall, fence or room it is in; left out: the wall nearest to `at`",
+             .role = Role::Reference},
+            {.name = "offset",
+             .type = KeyType::Number,
+             .unit = Unit::Length,
+             .help = "from the beginning of the wall, along it, to the middle of the opening",
+             .lower = 0,
+             .upper = kFarthest},
+            pointKey("at", "middle of the opening, on its wall or near it"),
+            std::move(heading),
+            pointKey("from", "one end of the opening"),
+            pointKey("to", "the other end"),
+            sizeKey("length[,width[,height]]: along the wall, through it, upwards", 1, 3,
+                    {standard_width})};
+}
+
+void addOpenings(std::vector<Schema>& out) {
+    std::vector<KeySpec> door = openingKeys(0.9);
+    door.push_back(heightKey(2, "height where size gives none"));
+    door.push_back(flagKey("open", "yes: one can pass, and the rooms on both sides are one"));
+    out.push_back(schema("door", RecordType::Wall, "an opening down to the floor, with a leaf",
+                         std::move(door)));
+    std::vector<KeySpec> window = openingKeys(1.2);
+    window.push_back(heightKey(1.2, "height where size gives none"));
+    window.push_back({.name = "sill",
+                      .type = KeyType::Number,
+                      .unit = Unit::Length,
+                      .help = "height of its lower edge above the floor",
+                      .default_value = 0.9,
+                      .lower = 0,
+                      .upper = kFarthest});
+    KeySpec glass{.name = "glass",
+                  .type = KeyType::Choice,
+                  .help = "clear: beams pass; opaque: they stop; none: an open hole",
+                  .default_value = "clear",
+                  .choices = {"clear", "opaque", "none"}};
+    window.push_back(std::move(glass));
+    out.push_back(schema("window", RecordType::Wall, "an opening above a sill, with a pane",
+                         std::move(window)));
+}
+
+void addInfra(std::vector<Schema>& out) {
+    out.push_back(schema("infra", RecordType::Infra,
+                         "a frame of bars under the ceiling, to hang sensors from",
+                         {floorAtKey(), headingKey(), sizeKey("length,width", 2, 2, {4, 4}),
+                          heightKey(2.4, "height of the bars' underside"),
+                          countKey("rows", "bars along the length", 3, 1000),
+                          countKey("cols", "bars across", 3, 1000)}));
+}
+
+Schema meshSchema() {
+    return schema(
+        "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, DAE, GLB and the like",
+        {atKey(),
+         headingKey(),
+         {.name = "file",
+          .type = KeyType::Text,
+          .help = "the file, relative to the folder of this one",
+          .required = true,
+          .role = Role::File},
+         {.name = "unit",
+          .type = KeyType::Choice,
+          .help = "unit of the file's numbers",
+          .default_value = "m",
+          .choices = {"m", "cm", "mm", "inch", "foot"}},
+         {.name = "up",
+          .type = KeyType::Choice,
+          .help = "the file's axis that points up; auto: y in glTF, as the file says in COLLADA, "
+                  "else z",
+          .default_value = "auto",
+          .choices = {"auto", "x", "y", "z"}},
+         {.name = "scale",
+          .type = KeyType::Number,
+          .help = "makes it larger by this factor",
+          .default_value = 1.0,
+          .lower = 0,
+          .upper = 1e6,
+          .lower_open = true},
+         {.name = "digest",
+          .type = KeyType::Word,
+          .help = "sha256: of the content when it was compiled; another content is refused"}});
 }
 
 void addThings(std::vector<Schema>& out) {
@@ -180,6 +288,11 @@ void addThings(std::vector<Schema>& out) {
     other("chair", "a chair; its back is behind, against the heading",
           {sizeKey(box, 2, 3, {0.45, 0.45}), heightKey(0.85)});
     other("barrier", "a thin upright board", {sizeKey(box, 2, 3, {1.2, 0.05}), heightKey(1)});
+    other("boxes", "boxes upon each other",
+          {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), heightKey(0.9),
+           countKey("count", "how many", 3, 100)});
+    other("screen", "a projection screen on two feet; its length lies along the heading",
+          {sizeKey(box, 2, 3, {1.8, 0.05}), heightKey(2)});
     other("cube", "a box",
           {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
            heightKey("height where size gives none; without it the length")});
@@ -194,7 +307,10 @@ std::vector<Schema> environmentSchemas() {
     addSpaces(out);
     addFloors(out);
     addWalls(out);
+    addOpenings(out);
+    addInfra(out);
     addThings(out);
+    out.push_back(meshSchema());
     return out;
 }
 

@@ -32,48 +32,6 @@ static_assert(std::endian::native == std::endian::little, "glTF data are copied 
 /// tinygltf keeps offsets in an int.
 constexpr std::size_t kMostBytes = 0x7fff0000;
 
-/// How a surface looks: colour (linear RGB), metallic share and roughness.
-struct Look {
-    const char* name;
-    std::array<double, 3> color;
-    double metallic, roughness;
-};
-
-constexpr Look kSensorLook{"sensor", {0.02, 0.02, 0.03}, 0, 0.5};
-constexpr Look kRobotLook{"robot", {0.45, 0.02, 0.02}, 0, 0.5};
-
-Look lookOf(Material material) {
-    switch (material) {
-        case Material::Floor:
-            return {"floor", {0.62, 0.58, 0.50}, 0, 0.9};
-        case Material::FloorDark:
-            return {"floor-dark", {0.12, 0.12, 0.13}, 0, 0.9};
-        case Material::Wall:
-            return {"wall", {0.80, 0.80, 0.76}, 0, 0.9};
-        case Material::Wood:
-            return {"wood", {0.45, 0.26, 0.12}, 0, 0.7};
-        case Material::WoodDark:
-            return {"wood-dark", {0.16, 0.08, 0.04}, 0, 0.7};
-        case Material::Brick:
-            return {"brick", {0.42, 0.11, 0.07}, 0, 0.95};
-        case Material::Concrete:
-            return {"concrete", {0.38, 0.38, 0.36}, 0, 0.95};
-        case Material::Metal:
-            return {"metal", {0.55, 0.56, 0.58}, 0.4, 0.4};
-        case Material::Fabric:
-            return {"fabric", {0.07, 0.15, 0.35}, 0, 1};
-        case Material::Barrier:
-            return {"barrier", {0.70, 0.16, 0.03}, 0, 0.8};
-        case Material::Box:
-            return {"box", {0.52, 0.36, 0.18}, 0, 0.9};
-        case Material::Pillar:
-            return {"pillar", {0.50, 0.48, 0.44}, 0, 0.9};
-        case Material::Ceiling:
-            return {"ceiling", {0.88, 0.88, 0.88}, 0, 0.95};
-    }
-    return {"unknown", {1, 0, 1}, 0, 1};
-}
-
 /// glTF's (X, Y, Z) are our (x, z, -y). Adding zero makes -0 plain 0.
 std::array<double, 3> gltfAxes(Vec3 v) { return {v.x + 0.0, v.z + 0.0, -v.y + 0.0}; }
 
@@ -183,9 +141,10 @@ class ModelBuilder {
         if (!is_new) return place->second;
         tinygltf::Material material;
         material.name = look.name;
+        if (look.opacity < 1) material.alphaMode = "BLEND";
         material.doubleSided = double_sided;
         material.pbrMetallicRoughness.baseColorFactor = {look.color[0], look.color[1],
-                                                         look.color[2], 1};
+                                                         look.color[2], look.opacity};
         material.pbrMetallicRoughness.metallicFactor = look.metallic;
         material.pbrMetallicRoughness.roughnessFactor = look.roughness;
         model_.materials.push_back(std::move(material));
@@ -350,7 +309,7 @@ tinygltf::Node placedNode(const std::string& id, const std::string& keyword, int
 void addLasers(const std::vector<PlacedLaser>& lasers, Point3 origin, ModelBuilder& builder,
                std::vector<int>& nodes) {
     if (lasers.empty()) return;
-    const int mesh = addPlacedMesh("laser", sensorMesh(), kSensorLook, builder);
+    const int mesh = addPlacedMesh("laser", sensorMesh(), lookOf(Material::Sensor), builder);
     for (const PlacedLaser& laser : lasers)
         nodes.push_back(builder.addNode(placedNode(laser.id, "laser", mesh, laser.pose, origin)));
 }
@@ -363,7 +322,9 @@ void addRobots(const std::vector<PlacedRobot>& robots, Point3 origin, ModelBuild
         const RobotModel& model = robot.model;
         const auto [place, is_new] = meshes.try_emplace(
             {model.radius, model.length, model.width, model.center, model.height}, -1);
-        if (is_new) place->second = addPlacedMesh("robot", robotMesh(model), kRobotLook, builder);
+        if (is_new)
+            place->second =
+                addPlacedMesh("robot", robotMesh(model), lookOf(Material::Robot), builder);
         const Pose2& pose = robot.pose;
         const Pose3 upright{{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
         nodes.push_back(

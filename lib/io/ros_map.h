@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "io/import_options.h"
 #include "record/record.h"
 
 namespace ispace {
-
-/// How plans without heights become rooms.
-struct ImportOptions {
-    double wall_height = 2.5;        ///< metres
-    std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
-};
 
 /// True if the bytes are YAML with the top-level keys `image` and `resolution`.
 bool isRosMap(std::string_view bytes);

@@ -163,7 +163,8 @@ Scene makeScene(const Document& environment, const Document* layout,
             .digest = environmentDigest(environment.records),
             .lasers = std::move(lasers.placed),
             .pending = std::move(lasers.pending),
-            .robots = std::move(robots)};
+            .robots = std::move(robots),
+            .placed = {}};
 }
 
 std::optional<EnvironmentReference> environmentReference(const Document& layout) {

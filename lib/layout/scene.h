@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,12 @@ struct PendingLaser {
     Laser laser;
 };
 
+/// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
+struct Placed {
+    std::size_t record = 0;  ///< index in Scene::records
+    Pose3 pose;              ///< in the world; of a robot or person on the floor
+};
+
 /// Environment and layout, joined and resolved: what the tools read.
 ///
 /// A LAYOUT record replaces the ENV record of the same written id, in its place; others follow.
@@ -31,6 +38,7 @@ struct Scene {
     std::vector<PlacedLaser> lasers;    ///< with a place, or on what has one, in order
     std::vector<PendingLaser> pending;  ///< without a place, in order
     std::vector<PlacedRobot> robots;    ///< in order
+    std::vector<Placed> placed;         ///< all of them and everything else with a place, in order
 };
 
 /// The records of LAYOUT put in the places of those of ENV with the same written id, the others

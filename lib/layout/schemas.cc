@@ -19,14 +19,20 @@ constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
 
 KeySpec idKey() { return {.name = "id", .type = KeyType::Word, .help = "name of the record"}; }
 
-KeySpec angleKey(std::string name, std::string help, double lower, double upper) {
+KeySpec angleKey(std::string name, std::string help, double lower, double upper,
+                 Role role = Role::None) {
     return {.name = std::move(name),
             .type = KeyType::Number,
             .unit = Unit::Angle,
             .help = std::move(help),
             .default_value = 0.0,
             .lower = lower,
-            .upper = upper};
+            .upper = upper,
+            .role = role};
+}
+
+KeySpec headingKey(std::string help) {
+    return angleKey("heading", std::move(help), -kFarthest, kFarthest, Role::Heading);
 }
 
 /// Figures that a model gives too; none has a default, as its absence means "as the model".
@@ -125,33 +131,122 @@ KeySpec modelKey() {
             .help = "device of the catalogue that gives the figures not written"};
 }
 
-Schema laserSchema() {
-    Schema schema{.keyword = "laser",
+/// Where a sensor is and how it looks: a pose in space, or one in the frame of its carrier.
+void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
+    keys.push_back({.name = "at",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "optical centre; height 0.15 without z; left out: to be placed, or "
+                            "with `on` 0,0",
+                    .min_count = 2,
+                    .max_count = 3,
+                    .lower = -kFarthest,
+                    .upper = kFarthest,
+                    .role = Role::Place});
+    keys.push_back(headingKey(std::move(heading_help)));
+    keys.push_back(angleKey("tilt", "above level, negative looks down", -90, 90, Role::Tilt));
+    keys.push_back(angleKey("roll", "left side up", -180, 180));
+}
+
+KeySpec onKey() {
+    return {.name = "on",
+            .type = KeyType::Word,
+            .help =
+                "id of the robot or object that carries it: `at` and `heading` are in its "
+                "frame, z counts from the floor or from the object's top",
+            .role = Role::Carrier};
+}
+
+Schema sensorSchema(std::string keyword, std::string help, std::string heading_help,
+                    void (*add_figures)(std::vector<KeySpec>&)) {
+    Schema schema{.keyword = std::move(keyword),
                   .type = RecordType::Placement,
-                  .help = "planar laser range finder; bare: range=0,5 fov=180 step=1",
+                  .help = std::move(help),
                   .keys = {}};
     schema.keys.push_back(idKey());
     schema.keys.push_back(modelKey());
-    schema.keys.push_back({.name = "at",
-                           .type = KeyType::Tuple,
-                           .unit = Unit::Length,
-                           .help = "optical centre; height 0.15 without z; left out: to be placed, "
-                                   "or with `on` 0,0",
-                           .min_count = 2,
-                           .max_count = 3,
-                           .lower = -kFarthest,
-                           .upper = kFarthest});
-    schema.keys.push_back(
-        angleKey("heading", "direction of bearing 0, from +x", -kFarthest, kFarthest));
-    schema.keys.push_back(angleKey("tilt", "above level, negative looks down", -90, 90));
-    schema.keys.push_back(angleKey("roll", "left side up", -180, 180));
-    addLaserFigures(schema.keys);
-    schema.keys.push_back(
-        {.name = "on",
-         .type = KeyType::Word,
-         .help = "id of the robot or object that carries it: `at` and `heading` are in its frame, "
-                 "z counts from the floor or from the object's top"});
+    addSensorPose(schema.keys, std::move(heading_help));
+    add_figures(schema.keys);
+    schema.keys.push_back(onKey());
     return schema;
+}
+
+/// Figures of what sees a picture: rangers and cameras.
+void addPictureFigures(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "range",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "least and greatest distance seen, or the greatest alone",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kFarthest});
+    keys.push_back({.name = "fov",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Angle,
+                    .help = "field of view across and upright; square pixels without the second",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = 179,
+                    .lower_open = true});
+    keys.push_back({.name = "pixels",
+                    .type = KeyType::Tuple,
+                    .help = "columns,rows of its picture",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = 1,
+                    .upper = 16384,
+                    .whole = true});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "pictures a second", 1e5));
+}
+
+void addUltrasoundFigures(std::vector<KeySpec>& keys) {
+    keys.push_back(positiveKey("range", Unit::Length, "greatest distance heard", kFarthest));
+    keys.push_back({.name = "fov",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "full angle of the cone in which it hears",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "measurements a second", 1e5));
+}
+
+void addTagFigures(std::vector<KeySpec>& keys) {
+    keys.push_back(positiveKey("rate", Unit::Frequency, "bursts a second", 1e5));
+}
+
+/// A key of a fixed place on the floor, 0,0 without it.
+KeySpec floorAtKey(std::string help) {
+    return {.name = "at",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .default_value = Tuple{0, 0},
+            .min_count = 2,
+            .max_count = 2,
+            .lower = -kFarthest,
+            .upper = kFarthest,
+            .role = Role::Place};
+}
+
+/// Where robots and humans go by themselves.
+void addCourse(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "path",
+                    .type = KeyType::TupleList,
+                    .unit = Unit::Length,
+                    .help = "places x,y to go to, one after another",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = -kFarthest,
+                    .upper = kFarthest,
+                    .role = Role::Course});
+    keys.push_back({.name = "walk",
+                    .type = KeyType::Choice,
+                    .help = "stand until a client drives it, or wander about",
+                    .default_value = "stand",
+                    .choices = {"stand", "wander"}});
 }
 
 Schema robotSchema() {
@@ -161,19 +256,63 @@ Schema robotSchema() {
                   .keys = {}};
     schema.keys.push_back(idKey());
     schema.keys.push_back(modelKey());
-    schema.keys.push_back({.name = "at",
-                           .type = KeyType::Tuple,
-                           .unit = Unit::Length,
-                           .help = "centre of rotation x,y at the start",
-                           .default_value = Tuple{0, 0},
-                           .min_count = 2,
-                           .max_count = 2,
-                           .lower = -kFarthest,
-                           .upper = kFarthest});
-    schema.keys.push_back(
-        angleKey("heading", "where it faces at the start, from +x", -kFarthest, kFarthest));
+    schema.keys.push_back(floorAtKey("centre of rotation x,y at the start"));
+    schema.keys.push_back(headingKey("where it faces at the start, from +x"));
     addRobotFigures(schema.keys);
+    addCourse(schema.keys);
     return schema;
+}
+
+Schema humanSchema() {
+    Schema schema{.keyword = "human",
+                  .type = RecordType::Placement,
+                  .help = "a person; legs are two circles at scanning height",
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(floorAtKey("where the person stands at the start"));
+    schema.keys.push_back(headingKey("where the person faces at the start, from +x"));
+    KeySpec height = positiveKey("height", Unit::Length, "of the person", 3);
+    height.default_value = 1.7;
+    schema.keys.push_back(std::move(height));
+    KeySpec speed = positiveKey("speed", Unit::Length, "metres a second when walking", 20);
+    speed.default_value = 1.2;
+    schema.keys.push_back(std::move(speed));
+    addCourse(schema.keys);
+    return schema;
+}
+
+KeySpec areaSizeKey(std::string help, Tuple standard) {
+    return {.name = "size",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .default_value = std::move(standard),
+            .min_count = 2,
+            .max_count = 2,
+            .lower = 0,
+            .upper = kFarthest,
+            .lower_open = true};
+}
+
+Schema matSchema() {
+    return {.keyword = "mat",
+            .type = RecordType::Placement,
+            .help = "a pressure mat on the floor: tells whether somebody stands on it",
+            .keys = {idKey(), floorAtKey("centre x,y"), headingKey("direction of the length"),
+                     areaSizeKey("length,width", {1, 1})}};
+}
+
+Schema gateSchema() {
+    KeySpec height = positiveKey("height", Unit::Length, "of the beam above the floor", kFarthest);
+    height.default_value = 0.5;
+    KeySpec width = positiveKey("width", Unit::Length, "distance between its posts", kFarthest);
+    width.default_value = 1.0;
+    return {
+        .keyword = "gate",
+        .type = RecordType::Placement,
+        .help = "a light gate: tells whether something stands between its posts",
+        .keys = {idKey(), floorAtKey("middle between the posts"),
+                 headingKey("direction in which one passes"), std::move(width), std::move(height)}};
 }
 
 Schema environmentSchema() {
@@ -183,7 +322,8 @@ Schema environmentSchema() {
             .keys = {idKey(),
                      {.name = "file",
                       .type = KeyType::Text,
-                      .help = "its file, relative to the folder of the layout"},
+                      .help = "its file, relative to the folder of the layout",
+                      .role = Role::File},
                      {.name = "digest",
                       .type = KeyType::Text,
                       .help = "sha256: and 64 hex digits over its records"}}};
@@ -246,7 +386,22 @@ Schema deviceSchema(std::string keyword, std::string help,
 }  // namespace
 
 std::vector<Schema> layoutSchemas() {
-    return {laserSchema(), robotSchema(), environmentSchema(), resultSchema()};
+    return {sensorSchema("laser", "planar laser range finder; bare: range=0,5 fov=180 step=1",
+                         "direction of bearing 0, from +x", addLaserFigures),
+            sensorSchema("ranger", "3-D range camera; bare: range=0,5 fov=47.5,39.6",
+                         "direction of its axis, from +x", addPictureFigures),
+            sensorSchema("camera", "camera; bare: fov=45 pixels=640,480",
+                         "direction of its axis, from +x", addPictureFigures),
+            sensorSchema("ultrasound", "ultrasonic receiver; bare: range=8 fov=120",
+                         "direction of its axis, from +x", addUltrasoundFigures),
+            sensorSchema("tag", "ultrasonic emitter, to be located", "where it faces, from +x",
+                         addTagFigures),
+            matSchema(),
+            gateSchema(),
+            robotSchema(),
+            humanSchema(),
+            environmentSchema(),
+            resultSchema()};
 }
 
 Schema laserDeviceSchema() {

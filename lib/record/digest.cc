@@ -41,7 +41,26 @@ class Sha256 {
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
+/// A record of a loaded file with the digest of its content in place of the file's name.
+Record byContent(Record record) {
+    if (record.mesh() == nullptr) return record;
+    for (const KeySpec& key : record.schema().keys)
+        if (key.role == Role::File) record.erase(key.name);
+    record.set("digest", record.mesh()->digest);
+    return record;
+}
+
 }  // namespace
+
+std::string meshDigest(const TriangleMesh& mesh) {
+    Sha256 digest;
+    const auto add = [&digest](const auto& items) {
+        digest.add({reinterpret_cast<const char*>(items.data()), items.size() * sizeof items[0]});
+    };
+    add(mesh.vertices);
+    add(mesh.triangles);
+    return digest.finish();
+}
 
 std::string sha256(std::string_view bytes) {
     Sha256 digest;
@@ -52,7 +71,7 @@ std::string sha256(std::string_view bytes) {
 std::string environmentDigest(std::span<const Record> records) {
     Sha256 digest;
     for (const Record& record : records)
-        if (record.schema().isEnvironment()) digest.add(formatRecord(record) + '\n');
+        if (record.schema().isEnvironment()) digest.add(formatRecord(byContent(record)) + '\n');
     return digest.finish();
 }
 

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/history.h"
 #include "geom/pose.h"
+#include "geom/triangle_mesh.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -62,6 +63,10 @@ class Record {
     [[nodiscard]] Diagnostic finding(std::string message) const;
     [[nodiscard]] Diagnostic finding(std::string_view key, std::string message) const;
 
+    /// The content of the file that the record names, once somebody has loaded it; else null.
+    [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
+    void setMesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
+
     /// Same keyword and same written values; places do not matter.
     friend bool operator==(const Record& a, const Record& b);
 
@@ -79,6 +84,7 @@ class Record {
     const Schema* schema_;
     Place place_;
     std::vector<Entry> entries_;  // in the order of the schema's keys
+    std::shared_ptr<const TriangleMesh> mesh_;
 };
 
 /// What a text holds, told by its content.
@@ -89,6 +95,8 @@ struct Document {
     DocumentKind kind = DocumentKind::Environment;
     History history;              ///< from the lines after the magic line
     std::vector<Record> records;  ///< in file order
+    /// Files read besides the operand, each once: includes, pictures, meshes. Paths as opened.
+    std::vector<std::string> sources = {};
 };
 
 /// Ids of all records, in order: the written one, else keyword and number, counting from 1 within

@@ -36,6 +36,19 @@ enum class Unit {
     Share,      ///< fraction 0..1 in Value; text "95%" or "0.95", a bare number above 1 is refused
 };
 
+/// What a key says about where a record stands and what it belongs to: what moves, parts and
+/// conversions need to know of keys they do not know.
+enum class Role {
+    None,
+    Place,      ///< x,y[,z] or a list of them: moves with the record
+    Course,     ///< the same for a way to go, beside the record's place
+    Heading,    ///< turns with the record
+    Tilt,       ///< above level; what --tilt changes
+    Carrier,    ///< id of the record in whose frame the places of this one are
+    Reference,  ///< id of another record
+    File,       ///< a path, relative to the folder of the file that names it
+};
+
 struct KeySpec {
     std::string name;
     KeyType type = KeyType::Number;
@@ -46,8 +59,10 @@ struct KeySpec {
     double lower = -std::numeric_limits<double>::infinity();  ///< of each number
     double upper = std::numeric_limits<double>::infinity();
     bool lower_open = false;  ///< `lower` itself is refused ("must be above 0")
+    bool whole = false;       ///< a fraction is refused
     std::vector<std::string> choices = {};
     bool required = false;
+    Role role = Role::None;
 };
 
 /// The four types of the thesis' menus, and what is placed.

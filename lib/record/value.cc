@@ -87,6 +87,8 @@ void checkNumber(const KeySpec& key, double number) {
                              (key.lower_open ? " is given, must be above " : " is below ") +
                              text(key.lower));
     if (number > key.upper) refuseValue(key, text(number) + " is above " + text(key.upper));
+    if (key.whole && number != std::floor(number))
+        refuseValue(key, text(number) + " is given, a whole number is wanted");
 }
 
 /// \param where "" or " in tuple 3"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
-#include "io/ros_map.h"
+#include "io/import_options.h"
 
 namespace ispace {
 

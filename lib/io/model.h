@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "env/mesh.h"
+#include "layout/scene.h"
+
+namespace ispace {
+
+/// One named thing of a model, as triangles: what the writers of GLB, OBJ and STL have in common.
+struct ModelNode {
+    std::string id;
+    std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
+    std::optional<Pose3> pose;  ///< frame of the meshes; none: they are in the world's
+    std::vector<Mesh> meshes;   ///< one a material; never empty, each with triangles
+};
+
+/// Elements in the order of their records, the floor behind them, then what is placed: sensors,
+/// robots, people. Elements without a body (zones, inside points) are left out.
+std::vector<ModelNode> modelOf(const Scene& scene);
+
+}  // namespace ispace
