@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "base/error.h"
@@ -18,11 +19,25 @@ namespace {
 
 constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
 
+/// -MD and -MF are written as compilers have them; CLI11 knows them as --MD and --MF.
+bool isCompilerName(std::string_view name) { return name == "MD" || name == "MF"; }
+
+/// Turns -MD, -MF FILE and -MFFILE into what CLI11 can parse.
+void rewriteCompilerNames(std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (!words[i].starts_with("-M") || !isCompilerName(words[i].substr(1, 2))) continue;
+        const std::string joined = words[i].substr(3);
+        words[i] = "-" + words[i].substr(0, 3);
+        if (!joined.empty()) words[i] += '=' + joined;
+    }
+}
+
 /// "-o, --output FILE"
 std::string signature(const CLI::Option& option, const std::string& value) {
     std::string names;
     for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
-    for (const std::string& name : option.get_lnames()) names += "--" + name + ", ";
+    for (const std::string& name : option.get_lnames())
+        names += (isCompilerName(name) ? "-" : "--") + name + ", ";
     names.resize(names.size() - 2);
     return value.empty() ? names : names + ' ' + value;
 }
@@ -57,6 +72,8 @@ struct CommandLine::Data {
         CLI::Option* option;
         std::string value, help;
         Enters enters;
+        /// Of options whose order among each other counts.
+        std::function<void(const std::string&)> take = {};
     };
 
     std::string tool, synopsis, summary;
@@ -69,13 +86,22 @@ struct CommandLine::Data {
 
     CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
                       Enters enters) {
-        entries.push_back({option, value, text, enters});
+        entries.push_back({option, value, text, enters, {}});
         return option;
     }
     [[noreturn]] void usage(const std::string& message) const {
         throw UsageError(message + " (see " + tool + " --help)");
     }
     void sortOut(const std::vector<std::string>& words);
+    /// Calls visit(entry, text) for the ordered options as they came.
+    template <typename Visit>
+    void forEachOrdered(Visit visit) const {
+        std::map<const CLI::Option*, std::size_t> used;
+        for (const CLI::Option* option : app.parse_order())
+            for (const Entry& entry : entries)
+                if (entry.option == option && entry.take)
+                    visit(entry, option->results().at(used[option]++));
+    }
 };
 
 CommandLine::CommandLine(std::string tool, std::string synopsis, std::string summary)
@@ -129,8 +155,14 @@ void CommandLine::switchFlag(const std::string& on, const std::string& off,
 void CommandLine::parsed(const std::string& names, const std::string& value,
                          std::function<void(const std::string&)> take, const std::string& help,
                          Enters enters) {
+    data_->keep(data_->app.add_option_function<std::string>(names, guarded(names, std::move(take))),
+                value, help, enters);
+}
+
+std::function<void(const std::string&)> CommandLine::guarded(
+    const std::string& names, std::function<void(const std::string&)> take) const {
     const std::string last = names.substr(names.rfind(',') + 1);
-    const auto guarded = [last, take = std::move(take), data = data_.get()](const std::string& s) {
+    return [last, take = std::move(take), data = data_.get()](const std::string& s) {
         try {
             take(s);
         } catch (const UsageError& error) {
@@ -139,7 +171,22 @@ void CommandLine::parsed(const std::string& names, const std::string& value,
             data->usage(last + ": " + error.diagnostics().front().message);
         }
     };
-    data_->keep(data_->app.add_option_function<std::string>(names, guarded), value, help, enters);
+}
+
+void CommandLine::ordered(const std::string& names, const std::string& value,
+                          std::function<void(const std::string&)> take, const std::string& help) {
+    CLI::Option* option = data_->app.add_option(names);
+    option->expected(1)->allow_extra_args(false)->multi_option_policy(
+        CLI::MultiOptionPolicy::TakeAll);
+    data_->keep(option, value, help + " (repeatable)", Enters::History);
+    data_->entries.back().take = guarded(names, std::move(take));
+}
+
+void CommandLine::dependencies(DependencyOptions& options) {
+    flag("--MD", options.wanted, "write a rule for make that names all files read, too",
+         Enters::Nothing);
+    text("--MF", "FILE", options.file,
+         "write that rule there (default: the product's name with .d)", Enters::Nothing);
 }
 
 namespace {
@@ -248,6 +295,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     const auto end = std::find(words.begin(), words.end(), "--");
     const std::vector<std::string> tail(end, words.end());
     words.erase(end, words.end());
+    rewriteCompilerNames(words);
     std::reverse(words.begin(), words.end());
     try {
         d.app.parse(words);
@@ -258,6 +306,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     if (d.version)
         throw TextRequested{d.tool + " (ispace) " ISPACE_VERSION
                                      "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
+    d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
     std::vector<std::string> rest = d.app.remaining();
     rest.insert(rest.end(), tail.begin(), tail.end());
     d.sortOut(rest);
@@ -276,11 +325,24 @@ bool CommandLine::given(const std::string& name) const { return data_->app.count
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
     std::string line = data_->tool;
     for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
+    const auto name_of = [](const CLI::Option& option) {
+        return option.get_lnames().empty() ? "-" + option.get_snames().front()
+                                           : "--" + option.get_lnames().front();
+    };
+    bool ordered_done = false;
     for (const Data::Entry& entry : data_->entries) {
         const CLI::Option& option = *entry.option;
         if (entry.enters == Enters::Nothing || option.count() == 0) continue;
-        const std::string name = option.get_lnames().empty() ? "-" + option.get_snames().front()
-                                                             : "--" + option.get_lnames().front();
+        if (entry.take) {
+            // Where the first of them stands in the man page they all follow, as they came.
+            if (!std::exchange(ordered_done, true))
+                data_->forEachOrdered([&](const Data::Entry& one, const std::string& text) {
+                    line += ' ' + name_of(*one.option);
+                    line += ' ' + shellQuote(text);
+                });
+            continue;
+        }
+        const std::string name = name_of(option);
         if (entry.value.empty()) {
             line += ' ' + name;
             continue;

@@ -16,6 +16,12 @@ namespace ispace {
 /// its base name.
 enum class Enters { History, BaseName, Nothing };
 
+/// A rule for make that names what the product was made from.
+struct DependencyOptions {
+    bool wanted = false;  ///< -MD
+    std::string file;     ///< -MF; "": the product's name with the suffix .d
+};
+
 /// One tool's options and operands. Each option is declared once, in the man page's order, bound
 /// to its variable; `--help` and the history line come from that table.
 ///
@@ -46,6 +52,12 @@ class CommandLine {
     void parsed(const std::string& names, const std::string& value,
                 std::function<void(const std::string&)> take, const std::string& help,
                 Enters enters);
+    /// Options that work one after another: `take` gets the texts of all of them in the order of
+    /// the command line, and so does the history line. Repeatable.
+    void ordered(const std::string& names, const std::string& value,
+                 std::function<void(const std::string&)> take, const std::string& help);
+    /// -MD and -MF FILE, as compilers have them.
+    void dependencies(DependencyOptions& options);
     /// A whole number in [lowest, highest].
     void count(const std::string& names, const std::string& value, std::optional<int>& variable,
                int lowest, int highest, const std::string& help, Enters enters);
@@ -73,6 +85,9 @@ class CommandLine {
 
   private:
     struct Data;
+    /// `take` with the option's name put before what it throws.
+    [[nodiscard]] std::function<void(const std::string&)> guarded(
+        const std::string& names, std::function<void(const std::string&)> take) const;
     std::unique_ptr<Data> data_;
 };
 

@@ -25,6 +25,8 @@ struct Tool {
     double height = 0.15;
     int columns = 100, rows = 100;
     bool json = false;
+    std::vector<std::string> edits;
+    DependencyOptions dependencies;
 
     Tool() {
         line.operands(operands, 2);
@@ -33,7 +35,16 @@ struct Tool {
         line.count("-X", "N", x, 1, 100, "lines", Enters::History);
         line.meters("--height", height, 0, 10, "where", Enters::History);
         addGridOption(line, "--grid", columns, rows, "cells");
+        for (const char* edit : {"--move", "--rotate"})
+            line.ordered(
+                edit, "ID:BY",
+                [this, edit](const std::string& text) {
+                    if (text == "bad") throw UsageError("it is bad");
+                    edits.push_back(std::string(edit) + ' ' + text);
+                },
+                "change it");
         line.flag("--json", json, "as JSON", Enters::Nothing);
+        line.dependencies(dependencies);
         addCommonOptions(line, common, "there");
     }
     void parse(std::vector<const char*> words_given) {
@@ -144,6 +155,36 @@ TEST(CommandLine, HelpFitsEightyColumnsAndNamesEveryOption) {
         begin = end + 1;
     }
     EXPECT_THROW(Tool().parse({"-V"}), TextRequested);
+}
+
+TEST(CommandLine, TakesOrderedOptionsAsTheyCome) {
+    Tool tool;
+    tool.parse(
+        {"--rotate", "a:1", "--move=b:2", "room.glb", "--strategy", "grid", "--rotate", "c:3"});
+    EXPECT_EQ(tool.edits, (std::vector<std::string>{"--rotate a:1", "--move b:2", "--rotate c:3"}));
+    EXPECT_EQ(tool.line.historyLine(tool.operands),
+              "tool room.glb --strategy grid --rotate a:1 --move b:2 --rotate c:3");
+    EXPECT_EQ(Tool().errorOf({"--move", "bad"}), "--move: it is bad (see tool --help)");
+}
+
+TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
+    Tool tool;
+    tool.parse({"room.glb", "-MD", "-MF", "room.d"});
+    EXPECT_TRUE(tool.dependencies.wanted);
+    EXPECT_EQ(tool.dependencies.file, "room.d");
+    EXPECT_EQ(tool.line.historyLine(tool.operands), "tool room.glb");
+    Tool joined;
+    joined.parse({"-MFx.d", "room.glb"});
+    EXPECT_EQ(joined.dependencies.file, "x.d");
+    EXPECT_FALSE(joined.dependencies.wanted);
+    EXPECT_EQ(joined.operands, std::vector<std::string>{"room.glb"});
+    const std::string help = joined.line.helpText();
+    EXPECT_NE(help.find("\n  -MD "), std::string::npos) << help;
+    EXPECT_NE(help.find("\n  -MF FILE "), std::string::npos) << help;
+    // Behind -- they are operands.
+    Tool behind;
+    behind.parse({"--", "-MD"});
+    EXPECT_EQ(behind.operands, std::vector<std::string>{"-MD"});
 }
 
 TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "env/environment.h"
 #include "env/schemas.h"
 #include "layout/laser.h"
 
@@ -142,7 +143,8 @@ void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
                     .max_count = 3,
                     .lower = -kFarthest,
                     .upper = kFarthest,
-                    .role = Role::Place});
+                    .role = Role::Place,
+                    .standard_z = kScanHeight});
     keys.push_back(headingKey(std::move(heading_help)));
     keys.push_back(angleKey("tilt", "above level, negative looks down", -90, 90, Role::Tilt));
     keys.push_back(angleKey("roll", "left side up", -180, 180));

@@ -63,6 +63,7 @@ struct KeySpec {
     std::vector<std::string> choices = {};
     bool required = false;
     Role role = Role::None;
+    double standard_z = 0;  ///< height that a Place of two numbers means where it may have three
 };
 
 /// The four types of the thesis' menus, and what is placed.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// A rule for make: `target` depends on `sources`, each named once, in their order; streams are
+/// left out. Each source also stands as a target of its own without recipe, so that make goes on
+/// when a file that is no longer used was deleted. Blanks, # and $ in names are written as make
+/// wants them.
+std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
+
+/// Checks -MD and -MF against -o. \throws UsageError for -MF alone, or without a product's name
+void checkDependencies(const DependencyOptions& options, const std::string& output);
+
+/// Writes the rule of `output` if it is wanted.
+/// \param operands files named on the command line \param documents what was read from them
+void writeDependencies(const DependencyOptions& options, const std::string& output,
+                       std::vector<std::string> operands, std::span<const Document> documents);
+
+}  // namespace ispace

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/dependencies.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace ispace {
+namespace {
+
+TEST(DependencyRule, NamesEachFileOnceAndNoStream) {
+    const std::vector<std::string> sources{"room.yaml", "-", "parts/desk.yaml", "room.yaml"};
+    EXPECT_EQ(dependencyRule("out/room.glb", sources),
+              "out/room.glb: \\\n  room.yaml \\\n  parts/desk.yaml\n\nroom.yaml:\n\n"
+              "parts/desk.yaml:\n");
+    EXPECT_EQ(dependencyRule("room.glb", {}), "room.glb:\n");
+}
+
+TEST(DependencyRule, WritesNamesAsMakeReadsThem) {
+    const std::vector<std::string> sources{"my room#1.env", "a$b"};
+    EXPECT_EQ(dependencyRule("r", sources),
+              "r: \\\n  my\\ room\\#1.env \\\n  a$$b\n\nmy\\ room\\#1.env:\n\na$$b:\n");
+}
+
+TEST(CheckDependencies, WantsAProductWithAName) {
+    EXPECT_NO_THROW(checkDependencies({}, "-"));
+    EXPECT_NO_THROW(checkDependencies({true, ""}, "room.glb"));
+    EXPECT_THROW(checkDependencies({true, ""}, "-"), UsageError);
+    EXPECT_THROW(checkDependencies({true, "x.d"}, "-"), UsageError);
+    EXPECT_THROW(checkDependencies({false, "x.d"}, "room.glb"), UsageError);
+}
+
+}  // namespace
+}  // namespace ispace
