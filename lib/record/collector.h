@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,61 +14,70 @@
 
 namespace ispace {
 
-/// Written ids seen so far, and where.
-class IdTable {
-  public:
-    /// Adds the record's id, if it has one. \return what is wrong if another record has it
-    std::optional<Diagnostic> add(const Record& record);
+/// "line 3", with the file's name where that is not the file of `here`.
+std::string otherPlace(const Place& other, const Place& here);
 
-  private:
-    std::map<std::string, Place> places_;
-};
+/// ", did you mean …?" with the nearest of the known words, or ", known: " and all of them.
+std::string knownWords(std::string_view word, const std::vector<std::string>& known);
 
 /// Makes checked records of keywords, keys and values, and collects what is wrong with them: what
 /// the readers of text and of YAML have in common.
 ///
-///     if (collector.begin("desk", place)) {
-///         if (const KeySpec* key = collector.key("height", place)) collector.text(*key, "5cm",
-///         place); collector.end();
+///     if (collector.begin("desk", spot)) {
+///         if (const KeySpec* key = collector.key("height", spot)) collector.text(*key, "5cm",
+///         spot); collector.end();
 ///     }
 class RecordCollector {
   public:
     RecordCollector(const std::string& name, const Schemas& schemas)
-        : file_(std::make_shared<const std::string>(name)), schemas_(&schemas) {}
+        : file_{std::make_shared<const std::string>(name)}, schemas_(&schemas) {}
 
-    [[nodiscard]] Place place(int line, int column) const { return {file_, line, column}; }
+    /// What follows is in this file; its line and column do not count.
+    void setFile(Place file) { file_ = std::move(file); }
+    [[nodiscard]] const Place& file() const { return file_; }
+    [[nodiscard]] const Schemas& schemas() const { return *schemas_; }
 
     /// Starts a record. False if there is no such keyword, which becomes a finding.
-    bool begin(std::string_view keyword, const Place& place);
+    bool begin(std::string_view keyword, Spot spot);
+    void begin(const Schema& schema, Spot spot);
     /// The key of the record begun; null, and a finding, if it is unknown or there for the second
     /// time.
-    const KeySpec* key(std::string_view name, const Place& place);
-    /// Sets a key from its text, or from its value.
-    void text(const KeySpec& key, std::string_view text, const Place& place);
-    void value(const KeySpec& key, Value value, const Place& place);
-    /// Ends the record: keys it must have, ids. It is kept only if nothing is wrong with it.
+    const KeySpec* key(std::string_view name, Spot spot);
+    /// True if the record begun has the key, be it with the default or a bad value.
+    [[nodiscard]] bool isGiven(const KeySpec& key) const;
+    /// Sets a key from its text.
+    void text(const KeySpec& key, std::string_view text, Spot spot);
+    /// Sets a key. \pre the value is good
+    void value(const KeySpec& key, Value value, Spot spot);
+    /// Ends the record: keys it must have. \return it, whatever is wrong with it
+    Record finish();
+    /// finish(), and keeps the record.
     void end();
 
     /// Adds a finding. `message` is a function that makes its text, called only if it is kept:
     /// hints cost time, and a hostile file has many errors.
     template <typename Message>
     void finding(const Place& place, Message message) {
-        sound_ = false;
         findings_.add(findings_.full() ? Diagnostic{} : place.finding(message()));
     }
+    template <typename Message>
+    void finding(Spot spot, Message message) {
+        finding(file_.at(spot), std::move(message));
+    }
+    void add(const FormatError& error) { findings_.add(error); }
+    [[nodiscard]] Diagnostics& findings() { return findings_; }
 
-    /// The records, in order. \throws FormatError with all findings if there are any
+    /// The records, in order. \throws FormatError with all findings if there are any, last doubled
+    /// ids
     std::vector<Record> take();
 
   private:
-    std::shared_ptr<const std::string> file_;
+    Place file_;
     const Schemas* schemas_;
     Diagnostics findings_;
-    IdTable ids_;
-    std::vector<Record> records_;
-    std::vector<Place> seen_;  // of the current record, by index of the key; no file: not seen
+    std::vector<Record> records_;  // also those with findings
+    std::vector<Spot> seen_;       // keys of the current record, by their index; line 0: not seen
     std::optional<Record> current_;
-    bool sound_ = true;  // nothing wrong with the current record so far
 };
 
 }  // namespace ispace

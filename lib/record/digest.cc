@@ -42,8 +42,8 @@ class Sha256 {
 };
 
 /// A record of a loaded file with the digest of its content in place of the file's name.
+/// \pre it is loaded
 Record byContent(Record record) {
-    if (record.mesh() == nullptr) return record;
     for (const KeySpec& key : record.schema().keys)
         if (key.role == Role::File) record.erase(key.name);
     record.set("digest", record.mesh()->digest);
@@ -69,9 +69,21 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string environmentDigest(std::span<const Record> records) {
+    constexpr std::size_t kBlock = 1 << 16;
     Sha256 digest;
-    for (const Record& record : records)
-        if (record.schema().isEnvironment()) digest.add(formatRecord(byContent(record)) + '\n');
+    std::string text;
+    for (const Record& record : records) {
+        if (!record.schema().isEnvironment()) continue;
+        if (record.mesh() == nullptr)
+            appendRecord(text, record);
+        else
+            appendRecord(text, byContent(record));
+        text += '\n';
+        if (text.size() < kBlock) continue;
+        digest.add(text);
+        text.clear();
+    }
+    digest.add(text);
     return digest.finish();
 }
 

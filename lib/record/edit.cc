@@ -13,6 +13,7 @@
 #include "base/suggest.h"
 #include "geom/box.h"
 #include "geom/pose.h"
+#include "record/placing.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -50,17 +51,6 @@ std::vector<const KeySpec*> placeKeys(const Record& record) {
     for (const KeySpec& key : record.schema().keys)
         if (key.role == Role::Place && key.default_value) keys.push_back(&key);
     return keys;
-}
-
-/// Changes every place x,y[,z] of a key.
-template <typename Change>
-void changePlaces(Record& record, const KeySpec& key, Change change) {
-    Value value = *record.find(key.name);
-    if (Tuple* tuple = std::get_if<Tuple>(&value))
-        change(*tuple);
-    else
-        for (Tuple& entry : std::get<TupleList>(value)) change(entry);
-    record.set(key.name, std::move(value), record.keyPlace(key.name));
 }
 
 class Editor {
@@ -207,26 +197,10 @@ class Editor {
     }
 
     static void shift(Record& record, Vec3 by) {
-        const std::vector<const KeySpec*> keys = placeKeys(record);
-        if (keys.empty()) throw noPlace(record);
-        for (const KeySpec* key : keys) {
-            if (by.z != 0 && key->max_count < 3)
-                throw FormatError(
-                    Diagnostic{"", 0, 0, "`" + key->name + "` has no height to move by"});
-            changePlaces(record, *key, [&](Tuple& place) {
-                place[0] = decimalSum(place[0], by.x);
-                place[1] = decimalSum(place[1], by.y);
-                if (by.z == 0) return;
-                if (place.size() < 3) place.push_back(isMounted(record) ? 0 : key->standard_z);
-                place[2] = decimalSum(place[2], by.z);
-            });
-        }
-    }
-
-    static bool isMounted(const Record& record) {
-        bool mounted = false;
-        forEachWritten(record, Role::Carrier, [&](const KeySpec&) { mounted = true; });
-        return mounted;
+        if (!placeOf(record)) throw noPlace(record);
+        if (by.z != 0 && !canRise(record))
+            throw FormatError(Diagnostic{"", 0, 0, "has no height to move by"});
+        moveInFrame(record, {{by.x, by.y}, {}}, by.z);
     }
 
     static FormatError noPlace(const Record& record) {
@@ -254,17 +228,15 @@ class Editor {
             keys.size() > 1 || (keys.size() == 1 && keys[0]->type == KeyType::TupleList);
         if (!by_points) return turn(record, Role::Heading, "cannot be rotated");
         Box2 box;
-        for (const KeySpec* key : keys)
-            changePlaces(record, *key, [&box](Tuple& place) { box.add({place[0], place[1]}); });
-        const Point2 middle = box.center();
-        const Pose2 turned{middle, edit_->angle};
-        for (const KeySpec* key : keys)
-            changePlaces(record, *key, [&](Tuple& place) {
-                const Vec2 arm{decimalSum(place[0], -middle.x), decimalSum(place[1], -middle.y)};
-                const Vec2 now = turned * arm;
-                place[0] = decimalSum(middle.x, now.x);
-                place[1] = decimalSum(middle.y, now.y);
-            });
+        const auto add = [&box](const Tuple& place) { box.add({place[0], place[1]}); };
+        for (const KeySpec* key : keys) {
+            const Value& value = *record.find(key->name);
+            if (const Tuple* tuple = std::get_if<Tuple>(&value))
+                add(*tuple);
+            else
+                for (const Tuple& place : std::get<TupleList>(value)) add(place);
+        }
+        moveInFrame(record, turnAbout(box.center(), edit_->angle, {}));
     }
 
     void turn(Record& record, Role role, const char* refusal) const {

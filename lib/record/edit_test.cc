@@ -95,7 +95,7 @@ TEST(Edit, MovesABodyASensorAndAPath) {
 TEST(Edit, MovesAMountedSensorInItsCarriersFrame) {
     EXPECT_EQ(edit("laser id=l on=d\n desk id=d\n",
                    {{Kind::Set, "l.at=0.1,0"}, {Kind::Move, "l:0.1,0,0.2"}}),
-              "laser id=l at=0.2,0,0.2 on=d\ndesk id=d\n");
+              "laser id=l at=0.2,0,0.35 on=d\ndesk id=d\n");
 }
 
 TEST(Edit, SumsDecimalsAsAPersonDoes) {
@@ -185,7 +185,7 @@ TEST(Edit, RefusesWhatHasNoPlace) {
     EXPECT_EQ(errorOf("door id=d wall=w offset=1\n", Kind::Move, "d:1,0"),
               "error: --move d:1,0: `d`: has no place of its own");
     EXPECT_EQ(errorOf("fence id=f path=0,0;1,0\n", Kind::Move, "f:1,0,1"),
-              "error: --move f:1,0,1: `f`: `path` has no height to move by");
+              "error: --move f:1,0,1: `f`: has no height to move by");
 }
 
 TEST(Edit, RefusesTextThatIsNoEdit) {

@@ -2,8 +2,6 @@
 #include "record/record.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <stdexcept>
 
 namespace ispace {
@@ -16,12 +14,27 @@ std::string noKey(const Schema& schema, std::string_view key) {
 
 }  // namespace
 
+std::string Place::inclusion() const {
+    constexpr int kMostShown = 5;
+    std::string text;
+    int left = 0;
+    for (const Place* place = included_from.get(); place != nullptr;
+         place = place->included_from.get()) {
+        if (++left > kMostShown) continue;
+        text += left == 1 ? " (included from " : ", from ";
+        text += place->file ? displayName(*place->file) : "a program";
+        text += ':' + std::to_string(place->line) + ':' + std::to_string(place->column);
+    }
+    if (left > kMostShown) text += " and " + std::to_string(left - kMostShown) + " more";
+    return text.empty() ? text : text + ')';
+}
+
 Diagnostic Place::finding(std::string message) const {
     Diagnostic diagnostic;
     if (file) diagnostic.file = *file;
     diagnostic.line = line;
     diagnostic.column = column;
-    diagnostic.message = std::move(message);
+    diagnostic.message = std::move(message) + inclusion();
     return diagnostic;
 }
 
@@ -44,7 +57,7 @@ std::string Record::writtenId() const {
 
 bool Record::has(std::string_view key) const { return written(key) != nullptr; }
 
-void Record::set(std::string_view key, Value value, Place place) {
+void Record::set(std::string_view key, Value value, const Place& place) {
     const std::size_t index = indexOf(key);
     const KeySpec& spec = schema_->keys[index];
     try {
@@ -52,16 +65,32 @@ void Record::set(std::string_view key, Value value, Place place) {
     } catch (const FormatError& error) {
         throw FormatError((place.file ? place : place_).finding(error.diagnostics()[0].message));
     }
-    if (spec.default_value && *spec.default_value == value) {
-        erase(key);
-        return;
-    }
+    Entry entry{index, {}, nullptr, std::move(value)};
+    const bool here = place_.file && place.file && *place.file == *place_.file &&
+                      place.included_from == place_.included_from;
+    if (here)
+        entry.spot = {place.line, place.column};
+    else if (place.file)
+        entry.elsewhere = std::make_shared<const Place>(place);
+    put(std::move(entry));
+}
+
+void Record::setRead(const KeySpec& key, Value value, Spot spot) {
+    put({static_cast<std::size_t>(&key - schema_->keys.data()), spot, nullptr, std::move(value)});
+}
+
+void Record::put(Entry entry) {
+    const KeySpec& spec = schema_->keys[entry.key];
     const auto at = std::find_if(entries_.begin(), entries_.end(),
-                                 [&](const Entry& entry) { return entry.key >= index; });
-    if (at != entries_.end() && at->key == index)
-        *at = {index, std::move(value), std::move(place)};
-    else
-        entries_.insert(at, {index, std::move(value), std::move(place)});
+                                 [&](const Entry& other) { return other.key >= entry.key; });
+    const bool replaces = at != entries_.end() && at->key == entry.key;
+    if (spec.default_value && *spec.default_value == entry.value) {
+        if (replaces) entries_.erase(at);
+    } else if (replaces) {
+        *at = std::move(entry);
+    } else {
+        entries_.insert(at, std::move(entry));
+    }
 }
 
 void Record::erase(std::string_view key) {
@@ -91,9 +120,11 @@ const TupleList& Record::list(std::string_view key) const { return get<TupleList
 
 Diagnostic Record::finding(std::string message) const { return place_.finding(std::move(message)); }
 
-const Place& Record::keyPlace(std::string_view key) const {
+Place Record::keyPlace(std::string_view key) const {
     const Entry* const entry = written(key);
-    return entry != nullptr && entry->place.file != nullptr ? entry->place : place_;
+    if (entry == nullptr) return place_;
+    if (entry->elsewhere) return *entry->elsewhere;
+    return entry->spot.line == 0 ? place_ : place_.at(entry->spot);
 }
 
 Diagnostic Record::finding(std::string_view key, std::string message) const {
@@ -107,25 +138,6 @@ bool operator==(const Record& a, const Record& b) {
                           return a.schema_->keys[x.key].name == b.schema_->keys[y.key].name &&
                                  x.value == y.value;
                       });
-}
-
-std::vector<std::string> assignIds(const std::vector<Record>& records) {
-    std::vector<std::string> ids;
-    ids.reserve(records.size());
-    std::set<std::string> taken;
-    for (const Record& record : records) {
-        ids.push_back(record.writtenId());
-        if (!ids.back().empty()) taken.insert(ids.back());
-    }
-    std::map<std::string, std::size_t> count;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        if (!ids[i].empty()) continue;
-        const std::string& keyword = records[i].keyword();
-        do {
-            ids[i] = keyword + std::to_string(++count[keyword]);
-        } while (!taken.insert(ids[i]).second);
-    }
-    return ids;
 }
 
 }  // namespace ispace

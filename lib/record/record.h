@@ -17,12 +17,27 @@
 
 namespace ispace {
 
+/// Line and column in a file, from 1, columns in bytes; 0: none.
+struct Spot {
+    int line = 0, column = 0;
+};
+
 /// Where a record or value was read.
 struct Place {
     std::shared_ptr<const std::string> file;  ///< null: made by a program
     int line = 0, column = 0;
+    /// The include that brought the file in; null: the file is an operand.
+    std::shared_ptr<const Place> included_from = nullptr;
 
+    /// The message with this place. Behind it the chain of includes, the nearest first:
+    /// " (included from b.yaml:2:3, from a.yaml:1:1)".
     [[nodiscard]] Diagnostic finding(std::string message) const;
+    /// The same with a spot in the same file.
+    [[nodiscard]] Place at(Spot spot) const {
+        return {file, spot.line, spot.column, included_from};
+    }
+    /// " (included from …)", or nothing for an operand.
+    [[nodiscard]] std::string inclusion() const;
 };
 
 /// One line `keyword key=value …`: checked against its schema, values in file units.
@@ -43,7 +58,10 @@ class Record {
     [[nodiscard]] bool has(std::string_view key) const;
     /// Sets or replaces a value. \pre the schema has the key and the value its type
     /// \throws FormatError with the value's place if the value is out of the key's bounds
-    void set(std::string_view key, Value value, Place place = {});
+    void set(std::string_view key, Value value, const Place& place = {});
+    /// The same for a value known to be good that was read in the file of the record.
+    /// \pre `key` is one of the schema's, the value passes checkValue
+    void setRead(const KeySpec& key, Value value, Spot spot);
     void erase(std::string_view key);
 
     /// The value written, else the schema's default. \pre one of them exists and has this type
@@ -55,13 +73,23 @@ class Record {
     [[nodiscard]] Angle angle(std::string_view key) const { return Angle::degrees(number(key)); }
     /// Written or default, or nothing.
     [[nodiscard]] const Value* find(std::string_view key) const;
+    /// Calls visit(const KeySpec&, const Value&) for each written value, in the schema's order.
+    template <typename Visit>
+    void forEachWritten(Visit visit) const {
+        for (const Entry& entry : entries_) visit(schema_->keys[entry.key], entry.value);
+    }
 
     /// Where the key's value was read, else where the record was.
-    [[nodiscard]] const Place& keyPlace(std::string_view key) const;
+    [[nodiscard]] Place keyPlace(std::string_view key) const;
     /// A finding with the place of this record, or of the value of one of its keys if it is
     /// written. The message is taken as it is.
     [[nodiscard]] Diagnostic finding(std::string message) const;
     [[nodiscard]] Diagnostic finding(std::string_view key, std::string message) const;
+
+    /// Says that the file the record was read from is included there.
+    void setIncludedFrom(std::shared_ptr<const Place> place) {
+        place_.included_from = std::move(place);
+    }
 
     /// The content of the file that the record names, once somebody has loaded it; else null.
     [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
@@ -72,11 +100,13 @@ class Record {
 
   private:
     struct Entry {
-        std::size_t key;  // index in the schema
+        std::size_t key;                         // index in the schema
+        Spot spot;                               // in the record's file; none: that of the record
+        std::shared_ptr<const Place> elsewhere;  // the place, if it is in another file
         Value value;
-        Place place;
     };
     [[nodiscard]] std::size_t indexOf(std::string_view key) const;
+    void put(Entry entry);
     [[nodiscard]] const Entry* written(std::string_view key) const;
     template <typename T>
     [[nodiscard]] const T& get(std::string_view key) const;
@@ -97,6 +127,8 @@ struct Document {
     std::vector<Record> records;  ///< in file order
     /// Files read besides the operand, each once: includes, pictures, meshes. Paths as opened.
     std::vector<std::string> sources = {};
+    /// What an importer had to decide, a sentence each; for people.
+    std::vector<std::string> notes = {};
 };
 
 /// Ids of all records, in order: the written one, else keyword and number, counting from 1 within

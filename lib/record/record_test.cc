@@ -119,6 +119,15 @@ TEST(AssignIds, SkipsEveryWrittenId) {
               (std::vector<std::string>{"desk2", "desk1", "desk4", "desk3", "desk5"}));
 }
 
+TEST(AssignIds, KeywordsThatEndInDigitsDoNotMeet) {
+    const KeySpec id = testKey("id", KeyType::Word);
+    const Schemas schemas(
+        {{"a", RecordType::Other, "", {id}}, {"a1", RecordType::Other, "", {id}}});
+    std::vector<Record> records(11, Record(*schemas.find("a")));
+    records.emplace_back(*schemas.find("a1"));
+    EXPECT_EQ(assignIds(records).back(), "a12") << "the eleventh of the others is a11";
+}
+
 TEST(CheckIds, NamesBothLines) {
     std::vector<Record> records = {make("desk", "a"), make("laser", "b"), make("laser")};
     EXPECT_NO_THROW(checkIds(records));

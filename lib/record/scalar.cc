@@ -136,8 +136,17 @@ double parseNumber(const KeySpec& key, std::string_view text) {
     return *number;
 }
 
+void appendNumber(std::string& out, const KeySpec& key, double number) {
+    if (key.unit == Unit::Share)
+        out += formatPercent(number);
+    else
+        appendDouble(out, number);
+}
+
 std::string formatNumber(const KeySpec& key, double number) {
-    return key.unit == Unit::Share ? formatPercent(number) : formatDouble(number);
+    std::string out;
+    appendNumber(out, key, number);
+    return out;
 }
 
 }  // namespace ispace

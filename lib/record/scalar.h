@@ -17,6 +17,8 @@ double parseNumber(const KeySpec& key, std::string_view text);
 
 /// The number as the key's canonical text has it: a share in per cent, else the shortest double.
 std::string formatNumber(const KeySpec& key, double number);
+/// Appends formatNumber(key, number).
+void appendNumber(std::string& out, const KeySpec& key, double number);
 
 /// "`key`: what": an error about a value that has no place yet.
 [[noreturn]] void refuseValue(const KeySpec& key, const std::string& what);

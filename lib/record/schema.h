@@ -21,7 +21,8 @@ enum class KeyType {
     Text,       ///< any UTF-8 string without control characters other than tab and newline
     Word,       ///< a plain word: an id, a name; letters, digits and _ - . / + : @
     Choice,     ///< one of KeySpec::choices; string
-    Tuple,      ///< `a,b[,c]`, blanks around numbers allowed where quoted; Tuple
+    Tuple,      ///< `a,b[,c]`, blanks around numbers allowed where quoted; lengths also as sizes
+                ///< are spoken, "8 × 8", "8x8x2.5", "8 * 8"; Tuple
     TupleList,  ///< `a,b;c,d;…`, not empty; TupleList
 };
 
@@ -105,6 +106,8 @@ Value parseValue(const KeySpec& key, std::string_view text);
 
 /// Canonical text: SI, shortest doubles, quotes where needed.
 std::string formatValue(const KeySpec& key, const Value& value);
+/// Appends formatValue(key, value).
+void appendValue(std::string& out, const KeySpec& key, const Value& value);
 
 /// Checks count, bounds, choices and characters of a value however it came about.
 /// \pre the value has the key's type \throws as parseValue

@@ -73,6 +73,65 @@ inline const Schemas& testSchemas() {
     return schemas;
 }
 
+inline KeySpec testPlace(std::string name, std::size_t most, Role role = Role::Place) {
+    KeySpec key = testKey(std::move(name), KeyType::Tuple, Unit::Length);
+    key.min_count = 2;
+    key.max_count = most;
+    key.lower = -1e6;
+    key.upper = 1e6;
+    key.role = role;
+    return key;
+}
+
+inline KeySpec testWord(std::string name, Role role) {
+    KeySpec key = testKey(std::move(name), KeyType::Word);
+    key.role = role;
+    return key;
+}
+
+/// Records with roles, shaped as the real ones: furniture, walls by ends or centre, paths, robots
+/// that go somewhere, sensors that are placed or carried, doors by wall or place, files.
+inline const Schemas& placedSchemas() {
+    static const Schemas schemas = [] {
+        const KeySpec id = testKey("id", KeyType::Word);
+        KeySpec thing_at = testPlace("at", 3), floor_at = testPlace("at", 2);
+        thing_at.default_value = floor_at.default_value = Tuple{0, 0};
+        KeySpec sensor_at = testPlace("at", 3);
+        sensor_at.standard_z = 0.15;
+        KeySpec bare_heading = testKey("heading", KeyType::Number, Unit::Angle);
+        bare_heading.role = Role::Heading;
+        KeySpec heading = bare_heading;
+        heading.default_value = 0.0;
+        KeySpec height = testKey("height", KeyType::Number, Unit::Length);
+        height.default_value = 0.7;
+        KeySpec size = testKey("size", KeyType::Tuple, Unit::Length);
+        size.max_count = 3;
+        KeySpec path = testPlace("path", 2), course = testPlace("path", 2, Role::Course);
+        path.type = course.type = KeyType::TupleList;
+        KeySpec file = testKey("file", KeyType::Text);
+        file.role = Role::File;
+        const KeySpec from = testPlace("from", 2), to = testPlace("to", 2);
+        const KeySpec name = testKey("name", KeyType::Text);
+        const KeySpec offset = testKey("offset", KeyType::Number, Unit::Length);
+        return Schemas({
+            {"desk", RecordType::Other, "", {id, thing_at, heading, size, height, name}},
+            {"wall", RecordType::Wall, "", {id, from, to, floor_at, heading, size}},
+            {"fence", RecordType::Wall, "", {id, path, from, to}},
+            {"door",
+             RecordType::Wall,
+             "",
+             {id, testWord("wall", Role::Reference), offset, testPlace("at", 2), bare_heading}},
+            {"mesh", RecordType::Other, "", {id, thing_at, heading, file}},
+            {"robot", RecordType::Placement, "", {id, floor_at, heading, course}},
+            {"laser",
+             RecordType::Placement,
+             "",
+             {id, sensor_at, heading, testWord("on", Role::Carrier)}},
+        });
+    }();
+    return schemas;
+}
+
 /// The texts of all findings of a FormatError that `action` throws, else nothing.
 template <typename Action>
 std::vector<std::string> findingsOf(Action action) {

@@ -41,23 +41,22 @@ void readLine(std::string_view line, int number, RecordCollector& collector) {
     LineLexer lexer(line);
     const auto keyword = lexer.keyword();
     if (!keyword) return;
-    const Place place = collector.place(number, keyword->column);
+    const Spot spot{number, keyword->column};
     if (keyword->text.find('=') != std::string_view::npos) {
-        collector.finding(place, [&] {
+        collector.finding(spot, [&] {
             return excerpt(keyword->text) + " found, wanted a keyword before the first key";
         });
         return;
     }
-    if (!collector.begin(keyword->text, place)) return;
+    if (!collector.begin(keyword->text, spot)) return;
     while (lexer.more()) {
         try {
             const Field field = lexer.field();
-            const KeySpec* const key =
-                collector.key(field.key.text, collector.place(number, field.key.column));
+            const KeySpec* const key = collector.key(field.key.text, {number, field.key.column});
             if (key != nullptr)
-                collector.text(*key, field.value.text, collector.place(number, field.value.column));
+                collector.text(*key, field.value.text, {number, field.value.column});
         } catch (const LexError& error) {
-            collector.finding(collector.place(number, error.column), [&] { return error.message; });
+            collector.finding({number, error.column}, [&] { return error.message; });
         }
     }
     collector.end();
@@ -96,16 +95,26 @@ std::string writeRecordText(const Document& document) {
     text += kVersion;
     text += '\n';
     for (const std::string& command : document.history) text += "# " + printable(command) + '\n';
-    for (const Record& record : document.records) text += formatRecord(record) + '\n';
+    for (const Record& record : document.records) {
+        appendRecord(text, record);
+        text += '\n';
+    }
     return text;
 }
 
+void appendRecord(std::string& out, const Record& record) {
+    out += record.keyword();
+    record.forEachWritten([&](const KeySpec& key, const Value& value) {
+        out += ' ';
+        out += key.name;
+        out += '=';
+        appendValue(out, key, value);
+    });
+}
+
 std::string formatRecord(const Record& record) {
-    std::string text = record.keyword();
-    for (const KeySpec& key : record.schema().keys) {
-        if (!record.has(key.name)) continue;
-        text += ' ' + key.name + '=' + formatValue(key, *record.find(key.name));
-    }
+    std::string text;
+    appendRecord(text, record);
     return text;
 }
 
@@ -119,14 +128,6 @@ Record readRecord(std::string_view line, const std::string& name, const Schemas&
     if (records.empty())
         throw FormatError({name, 1, 0, "no record found, wanted `keyword key=value ...`"});
     return std::move(records.front());
-}
-
-void checkIds(const std::vector<Record>& records) {
-    IdTable ids;
-    Diagnostics findings;
-    for (const Record& record : records)
-        if (auto doubled = ids.add(record)) findings.add(*std::move(doubled));
-    findings.throwIfAny();
 }
 
 }  // namespace ispace

@@ -30,6 +30,8 @@ std::string writeRecordText(const Document& document);
 
 /// One record in canonical form, without newline.
 std::string formatRecord(const Record& record);
+/// Appends formatRecord(record).
+void appendRecord(std::string& out, const Record& record);
 
 /// Reads one record from the text of a line, for options such as `--add`; `name` is the place.
 Record readRecord(std::string_view line, const std::string& name, const Schemas& schemas);

@@ -26,13 +26,27 @@ std::string_view trimmed(std::string_view text) {
 
 /// Calls visit(piece) for the pieces between separators, blanks around them removed.
 template <typename Visit>
-void forEachPiece(std::string_view text, char separator, Visit visit) {
+void forEachPiece(std::string_view text, std::string_view separator, Visit visit) {
     while (true) {
         const auto end = text.find(separator);
         visit(trimmed(text.substr(0, end)));
         if (end == std::string_view::npos) return;
-        text.remove_prefix(end + 1);
+        text.remove_prefix(end + separator.size());
     }
+}
+
+/// What stands between the numbers of a tuple: a comma, or for lengths the sign of a size such as
+/// "8 × 8" or "8x8x2.5".
+std::string_view separatorOf(const KeySpec& key, std::string_view text) {
+    constexpr std::string_view kTimes[] = {"\xc3\x97", "x", "X", "*"};
+    constexpr std::string_view kBeginnings = "0123456789.+-";
+    const bool is_size = key.type == KeyType::Tuple && key.unit == Unit::Length && !text.empty() &&
+                         kBeginnings.find(text.front()) != std::string_view::npos &&
+                         text.find(',') == std::string_view::npos;
+    if (is_size)
+        for (const std::string_view sign : kTimes)
+            if (text.find(sign) != std::string_view::npos) return sign;
+    return ",";
 }
 
 bool parseFlag(const KeySpec& key, std::string_view text) {
@@ -55,14 +69,15 @@ Tuple parseTuple(const KeySpec& key, std::string_view text) {
     if (text.find(';') != std::string_view::npos)
         refuseValue(key, excerpt(text) + " is a `;` list, one tuple is wanted");
     Tuple tuple;
-    forEachPiece(text, ',',
+    text = trimmed(text);
+    forEachPiece(text, separatorOf(key, text),
                  [&](std::string_view piece) { tuple.push_back(parseNumber(key, piece)); });
     return tuple;
 }
 
 TupleList parseTupleList(const KeySpec& key, std::string_view text) {
     TupleList list;
-    forEachPiece(text, ';', [&](std::string_view piece) {
+    forEachPiece(text, ";", [&](std::string_view piece) {
         if (piece.empty())
             refuseValue(key, "tuple " + std::to_string(list.size() + 1) + " is empty");
         list.push_back(parseTuple(key, piece));
@@ -132,26 +147,36 @@ void checkString(const KeySpec& key, const std::string& text) {
     refuseValue(key, excerpt(text) + " is none of " + known + didYouMean(text, key.choices));
 }
 
-std::string formatText(const std::string& text) {
-    if (!text.empty() && text.find_first_of(" \t\n\"#") == std::string::npos) return text;
-    std::string quoted = "\"";
+void appendText(std::string& out, const std::string& text) {
+    if (!text.empty() && text.find_first_of(" \t\n\"#") == std::string::npos) {
+        out += text;
+        return;
+    }
+    out += '"';
     for (const char c : text) {
         if (c == '\n') {
-            quoted += "\\n";
+            out += "\\n";
         } else if (c == '\t') {
-            quoted += "\\t";
+            out += "\\t";
         } else {
-            if (c == '"' || c == '\\') quoted += '\\';
-            quoted += c;
+            if (c == '"' || c == '\\') out += '\\';
+            out += c;
         }
     }
-    return quoted + '"';
+    out += '"';
 }
 
 void appendTuple(std::string& out, const KeySpec& key, const Tuple& tuple) {
     for (std::size_t i = 0; i < tuple.size(); ++i) {
         if (i > 0) out += ',';
-        out += formatNumber(key, tuple[i]);
+        appendNumber(out, key, tuple[i]);
+    }
+}
+
+void appendTupleList(std::string& out, const KeySpec& key, const TupleList& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (i > 0) out += ';';
+        appendTuple(out, key, list[i]);
     }
 }
 
@@ -188,30 +213,31 @@ Value parseValue(const KeySpec& key, std::string_view text) {
     return value;
 }
 
-std::string formatValue(const KeySpec& key, const Value& value) {
-    std::string out;
+void appendValue(std::string& out, const KeySpec& key, const Value& value) {
     switch (key.type) {
         case KeyType::Flag:
-            out = hold<bool>(key, value) ? "yes" : "no";
+            out += hold<bool>(key, value) ? "yes" : "no";
             break;
         case KeyType::Number:
-            out = formatNumber(key, hold<double>(key, value));
+            appendNumber(out, key, hold<double>(key, value));
             break;
         case KeyType::Text:
         case KeyType::Word:
         case KeyType::Choice:
-            out = formatText(hold<std::string>(key, value));
+            appendText(out, hold<std::string>(key, value));
             break;
         case KeyType::Tuple:
             appendTuple(out, key, hold<Tuple>(key, value));
             break;
         case KeyType::TupleList:
-            for (const Tuple& tuple : hold<TupleList>(key, value)) {
-                if (!out.empty()) out += ';';
-                appendTuple(out, key, tuple);
-            }
+            appendTupleList(out, key, hold<TupleList>(key, value));
             break;
     }
+}
+
+std::string formatValue(const KeySpec& key, const Value& value) {
+    std::string out;
+    appendValue(out, key, value);
     return out;
 }
 

@@ -240,5 +240,33 @@ TEST(Schemas, RefuseWhatModulesGetWrong) {
     EXPECT_THROW(make({{"a", RecordType::Other, "", {id, wrong}}}), FormatError);
 }
 
+TEST(ParseValue, TakesSizesAsTheyAreSpoken) {
+    KeySpec size = testKey("size", KeyType::Tuple, Unit::Length);
+    size.max_count = 3;
+    const auto parse = [](const KeySpec& key, std::string_view text) {
+        return std::get<Tuple>(parseValue(key, text));
+    };
+    for (const char* text : {"8 \xc3\x97 6", "8\u00d76", "8x6", "8 X 6", "8 * 6", " 8*6 ",
+                             "800cm x 6m", "8,6", "+8 x 6.0"})
+        EXPECT_EQ(parse(size, text), (Tuple{8, 6})) << text;
+    EXPECT_EQ(parse(size, "8x8x2.5"), (Tuple{8, 8, 2.5}));
+    EXPECT_EQ(formatValue(size, parse(size, "8 \xc3\x97 6")), "8,6");
+    const auto refused = [&](const KeySpec& key, const char* text) {
+        return findingsOf([&] { (void)parseValue(key, text); }).at(0);
+    };
+    EXPECT_EQ(refused(size, "x"), "error: `size`: `x` is not a number");
+    EXPECT_EQ(refused(size, "8x"), "error: `size`: a number is missing");
+    EXPECT_EQ(refused(size, "8 x tall"), "error: `size`: `tall` is not a number");
+    EXPECT_EQ(refused(size, "8x6*2"), "error: `size`: `6*2` is not a number");
+    EXPECT_EQ(refused(size, "8x6,2"),
+              "error: `size`: `8x6` has the unit `x6`, wanted m, km, cm or mm");
+    KeySpec pixels = testKey("pixels", KeyType::Tuple);
+    pixels.max_count = 2;
+    EXPECT_EQ(refused(pixels, "8 x 6"), "error: `pixels`: `8 x 6` is not a number") << "no length";
+    KeySpec path = testKey("path", KeyType::TupleList, Unit::Length);
+    path.max_count = 2;
+    EXPECT_EQ(findingsOf([&] { (void)parseValue(path, "8x6;1,2"); }).size(), 1U);
+}
+
 }  // namespace
 }  // namespace ispace

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "record/placing.h"
+
+#include <cmath>
+#include <string_view>
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kAt = "at";
+
+bool isCarried(const Record& record) {
+    for (const KeySpec& key : record.schema().keys)
+        if (key.role == Role::Carrier && record.has(key.name)) return true;
+    return false;
+}
+
+/// Calls visit(key) for the keys that say where the record stands.
+template <typename Visit>
+void forEachPlace(const Record& record, Visit visit) {
+    bool is_written = false;
+    for (const KeySpec& key : record.schema().keys) {
+        if (key.role != Role::Place || !record.has(key.name)) continue;
+        is_written = true;
+        visit(key);
+    }
+    if (is_written) return;
+    const bool is_carried = isCarried(record);
+    for (const KeySpec& key : record.schema().keys)
+        if (key.role == Role::Place && (key.default_value || (is_carried && key.name == kAt)))
+            return visit(key);
+}
+
+/// The key's value; 0,0 for the place of a carried record that has none.
+Value placeValue(const Record& record, const KeySpec& key) {
+    const Value* const value = record.find(key.name);
+    return value == nullptr ? Value(Tuple{0, 0}) : *value;
+}
+
+/// A number as a person would write it, see placeIn.
+/// \param size of the terms it is the sum of, together
+double tidy(double number, double size) {
+    // Rounding errors of a few moves across a plan of a kilometre, a picometre, and of larger
+    // numbers than that.
+    constexpr double kGrid = 1e9, kRounding = 0x1p-50, kPlan = 1000;
+    const double near = std::round(number * kGrid) / kGrid;
+    return std::abs(number - near) <= kRounding * (kPlan + size) ? near + 0.0 : number;
+}
+
+/// A motion with its cosine and sine.
+struct Motion {
+    Motion(const Pose2& pose, double rise)
+        : position(pose.position), turn(cosSin(pose.heading)), heading(pose.heading), dz(rise) {}
+
+    [[nodiscard]] bool turns() const { return turn.cos != 1 || turn.sin != 0; }
+
+    /// a + b + c, b and c being products with cosine and sine.
+    [[nodiscard]] double sum(double a, double b, double c) const {
+        const bool is_exact =
+            (turn.cos == 0 || turn.sin == 0) &&
+            static_cast<int>(a != 0) + static_cast<int>(b != 0) + static_cast<int>(c != 0) < 2;
+        const double sum = a + b + c + 0.0;  // + 0: no minus zero
+        return is_exact ? sum : tidy(sum, std::abs(a) + std::abs(b) + std::abs(c));
+    }
+
+    void move(Tuple& tuple, const KeySpec& key) const {
+        const double x = tuple[0], y = tuple[1];
+        tuple[0] = sum(position.x, turn.cos * x, -turn.sin * y);
+        tuple[1] = sum(position.y, turn.sin * x, turn.cos * y);
+        if (dz == 0 || key.max_count < 3) return;
+        if (tuple.size() == 2) tuple.push_back(key.standard_z);
+        tuple[2] = tidy(tuple[2] + dz, std::abs(tuple[2]) + std::abs(dz));
+    }
+
+    void move(Record& record, const KeySpec& key) const {
+        Value value = placeValue(record, key);
+        if (Tuple* const tuple = std::get_if<Tuple>(&value))
+            move(*tuple, key);
+        else
+            for (Tuple& item : std::get<TupleList>(value)) move(item, key);
+        record.set(key.name, std::move(value), record.keyPlace(key.name));
+    }
+
+    void turnHeading(Record& record, const KeySpec& key) const {
+        const Value* const value = record.find(key.name);
+        if (value == nullptr || !turns()) return;
+        const double before = std::get<double>(*value);
+        const double after = wrapped(Angle::degrees(before) + heading).degrees();
+        const double size = std::abs(before) + std::abs(heading.degrees());
+        record.set(key.name, tidy(after, size), record.keyPlace(key.name));
+    }
+
+    Point2 position;
+    CosSin turn;
+    Angle heading;
+    double dz;
+};
+
+}  // namespace
+
+void placeIn(Record& record, const Pose2& parent_from_record, double dz) {
+    if (!isCarried(record)) moveInFrame(record, parent_from_record, dz);
+}
+
+void moveInFrame(Record& record, const Pose2& motion, double dz) {
+    const Motion move(motion, dz);
+    bool at_moves = false;
+    forEachPlace(record, [&](const KeySpec& key) {
+        at_moves = at_moves || key.name == kAt;
+        move.move(record, key);
+    });
+    for (const KeySpec& key : record.schema().keys) {
+        if (key.role == Role::Course && record.has(key.name)) move.move(record, key);
+        if (key.role == Role::Heading && at_moves) move.turnHeading(record, key);
+    }
+}
+
+std::optional<Point2> placeOf(const Record& record) {
+    std::optional<Point2> place;
+    forEachPlace(record, [&](const KeySpec& key) {
+        if (place && key.name != kAt) return;
+        const Value value = placeValue(record, key);
+        const Tuple* const tuple = std::get_if<Tuple>(&value);
+        const Tuple& point = tuple != nullptr ? *tuple : std::get<TupleList>(value).front();
+        place = Point2{point[0], point[1]};
+    });
+    return place;
+}
+
+bool canRise(const Record& record) {
+    bool can = true;
+    forEachPlace(record, [&](const KeySpec& key) { can = can && key.max_count >= 3; });
+    return can;
+}
+
+Pose2 turnAbout(Point2 centre, Angle turn, Vec2 offset) {
+    const auto [c, s] = cosSin(turn);
+    return {{offset.x + (1 - c) * centre.x + s * centre.y,
+             offset.y - s * centre.x + (1 - c) * centre.y},
+            turn};
+}
+
+}  // namespace ispace
