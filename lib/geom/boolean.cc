@@ -30,6 +30,12 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     return overlayDifference(added, removed);
 }
 
+std::vector<Region> unite(std::span<const Polygon> solids) {
+    std::vector<Segment2> lines;
+    for (const Polygon& solid : solids) addCurve(solid, true, lines);
+    return overlayDifference(lines, {});
+}
+
 double totalArea(std::span<const Region> regions) {
     double sum = 0;
     for (const Region& region : regions) sum += region.area();

@@ -187,5 +187,24 @@ TEST(Difference, manyRoundSolids) {
     }
 }
 
+TEST(Unite, solidsThatOverlapTouchAndStandApart) {
+    EXPECT_TRUE(unite({}).empty());
+    const auto pieces = unite(std::vector<Polygon>{
+        test::box(0, 0, 2, 2), reversed(test::box(1, 1, 3, 3)), test::box(3, 1, 4, 3),
+        test::box(0.5, 0.5, 1, 1), test::box(6, 0, 7, 1)});
+    ASSERT_EQ(pieces.size(), 2U);
+    EXPECT_EQ(totalArea(pieces), 4 + 4 - 1 + 2 + 1);
+    for (const Region& piece : pieces) EXPECT_TRUE(piece.holes.empty());
+}
+
+TEST(Unite, aRingHasAHole) {
+    const auto pieces = unite(std::vector<Polygon>{test::box(0, 0, 5, 1), test::box(0, 4, 5, 5),
+                                                   test::box(0, 0, 1, 5), test::box(4, 0, 5, 5)});
+    ASSERT_EQ(pieces.size(), 1U);
+    ASSERT_EQ(pieces[0].holes.size(), 1U);
+    EXPECT_EQ(signedArea(pieces[0].holes[0]), -9);
+    EXPECT_EQ(pieces[0].area(), 16);
+}
+
 }  // namespace
 }  // namespace ispace

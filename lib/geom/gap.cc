@@ -151,28 +151,93 @@ class GapFinder {
     SegmentGrid grid_;
 };
 
-bool encloses(const std::vector<Segment2>& lines, std::optional<Point2> inside) {
-    const auto faces = boundedFaces(weld(lines));
-    if (!inside) return !faces.empty();
-    return std::any_of(faces.begin(), faces.end(),
-                       [&](const Region& face) { return face.locate(*inside) != Side::Outside; });
-}
+/// Comparisons of closings with other lines; beyond that they stay whole, which only takes longer.
+constexpr std::size_t kMostComparisons = 20'000'000;
+
+/// The lines together with all closings, cut and welded once for all.
+class Closed {
+  public:
+    Closed(std::span<const Segment2> lines, std::span<const Closing> closings) {
+        std::vector<Segment2> all(lines.begin(), lines.end());
+        for (const Closing& closing : closings) all.push_back(closing.line);
+        // Where a closing runs across a line, both get a common end: the weld sees to the line's.
+        const SegmentGrid grid(all, 0);
+        std::vector<std::size_t> closing_of(lines.size(), 0);
+        std::vector<Segment2> cut(lines.begin(), lines.end());
+        for (std::size_t i = 0; i < closings.size(); ++i) {
+            for (const Segment2& part : partsOf(closings[i].line, all, grid)) {
+                cut.push_back(part);
+                closing_of.push_back(i + 1);
+            }
+        }
+        WeldedLines welded = weld(cut);
+        pieces_ = std::move(welded.pieces);
+        needs_.reserve(pieces_.size());
+        for (const std::size_t source : welded.source) needs_.push_back(closing_of[source]);
+    }
+
+    /// Whether the point, or anything, is enclosed when the first `count` gaps are closed.
+    [[nodiscard]] bool encloses(std::size_t count, std::optional<Point2> inside) const {
+        std::vector<Segment2> pieces;
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
+            if (needs_[i] <= count) pieces.push_back(pieces_[i]);
+        const auto faces = boundedFaces(pieces, {});
+        if (!inside) return !faces.empty();
+        return std::any_of(faces.begin(), faces.end(), [&](const Region& face) {
+            return face.locate(*inside) != Side::Outside;
+        });
+    }
+
+  private:
+    /// A closing, cut where it runs across lines and other closings.
+    std::vector<Segment2> partsOf(const Segment2& closing, std::span<const Segment2> all,
+                                  const SegmentGrid& grid) {
+        Box2 box;
+        box.add(closing.a);
+        box.add(closing.b);
+        const Vec2 along = closing.b - closing.a;
+        std::vector<double> shares;
+        grid.searchBox(box, [&](std::span<const std::uint32_t> cell) {
+            for (const std::uint32_t i : cell) {
+                if (++comparisons_ > kMostComparisons) return;
+                const Vec2 other = all[i].b - all[i].a;
+                const double denominator = cross(along, other);
+                if (denominator == 0 || !intersects(closing, all[i])) continue;
+                shares.push_back(cross(all[i].a - closing.a, other) / denominator);
+            }
+        });
+        std::sort(shares.begin(), shares.end());
+        std::vector<Segment2> parts;
+        Point2 from = closing.a;
+        for (const double share : shares) {
+            const Point2 to = closing.a + share * along;
+            if (!(share > 0 && share < 1) || distance(from, to) <= 2 * kWeldDistance ||
+                distance(to, closing.b) <= 2 * kWeldDistance)
+                continue;
+            parts.push_back({from, to});
+            from = to;
+        }
+        parts.push_back({from, closing.b});
+        return parts;
+    }
+
+    std::vector<Segment2> pieces_;
+    std::vector<std::size_t> needs_;  // how many gaps have to be closed for each piece to be there
+    std::size_t comparisons_ = 0;
+};
 
 }  // namespace
 
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside) {
     const std::vector<Closing> closings = GapFinder(weld(lines)).closings();
-    const auto enclosed_by = [&](std::size_t count) {
-        std::vector<Segment2> closed(lines.begin(), lines.end());
-        for (std::size_t i = 0; i < count; ++i) closed.push_back(closings[i].line);
-        return encloses(closed, inside);
-    };
+    if (closings.empty()) return std::nullopt;
+    const Closed closed(lines, closings);
     // What is enclosed stays enclosed as more gaps are closed: halve between too few and enough.
     std::size_t too_few = 0, enough = closings.size();
-    if (enclosed_by(too_few) || !enclosed_by(enough)) return std::nullopt;
+    if (closed.encloses(too_few, inside) || !closed.encloses(enough, inside)) return std::nullopt;
     while (enough - too_few > 1) {
         const std::size_t count = too_few + (enough - too_few) / 2;
-        (enclosed_by(count) ? enough : too_few) = count;
+        (closed.encloses(count, inside) ? enough : too_few) = count;
     }
     const Closing& last = closings[enough - 1];
     const Point2 place = last.line.a + 0.5 * (last.line.b - last.line.a);

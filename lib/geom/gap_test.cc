@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "geom/planar_map.h"
 #include "geom/test_curves.h"
 
@@ -103,6 +105,20 @@ TEST(FindGap, doubledAndOverlappingWallsStillEnd) {
     EXPECT_NEAR(gap->width, 0.12, 1e-9);
     EXPECT_EQ(gap->a, 2U);
     EXPECT_EQ(gap->b, 3U);
+}
+
+TEST(FindGap, manyLooseEndsWhoseClosingsCross) {
+    // A room that leaks among loose sticks: their ends could be joined in many ways.
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> x(0.2, 7.8), y(0.2, 5.8), step(-0.15, 0.15);
+    auto lines = openRoom(0.12);
+    for (int i = 0; i < 300; ++i) {
+        const Point2 p{x(random), y(random)};
+        lines.push_back({p, p + Vec2{step(random), step(random)}});
+    }
+    const auto gap = findGap(lines, Point2{0.1, 0.1});
+    ASSERT_TRUE(gap);
+    EXPECT_LE(gap->width, 0.12 + 1e-9);
 }
 
 TEST(FindGap, roomsWithSeveralWallsMissing) {

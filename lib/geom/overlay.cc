@@ -47,11 +47,12 @@ bool lexLess(const Polygon& a, const Polygon& b) {
 struct Line {
     Point2 a, b;
     int added = 0, removed = 0;
+    bool passage = false;  ///< does not keep faces apart
 };
 
-Line turned(const Segment2& s, int added, int removed) {
-    if (lexLess(s.a, s.b)) return {s.a, s.b, added, removed};
-    return {s.b, s.a, -added, -removed};
+Line turned(const Segment2& s, int added, int removed, bool passage = false) {
+    if (lexLess(s.a, s.b)) return {s.a, s.b, added, removed, passage};
+    return {s.b, s.a, -added, -removed, passage};
 }
 
 /// Equal lines as one, those without length left out: thousands on one place would make the lists
@@ -68,6 +69,7 @@ std::vector<Line> joined(std::vector<Line> lines) {
         } else {
             all.back().added += line.added;
             all.back().removed += line.removed;
+            all.back().passage = all.back().passage && line.passage;
         }
     }
     return all;
@@ -77,7 +79,7 @@ Arrangement arrange(const std::vector<Line>& lines) {
     std::vector<Traits::Curve_2> curves;
     curves.reserve(lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        const auto& [a, b, added, removed] = lines[i];
+        const auto& [a, b, added, removed, passage] = lines[i];
         curves.emplace_back(
             Traits::Base_curve_2(Kernel::Point_2(a.x, a.y), Kernel::Point_2(b.x, b.y)),
             static_cast<std::uint32_t>(i));
@@ -131,13 +133,13 @@ void windFaces(Arrangement& arrangement, const std::vector<Line>& lines) {
     }
 }
 
-/// Numbers the pieces: kept faces that share an edge are one.
-int joinFaces(Arrangement& arrangement) {
-    const auto kept = [](const FaceMark& mark) { return mark.added > 0 && mark.removed == 0; };
+/// Numbers the pieces: faces that are kept(face) and share an edge that is open(edge) are one.
+template <typename Kept, typename Open>
+int joinFaces(Arrangement& arrangement, Kept kept, Open is_open) {
     int pieces = 0;
     std::vector<Face> open;
     for (auto f = arrangement.faces_begin(); f != arrangement.faces_end(); ++f) {
-        if (!kept(f->data()) || f->data().piece != kDropped) continue;
+        if (!kept(f) || f->data().piece != kDropped) continue;
         f->data().piece = pieces;
         open.assign(1, f);
         while (!open.empty()) {
@@ -145,7 +147,7 @@ int joinFaces(Arrangement& arrangement) {
             open.pop_back();
             forEachHalfedge(face, [&](Halfedge edge) {
                 const Face next = edge->twin()->face();
-                if (!kept(next->data()) || next->data().piece != kDropped) return;
+                if (next->data().piece != kDropped || !kept(next) || !is_open(edge)) return;
                 next->data().piece = pieces;
                 open.push_back(next);
             });
@@ -232,16 +234,7 @@ Polygon roundedCurve(const Loop& loop) {
         curve.pop_back();
     }
     if (curve.size() < 3) return {};
-    const auto from = [&](std::size_t i) {
-        return std::pair(curve[i], curve[(i + 1) % curve.size()]);
-    };
-    std::size_t lowest = 0;
-    for (std::size_t i = 1; i < curve.size(); ++i) {
-        const auto [p, p_next] = from(i);
-        const auto [q, q_next] = from(lowest);
-        if (lexLess(p, q) || (p == q && lexLess(p_next, q_next))) lowest = i;
-    }
-    std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(lowest), curve.end());
+    rotateToLowest(curve);
     return curve;
 }
 
@@ -259,6 +252,26 @@ std::vector<Region> collect(Arrangement& arrangement, int pieces) {
             region.outline = std::move(curve);
         }
     }
+    putInOrder(regions);
+    return regions;
+}
+
+}  // namespace
+
+void rotateToLowest(Polygon& curve) {
+    const auto from = [&](std::size_t i) {
+        return std::pair(curve[i], curve[(i + 1) % curve.size()]);
+    };
+    std::size_t lowest = 0;
+    for (std::size_t i = 1; i < curve.size(); ++i) {
+        const auto [p, p_next] = from(i);
+        const auto [q, q_next] = from(lowest);
+        if (lexLess(p, q) || (p == q && lexLess(p_next, q_next))) lowest = i;
+    }
+    std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(lowest), curve.end());
+}
+
+void putInOrder(std::vector<Region>& regions) {
     std::erase_if(regions, [](const Region& region) { return region.outline.empty(); });
     for (Region& region : regions) {
         std::sort(region.holes.begin(), region.holes.end(),
@@ -266,20 +279,23 @@ std::vector<Region> collect(Arrangement& arrangement, int pieces) {
     }
     std::sort(regions.begin(), regions.end(),
               [](const Region& a, const Region& b) { return lexLess(a.outline, b.outline); });
-    return regions;
 }
 
-}  // namespace
-
-std::vector<Region> overlayFaces(std::span<const Segment2> segments) {
-    std::vector<Line> lines;
-    for (const Segment2& s : segments) lines.push_back(turned(s, 0, 0));
-    Arrangement arrangement = arrange(joined(std::move(lines)));
-    int pieces = 0;
-    for (auto f = arrangement.faces_begin(); f != arrangement.faces_end(); ++f) {
-        if (!f->is_unbounded()) f->data().piece = pieces++;
-    }
-    return collect(arrangement, pieces);
+std::vector<Region> overlayFaces(std::span<const Segment2> lines,
+                                 std::span<const Segment2> passages) {
+    std::vector<Line> all;
+    all.reserve(lines.size() + passages.size());
+    for (const Segment2& s : lines) all.push_back(turned(s, 0, 0));
+    for (const Segment2& s : passages) all.push_back(turned(s, 0, 0, true));
+    all = joined(std::move(all));
+    Arrangement arrangement = arrange(all);
+    const auto bounded = [](Face face) { return !face->is_unbounded(); };
+    const auto open = [&all](Halfedge edge) {
+        const auto& sources = edge->curve().data();
+        return std::all_of(sources.begin(), sources.end(),
+                           [&all](std::uint32_t i) { return all[i].passage; });
+    };
+    return collect(arrangement, joinFaces(arrangement, bounded, open));
 }
 
 std::vector<Region> overlayDifference(std::span<const Segment2> added,
@@ -290,7 +306,8 @@ std::vector<Region> overlayDifference(std::span<const Segment2> added,
     lines = joined(std::move(lines));
     Arrangement arrangement = arrange(lines);
     windFaces(arrangement, lines);
-    return collect(arrangement, joinFaces(arrangement));
+    const auto kept = [](Face face) { return face->data().added > 0 && face->data().removed == 0; };
+    return collect(arrangement, joinFaces(arrangement, kept, [](Halfedge) { return true; }));
 }
 
 }  // namespace ispace

@@ -3,6 +3,7 @@
 // the exact kernel.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,9 +11,16 @@
 
 namespace ispace {
 
-/// Each bounded face of the arrangement of the segments by itself. Those of no length are ignored,
-/// as are those that bound nothing. Sorted; curves begin at their lowest vertex.
-std::vector<Region> overlayFaces(std::span<const Segment2> segments);
+/// The bounded faces of the arrangement of lines and passages. Faces on both sides of a passage are
+/// one, if both are bounded and no line lies on it. Segments of no length are ignored, as are those
+/// that bound nothing. Sorted; curves begin at their lowest vertex.
+std::vector<Region> overlayFaces(std::span<const Segment2> lines,
+                                 std::span<const Segment2> passages = {});
+
+/// The same by a walk along the lines, without an arrangement and much faster; nothing if segments
+/// meet elsewhere than at common ends, or if it takes too long to find out.
+std::optional<std::vector<Region>> tracedFaces(std::span<const Segment2> lines,
+                                               std::span<const Segment2> passages = {});
 
 /// The open connected pieces where the winding number of `added` is positive and that of `removed`
 /// is zero. Sorted; curves begin at their lowest vertex.
@@ -20,5 +28,11 @@ std::vector<Region> overlayFaces(std::span<const Segment2> segments);
 /// Winding numbers instead of polygon sets: curves may touch, overlap and repeat as they like.
 std::vector<Region> overlayDifference(std::span<const Segment2> added,
                                       std::span<const Segment2> removed);
+
+/// Lets the curve begin at its lowest vertex, at that of its visits with the lower successor.
+void rotateToLowest(Polygon& curve);
+
+/// Drops regions without outline; sorts the others and the holes of each.
+void putInOrder(std::vector<Region>& regions);
 
 }  // namespace ispace

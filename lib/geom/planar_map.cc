@@ -2,11 +2,15 @@
 #include "geom/planar_map.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <deque>
 #include <numeric>
+#include <random>
 #include <set>
 #include <utility>
 
+#include "base/error.h"
 #include "geom/overlay.h"
 #include "geom/predicates.h"
 #include "geom/segment_grid.h"
@@ -54,6 +58,15 @@ std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
     return welded;
 }
 
+/// Points on lines, and looks for them, per line and besides: no plan needs as many, and what does
+/// would not fit into memory.
+constexpr std::size_t kTouchesPerLine = 32, kTouchesAnyway = 1U << 21;
+constexpr std::size_t kLooksPerLine = 1024, kLooksAnyway = 1U << 26;
+/// Crossings that an arrangement may have, about, and the pairs of lines by which they are counted.
+constexpr double kMostCrossings = 500'000;
+constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMostSampled = 1U << 22;
+constexpr std::size_t kSureHits = 16;
+
 /// For each segment the points of others that lie on its inside, in order along it.
 std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments) {
     std::vector<Point2> points;
@@ -63,11 +76,21 @@ std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& seg
 
     const SegmentGrid grid(segments, kWeldDistance);
     std::vector<std::vector<Point2>> touching(segments.size());
+    std::size_t touches = 0, looks = 0;
     for (const Point2 p : points) {
-        for (const std::uint32_t i : grid.near(p)) {
+        const auto near = grid.near(p);
+        looks += near.size();
+        for (const std::uint32_t i : near) {
             const Segment2& s = segments[i];
-            if (p != s.a && p != s.b && distance(p, s) <= kWeldDistance) touching[i].push_back(p);
+            // Far out distances overflow to what is not near.
+            if (p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) continue;
+            touching[i].push_back(p);
+            ++touches;
         }
+        if (touches > kTouchesAnyway + kTouchesPerLine * segments.size() ||
+            looks > kLooksAnyway + kLooksPerLine * segments.size())
+            throw FormatError(Diagnostic{
+                "", 0, 0, "too many wall lines lie upon each other; leave out the doubles"});
     }
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Vec2 along = segments[i].b - segments[i].a;
@@ -76,6 +99,25 @@ std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& seg
         });
     }
     return touching;
+}
+
+/// About how many pairs of the lines have a point in common, by a sample of them where there are
+/// many; 0 where too few of the sample do.
+double sampledCrossings(std::span<const Segment2> lines) {
+    const std::size_t n = lines.size();
+    if (n < 2) return 0;
+    std::mt19937_64 random(1);
+    const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMostSampled);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < pairs; ++i) {
+        const std::uint64_t bits = random();
+        const Segment2& s = lines[(bits >> 32U) % n];
+        const Segment2& t = lines[(bits & 0xffffffffU) % n];
+        hits += &s != &t && intersects(s, t);
+    }
+    if (hits < kSureHits) return 0;
+    return static_cast<double>(hits) / static_cast<double>(pairs) * static_cast<double>(n) *
+           static_cast<double>(n) / 2;
 }
 
 }  // namespace
@@ -109,6 +151,19 @@ WeldedLines weld(std::span<const Segment2> lines) {
     return split;
 }
 
-std::vector<Region> boundedFaces(const WeldedLines& lines) { return overlayFaces(lines.pieces); }
+std::vector<Region> boundedFaces(const WeldedLines& lines) {
+    return boundedFaces(lines.pieces, {});
+}
+
+std::vector<Region> boundedFaces(std::span<const Segment2> lines,
+                                 std::span<const Segment2> passages) {
+    if (auto faces = tracedFaces(lines, passages)) return std::move(*faces);
+    // Of fewer lines not even all pairs are too many.
+    if (static_cast<double>(lines.size()) > std::sqrt(2 * kMostCrossings) &&
+        sampledCrossings(lines) > kMostCrossings)
+        throw FormatError(
+            Diagnostic{"", 0, 0, "too many wall lines cross each other; end them where they meet"});
+    return overlayFaces(lines, passages);
+}
 
 }  // namespace ispace

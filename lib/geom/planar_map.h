@@ -16,20 +16,29 @@ constexpr double kWeldDistance = 1e-6;
 
 /// The lines with end points moved together and lines split where an end point of another touches
 /// them (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the
-/// line that piece i comes from. Deterministic; O(n log n) for lines spread over the plan.
+/// line that piece i comes from, the pieces of a line in its order. Deterministic; O(n log n) for
+/// lines spread over the plan.
+/// \throws FormatError (without a place) for lines that lie upon each other by the million
 struct WeldedLines {
     std::vector<Segment2> pieces;
     std::vector<std::size_t> source;
 };
 WeldedLines weld(std::span<const Segment2> lines);
 
-/// The bounded faces into which lines divide the floor, from an exact arrangement (CGAL).
+/// The bounded faces into which lines divide the floor, exactly: by a walk along the lines where
+/// they meet at common ends only, else from an arrangement (CGAL). Both give the same.
 ///
 /// Lines may cross, overlap and dangle. A face's outline is the outer boundary of an open
 /// connected piece of the floor; its holes enclose whatever lies within. Dangling and isolated
 /// lines bound nothing and appear in no face. Faces come in an order that depends only on the
 /// lines. O((n + crossings) log n).
+/// \throws FormatError (without a place) for lines that cross by the million
 std::vector<Region> boundedFaces(const WeldedLines& lines);
+
+/// The same where some of the lines are passages: faces on both sides of a passage are one, if both
+/// are bounded and no line lies on it.
+std::vector<Region> boundedFaces(std::span<const Segment2> lines,
+                                 std::span<const Segment2> passages);
 
 /// Why lines enclose nothing at a place, and the least that would cure it.
 struct Gap {

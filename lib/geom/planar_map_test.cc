@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
 #include "geom/test_curves.h"
@@ -250,6 +251,25 @@ TEST(BoundedFaces, thousandsOfEqualLines) {
     std::vector<Segment2> lines(20000, {{0, 0}, {10, 5}});
     append(lines, {{0, 0}, {10, 5}, {0, 5}});
     EXPECT_EQ(facesOf(lines).size(), 1U);
+}
+
+TEST(BoundedFaces, refusesCrossingsByTheMillion) {
+    std::vector<Segment2> lines;
+    for (int i = 0; i < 2000; ++i) {
+        lines.push_back({{i + 0.0, -1}, {i + 0.0, 2001}});
+        lines.push_back({{-1, i + 0.5}, {2001, i + 0.5}});
+    }
+    EXPECT_THROW(facesOf(lines), FormatError);
+    lines.resize(400);
+    EXPECT_EQ(facesOf(lines).size(), 199U * 199U);
+}
+
+TEST(Weld, refusesHeapsOfLinesUponEachOther) {
+    std::vector<Segment2> lines;
+    for (int i = 0; i < 20000; ++i) lines.push_back({{i * 1e-3, 0}, {100 - i * 1e-3, 0}});
+    EXPECT_THROW(weld(lines), FormatError);
+    lines.resize(1000);
+    EXPECT_EQ(weld(lines).pieces.size(), 1000U * 1000U);
 }
 
 TEST(BoundedFaces, smallAndFarAway) {

@@ -28,12 +28,12 @@ SegmentGrid::SegmentGrid(std::span<const Segment2> segments, double margin) : ma
     // Count, then fill: the lists of all cells lie in one array.
     first_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
     for (const Segment2& s : segments)
-        forEachCell(s, [&](std::size_t cell) { ++first_[cell + 1]; });
+        forEachCellOf(s, [&](std::size_t cell) { ++first_[cell + 1]; });
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     indices_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        forEachCell(segments[i], [&](std::size_t cell) {
+        forEachCellOf(segments[i], [&](std::size_t cell) {
             indices_[next[cell]++] = static_cast<std::uint32_t>(i);
         });
     }
@@ -55,7 +55,7 @@ std::span<const std::uint32_t> SegmentGrid::near(Point2 p) const {
 }
 
 template <typename Visit>
-void SegmentGrid::forEachCell(const Segment2& segment, Visit visit) const {
+void SegmentGrid::forEachCellOf(const Segment2& segment, Visit visit) const {
     auto [a, b] = segment;
     if (a.x > b.x) std::swap(a, b);
     const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);

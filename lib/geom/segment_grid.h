@@ -28,13 +28,28 @@ class SegmentGrid {
     template <typename Visit, typename Done>
     void searchFrom(Point2 p, Visit visit, Done done) const;
 
+    /// Calls visit(ascending indices of segments) for each cell that has any. Segments that share a
+    /// point share a cell.
+    template <typename Visit>
+    void forEachCell(Visit visit) const;
+
+    /// Visits the cells that touch the box: visit(indices of one cell). Among them are all segments
+    /// that come within the margin of the box; an index may come several times.
+    template <typename Visit>
+    void searchBox(const Box2& box, Visit visit) const;
+
+    /// Visits the cells under p, from its own downwards, until visit(indices, bottom) returns true:
+    /// all segments that the line from p down to the height `bottom` meets have been seen then.
+    template <typename Visit>
+    void searchBelow(Point2 p, Visit visit) const;
+
   private:
     [[nodiscard]] std::int64_t column(double x) const { return cellOf(x - box_.low.x, columns_); }
     [[nodiscard]] std::int64_t row(double y) const { return cellOf(y - box_.low.y, rows_); }
     [[nodiscard]] std::int64_t cellOf(double offset, std::int64_t count) const;
     [[nodiscard]] std::span<const std::uint32_t> cell(std::int64_t column, std::int64_t row) const;
     template <typename Visit>
-    void forEachCell(const Segment2& segment, Visit visit) const;
+    void forEachCellOf(const Segment2& segment, Visit visit) const;
 
     Box2 box_;
     double margin_;
@@ -57,6 +72,32 @@ void SegmentGrid::searchFrom(Point2 p, Visit visit, Done done) const {
             }
         }
         if (done(static_cast<double>(ring) * size_)) return;
+    }
+}
+
+template <typename Visit>
+void SegmentGrid::forEachCell(Visit visit) const {
+    const std::span<const std::uint32_t> all(indices_);
+    for (std::size_t i = 0; i + 1 < first_.size(); ++i) {
+        if (first_[i] != first_[i + 1]) visit(all.subspan(first_[i], first_[i + 1] - first_[i]));
+    }
+}
+
+template <typename Visit>
+void SegmentGrid::searchBox(const Box2& box, Visit visit) const {
+    const std::int64_t last_column = column(box.high.x), last_row = row(box.high.y);
+    for (std::int64_t r = row(box.low.y); r <= last_row; ++r) {
+        for (std::int64_t c = column(box.low.x); c <= last_column; ++c) visit(cell(c, r));
+    }
+}
+
+template <typename Visit>
+void SegmentGrid::searchBelow(Point2 p, Visit visit) const {
+    const std::int64_t c = column(p.x);
+    for (std::int64_t r = row(p.y); r >= 0; --r) {
+        // What is listed here may lie this much above or below the cell.
+        const double bottom = box_.low.y + (static_cast<double>(r) + 1.0 / 512) * size_ + margin_;
+        if (visit(cell(c, r), bottom)) return;
     }
 }
 

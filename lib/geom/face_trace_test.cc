@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "geom/boolean.h"
+#include "geom/overlay.h"
+#include "geom/planar_map.h"
+#include "geom/pose.h"
+#include "geom/test_curves.h"
+
+namespace ispace {
+namespace {
+
+using Lines = std::vector<Segment2>;
+
+void append(Lines& lines, const Polygon& curve) {
+    forEachEdge(curve, [&](const Segment2& e) { lines.push_back(e); });
+}
+
+/// Both routes, the same to the last bit; returns the faces.
+std::vector<Region> facesByBoth(const Lines& lines, const Lines& passages = {}) {
+    const auto traced = tracedFaces(lines, passages);
+    const auto arranged = overlayFaces(lines, passages);
+    if (!traced) {
+        ADD_FAILURE() << "not traced";
+        return arranged;
+    }
+    EXPECT_EQ(traced->size(), arranged.size());
+    for (std::size_t i = 0; i < std::min(traced->size(), arranged.size()); ++i) {
+        EXPECT_EQ((*traced)[i].outline, arranged[i].outline);
+        EXPECT_EQ((*traced)[i].holes, arranged[i].holes);
+    }
+    return arranged;
+}
+
+TEST(TracedFaces, nothingFromNothing) {
+    EXPECT_TRUE(facesByBoth({}).empty());
+    EXPECT_TRUE(facesByBoth({{{0, 0}, {0, 0}}}).empty());
+    EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}}).empty());
+    EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}, {{1, 0}, {0, 0}}, {{1, 0}, {2, 1}}}).empty());
+}
+
+TEST(TracedFaces, leavesLinesThatMeetElsewhereToTheArrangement) {
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 2}}, {{0, 2}, {2, 0}}}));   // cross
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {1, 1}}}));   // touch
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {3, 0}}}));   // overlap
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{0, 0}, {3, 0}}}));   // from a common end
+    EXPECT_FALSE(tracedFaces(Lines{{{-1, 0}, {2, 0}}, {{2, 0}, {0, 0}}}));  // to a common end
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {0, 2}}, {{0, 1}, {0, 3}}}));   // upright
+    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {9, 0}}}, Lines{{{3, 0}, {6, 0}}}));  // a passage
+    EXPECT_TRUE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{2, 0}, {3, 0}}, {{0, 0}, {-1, 0}}}));
+}
+
+TEST(TracedFaces, islandsBridgesAndAntennas) {
+    Lines lines = test::edgesOf(test::box(0, 0, 8, 6));
+    append(lines, test::box(3, 2, 5, 4));
+    lines.push_back({{8, 6}, {9, 7}});  // antenna outside
+    lines.push_back({{5, 4}, {6, 5}});  // and on the island
+    lines.push_back({{6, 5}, {6.5, 5}});
+    lines.push_back({{1, 5}, {2, 5}});  // by itself
+    append(lines, test::box(3.5, 2.5, 4, 3));
+    lines.push_back({{0, 0}, {3, 2}});  // bridge from the outline to the island
+    append(lines, test::box(20, 0, 21, 1));
+    const auto faces = facesByBoth(lines);
+    ASSERT_EQ(faces.size(), 4U);
+    EXPECT_EQ(totalArea(faces), 49);
+}
+
+TEST(TracedFaces, curvesThatTouchAtPoints) {
+    Lines lines = test::edgesOf({{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}});
+    append(lines, {{2, 2}, {2.5, 2.2}, {2.5, 1.8}});
+    append(lines, {{2, 2}, {3, 2.5}, {3.5, 2}, {3, 1.5}});
+    facesByBoth(lines);
+}
+
+TEST(TracedFaces, islandsUnderSlopesAndUprightLines) {
+    // Islands whose leftmost vertex lies over, under and beside vertices of what is around them.
+    Lines lines = test::edgesOf({{0, 0}, {4, -3}, {8, 0}, {8, 6}, {4, 9}, {0, 6}});
+    for (const double x : {1.0, 4.0, 6.0}) {
+        append(lines, test::box(x, 1, x + 1, 2));
+        append(lines, {{x, 3}, {x + 0.5, 2.5}, {x + 1, 3}, {x + 0.5, 3.5}});
+        append(lines, {{x, 4.5}, {x + 1, 4.5}, {x, 5.5}});
+    }
+    append(lines, test::box(4.25, 1.25, 4.5, 1.5));
+    const auto faces = facesByBoth(lines);
+    EXPECT_EQ(faces.size(), 11U);
+    EXPECT_EQ(faces.front().holes.size(), 9U);
+}
+
+TEST(TracedFaces, pixelMaps) {
+    std::mt19937_64 random(21);
+    for (int round = 0; round < 40; ++round) {
+        const test::PixelMap map(random, 40, 30, 0.3 + 0.01 * round);
+        facesByBoth(map.boundary());
+    }
+}
+
+TEST(TracedFaces, randomTrianglesOfALattice) {
+    // Edges of a lattice with diagonals, some left out, turned and scaled: islands, antennas,
+    // bridges and vertices of every degree.
+    std::mt19937_64 random(22);
+    std::uniform_real_distribution<double> turn(0, 6.3), shift(-100, 100);
+    for (int round = 0; round < 60; ++round) {
+        const Pose2 frame{{shift(random), shift(random)}, Angle::radians(turn(random))};
+        const int side = 12;
+        std::bernoulli_distribution kept(0.2 + 0.013 * round), is_passage(0.2);
+        Lines lines, passages;
+        const auto add = [&](double x, double y, double to_x, double to_y) {
+            if (!kept(random)) return;
+            Segment2 line{frame * Point2{x, y}, frame * Point2{to_x, to_y}};
+            if (random() % 2 == 0) std::swap(line.a, line.b);
+            (is_passage(random) ? passages : lines).push_back(line);
+        };
+        for (int i = 0; i < side; ++i) {
+            for (int k = 0; k < side; ++k) {
+                add(i, k, i + 1, k);
+                add(i, k, i, k + 1);
+                if (random() % 2 == 0)
+                    add(i, k, i + 1, k + 1);
+                else
+                    add(i + 1, k, i, k + 1);
+            }
+        }
+        facesByBoth(lines);
+        facesByBoth(lines, passages);
+    }
+}
+
+TEST(Passages, joinBoundedFaces) {
+    // Three rooms in a row and one apart.
+    Lines lines{{{0, 0}, {9, 0}}, {{9, 0}, {9, 3}}, {{9, 3}, {0, 3}}, {{0, 3}, {0, 0}}};
+    const auto wall = [&](double x) {
+        lines.push_back({{x, 0}, {x, 1}});
+        lines.push_back({{x, 2}, {x, 3}});
+    };
+    wall(3), wall(6);
+    append(lines, test::box(20, 0, 21, 1));
+    lines = weld(lines).pieces;
+    const Segment2 first{{3, 1}, {3, 2}}, second{{6, 2}, {6, 1}};
+    EXPECT_EQ(facesByBoth(lines).size(), 2U) << "holes in the walls join all";
+    Lines closed = lines;
+    closed.insert(closed.end(), {first, second});
+    EXPECT_EQ(facesByBoth(closed).size(), 4U);
+
+    Lines with_second = lines;
+    with_second.push_back(second);
+    const auto two = facesByBoth(with_second, {first});
+    ASSERT_EQ(two.size(), 3U);
+    EXPECT_EQ(two[0].area(), 18);
+    EXPECT_EQ(two[0].boundaryLength(), 18) << "the wall beside the passage bounds nothing";
+    EXPECT_EQ(facesByBoth(lines, {first, second}).size(), 2U);
+    EXPECT_EQ(facesByBoth(closed, {first, second}).size(), 4U) << "lines lie on the passages";
+    EXPECT_EQ(facesByBoth(with_second, {first, second}).size(), 3U);
+}
+
+TEST(Passages, toTheOutsideJoinNothing) {
+    const Lines lines{
+        {{0, 0}, {4, 0}}, {{4, 0}, {4, 1}}, {{4, 2}, {4, 3}}, {{4, 3}, {0, 3}}, {{0, 3}, {0, 0}}};
+    const auto faces = facesByBoth(lines, {{{4, 1}, {4, 2}}});
+    ASSERT_EQ(faces.size(), 1U);
+    EXPECT_EQ(faces[0].area(), 12);
+}
+
+TEST(Passages, openABoothInARoom) {
+    Lines lines = test::edgesOf(test::box(0, 0, 8, 6));
+    append(lines, test::box(3, 2, 5, 4));
+    ASSERT_EQ(facesByBoth(lines).size(), 2U);
+    lines.erase(lines.begin() + 4);
+    const auto faces = facesByBoth(lines, {{{3, 2}, {5, 2}}});
+    ASSERT_EQ(faces.size(), 1U);
+    EXPECT_TRUE(faces[0].holes.empty());
+    EXPECT_EQ(faces[0].area(), 48);
+    // A free-standing passage joins a face with itself.
+    EXPECT_EQ(facesByBoth(test::edgesOf(test::box(0, 0, 8, 6)), {{{3, 2}, {5, 2}}}).size(), 1U);
+}
+
+TEST(Passages, joinFacesWhereLinesCross) {
+    Lines lines;
+    for (int i = 0; i < 4; ++i) {
+        lines.push_back({{i + 0.0, -1}, {i + 0.0, 4}});
+        if (i != 1) lines.push_back({{-1, i + 0.0}, {4, i + 0.0}});
+    }
+    lines.push_back({{-1, 1}, {1, 1}});
+    lines.push_back({{2, 1}, {4, 1}});
+    const auto faces = boundedFaces(lines, Lines{{{1, 1}, {2, 1}}});
+    EXPECT_EQ(faces.size(), 8U);
+    EXPECT_EQ(totalArea(faces), 9);
+}
+
+TEST(TracedFaces, crowdsAreLeftToTheArrangementInTime) {
+    // Ten thousand lines through one cell: not compared pair by pair.
+    Lines lines;
+    for (int i = 0; i < 10000; ++i) lines.push_back({{0, i * 1e-3}, {1000, i * 1e-3}});
+    lines.push_back({{0, 0}, {0, 1000}});
+    EXPECT_FALSE(tracedFaces(lines));
+    EXPECT_TRUE(boundedFaces(lines, {}).empty());
+}
+
+}  // namespace
+}  // namespace ispace
