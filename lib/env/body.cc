@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "env/mesh_body.h"
 #include "env/standing.h"
 #include "env/walls.h"
 
@@ -103,9 +104,11 @@ struct Shape {
 };
 
 constexpr Shape kShapes[] = {
-    {"ispace", roomBody},     {"wall", wallBody},   {"fence", wallBody},       {"floor", floorBody},
-    {"pillar", pillarBody},   {"table", tableBody}, {"desk", deskBody},        {"chair", chairBody},
-    {"barrier", barrierBody}, {"cube", cubeBody},   {"cylinder", cylinderBody}};
+    {"ispace", roomBody}, {"wall", wallBody},         {"fence", wallBody},
+    {"floor", floorBody}, {"pillar", pillarBody},     {"table", tableBody},
+    {"desk", deskBody},   {"chair", chairBody},       {"barrier", barrierBody},
+    {"cube", cubeBody},   {"cylinder", cylinderBody}, {"infra", infraBody},
+    {"boxes", boxesBody}, {"screen", screenBody},     {"mesh", meshBody}};
 
 }  // namespace
 
@@ -120,6 +123,8 @@ double topOf(const Body& body) {
     double top = kLowest;
     for (const Prism& prism : body.prisms) top = std::max(top, prism.top);
     for (const Sheet& sheet : body.sheets) top = std::max(top, sheet.top);
+    for (const Mesh& mesh : body.meshes)
+        for (const Point3& p : mesh.vertices) top = std::max(top, p.z);
     return top == kLowest ? 0 : top;
 }
 

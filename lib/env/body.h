@@ -61,13 +61,17 @@ Polygon rectangle(Point2 center, double length, double width, Angle heading);
 /// Zero-length lines are findings. Other records have none.
 std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings);
 
-/// The body of an environment record; nothing for `inside` and `zone`.
+/// The body of an environment record; nothing for `inside` and `zone`, and for a `mesh` whose file
+/// is not loaded.
 ///
 /// A wall or fence is one sheet per line, or with a thickness one box per line plus joints that
 /// leave no crack at corners. A table is a round top on a stem and a foot; a desk a top on four
 /// legs, or with kind=closed on panels down to the floor on both ends of its length and on its
 /// left, so that it is open to its right; a chair a seat on four legs with a back behind; barrier,
-/// cube, pillar boxes (pillar kind=round a cylinder). A floor is a pattern of plates.
+/// cube, pillar boxes (pillar kind=round a cylinder). Boxes stand upon each other, each a little
+/// different; a screen is a board on two posts with feet as deep as its width. The bars of an infra
+/// frame, 5 cm square, run from edge to edge, evenly; it hangs at its height without posts. A mesh
+/// is as its file has it, see mesh_body.h. A floor is a pattern of plates.
 Body bodyOf(const Record& record);
 
 /// Area named by a `zone` record.

@@ -144,8 +144,9 @@ TEST(Body, ChairHasItsBackBehind) {
 TEST(Body, EverythingIsCounterClockwiseWithinItsExtent) {
     for (const char* line :
          {"pillar", "pillar kind=round", "table", "desk", "desk kind=closed", "chair", "barrier",
-          "cube", "cylinder", "cylinder size=1,0.2,1", "desk size=0.01,0.01,0.01 kind=closed",
-          "chair size=0.01,2,0.02", "table size=0.001"}) {
+          "cube", "cylinder", "boxes", "boxes count=1", "boxes count=100", "screen",
+          "screen size=1,0.5", "screen size=0.01,0.01,0.01", "cylinder size=1,0.2,1",
+          "desk size=0.01,0.01,0.01 kind=closed", "chair size=0.01,2,0.02", "table size=0.001"}) {
         const Record r = record(std::string(line) + " heading=33 at=-3,2,0.5");
         const Body body = bodyOf(r);
         EXPECT_FALSE(body.prisms.empty()) << line;
@@ -163,6 +164,80 @@ TEST(Body, EverythingIsCounterClockwiseWithinItsExtent) {
             }
         }
     }
+}
+
+TEST(Body, BoxesStandUponEachOtherToTheVeryTop) {
+    const Body three = bodyOf(record("boxes at=1,2,0.5"));
+    ASSERT_EQ(three.prisms.size(), 3U);
+    EXPECT_EQ(three.prisms.front().bottom, 0.5);
+    EXPECT_EQ(three.prisms.back().top, 0.5 + 0.9);
+    for (std::size_t i = 1; i < 3; ++i) {
+        EXPECT_EQ(three.prisms[i].bottom, three.prisms[i - 1].top);
+        EXPECT_NE(three.prisms[i].footprint, three.prisms[i - 1].footprint);
+    }
+    // The lowest is as broad as the stack.
+    EXPECT_EQ(bounds(three.prisms[0].footprint), (Box2{{0.7, 1.8}, {1.3, 2.2}}));
+    for (const int count : {1, 2, 7, 100}) {
+        const Body body = bodyOf(record("boxes count=" + std::to_string(count) + " size=1,1,3"));
+        ASSERT_EQ(body.prisms.size(), static_cast<std::size_t>(count));
+        for (double z = 0; z <= 3; z += 0.0625) {
+            const auto solids = cut(body, z);
+            EXPECT_GE(solids.size(), 1U);
+            EXPECT_GT(areaOf(solids), 0.7);
+        }
+        EXPECT_TRUE(cut(body, 3.01).empty());
+    }
+}
+
+TEST(Body, ScreenIsABoardOnTwoFeet) {
+    const Body body = bodyOf(record("screen size=2,0.6,2 at=0,0,0"));
+    const auto board = cut(body, 1);
+    ASSERT_EQ(board.size(), 1U);
+    EXPECT_NEAR(areaOf(board), 2 * 0.02, 1e-12);
+    EXPECT_EQ(cut(body, 0.15).size(), 2U) << "two posts";
+    EXPECT_FALSE(covers(cut(body, 0.15), {0, 0}));
+    const auto feet = cut(body, 0.01);
+    EXPECT_EQ(feet.size(), 2U);
+    for (const Polygon& foot : feet) EXPECT_NEAR(bounds(foot).depth(), 0.6, 1e-12);
+    EXPECT_EQ(topOf(body), 2);
+    // The bare screen stays within its 5 cm.
+    for (const Polygon& foot : cut("screen", 0)) EXPECT_NEAR(bounds(foot).depth(), 0.05, 1e-12);
+}
+
+TEST(Body, InfraHangsAtItsHeightFromEdgeToEdge) {
+    const Body body = bodyOf(record("infra at=1,1 size=4,2 rows=3 cols=5"));
+    ASSERT_EQ(body.prisms.size(), 8U);
+    Box2 box;
+    for (const Prism& prism : body.prisms) {
+        EXPECT_EQ(prism.bottom, 2.4);
+        EXPECT_DOUBLE_EQ(prism.top, 2.45);
+        for (const Point2 p : prism.footprint) box.add(p);
+    }
+    EXPECT_NEAR(box.low.x, -1, 1e-12);
+    EXPECT_NEAR(box.high.x, 3, 1e-12);
+    EXPECT_NEAR(box.low.y, 0, 1e-12);
+    EXPECT_NEAR(box.high.y, 2, 1e-12);
+    EXPECT_TRUE(cut(body, 2.3).empty());
+    const auto bars = cut(body, 2.42);
+    // Rows at 0.025, 1 and 1.975; columns every 0.9875.
+    for (const double y : {0.01, 1.0, 1.99}) EXPECT_TRUE(covers(bars, {1.5, y})) << y;
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(covers(bars, {-1 + 0.025 + 0.9875 * i, 0.5})) << i;
+    EXPECT_FALSE(covers(bars, {1.5, 0.5}));
+    // One bar lies in the middle; many are as thin as they have to be.
+    EXPECT_TRUE(covers(cut("infra rows=1 cols=1 heading=90", 2.42), {0, 1.9}));
+    EXPECT_EQ(cut("infra rows=1 cols=1", 2.42).size(), 2U);
+    const Body dense = bodyOf(record("infra size=0.1,0.1 rows=1000 cols=1000"));
+    EXPECT_EQ(dense.prisms.size(), 2000U);
+    for (const Prism& prism : dense.prisms) EXPECT_GT(signedArea(prism.footprint), 0);
+}
+
+TEST(Body, TopCountsMeshes) {
+    Body body = bodyOf(record("cube"));
+    body.meshes.push_back({Material::Mesh, {{0, 0, 2}, {1, 0, 3}, {0, 1, 1}}, {{0, 1, 2}}});
+    EXPECT_EQ(topOf(body), 3);
+    body.prisms.clear();
+    body.meshes[0].vertices = {{0, 0, -2}, {1, 0, -3}, {0, 1, -1}};
+    EXPECT_EQ(topOf(body), -1);
 }
 
 TEST(Body, FloorIsAPatternThatNoRayMeets) {

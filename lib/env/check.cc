@@ -6,6 +6,7 @@
 
 #include "base/number.h"
 #include "env/crossing.h"
+#include "env/mesh_body.h"
 
 namespace ispace {
 
@@ -56,6 +57,7 @@ std::string placeText(Point2 p) { return "(" + centimetres(p.x) + ", " + centime
 
 void checkShape(const Record& record, const Body& body, Diagnostics& findings) {
     if (record.keyword() == "zone") return checkZone(record, findings);
+    if (record.keyword() == "mesh") return checkMesh(record, body, findings);
     if (record.keyword() == "fence" && record.has("path") && record.flag("closed")) {
         Polygon outline;
         for (const Tuple& tuple : record.list("path")) outline.push_back({tuple[0], tuple[1]});

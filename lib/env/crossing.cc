@@ -13,6 +13,9 @@ namespace {
 
 /// True if each segment has its ends strictly on both sides of the other.
 bool crosses(const Segment2& s, const Segment2& t) {
+    if (std::max(s.a.y, s.b.y) < std::min(t.a.y, t.b.y) ||
+        std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y))
+        return false;
     const auto parts = [](const Segment2& line, const Segment2& other) {
         const Turn a = orientation(line.a, line.b, other.a);
         const Turn b = orientation(line.a, line.b, other.b);

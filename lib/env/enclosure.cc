@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "base/number.h"
 #include "env/check.h"
+#include "env/texts.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -21,21 +21,11 @@ namespace {
 constexpr double kLeakShare = 0.5;
 constexpr double kAnyWidth = std::numeric_limits<double>::infinity();
 
-/// At least millimetres, and at least two digits: "0.12", "0.005", "0.0012", "2.0".
-std::string widthText(double width) {
-    int decimals = 3;
-    while (decimals < 12 && width * std::pow(10, decimals) < 10) ++decimals;
-    std::string text = formatFixed(width, decimals);
-    while (text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
-    return text;
-}
-
 /// Looks for faces and explains where there are none.
 class Search {
   public:
-    Search(const OwnedLines& owned, std::span<const Region> faces,
-           std::span<const Element> elements)
-        : owned_(owned), faces_(faces), elements_(elements) {}
+    Search(const WallPlan& plan, std::span<const Region> faces, std::span<const Element> elements)
+        : plan_(plan), faces_(faces), elements_(elements) {}
 
     [[nodiscard]] const Region* faceAt(Point2 p) const {
         for (const Region& face : faces_)
@@ -56,7 +46,7 @@ class Search {
     }
 
     [[nodiscard]] bool onWall(Point2 p) const {
-        return std::any_of(owned_.lines.begin(), owned_.lines.end(), [p](const Segment2& line) {
+        return std::any_of(plan_.lines.begin(), plan_.lines.end(), [p](const Segment2& line) {
             return distance(p, line) <= kWeldDistance;
         });
     }
@@ -64,7 +54,7 @@ class Search {
     /// Throws the gap that keeps `inside` (or anything) from being enclosed, if there is one of at
     /// most this width.
     void throwGap(std::optional<Point2> inside, double widest) const {
-        const auto gap = findGap(owned_.lines, inside);
+        const auto gap = findGap(plan_.lines, inside);
         if (gap && gap->width <= widest) throw FormatError(gapFinding(*gap));
     }
 
@@ -80,7 +70,7 @@ class Search {
         const Point2 vertex = *std::min_element(face.outline.begin(), face.outline.end(),
                                                 [](Point2 a, Point2 b) { return a.x < b.x; });
         double free = vertex.x - limits.low.x;
-        for (const Segment2& line : owned_.lines) {
+        for (const Segment2& line : plan_.lines) {
             const Point2 near = nearestPoint(line, vertex);
             const double d = distance(near, vertex);
             if (d > kWeldDistance) free = std::min(free, d);
@@ -92,7 +82,7 @@ class Search {
 
   private:
     [[nodiscard]] const Element& elementOf(std::size_t line) const {
-        return elements_[owned_.owner[line]];
+        return elements_[plan_.owner[line]];
     }
 
     [[nodiscard]] Diagnostic gapFinding(const Gap& gap) const {
@@ -103,21 +93,20 @@ class Search {
         if (&a == &b && a.record.keyword() == "fence")
             hint =
                 a.record.flag("closed") ? "its path must meet itself" : "closed=yes joins its ends";
-        return a.record.finding("not enclosed: " + widthText(gap.width) + " m between " + a.id +
+        return a.record.finding("not enclosed: " + lengthText(gap.width) + " m between " + a.id +
                                 " and " + b.id + " near " + placeText(gap.place) + "; " + hint);
     }
 
-    const OwnedLines& owned_;
+    const WallPlan& plan_;
     std::span<const Region> faces_;
     std::span<const Element> elements_;
 };
 
 }  // namespace
 
-Enclosure enclose(const OwnedLines& owned, const WeldedLines& welded, const Box2& limits,
+Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,
                   std::span<const Element> elements, const Record* inside) {
-    const std::vector<Region> faces = boundedFaces(welded);
-    const Search search(owned, faces, elements);
+    const Search search(plan, faces, elements);
     const double leak = kLeakShare * std::min(limits.width(), limits.depth());
     if (inside != nullptr) {
         const Tuple& at = inside->tuple("at");
@@ -136,7 +125,7 @@ Enclosure enclose(const OwnedLines& owned, const WeldedLines& welded, const Box2
     }
     if (faces.empty()) {
         search.throwGap(std::nullopt, kAnyWidth);
-        throw FormatError(elements[owned.owner.front()].record.finding(
+        throw FormatError(elements[plan.owner.front()].record.finding(
             "not enclosed: the walls do not close anywhere; add what is missing"));
     }
     const Point2 origin;

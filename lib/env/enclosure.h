@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "env/environment.h"
-#include "geom/planar_map.h"
+#include "env/walls.h"
 
 namespace ispace {
 
@@ -15,13 +15,7 @@ struct Enclosure {
     Point2 inside;
 };
 
-/// The wall lines as written, and the element each belongs to.
-struct OwnedLines {
-    std::vector<Segment2> lines;
-    std::vector<std::size_t> owner;  ///< index of the element of each line
-};
-
-/// Finds the indoor region.
+/// Finds the indoor region among the faces of the wall lines, those that open doors join being one.
 ///
 /// With an `inside` record (null: none) it is the face that holds its point; without, the face that
 /// holds the origin strictly inside, else the largest. A face that lies within other wall lines
@@ -29,7 +23,7 @@ struct OwnedLines {
 /// with a closed pillar in a room that leaks). Where something is enclosed, only gaps of at most
 /// half the plan's shorter side count as such.
 /// \throws FormatError where there is no such face: a gap in the lines, or a point out of place
-Enclosure enclose(const OwnedLines& owned, const WeldedLines& welded, const Box2& limits,
+Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,
                   std::span<const Element> elements, const Record* inside);
 
 }  // namespace ispace

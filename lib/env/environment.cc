@@ -8,6 +8,8 @@
 
 #include "env/check.h"
 #include "env/enclosure.h"
+#include "env/mesh_cut.h"
+#include "env/openings.h"
 #include "env/walls.h"
 #include "geom/boolean.h"
 #include "geom/planar_map.h"
@@ -16,28 +18,17 @@ namespace ispace {
 
 namespace {
 
-bool isWall(const Record& record) {
-    const std::string& keyword = record.keyword();
-    return keyword == "wall" || keyword == "fence" || keyword == "ispace";
-}
-
 /// What a record is besides its walls: those follow from the lines of all records, welded.
 Body bodyBesideWalls(const Record& record) {
     if (!isWall(record)) return bodyOf(record);
     Body body;
-    if (record.keyword() == "ispace") body.plates = bodyOf(record).plates;
+    if (record.keyword() == "ispace" && record.flag("ceiling")) body.plates = bodyOf(record).plates;
     return body;
 }
 
-/// Adds the bodies of the welded wall lines to the elements that own the lines.
-void addWallBodies(std::vector<Element>& elements, std::span<const WallLine> walls,
-                   const OwnedLines& owned, const WeldedLines& welded) {
-    std::vector<Body> parts = wallBodies(walls, welded);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        Body& body = elements[owned.owner[i]].body;
-        std::move(parts[i].sheets.begin(), parts[i].sheets.end(), std::back_inserter(body.sheets));
-        std::move(parts[i].prisms.begin(), parts[i].prisms.end(), std::back_inserter(body.prisms));
-    }
+void addBody(Body& body, Body&& more) {
+    std::move(more.sheets.begin(), more.sheets.end(), std::back_inserter(body.sheets));
+    std::move(more.prisms.begin(), more.prisms.end(), std::back_inserter(body.prisms));
 }
 
 /// The `inside` record, or null; a second one is a finding.
@@ -55,15 +46,15 @@ const Record* insideRecord(std::span<const Element> elements, Diagnostics& findi
     return inside;
 }
 
-/// Calls on_sheet(line, element) and on_solid(footprint, element) for what stands anywhere between
-/// two heights.
+/// Calls on_sheet(sheet, element) and on_solid(footprint, element) for the walls and things that
+/// stand anywhere between two heights; meshes of files are cut elsewhere.
 template <typename OnSheet, typename OnSolid>
 void forEachStanding(std::span<const Element> elements, double bottom, double top, OnSheet on_sheet,
                      OnSolid on_solid) {
     const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
     for (std::size_t i = 0; i < elements.size(); ++i) {
         for (const Sheet& sheet : elements[i].body.sheets)
-            if (stands(sheet)) on_sheet(sheet.line, i);
+            if (stands(sheet)) on_sheet(sheet, i);
         for (const Prism& prism : elements[i].body.prisms)
             if (stands(prism)) on_solid(prism.footprint, i);
     }
@@ -77,51 +68,147 @@ Diagnostic fileFinding(std::span<const Element> elements, std::string message) {
     return diagnostic;
 }
 
+/// Builds an environment step by step, with as many findings together as do not follow from each
+/// other.
+class Builder {
+  public:
+    void takeRecords(std::span<const Record> records, std::span<const std::string> ids) {
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i]);
+        }
+        inside_ = insideRecord(elements_, findings_);
+        if (plan_.walls.empty() && walls_whole_)
+            findings_.add(fileFinding(
+                elements_,
+                "no walls: nothing encloses a room; add an ispace, wall or fence record"));
+        if (plan_.walls.empty()) findings_.throwIfAny();
+    }
+
+    /// Walls and what is in them. \pre there are walls
+    void raiseWalls() {
+        openings_ = placeOpenings(elements_, plan_, findings_);
+        welded_ = weldedLines();
+        for (const Segment2& piece : welded_.pieces) {
+            limits_.add(piece.a);
+            limits_.add(piece.b);
+        }
+        if (!openings_.empty())
+            cut_ = cutOpenings(elements_, plan_, welded_, openings_, findings_);
+        else
+            cut_.parts = wallParts(plan_.walls, welded_);
+        const std::size_t walls = plan_.walls.size();
+        std::vector<Body> bodies = wallBodies(cut_.parts, walls + openings_.size());
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            addBody(elements_[i < walls ? plan_.owner[i] : openings_[i - walls].element].body,
+                    std::move(bodies[i]));
+    }
+
+    /// \throws FormatError with all findings
+    Enclosure enclose() {
+        Enclosure enclosure;
+        try {
+            const std::vector<Region> faces = cut_.passages.empty()
+                                                  ? boundedFaces(welded_)
+                                                  : boundedFaces(cut_.lines, cut_.passages);
+            enclosure = ispace::enclose(plan_, faces, limits_, elements_, inside_);
+        } catch (const FormatError& error) {
+            // What is left of broken walls need not enclose anything.
+            if (walls_whole_) findings_.add(withFile(error));
+        }
+        findings_.throwIfAny();
+        return enclosure;
+    }
+
+    [[nodiscard]] double height() const {
+        double height = 0;
+        for (const WallLine& wall : plan_.walls) height = std::max(height, wall.top);
+        return height;
+    }
+    [[nodiscard]] const Box2& limits() const { return limits_; }
+    [[nodiscard]] std::vector<Element> takeElements() { return std::move(elements_); }
+    [[nodiscard]] std::vector<Segment2> takeLines() { return std::move(welded_.pieces); }
+
+  private:
+    void takeRecord(const Record& record, const std::string& id) {
+        if (isWall(record)) {
+            const std::size_t before = plan_.walls.size();
+            Diagnostics findings;
+            for (const WallLine& wall : wallLinesOf(record, findings))
+                plan_.add(wall, elements_.size());
+            walls_whole_ = walls_whole_ && findings.empty() && plan_.walls.size() > before;
+            if (!findings.empty()) takeFindings(findings);
+        }
+        elements_.push_back({record, id, bodyBesideWalls(record)});
+        checkShape(record, elements_.back().body, findings_);
+    }
+
+    void takeFindings(const Diagnostics& findings) {
+        try {
+            findings.throwIfAny();
+        } catch (const FormatError& error) {
+            findings_.add(error);
+        }
+    }
+
+    /// Findings about lines as such, without a place of their own.
+    [[nodiscard]] FormatError withFile(const FormatError& error) const {
+        std::vector<Diagnostic> all = error.diagnostics();
+        for (Diagnostic& diagnostic : all) {
+            if (diagnostic.file.empty())
+                diagnostic = fileFinding(elements_, std::move(diagnostic.message));
+        }
+        return FormatError(std::move(all));
+    }
+
+    [[nodiscard]] WeldedLines weldedLines() {
+        try {
+            return weld(plan_.lines);
+        } catch (const FormatError& error) {
+            findings_.add(withFile(error));
+            findings_.throwIfAny();
+            throw;
+        }
+    }
+
+    Diagnostics findings_;
+    std::vector<Element> elements_;
+    WallPlan plan_;
+    bool walls_whole_ = true;  // every record has all its lines
+    const Record* inside_ = nullptr;
+    std::vector<Opening> openings_;
+    WeldedLines welded_;
+    CutWalls cut_;
+    Box2 limits_;
+};
+
 }  // namespace
 
 Environment::Environment(std::span<const Record> records, std::span<const std::string> ids) {
     assert(records.size() == ids.size());
-    Diagnostics findings;
-    std::vector<WallLine> walls;
-    OwnedLines owned;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const Record& record = records[i];
-        if (!record.schema().isEnvironment()) continue;
-        for (const WallLine& wall : wallLinesOf(record, findings)) {
-            walls.push_back(wall);
-            owned.lines.push_back(wall.line);
-            owned.owner.push_back(elements_.size());
-        }
-        elements_.push_back({record, ids[i], bodyBesideWalls(record)});
-        checkShape(record, elements_.back().body, findings);
-    }
-    const Record* inside = insideRecord(elements_, findings);
-    findings.throwIfAny();
-    if (walls.empty())
-        throw FormatError(fileFinding(
-            elements_, "no walls: nothing encloses a room; add an ispace, wall or fence record"));
-
-    WeldedLines welded = weld(owned.lines);
-    addWallBodies(elements_, walls, owned, welded);
-    for (const Segment2& piece : welded.pieces) {
-        limits_.add(piece.a);
-        limits_.add(piece.b);
-    }
-    for (const Element& element : elements_)
-        if (isWall(element.record)) height_ = std::max(height_, topOf(element.body));
-    Enclosure enclosure = enclose(owned, welded, limits_, elements_, inside);
+    Builder builder;
+    builder.takeRecords(records, ids);
+    builder.raiseWalls();
+    Enclosure enclosure = builder.enclose();
     indoor_ = std::move(enclosure.indoor);
     inside_ = enclosure.inside;
-    wall_lines_ = std::move(welded.pieces);
+    limits_ = builder.limits();
+    height_ = builder.height();
+    elements_ = builder.takeElements();
+    wall_lines_ = builder.takeLines();
 }
 
 Slice Environment::slice(double height) const {
     Slice slice;
     slice.height = height;
-    forEachStanding(
-        elements_, height, height,
-        [&](const Segment2& line, std::size_t /*owner*/) { slice.sheets.push_back(line); },
-        [&](const Polygon& solid, std::size_t /*owner*/) { slice.solids.push_back(solid); });
+    const auto add_sheet = [&](const Sheet& sheet, std::size_t /*owner*/) {
+        if (!sheet.clear) slice.sheets.push_back(sheet.line);
+    };
+    const auto add_solid = [&](const Polygon& solid, std::size_t /*owner*/) {
+        slice.solids.push_back(solid);
+    };
+    forEachStanding(elements_, height, height, add_sheet, add_solid);
+    for (const Element& element : elements_)
+        if (!element.body.meshes.empty()) cutMeshes(element.body, height, slice);
     return slice;
 }
 
@@ -130,8 +217,8 @@ Band Environment::band(double bottom, double top) const {
     Band band;
     band.bottom = bottom;
     band.top = top;
-    const auto add_sheet = [&](const Segment2& line, std::size_t owner) {
-        band.sheets.push_back(line);
+    const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
+        band.sheets.push_back(sheet.line);
         band.sheet_owners.push_back(owner);
     };
     const auto add_solid = [&](const Polygon& solid, std::size_t owner) {
@@ -139,6 +226,9 @@ Band Environment::band(double bottom, double top) const {
         band.solid_owners.push_back(owner);
     };
     forEachStanding(elements_, bottom, top, add_sheet, add_solid);
+    for (std::size_t i = 0; i < elements_.size(); ++i)
+        if (!elements_[i].body.meshes.empty())
+            bandOfMeshes(elements_[i].body, bottom, top, band, i);
     return band;
 }
 

@@ -28,21 +28,26 @@ struct Element {
 class Environment {
   public:
     /// Takes the environment records among `records` (others are left alone). `ids` as of
-    /// assignIds(records).
+    /// assignIds(records). O(n log n) for plans whose walls meet at their ends or cross now and
+    /// then.
     /// \throws FormatError with all findings: zero-length walls, zero sizes, crossing zone or
-    ///         fence outlines, nothing that encloses, or lines that do not close
-    ///         ("not enclosed: 0.12 m between w3 and w4 near (4.1, 2.0)")
+    ///         fence outlines, doors and windows that are in no wall or overlap, nothing that
+    ///         encloses, or lines that do not close ("not enclosed: 0.12 m between w3 and w4 near
+    ///         (4.1, 2.0)"); the last two only where every wall has made its lines
     Environment(std::span<const Record> records, std::span<const std::string> ids);
 
     [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
     /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
     [[nodiscard]] const Box2& limits() const { return limits_; }
-    /// The face of the wall lines that holds the inside point.
+    /// The face of the wall lines that holds the inside point, and those joined to it by open
+    /// doors, directly or through others. Openings else do not count: an open door to the outside
+    /// joins nothing. Walls that stand within the joined rooms bound nothing.
     [[nodiscard]] const Region& indoor() const { return indoor_; }
     /// The known inside point: the record's, else the origin if it lies strictly in a bounded
     /// face, else a point of the largest face.
     [[nodiscard]] Point2 inside() const { return inside_; }
-    /// The wall lines, welded; for the parity rule and for drawings.
+    /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
+    /// where no open door joins rooms: there the lines that enclose are the edges of indoor().
     [[nodiscard]] const std::vector<Segment2>& wallLines() const { return wall_lines_; }
     /// Height of the highest wall, in metres.
     [[nodiscard]] double height() const { return height_; }

@@ -89,17 +89,54 @@ std::vector<Mesh> meshesOf(const Body& body, bool with_visual) {
         });
         return found != meshes.end() ? *found : meshes.emplace_back(Mesh{material, {}, {}});
     };
+    const auto open = [&of](Material material) -> Mesh& {
+        Mesh& mesh = of(material);
+        mesh.open = true;
+        return mesh;
+    };
     for (const Prism& prism : body.prisms) addPrism(of(prism.material), prism);
-    for (const Sheet& sheet : body.sheets) addSheet(of(sheet.material), sheet);
+    for (const Sheet& sheet : body.sheets) addSheet(open(sheet.material), sheet);
     for (const Plate& plate : body.plates)
-        if (with_visual || !plate.visual_only) addPlate(of(plate.material), plate);
+        if (with_visual || !plate.visual_only) addPlate(open(plate.material), plate);
     meshes.insert(meshes.end(), body.meshes.begin(), body.meshes.end());
     return meshes;
 }
 
+bool isWatertight(const Mesh& mesh) {
+    // Edges by their lower vertex: counted, then laid behind one another.
+    struct End {
+        Index high;
+        int way;
+    };
+    std::vector<std::size_t> first(mesh.vertices.size() + 1);
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) ++first[std::min(t[i], t[(i + 1) % 3])];
+    std::size_t sum = 0;
+    for (std::size_t& place : first) sum += std::exchange(place, sum);
+    std::vector<End> ends(sum);
+    std::vector<std::size_t> next = first;
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Index a = t[i], b = t[(i + 1) % 3];
+            ends[next[std::min(a, b)]++] = {std::max(a, b), a < b ? 1 : -1};
+        }
+    for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+        const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(first[v]);
+        const auto end = ends.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
+        std::sort(begin, end, [](const End& a, const End& b) { return a.high < b.high; });
+        for (auto edge = begin; edge != end;) {
+            int balance = 0;
+            const Index high = edge->high;
+            for (; edge != end && edge->high == high; ++edge) balance += edge->way;
+            if (balance != 0) return false;
+        }
+    }
+    return true;
+}
+
 Mesh floorMesh(const Region& indoor) {
     Triangulation parts = triangulate(indoor);
-    Mesh mesh{Material::Floor, {}, std::move(parts.triangles)};
+    Mesh mesh{Material::Floor, {}, std::move(parts.triangles), true};
     for (const Point2 p : parts.vertices) mesh.vertices.push_back({p.x, p.y, 0});
     return mesh;
 }

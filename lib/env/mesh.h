@@ -12,17 +12,21 @@ namespace ispace {
 
 struct Body;
 
-/// Triangles of one material, counter-clockwise seen from outside; sheets and plates once (they
-/// are seen from both sides).
+/// Triangles of one material, counter-clockwise seen from outside; sheets and plates once.
 struct Mesh {
     Material material = Material::Wood;
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    bool open = false;  ///< has a rim, as sheets and plates: is seen from both sides
 };
 
 /// The body's triangles, one mesh per material, in the order of first use.
 /// `with_visual`: also plates that no ray meets.
 std::vector<Mesh> meshesOf(const Body& body, bool with_visual);
+
+/// True if every edge is met as often in one direction as in the other: the triangles then bound
+/// something. O(triangles) for edges that are well spread over the vertices.
+bool isWatertight(const Mesh& mesh);
 
 /// The floor of an indoor region at z = 0.
 Mesh floorMesh(const Region& indoor);

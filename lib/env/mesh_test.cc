@@ -79,10 +79,10 @@ TEST(Mesh, CollinearVertexInTheFootprint) {
 }
 
 TEST(Mesh, EveryThingIsClosed) {
-    for (const char* line :
-         {"pillar kind=round", "table heading=20", "desk", "desk kind=closed", "chair", "barrier",
-          "cylinder size=2,1,1", "wall from=0,0 to=2,1 thickness=0.1",
-          "fence path=0,0;2,0;2,2 closed=yes thickness=0.1"}) {
+    for (const char* line : {"pillar kind=round", "table heading=20", "desk", "desk kind=closed",
+                             "chair", "barrier", "cylinder size=2,1,1", "infra rows=1 cols=1",
+                             "boxes heading=7", "screen", "wall from=0,0 to=2,1 thickness=0.1",
+                             "fence path=0,0;2,0;2,2 closed=yes thickness=0.1"}) {
         const Body body = bodyOf(record(line));
         double expected = 0;
         for (const Prism& prism : body.prisms)
@@ -94,6 +94,29 @@ TEST(Mesh, EveryThingIsClosed) {
         }
         EXPECT_NEAR(found, expected, 1e-9) << line;
     }
+}
+
+TEST(Mesh, OpenIsWhatHasARim) {
+    for (const char* line : {"desk", "wall from=0,0 to=2,1 thickness=0.1"})
+        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), true)) {
+            EXPECT_FALSE(mesh.open) << line;
+            EXPECT_TRUE(isWatertight(mesh)) << line;
+        }
+    for (const char* line : {"wall from=0,0 to=2,1", "floor", "ispace ceiling=yes"})
+        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), true)) {
+            EXPECT_TRUE(mesh.open) << line;
+            EXPECT_FALSE(isWatertight(mesh)) << line;
+        }
+    EXPECT_TRUE(floorMesh({{{0, 0}, {1, 0}, {0, 1}}, {}}).open);
+    EXPECT_TRUE(isWatertight(Mesh()));
+}
+
+TEST(Mesh, WatertightCountsEachWay) {
+    // Both sides of a triangle close each other; twice the same side does not.
+    Mesh mesh{Material::Mesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
+    EXPECT_TRUE(isWatertight(mesh));
+    mesh.triangles[1] = {1, 2, 0};
+    EXPECT_FALSE(isWatertight(mesh));
 }
 
 TEST(Mesh, SheetsAreTwoTrianglesEach) {

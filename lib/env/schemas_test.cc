@@ -55,6 +55,14 @@ TEST(EnvironmentSchemas, DefaultsAreThoseOfTheManual) {
     EXPECT_EQ(record("floor").number("friction"), 0);
     EXPECT_FALSE(record("ispace").flag("ceiling"));
     EXPECT_FALSE(record("fence path=0,0;1,0").flag("closed"));
+    EXPECT_EQ(record("infra").number("height"), 2.4);
+    EXPECT_EQ(record("infra").number("rows"), 3);
+    EXPECT_EQ(record("infra").tuple("size"), (Tuple{4, 4}));
+    EXPECT_EQ(record("boxes").number("count"), 3);
+    EXPECT_EQ(record("screen").number("height"), 2);
+    EXPECT_EQ(record("mesh file=a.obj").text("unit"), "m");
+    EXPECT_EQ(record("mesh file=a.obj").text("up"), "auto");
+    EXPECT_EQ(record("mesh file=a.obj").number("scale"), 1);
     EXPECT_EQ(record("cube").find("height"), nullptr);
 }
 
@@ -80,11 +88,26 @@ TEST(EnvironmentSchemas, RefusesWhatIsOutOfBounds) {
                              "wall from=0,0 to=1e7,0",
                              "fence path=0,0,0;1,1,1",
                              "desk heading=nan",
-                             "zone size=1"})
+                             "zone size=1",
+                             "infra rows=0",
+                             "infra cols=1.5",
+                             "infra rows=1001",
+                             "infra size=4",
+                             "infra at=0,0,2",
+                             "boxes count=0",
+                             "boxes count=101",
+                             "boxes count=2.5",
+                             "screen size=0,1",
+                             "mesh",
+                             "mesh file=a.obj unit=mile",
+                             "mesh file=a.obj up=-y",
+                             "mesh file=a.obj scale=0"})
         EXPECT_NE(findings(room + line + "\n"), "") << line;
-    for (const char* line : {"wall from=-1,0 to=1,0 thickness=0", "wall size=4,0",
-                             "wall at=0,0,1 size=4,0.1,2", "floor friction=1 kind=checker",
-                             "cube size=10cm", "desk heading=-30deg", "zone id=z path=0,0;1,0;0,1"})
+    for (const char* line :
+         {"wall from=-1,0 to=1,0 thickness=0", "wall size=4,0", "wall at=0,0,1 size=4,0.1,2",
+          "floor friction=1 kind=checker", "cube size=10cm", "infra rows=1 cols=1000",
+          "boxes count=100", "screen height=3", "desk heading=-30deg",
+          "zone id=z path=0,0;1,0;0,1"})
         EXPECT_EQ(findings(room + line + "\n"), "") << line;
 }
 

@@ -29,5 +29,8 @@ Standing standingOf(const Record& record);
 Body tableBody(const Record& record);
 Body deskBody(const Record& record);
 Body chairBody(const Record& record);
+Body infraBody(const Record& record);
+Body boxesBody(const Record& record);
+Body screenBody(const Record& record);
 
 }  // namespace ispace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -15,36 +15,61 @@ namespace {
 /// A mitre reaches at most this many half thicknesses beyond its corner, as drawing programs have
 /// it; sharper corners are cut off straight.
 constexpr double kMitreLimit = 4;
+/// Heights at one point that are told apart; with more of them mitres are as high as both of
+/// their neighbours, whatever stands between them.
+constexpr std::size_t kMostLevels = 32;
+/// With more ends at one point, the point is simply a corner of all boxes.
+constexpr std::size_t kFewEnds = 16;
 
-/// The end of a thick piece, seen from there along the wall.
+/// An end of a part, seen from there along the wall. Those of sheets have one point as corners.
 struct End {
-    std::size_t line;
+    Point2 at;
+    std::size_t part;
+    bool is_b;           ///< the part's second end
     Vec2 direction;      ///< unit, away from the end
-    Point2 left, right;  ///< corners of the box at this end
+    Point2 left, right;  ///< corners at this end
     double angle;        ///< of direction, radians
+    bool meets = false;  ///< the point itself has to be a corner of the box
 };
 
-using Ends = std::map<std::pair<double, double>, std::vector<End>>;
+/// A mitre and the body it belongs to.
+struct Joint {
+    std::size_t source;
+    Prism prism;
+};
 
-/// Adds the box of a thick piece, and its ends to those of their points.
-void addBox(const WallLine& wall, std::size_t line, const Segment2& piece, Body& body, Ends& ends) {
-    const Vec2 along = piece.b - piece.a;
-    const Vec2 unit = (1 / length(along)) * along;
-    const Vec2 side = wall.thickness / 2 * perpendicular(unit);
-    const Point2 a_left = piece.a + side, a_right = piece.a - side;
-    const Point2 b_left = piece.b + side, b_right = piece.b - side;
-    body.prisms.push_back(
-        {{a_right, b_right, b_left, a_left}, wall.bottom, wall.top, wall.material});
-    ends[{piece.a.x, piece.a.y}].push_back(
-        {line, unit, a_left, a_right, std::atan2(unit.y, unit.x)});
-    ends[{piece.b.x, piece.b.y}].push_back(
-        {line, -unit, b_right, b_left, std::atan2(-unit.y, -unit.x)});
+bool isThick(const WallPart& part) { return part.piece.thickness > kThinnest; }
+
+/// From the mid-line to the left face. The same for all parts of a line, so that they share
+/// corners, unless the weld has turned a tiny part off its line.
+Vec2 sideOf(const WallPart& part) {
+    const Vec2 along = part.piece.line.b - part.piece.line.a;
+    const double l = length(along);
+    const bool bent = dot(along, part.along) < l / 2;
+    return part.piece.thickness / 2 * perpendicular(bent ? (1 / l) * along : part.along);
+}
+
+std::vector<End> endsOf(std::span<const WallPart> parts) {
+    std::vector<End> ends;
+    ends.reserve(2 * parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const auto& [a, b] = parts[i].piece.line;
+        const Vec2 unit = (1 / distance(a, b)) * (b - a);
+        const Vec2 side = isThick(parts[i]) ? sideOf(parts[i]) : Vec2{};
+        ends.push_back({a, i, false, unit, a + side, a - side, std::atan2(unit.y, unit.x)});
+        ends.push_back({b, i, true, -unit, b - side, b + side, std::atan2(-unit.y, -unit.x)});
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& s, const End& t) {
+        if (s.at != t.at) return lexLess(s.at, t.at);
+        return s.angle == t.angle ? s.part < t.part : s.angle < t.angle;
+    });
+    return ends;
 }
 
 /// Fills the notch that is left between two ends at a point where the turn from the first to the
 /// second, counter-clockwise, is more than half a circle.
-std::optional<Polygon> mitre(Point2 corner, const End& first, const End& second) {
-    const Point2 a = first.left, b = second.right;
+std::optional<Polygon> mitre(const End& first, const End& second) {
+    const Point2 corner = first.at, a = first.left, b = second.right;
     if (distance(a, b) <= kWeldDistance) return std::nullopt;
     Polygon polygon{corner, a, b};
     const double denominator = cross(first.direction, second.direction);
@@ -59,44 +84,164 @@ std::optional<Polygon> mitre(Point2 corner, const End& first, const End& second)
     return polygon;
 }
 
-void addJoints(std::span<const WallLine> lines, Ends& ends, std::vector<Body>& bodies) {
-    for (auto& [key, at_point] : ends) {
-        if (at_point.size() < 2) continue;
-        std::stable_sort(at_point.begin(), at_point.end(),
-                         [](const End& s, const End& t) { return s.angle < t.angle; });
-        for (std::size_t i = 0; i < at_point.size(); ++i) {
-            const bool last = i + 1 == at_point.size();
-            const End& first = at_point[i];
-            const End& second = at_point[last ? 0 : i + 1];
-            const double turn = second.angle - first.angle + (last ? 2 * std::numbers::pi : 0);
-            if (turn <= std::numbers::pi) continue;
-            const WallLine& s = lines[first.line];
-            const WallLine& t = lines[second.line];
-            const double bottom = std::max(s.bottom, t.bottom), top = std::min(s.top, t.top);
-            if (bottom >= top) continue;
-            const std::size_t owner = std::min(first.line, second.line);
-            if (auto joint = mitre({key.first, key.second}, first, second))
-                bodies[owner].prisms.push_back(
-                    {std::move(*joint), bottom, top, lines[owner].material});
+/// Finds the mitres at one point.
+class Corner {
+  public:
+    /// \pre ends: of thick walls at one point, by angle
+    Corner(std::span<const WallPart> parts, std::vector<const End*> ends,
+           std::vector<Joint>& joints)
+        : parts_(parts), ends_(std::move(ends)), joints_(joints) {}
+
+    void fill() {
+        std::vector<double> levels;
+        for (const End* end : ends_) {
+            levels.push_back(wall(*end).bottom);
+            levels.push_back(wall(*end).top);
+        }
+        std::sort(levels.begin(), levels.end());
+        levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+        if (levels.size() > kMostLevels) levels = {levels.front(), levels.back()};
+        // What stands between two neighbouring levels makes its own corner; where the next one up
+        // makes the same, it is one mitre.
+        const std::size_t first = joints_.size();
+        for (std::size_t i = 1; i < levels.size(); ++i) {
+            std::vector<const End*> standing;
+            for (const End* end : ends_) {
+                if (wall(*end).bottom < levels[i] && wall(*end).top > levels[i - 1])
+                    standing.push_back(end);
+            }
+            fill(standing, levels[i - 1], levels[i], first);
         }
     }
+
+  private:
+    [[nodiscard]] const WallLine& wall(const End& end) const { return parts_[end.part].piece; }
+
+    void fill(const std::vector<const End*>& ends, double low, double high, std::size_t first) {
+        if (ends.size() < 2) return;
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const bool last = i + 1 == ends.size();
+            const End& s = *ends[i];
+            const End& t = *ends[last ? 0 : i + 1];
+            if (t.angle - s.angle + (last ? 2 * std::numbers::pi : 0) <= std::numbers::pi) continue;
+            const double bottom = std::max({low, wall(s).bottom, wall(t).bottom});
+            const double top = std::min({high, wall(s).top, wall(t).top});
+            if (bottom >= top) continue;
+            auto polygon = mitre(s, t);
+            if (!polygon) continue;
+            const std::size_t owner =
+                parts_[s.part].source <= parts_[t.part].source ? s.part : t.part;
+            add({parts_[owner].source,
+                 {std::move(*polygon), bottom, top, parts_[owner].piece.material}},
+                first);
+        }
+    }
+
+    void add(Joint joint, std::size_t first) {
+        for (std::size_t i = first; i < joints_.size(); ++i) {
+            Prism& below = joints_[i].prism;
+            if (joints_[i].source != joint.source || below.top != joint.prism.bottom ||
+                below.footprint != joint.prism.footprint)
+                continue;
+            below.top = joint.prism.top;
+            return;
+        }
+        joints_.push_back(std::move(joint));
+    }
+
+    std::span<const WallPart> parts_;
+    std::vector<const End*> ends_;
+    std::vector<Joint>& joints_;
+};
+
+/// True if two boxes end face to face without the very same corners.
+bool goOn(const End& s, const End& t) {
+    const double half = std::max(distance(s.at, s.left), distance(t.at, t.left));
+    return dot(s.direction, t.direction) < 0 &&
+           std::abs(cross(s.direction, t.direction)) * half <= kWeldDistance &&
+           (s.left != t.right || s.right != t.left);
+}
+
+/// Marks the ends of boxes that meet something there without sharing its corners: sheets, what
+/// fills openings, and walls that go on in the same direction but for rounding.
+void markMeetings(std::span<const WallPart> parts, std::span<End> ends) {
+    const bool all =
+        ends.size() > kFewEnds || std::any_of(ends.begin(), ends.end(), [&](const End& end) {
+            return !isThick(parts[end.part]) || parts[end.part].filling;
+        });
+    for (End& end : ends) {
+        end.meets = all || std::any_of(ends.begin(), ends.end(),
+                                       [&end](const End& other) { return goOn(end, other); });
+    }
+}
+
+/// Looks at what meets at each point: marks ends, and returns the mitres.
+std::vector<Joint> joinEnds(std::span<const WallPart> parts, std::span<End> ends) {
+    std::vector<Joint> joints;
+    for (std::size_t from = 0, to = 0; from < ends.size(); from = to) {
+        while (to < ends.size() && ends[to].at == ends[from].at) ++to;
+        if (to - from < 2) continue;
+        const auto here = ends.subspan(from, to - from);
+        markMeetings(parts, here);
+        std::vector<const End*> walls;
+        for (const End& end : here) {
+            if (isThick(parts[end.part]) && !parts[end.part].filling) walls.push_back(&end);
+        }
+        if (walls.size() > 1) Corner(parts, std::move(walls), joints).fill();
+    }
+    return joints;
+}
+
+Prism boxOf(const WallPart& part, bool meets_at_a, bool meets_at_b) {
+    const auto& [a, b] = part.piece.line;
+    const Vec2 side = sideOf(part);
+    Polygon footprint{a - side, b - side};
+    if (meets_at_b) footprint.push_back(b);
+    footprint.push_back(b + side);
+    footprint.push_back(a + side);
+    if (meets_at_a) footprint.push_back(a);
+    return {std::move(footprint), part.piece.bottom, part.piece.top, part.piece.material};
 }
 
 }  // namespace
 
-std::vector<Body> wallBodies(std::span<const WallLine> lines, const WeldedLines& welded) {
-    std::vector<Body> bodies(lines.size());
-    Ends ends;
+std::vector<WallPart> wallParts(std::span<const WallLine> lines, const WeldedLines& welded) {
+    std::vector<WallPart> parts;
+    parts.reserve(welded.pieces.size());
     for (std::size_t i = 0; i < welded.pieces.size(); ++i) {
         const std::size_t line = welded.source[i];
-        const WallLine& wall = lines[line];
-        if (wall.thickness > 0)
-            addBox(wall, line, welded.pieces[i], bodies[line], ends);
-        else
-            bodies[line].sheets.push_back({welded.pieces[i], wall.bottom, wall.top, wall.material});
+        const auto& [a, b] = lines[line].line;
+        parts.push_back({lines[line], (1 / distance(a, b)) * (b - a), line});
+        parts.back().piece.line = welded.pieces[i];
     }
-    addJoints(lines, ends, bodies);
+    return parts;
+}
+
+std::vector<Body> wallBodies(std::span<const WallPart> parts, std::size_t count) {
+    std::vector<Body> bodies(count);
+    std::vector<std::pair<bool, bool>> meets;  // of each part's ends
+    std::vector<Joint> joints;
+    if (std::any_of(parts.begin(), parts.end(), isThick)) {
+        std::vector<End> ends = endsOf(parts);
+        joints = joinEnds(parts, ends);
+        meets.resize(parts.size());
+        for (const End& end : ends)
+            (end.is_b ? meets[end.part].second : meets[end.part].first) = end.meets;
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const auto& [piece, along, source, filling, clear] = parts[i];
+        if (isThick(parts[i]))
+            bodies[source].prisms.push_back(boxOf(parts[i], meets[i].first, meets[i].second));
+        else
+            bodies[source].sheets.push_back(
+                {piece.line, piece.bottom, piece.top, piece.material, clear});
+    }
+    for (Joint& joint : joints) bodies[joint.source].prisms.push_back(std::move(joint.prism));
     return bodies;
+}
+
+std::vector<Body> wallBodies(std::span<const WallLine> lines, const WeldedLines& welded) {
+    return wallBodies(wallParts(lines, welded), lines.size());
 }
 
 }  // namespace ispace

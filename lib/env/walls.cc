@@ -140,6 +140,17 @@ std::vector<WallLine> roomLines(const Record& record, Diagnostics& findings) {
 
 }  // namespace
 
+bool isWall(const Record& record) {
+    const std::string& keyword = record.keyword();
+    return keyword == "wall" || keyword == "fence" || keyword == "ispace";
+}
+
+void WallPlan::add(const WallLine& wall, std::size_t element) {
+    walls.push_back(wall);
+    lines.push_back(wall.line);
+    owner.push_back(element);
+}
+
 std::vector<WallLine> wallLinesOf(const Record& record, Diagnostics& findings) {
     if (record.keyword() == "wall") return wallLine(record, findings);
     if (record.keyword() == "fence") return fenceLines(record, findings);

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/mesh_cut.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include "env/mesh_loops.h"
+
+namespace ispace {
+
+namespace {
+
+/// The curves in which a plane cuts a mesh.
+struct Curves {
+    std::vector<Polygon> closed;  ///< with the solid on their left
+    std::vector<Segment2> open;   ///< of surfaces with a rim
+};
+
+/// The plane lies at the height, moved down or up by less than any difference: vertices at the
+/// height itself lie above or below it, never in it, so that every curve of a closed surface
+/// closes.
+enum class Moved { Down, Up };
+
+/// Which vertices lie above the plane.
+std::vector<std::uint8_t> verticesAbove(const Mesh& mesh, double height, Moved moved) {
+    std::vector<std::uint8_t> above(mesh.vertices.size());
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        const double z = mesh.vertices[i].z;
+        above[i] = moved == Moved::Down ? z >= height : z > height;
+    }
+    return above;
+}
+
+/// An edge of the mesh by its ends, the lower index first.
+using EdgeKey = std::uint64_t;
+
+EdgeKey keyOf(std::uint32_t a, std::uint32_t b) {
+    return EdgeKey{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+/// What a triangle adds to a curve: from the place on one of its edges to that on another, the
+/// solid on the left.
+struct Arc {
+    EdgeKey from, to;
+};
+
+/// The arcs of all triangles that the plane cuts, each once however often a file repeats its
+/// triangle, from either side.
+std::vector<Arc> arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
+    std::vector<Arc> arcs;
+    for (const auto& t : mesh.triangles) {
+        const int sum = above[t[0]] + above[t[1]] + above[t[2]];
+        if (sum == 0 || sum == 3) continue;
+        Arc arc{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = t[i], b = t[i == 2 ? 0 : i + 1];
+            if (above[a] == above[b]) continue;
+            (above[a] != 0 ? arc.from : arc.to) = keyOf(a, b);
+        }
+        arcs.push_back(arc);
+    }
+    std::vector<std::size_t> order(arcs.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto ends = [&](std::size_t i) { return std::minmax(arcs[i].from, arcs[i].to); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return ends(a) != ends(b) ? ends(a) < ends(b) : a < b;
+    });
+    std::vector<bool> again(arcs.size());
+    for (std::size_t i = 1; i < order.size(); ++i)
+        again[order[i]] = ends(order[i]) == ends(order[i - 1]);
+    std::size_t i = 0;
+    std::erase_if(arcs, [&](const Arc&) { return again[i++]; });
+    return arcs;
+}
+
+/// Where an edge passes the height. From the lower index on, so that all its triangles agree.
+Point2 placeOn(const Mesh& mesh, EdgeKey edge, double height) {
+    const Point3 &a = mesh.vertices[edge >> 32], &b = mesh.vertices[edge & 0xffffffffU];
+    if (a.z == height) return a.onFloor();
+    if (b.z == height) return b.onFloor();
+    const double share = (height - a.z) / (b.z - a.z);
+    return {std::clamp(a.x + share * (b.x - a.x), std::min(a.x, b.x), std::max(a.x, b.x)),
+            std::clamp(a.y + share * (b.y - a.y), std::min(a.y, b.y), std::max(a.y, b.y))};
+}
+
+/// Strings arcs together over the edges they share.
+class Tracer {
+  public:
+    Tracer(const Mesh& mesh, double height, const std::vector<Arc>& arcs)
+        : links_(2 * arcs.size(), kNone) {
+        std::vector<EdgeKey> keys;
+        keys.reserve(2 * arcs.size());
+        for (const Arc& arc : arcs) {
+            keys.push_back(arc.from);
+            keys.push_back(arc.to);
+        }
+        std::vector<EdgeKey> nodes = keys;
+        std::sort(nodes.begin(), nodes.end());
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        places_.reserve(nodes.size());
+        for (const EdgeKey node : nodes) places_.push_back(placeOn(mesh, node, height));
+        node_of_.reserve(keys.size());
+        for (const EdgeKey key : keys)
+            node_of_.push_back(static_cast<std::size_t>(
+                std::lower_bound(nodes.begin(), nodes.end(), key) - nodes.begin()));
+        link();
+    }
+
+    Curves trace() {
+        Curves curves;
+        used_.assign(links_.size() / 2, false);
+        for (std::size_t end = 0; end < links_.size(); ++end)
+            if (links_[end] == kNone && !used_[end / 2]) follow(end, curves);
+        for (std::size_t end = 0; end < links_.size(); end += 2)
+            if (!used_[end / 2]) follow(end, curves);
+        return curves;
+    }
+
+  private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    // Arc i has the ends 2i (where it begins) and 2i + 1.
+    static std::size_t otherEnd(std::size_t end) { return end ^ 1; }
+
+    /// Joins the ends at each node in pairs: one that arrives with one that leaves as far as there
+    /// are such, else any two (their triangles disagree about their outside).
+    void link() {
+        std::vector<std::size_t> order(node_of_.size());
+        for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+        std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+            return std::pair(node_of_[a], a) < std::pair(node_of_[b], b);
+        });
+        std::vector<std::size_t> waiting;
+        for (std::size_t i = 0; i < order.size();) {
+            const std::size_t node = node_of_[order[i]];
+            std::size_t last = i;
+            while (last < order.size() && node_of_[order[last]] == node) ++last;
+            waiting.clear();
+            for (std::size_t k = i; k < last; ++k) pairUp(order[k], waiting);
+            for (std::size_t k = 0; k + 1 < waiting.size(); k += 2)
+                join(waiting[k], waiting[k + 1]);
+            i = last;
+        }
+    }
+
+    /// All that wait arrive, or all leave.
+    void pairUp(std::size_t end, std::vector<std::size_t>& waiting) {
+        if (waiting.empty() || waiting.back() % 2 == end % 2) {
+            waiting.push_back(end);
+            return;
+        }
+        join(waiting.back(), end);
+        waiting.pop_back();
+    }
+
+    void join(std::size_t a, std::size_t b) {
+        links_[a] = b;
+        links_[b] = a;
+    }
+
+    /// Walks from this end on; closed where it comes back to it.
+    void follow(std::size_t start, Curves& curves) {
+        std::vector<std::size_t> nodes;
+        std::ptrdiff_t forward = 0;
+        std::size_t end = start;
+        bool closed = true;
+        do {
+            used_[end / 2] = true;
+            forward += end % 2 == 0 ? 1 : -1;
+            nodes.push_back(node_of_[end]);
+            const std::size_t far = otherEnd(end);
+            end = links_[far];
+            if (end == kNone) {
+                nodes.push_back(node_of_[far]);
+                closed = false;
+            }
+        } while (end != kNone && end != start);
+        if (forward < 0) std::reverse(nodes.begin(), nodes.end());
+        if (closed)
+            addClosed(nodes, curves);
+        else
+            addOpen(nodes, curves);
+    }
+
+    void addOpen(const std::vector<std::size_t>& nodes, Curves& curves) const {
+        for (std::size_t i = 1; i < nodes.size(); ++i) {
+            const Segment2 line{places_[nodes[i - 1]], places_[nodes[i]]};
+            if (line.a != line.b) curves.open.push_back(line);
+        }
+    }
+
+    /// Cuts off a loop wherever the curve comes to a node again, so that none passes one twice.
+    void addClosed(const std::vector<std::size_t>& nodes, Curves& curves) {
+        seen_.resize(places_.size(), false);
+        std::vector<std::size_t> way;
+        for (const std::size_t node : nodes) {
+            if (seen_[node]) {
+                std::vector<std::size_t> loop;
+                while (way.back() != node) {
+                    loop.push_back(way.back());
+                    seen_[way.back()] = false;
+                    way.pop_back();
+                }
+                loop.push_back(node);
+                std::reverse(loop.begin(), loop.end());
+                addLoop(loop, curves);
+                continue;
+            }
+            seen_[node] = true;
+            way.push_back(node);
+        }
+        for (const std::size_t node : way) seen_[node] = false;
+        addLoop(way, curves);
+    }
+
+    void addLoop(const std::vector<std::size_t>& nodes, Curves& curves) const {
+        Polygon polygon;
+        for (const std::size_t node : nodes)
+            if (polygon.empty() || polygon.back() != places_[node])
+                polygon.push_back(places_[node]);
+        while (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
+        if (polygon.size() > 2) beginAtLowest(polygon);
+        if (polygon.size() > 2 && signedArea(polygon) != 0) {
+            curves.closed.push_back(std::move(polygon));
+            return;
+        }
+        // A ridge that just reaches the height, or a part without thickness.
+        if (polygon.size() == 2) {
+            curves.open.push_back({polygon[0], polygon[1]});
+        } else if (polygon.size() > 2) {
+            forEachEdge(polygon, [&](const Segment2& line) { curves.open.push_back(line); });
+        }
+    }
+
+    std::vector<Point2> places_;        // of the nodes
+    std::vector<std::size_t> node_of_;  // of each end
+    std::vector<std::size_t> links_;    // the end that each goes on with
+    std::vector<bool> used_;            // arcs
+    std::vector<bool> seen_;            // nodes on the way
+};
+
+Curves curvesOf(const Mesh& mesh, double height, Moved moved) {
+    const std::vector<Arc> arcs = arcsOf(mesh, verticesAbove(mesh, height, moved));
+    return arcs.empty() ? Curves() : Tracer(mesh, height, arcs).trace();
+}
+
+struct PolygonLess {
+    bool operator()(const Polygon& a, const Polygon& b) const {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), lexLess);
+    }
+};
+
+void cutMesh(const Mesh& mesh, double height, Slice& out) {
+    Curves curves = curvesOf(mesh, height, Moved::Down);
+    const std::vector<Polygon> solids = joinCavities(std::move(curves.closed));
+    out.solids.insert(out.solids.end(), solids.begin(), solids.end());
+    out.sheets.insert(out.sheets.end(), curves.open.begin(), curves.open.end());
+    // Where vertices lie at the very height, what begins there counts as well as what ends there.
+    const bool is_between = std::none_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                         [height](const Point3& p) { return p.z == height; });
+    if (is_between) return;
+    Curves more = curvesOf(mesh, height, Moved::Up);
+    const std::set<Polygon, PolygonLess> known(solids.begin(), solids.end());
+    for (Polygon& solid : joinCavities(std::move(more.closed)))
+        if (!known.contains(solid)) out.solids.push_back(std::move(solid));
+    // From left to right, so that both ways along a line are the same.
+    const auto ordered = [](const Segment2& s) {
+        return lexLess(s.b, s.a) ? Polygon{s.b, s.a} : Polygon{s.a, s.b};
+    };
+    std::set<Polygon, PolygonLess> known_lines;
+    for (const Segment2& line : curves.open) known_lines.insert(ordered(line));
+    for (const Segment2& line : more.open)
+        if (!known_lines.contains(ordered(line))) out.sheets.push_back(line);
+}
+
+}  // namespace
+
+void cutMeshes(const Body& body, double height, Slice& out) {
+    for (const Mesh& mesh : body.meshes) cutMesh(mesh, height, out);
+}
+
+}  // namespace ispace

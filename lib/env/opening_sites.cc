@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/opening_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/suggest.h"
+#include "env/check.h"
+#include "env/openings.h"
+#include "env/texts.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+
+namespace {
+
+/// Walls count as parallel to a heading within a degree, and to the way from `from` to `to` within
+/// thirty, since its ends may be off the line.
+constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
+/// A wall is looked for at most this far from its mid-line, however thick it is.
+constexpr double kFarthestFace = 1;
+
+Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
+
+OpeningSite siteAround(std::size_t line, double middle, const Record& record) {
+    const double half = record.tuple("size")[0] / 2;
+    return {line, middle - half, middle + half};
+}
+
+}  // namespace
+
+OpeningSites::OpeningSites(std::span<const Element> elements, const WallPlan& plan,
+                           Diagnostics& findings)
+    : elements_(elements), plan_(plan), findings_(findings), grid_(plan.lines, kWeldDistance) {
+    starts_.reserve(plan.lines.size() + 1);
+    starts_.push_back(0);
+    for (const auto& [a, b] : plan.lines) starts_.push_back(starts_.back() + distance(a, b));
+    by_id_.reserve(elements.size());
+    for (std::size_t i = 0; i < elements.size(); ++i) by_id_.emplace_back(elements[i].id, i);
+    std::sort(by_id_.begin(), by_id_.end());
+}
+
+std::optional<OpeningSite> OpeningSites::find(const Element& opening) const {
+    if (!hasOnePlace(opening.record)) return std::nullopt;
+    const auto lines = linesOf(opening);
+    if (!lines) return std::nullopt;
+    if (opening.record.has("offset")) return byOffset(opening, *lines);
+    if (opening.record.has("at")) return byPoint(opening, *lines);
+    return byEnds(opening, *lines);
+}
+
+void OpeningSites::fail(const Element& opening, std::string_view key, std::string message) const {
+    findings_.add(opening.record.finding(key, std::move(message)));
+}
+
+bool OpeningSites::hasOnePlace(const Record& record) const {
+    const bool by_ends = record.has("from") || record.has("to");
+    const auto fail_at = [&](std::string_view key, std::string message) {
+        findings_.add(record.finding(key, std::move(message)));
+        return false;
+    };
+    const auto twice = [&](std::string_view key, const std::string& other) {
+        return fail_at(key, record.keyword() + " has " + other + " and also `" + std::string(key) +
+                                "`: give its place one way only");
+    };
+    if (record.has("at") && record.has("offset")) return twice("at", "`offset`");
+    if (record.has("at") && by_ends) return twice("at", "`from`/`to`");
+    if (record.has("offset") && by_ends) return twice("offset", "`from`/`to`");
+    if (by_ends && !record.has("to"))
+        return fail_at("from", "`from` and `to` belong together: `to` is missing");
+    if (by_ends && !record.has("from"))
+        return fail_at("to", "`from` and `to` belong together: `from` is missing");
+    if (record.has("offset") && !record.has("wall"))
+        return fail_at("offset", "`offset` counts along a wall: give `wall` too");
+    if (by_ends || record.has("offset") || record.has("at")) return true;
+    findings_.add(record.finding(
+        record.keyword() + " has no place: give `wall` and `offset`, or `at`, or `from` and `to`"));
+    return false;
+}
+
+std::optional<OpeningSites::Lines> OpeningSites::linesOf(const Element& opening) const {
+    if (!opening.record.has("wall")) return Lines{0, plan_.lines.size()};
+    const std::string& id = opening.record.text("wall");
+    const auto found = std::lower_bound(
+        by_id_.begin(), by_id_.end(), id,
+        [](const auto& entry, const std::string& wanted) { return entry.first < wanted; });
+    if (found == by_id_.end() || found->first != id) {
+        fail(opening, "wall", "`wall`: nothing has the id `" + id + '`' + hintFor(id));
+        return std::nullopt;
+    }
+    const Element& wall = elements_[found->second];
+    if (!isWall(wall.record)) {
+        fail(opening, "wall",
+             "`wall`: " + id + " is a " + wall.record.keyword() + "; a " +
+                 opening.record.keyword() + " is in a wall, fence or ispace");
+        return std::nullopt;
+    }
+    const auto [first, last] =
+        std::equal_range(plan_.owner.begin(), plan_.owner.end(), found->second);
+    if (first == last) return std::nullopt;  // that has a finding of its own
+    return Lines{static_cast<std::size_t>(first - plan_.owner.begin()),
+                 static_cast<std::size_t>(last - plan_.owner.begin()), &wall};
+}
+
+std::string OpeningSites::hintFor(const std::string& id) const {
+    if (findings_.full()) return "";
+    std::vector<std::string> known;
+    for (const Element& element : elements_)
+        if (isWall(element.record)) known.push_back(element.id);
+    return didYouMean(id, known);
+}
+
+std::optional<OpeningSite> OpeningSites::byOffset(const Element& opening,
+                                                  const Lines& lines) const {
+    const double offset = opening.record.number("offset");
+    const double total = starts_[lines.last] - starts_[lines.first];
+    if (offset > total + kFitDistance) {
+        fail(opening, "offset",
+             "`offset` of " + lengthText(offset) + " m lies beyond the end of " +
+                 nameOf(*lines.wall) + ", which is " + lengthText(total) + " m long");
+        return std::nullopt;
+    }
+    const auto ends = starts_.begin() + 1;
+    const auto end = std::lower_bound(ends + static_cast<std::ptrdiff_t>(lines.first),
+                                      ends + static_cast<std::ptrdiff_t>(lines.last) - 1,
+                                      starts_[lines.first] + offset);
+    const auto line = static_cast<std::size_t>(end - ends);
+    return siteAround(line, starts_[lines.first] + offset - starts_[line], opening.record);
+}
+
+double OpeningSites::along(std::size_t line, Point2 p) const {
+    const auto& [a, b] = plan_.lines[line];
+    return dot(p - a, b - a) / distance(a, b);
+}
+
+/// By how much the site sticks out of its line.
+double OpeningSites::excess(const OpeningSite& site) const {
+    const auto& [a, b] = plan_.lines[site.line];
+    return std::max(0.0, -site.from) + std::max(0.0, site.to - distance(a, b));
+}
+
+/// How far off a line its openings may be given.
+double OpeningSites::reach(std::size_t line) const {
+    return std::max(kNearWall,
+                    std::min(plan_.walls[line].thickness / 2, kFarthestFace) + kNearFace);
+}
+
+bool OpeningSites::isParallel(std::size_t line, Vec2 direction, double within) const {
+    const Vec2 own = plan_.lines[line].b - plan_.lines[line].a;
+    return std::abs(cross(own, direction)) <= std::sin(within) * length(own) * length(direction);
+}
+
+/// Of the lines around p that are allowed(line) and within reach by off(line), that with the least;
+/// of equally near ones that where site_on(line) sticks out least, then the first.
+template <typename Allowed, typename Off, typename SiteOn>
+std::optional<OpeningSite> OpeningSites::nearest(Point2 p, Allowed allowed, Off off,
+                                                 SiteOn site_on) const {
+    constexpr double kReach = kFarthestFace + kNearFace;
+    std::vector<std::pair<double, std::size_t>> near;
+    double least = std::numeric_limits<double>::infinity();
+    const auto look = [&](std::span<const std::uint32_t> cell) {
+        for (const std::uint32_t line : cell) {
+            if (!allowed(line)) continue;
+            const double d = off(line);
+            if (d > reach(line) || d > least + kWeldDistance) continue;
+            least = std::min(least, d);
+            near.emplace_back(d, line);
+        }
+    };
+    grid_.searchBox({{p.x - kReach, p.y - kReach}, {p.x + kReach, p.y + kReach}}, look);
+    std::optional<OpeningSite> best;
+    for (const auto& [d, line] : near) {
+        if (d > least + kWeldDistance || (best && best->line == line)) continue;
+        const OpeningSite site = site_on(line);
+        const double more = best ? excess(site) - excess(*best) : -1;
+        if (more < -kWeldDistance || (more <= kWeldDistance && line < best->line)) best = site;
+    }
+    return best;
+}
+
+std::optional<OpeningSite> OpeningSites::byPoint(const Element& opening, const Lines& lines) const {
+    const Record& record = opening.record;
+    const Point2 at = pointOf(record.tuple("at"));
+    const bool turned = record.has("heading");
+    const Vec2 heading = turned ? unitVector(record.angle("heading")) : Vec2{1, 0};
+    const auto allowed = [&](std::size_t line) {
+        return lines.first <= line && line < lines.last &&
+               (!turned || isParallel(line, heading, kParallel));
+    };
+    const auto off = [&](std::size_t line) { return distance(at, plan_.lines[line]); };
+    const auto site_on = [&](std::size_t line) {
+        return siteAround(line, along(line, at), record);
+    };
+    const auto site = nearest(at, allowed, off, site_on);
+    if (!site) tellNearest(opening, "at", at, lines, allowed);
+    return site;
+}
+
+std::optional<OpeningSite> OpeningSites::byEnds(const Element& opening, const Lines& lines) const {
+    const Record& record = opening.record;
+    const Point2 from = pointOf(record.tuple("from")), to = pointOf(record.tuple("to"));
+    const double width = distance(from, to);
+    if (width <= kFitDistance) {
+        fail(opening, "to", record.keyword() + " has zero width");
+        return std::nullopt;
+    }
+    if (record.has("size") && std::abs(record.tuple("size")[0] - width) > kFitDistance) {
+        fail(opening, "size",
+             record.keyword() + " is " + lengthText(width) + " m wide by `from` and `to`, and " +
+                 lengthText(record.tuple("size")[0]) + " m by `size`");
+        return std::nullopt;
+    }
+    const Point2 middle = from + 0.5 * (to - from);
+    const auto allowed = [&](std::size_t line) {
+        return lines.first <= line && line < lines.last &&
+               isParallel(line, to - from, kAlmostParallel);
+    };
+    // Off the line to its sides: what sticks out beyond its ends is told later.
+    const auto off = [&](std::size_t line) {
+        const auto& [a, b] = plan_.lines[line];
+        const Vec2 side = (1 / distance(a, b)) * perpendicular(b - a);
+        return std::max({distance(middle, plan_.lines[line]), std::abs(dot(from - a, side)),
+                         std::abs(dot(to - a, side))});
+    };
+    const auto site_on = [&](std::size_t line) {
+        const auto [low, high] = std::minmax({along(line, from), along(line, to)});
+        return OpeningSite{line, low, high};
+    };
+    const auto site = nearest(middle, allowed, off, site_on);
+    if (!site) tellNearest(opening, "from", middle, lines, allowed);
+    return site;
+}
+
+template <typename Allowed>
+void OpeningSites::tellNearest(const Element& opening, std::string_view key, Point2 p,
+                               const Lines& lines, Allowed allowed) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::size_t nearest_line = 0;
+    const auto look = [&](std::span<const std::uint32_t> cell) {
+        for (const std::uint32_t line : cell) {
+            if (!allowed(line)) continue;
+            const double d = distance(p, plan_.lines[line]);
+            if (d > nearest || (d == nearest && line >= nearest_line)) continue;
+            nearest = d;
+            nearest_line = line;
+        }
+    };
+    // Of what is not shown only the number counts.
+    if (!findings_.full()) grid_.searchFrom(p, look, [&](double seen) { return nearest <= seen; });
+    std::string message = nameOf(opening) + " at " + placeText(p) + " is not on ";
+    message += lines.wall != nullptr ? nameOf(*lines.wall) : "a wall";
+    if (nearest == std::numeric_limits<double>::infinity()) {
+        message += ": none has that direction";
+    } else {
+        message += ": the nearest ";
+        if (lines.wall == nullptr)
+            message += "is " + nameOf(elements_[plan_.owner[nearest_line]]) + ", ";
+        else
+            message += "point of it is ";
+        message += lengthText(nearest) + " m away";
+    }
+    fail(opening, key, std::move(message));
+}
+
+}  // namespace ispace

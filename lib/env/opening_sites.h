@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "env/environment.h"
+#include "env/walls.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+/// A place given for an opening lies on a wall if it is this near to its line, or this near to the
+/// faces of a thick one.
+constexpr double kNearWall = 0.3, kNearFace = 0.1;
+
+/// Where an opening is to be: on which line, and its ends along it; they may lie beyond the line's.
+struct OpeningSite {
+    std::size_t line = 0;
+    double from = 0, to = 0;
+};
+
+/// Finds the wall lines that `door` and `window` records mean.
+class OpeningSites {
+  public:
+    /// Keeps what it is given.
+    OpeningSites(std::span<const Element> elements, const WallPlan& plan, Diagnostics& findings);
+
+    /// Nothing, with a finding, if the record names no place on a wall, or several; nothing,
+    /// without one, if its wall has no lines. O(log n) where lines do not crowd.
+    [[nodiscard]] std::optional<OpeningSite> find(const Element& opening) const;
+
+  private:
+    /// The lines that a record may mean.
+    struct Lines {
+        std::size_t first = 0, last = 0;
+        const Element* wall = nullptr;  ///< whose they are, if it is written
+    };
+
+    void fail(const Element& opening, std::string_view key, std::string message) const;
+    [[nodiscard]] bool hasOnePlace(const Record& record) const;
+    [[nodiscard]] std::optional<Lines> linesOf(const Element& opening) const;
+    [[nodiscard]] std::string hintFor(const std::string& id) const;
+    [[nodiscard]] std::optional<OpeningSite> byOffset(const Element& opening,
+                                                      const Lines& lines) const;
+    [[nodiscard]] std::optional<OpeningSite> byPoint(const Element& opening,
+                                                     const Lines& lines) const;
+    [[nodiscard]] std::optional<OpeningSite> byEnds(const Element& opening,
+                                                    const Lines& lines) const;
+    [[nodiscard]] double along(std::size_t line, Point2 p) const;
+    [[nodiscard]] double excess(const OpeningSite& site) const;
+    [[nodiscard]] double reach(std::size_t line) const;
+    [[nodiscard]] bool isParallel(std::size_t line, Vec2 direction, double within) const;
+    template <typename Allowed, typename Off, typename SiteOn>
+    [[nodiscard]] std::optional<OpeningSite> nearest(Point2 p, Allowed allowed, Off off,
+                                                     SiteOn site_on) const;
+    template <typename Allowed>
+    void tellNearest(const Element& opening, std::string_view key, Point2 p, const Lines& lines,
+                     Allowed allowed) const;
+
+    std::span<const Element> elements_;
+    const WallPlan& plan_;
+    Diagnostics& findings_;
+    SegmentGrid grid_;
+    std::vector<double> starts_;  // of each line when all are laid end to end, and the end
+    std::vector<std::pair<std::string_view, std::size_t>> by_id_;
+};
+
+}  // namespace ispace
