@@ -3,9 +3,10 @@
 
 #include <map>
 #include <utility>
+#include <variant>
 
-#include "base/suggest.h"
-#include "env/body.h"
+#include "base/number.h"
+#include "layout/carriers.h"
 #include "record/digest.h"
 #include "record/text.h"
 
@@ -15,103 +16,95 @@ namespace {
 
 bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
 
-/// Everything in a scene by its id: what `on` of a sensor may mean.
-class Carriers {
-  public:
-    Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
-        std::size_t robots = 0;
-        for (std::size_t i = 0; i < records.size(); ++i) {
-            const bool is_robot = records[i].keyword() == "robot";
-            things_.emplace(ids[i], Thing{&records[i], robots});
-            if (is_robot) ++robots;
-            if (is_robot || isObject(records[i])) candidates_.push_back(ids[i]);
-        }
-    }
+/// What is placed, and the sensors that are not.
+struct Placements {
+    std::vector<PlacedLaser> lasers;
+    std::vector<PendingLaser> pending;
+    std::vector<PlacedRobot> robots;
+    std::vector<Placed> placed;
+};
 
-    /// Where a sensor with `on` is. \throws FormatError if that names no carrier
-    [[nodiscard]] PlacedLaser place(const Record& sensor, std::string id, Laser laser) const {
-        const std::string& on = sensor.text("on");
-        const auto found = things_.find(on);
-        if (found == things_.end())
-            throw FormatError(sensor.finding(
-                "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
-        const auto& [record, robot] = found->second;
-        const Pose2 carrier = floorPoseOf(carrierRecord(sensor, *record));
-        Pose3 local = poseOf(sensor);
-        if (record->keyword() == "robot")
-            return {std::move(id), std::move(laser), mountedPose(carrier, local),
-                    Mount{robot, local}};
-        local.position.z += topOf(bodyOf(*record));
-        return {std::move(id), std::move(laser), mountedPose(carrier, local)};
+Pose3 onFloor(const Pose2& pose) {
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
+/// As far as figures of sensors are looked at before they are simulated.
+void checkFigures(const Record& sensor, const DeviceCatalogue& devices) {
+    static_cast<void>(deviceOf(sensor, devices));
+    if (sensor.schema().find("range") == nullptr || !sensor.has("range")) return;
+    const Value& value = *sensor.find("range");
+    const Tuple* range = std::get_if<Tuple>(&value);
+    if (range == nullptr) return;
+    if (range->back() <= 0)
+        throw FormatError(sensor.finding("range", "the greatest range is 0, it must be above 0"));
+    if (range->front() > range->back())
+        throw FormatError(sensor.finding(
+            "range", "the least range " + formatDouble(range->front()) +
+                         " m is above the greatest, " + formatDouble(range->back()) + " m"));
+}
+
+/// Resolves the placement records, one after another.
+class Resolver {
+  public:
+    Resolver(const std::vector<Record>& records, const std::vector<std::string>& ids,
+             const DeviceCatalogue& devices)
+        : records_(records), ids_(ids), devices_(devices), carriers_(records, ids) {}
+
+    Placements resolve(Diagnostics& findings) {
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            if (records_[i].schema().type != RecordType::Placement) continue;
+            try {
+                add(i);
+            } catch (const FormatError& error) {
+                findings.add(error);
+            }
+        }
+        return std::move(out_);
     }
 
   private:
-    struct Thing {
-        const Record* record;
-        std::size_t robot;  // index among the robots, if it is one
-    };
-
-    /// Furniture, pillars and the like: they have a top, and stand somewhere.
-    static bool isObject(const Record& record) {
-        const RecordType type = record.schema().type;
-        return type == RecordType::Other || type == RecordType::Infra;
-    }
-
-    static const Record& carrierRecord(const Record& sensor, const Record& record) {
-        if (record.keyword() == "robot" || isObject(record)) return record;
-        throw FormatError(sensor.finding("on", "`on`: `" + sensor.text("on") + "` is a `" +
-                                                   record.keyword() +
-                                                   "`; only robots and objects carry sensors"));
-    }
-
-    std::map<std::string, Thing> things_;
-    std::vector<std::string> candidates_;  // ids, for hints
-};
-
-std::vector<PlacedRobot> resolveRobots(const std::vector<Record>& records,
-                                       const std::vector<std::string>& ids,
-                                       const DeviceCatalogue& devices, Diagnostics& findings) {
-    std::vector<PlacedRobot> robots;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const Record& record = records[i];
-        if (record.keyword() != "robot") continue;
-        try {
-            robots.push_back(
-                {ids[i], robotOf(record, devices), floorPoseOf(record), record.place()});
-        } catch (const FormatError& error) {
-            findings.add(error);
+    void add(std::size_t i) {
+        const Record& record = records_[i];
+        if (record.keyword() == "laser") {
+            addLaser(i);
+        } else if (record.keyword() == "robot") {
+            RobotModel model = robotOf(record, devices_);
+            const Pose2 pose = floorPoseOf(record);
+            out_.placed.push_back({i, onFloor(pose), out_.robots.size()});
+            out_.robots.push_back({ids_[i], std::move(model), pose, record.place()});
+        } else if (record.schema().find("on") != nullptr) {
+            checkFigures(record, devices_);
+            if (auto place = placeOf(record))
+                out_.placed.push_back({i, place->pose, 0, place->mount});
+        } else {
+            out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }
     }
-    return robots;
-}
 
-struct Lasers {
-    std::vector<PlacedLaser> placed;
-    std::vector<PendingLaser> pending;
-};
-
-Lasers resolveLasers(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                     const DeviceCatalogue& devices, Diagnostics& findings) {
-    Lasers lasers;
-    const Carriers carriers(records, ids);
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const Record& record = records[i];
-        if (record.keyword() != "laser") continue;
-        try {
-            Laser laser = laserOf(record, devices);
-            if (record.has("on")) {
-                lasers.placed.push_back(carriers.place(record, ids[i], std::move(laser)));
-            } else if (record.has("at")) {
-                lasers.placed.push_back({ids[i], std::move(laser), poseOf(record)});
-            } else {
-                lasers.pending.push_back({ids[i], record, std::move(laser)});
-            }
-        } catch (const FormatError& error) {
-            findings.add(error);
+    void addLaser(std::size_t i) {
+        const Record& record = records_[i];
+        Laser laser = laserOf(record, devices_);
+        if (auto place = placeOf(record)) {
+            out_.placed.push_back({i, place->pose, out_.lasers.size(), place->mount});
+            out_.lasers.push_back({ids_[i], std::move(laser), place->pose, place->mount});
+        } else {
+            out_.pending.push_back({ids_[i], record, std::move(laser)});
         }
     }
-    return lasers;
-}
+
+    /// Of a sensor; nothing if it is still to be placed.
+    std::optional<Carriers::Place> placeOf(const Record& sensor) {
+        if (sensor.has("on")) return carriers_.place(sensor);
+        if (sensor.has("at")) return Carriers::Place{poseOf(sensor), std::nullopt};
+        return std::nullopt;
+    }
+
+    const std::vector<Record>& records_;
+    const std::vector<std::string>& ids_;
+    const DeviceCatalogue& devices_;
+    Carriers carriers_;
+    Placements out_;
+};
 
 /// Throws what is wrong with the room together with the findings about sensors.
 Environment makeEnvironment(const std::vector<Record>& records, const std::vector<std::string>& ids,
@@ -154,17 +147,16 @@ Scene makeScene(const Document& environment, const Document* layout,
     std::erase_if(records, isMeta);
     std::vector<std::string> ids = assignIds(records);
     Diagnostics findings;
-    std::vector<PlacedRobot> robots = resolveRobots(records, ids, devices, findings);
-    Lasers lasers = resolveLasers(records, ids, devices, findings);
+    Placements placements = Resolver(records, ids, devices).resolve(findings);
     Environment room = makeEnvironment(records, ids, findings);
     return {.records = std::move(records),
             .ids = std::move(ids),
             .environment = std::move(room),
             .digest = environmentDigest(environment.records),
-            .lasers = std::move(lasers.placed),
-            .pending = std::move(lasers.pending),
-            .robots = std::move(robots),
-            .placed = {}};
+            .lasers = std::move(placements.lasers),
+            .pending = std::move(placements.pending),
+            .robots = std::move(placements.robots),
+            .placed = std::move(placements.placed)};
 }
 
 std::optional<EnvironmentReference> environmentReference(const Document& layout) {

@@ -24,7 +24,9 @@ struct PendingLaser {
 /// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
 struct Placed {
     std::size_t record = 0;  ///< index in Scene::records
-    Pose3 pose;              ///< in the world; of a robot or person on the floor
+    Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
+    std::size_t index = 0;   ///< in Scene::lasers of a laser, in Scene::robots of a robot
+    std::optional<Mount> mount = {};  ///< of a sensor on a robot
 };
 
 /// Environment and layout, joined and resolved: what the tools read.

@@ -152,6 +152,79 @@ TEST(MakeScene, SensorsOnObjectsStandOnTheirTop) {
     EXPECT_DOUBLE_EQ(made.lasers[2].pose.position.z, 1.5);
 }
 
+TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
+    const Scene made = scene(kRoom,
+                             "human at=3,3 heading=90\n"
+                             "laser id=a at=1,2\n"
+                             "camera id=wait\n"
+                             "ranger id=k on=r at=0.1,0,0.4 heading=10 tilt=-5\n"
+                             "ultrasound id=u at=2,2,2.4 tilt=-90\n"
+                             "laser id=later\n"
+                             "robot id=r at=2,4 heading=90\n"
+                             "tag id=t on=r at=0,0,0.3\n"
+                             "camera id=c on=d at=0,0,0.1 roll=5\n"
+                             "mat at=1,1\nrobot id=s at=6,2\n"
+                             "gate at=5,1 heading=-90\n"
+                             "laser id=b on=s\n");
+    std::vector<std::string> ids;
+    for (const Placed& placed : made.placed) ids.push_back(made.ids[placed.record]);
+    EXPECT_EQ(ids, (std::vector<std::string>{"human1", "a", "k", "u", "r", "t", "c", "mat1", "s",
+                                             "gate1", "b"}));
+    const auto& placed = made.placed;
+    EXPECT_EQ(placed[0].pose, (Pose3{{3, 3, 0}, Angle::degrees(90), {}, {}}));
+    EXPECT_EQ(placed[1].pose, made.lasers[0].pose);
+    EXPECT_EQ(placed[1].index, 0U);
+    EXPECT_FALSE(placed[1].mount);
+    // In the frame of the robot at 2,4 that faces +y.
+    EXPECT_NEAR(placed[2].pose.position.x, 2, 1e-12);
+    EXPECT_NEAR(placed[2].pose.position.y, 4.1, 1e-12);
+    EXPECT_EQ(placed[2].pose.position.z, 0.4);
+    EXPECT_EQ(placed[2].pose.heading.degrees(), 100);
+    EXPECT_EQ(placed[2].pose.tilt.degrees(), -5);
+    ASSERT_TRUE(placed[2].mount);
+    EXPECT_EQ(placed[2].mount->robot, 0U);
+    EXPECT_EQ(placed[3].pose.position, (Point3{2, 2, 2.4}));
+    EXPECT_EQ(placed[4].pose, (Pose3{{2, 4, 0}, Angle::degrees(90), {}, {}}));
+    EXPECT_EQ(placed[4].index, 0U);
+    EXPECT_TRUE(placed[5].mount);
+    // On the desk of 0.7 m.
+    EXPECT_DOUBLE_EQ(placed[6].pose.position.z, 0.8);
+    EXPECT_EQ(placed[6].pose.roll.degrees(), 5);
+    EXPECT_FALSE(placed[6].mount);
+    EXPECT_EQ(placed[7].pose.position, (Point3{1, 1, 0}));
+    EXPECT_EQ(placed[8].index, 1U);
+    EXPECT_EQ(placed[9].pose.heading.degrees(), -90);
+    EXPECT_EQ(placed[10].index, 1U);
+    EXPECT_EQ(placed[10].pose, made.lasers[1].pose);
+    EXPECT_EQ(placed[10].mount->robot, 1U);
+    EXPECT_EQ(made.pending.size(), 1U) << "only lasers can be placed so far";
+}
+
+TEST(MakeScene, CarriersOfAllSensors) {
+    for (const char* keyword : {"ranger", "camera", "ultrasound", "tag"}) {
+        const std::string line(keyword);
+        EXPECT_EQ(sceneFindings(kRoom, "robot id=rover\n" + line + " on=rovre at=0,0\n"),
+                  "room.3dm:3:" + std::to_string(line.size() + 5) +
+                      ": error: `on`: nothing has the id `rovre`, did you mean `rover`?\n");
+        EXPECT_NE(sceneFindings(kRoom, line + " on=room\n").find("is a `ispace`"),
+                  std::string::npos);
+        EXPECT_EQ(sceneFindings(kRoom, line + " on=d\n"), "");
+    }
+    const std::string model = sceneFindings(kRoom, "camera model=eye at=1,1\n");
+    EXPECT_EQ(model.find("room.3dm:2:14: error: unknown model `eye`"), 0U) << model;
+    EXPECT_NE(sceneFindings(kRoom, "ranger range=3,2 at=1,1\n").find("least range 3 m"),
+              std::string::npos);
+    EXPECT_NE(sceneFindings(kRoom, "camera range=0\n"), "") << "also where not yet placed";
+    EXPECT_EQ(sceneFindings(kRoom, "ranger range=0.5,4\nultrasound range=8\n"), "");
+}
+
+TEST(MakeScene, SensorsStandOnTheTopOfAnyObject) {
+    const Scene made = scene(kRoom + "boxes id=x at=1,1 height=1.5\ninfra id=f height=2\n",
+                             "laser on=x\nultrasound on=f at=1,0,-0.1 tilt=-90\n");
+    EXPECT_DOUBLE_EQ(made.placed[0].pose.position.z, 1.65);
+    EXPECT_NEAR(made.placed[1].pose.position.z, 1.95, 1e-12);
+}
+
 TEST(MakeScene, OnMustNameACarrier) {
     const std::string unknown = sceneFindings(kRoom, "robot id=rover\nlaser on=rovre at=0,0\n");
     EXPECT_EQ(unknown,

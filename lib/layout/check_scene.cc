@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/check_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "layout/check_parts.h"
+
+namespace ispace {
+
+namespace {
+
+/// All findings of a scene, record by record.
+class SceneCheck {
+  public:
+    explicit SceneCheck(const Scene& scene)
+        : context_(scene), things_(context_), placed_(context_) {
+        crossings_ = wallCrossings(scene.environment.elements(), Diagnostics::kMost + 1);
+    }
+
+    Diagnostics run() {
+        const Scene& scene = context_.scene;
+        std::size_t element = 0, placed = 0;
+        for (std::size_t i = 0; i < scene.records.size() && !findings_.full(); ++i) {
+            if (scene.records[i].schema().isEnvironment()) {
+                checkWalls(element);
+                things_.check(element, findings_);
+                ++element;
+            } else if (placed < scene.placed.size() && scene.placed[placed].record == i) {
+                placed_.check(placed, findings_);
+                ++placed;
+            }
+        }
+        return findings_;
+    }
+
+  private:
+    void checkWalls(std::size_t element) {
+        for (const WallCrossing& crossing : crossings_) {
+            if (crossing.a != element) continue;
+            const std::string what = crossing.overlap ? " lies on " : " crosses ";
+            const std::string cure = crossing.overlap ? "leave one of them out, or shorten it"
+                                                      : "end one of them at the other";
+            findings_.add(context_.finding(element, what + context_.name(crossing.b) + " near " +
+                                                        placeText(crossing.place) + "; " + cure));
+        }
+    }
+
+    CheckContext context_;
+    ThingCheck things_;
+    PlacedCheck placed_;
+    std::vector<WallCrossing> crossings_;
+    Diagnostics findings_;
+};
+
+}  // namespace
+
+Diagnostics checkScene(const Scene& scene) { return SceneCheck(scene).run(); }
+
+}  // namespace ispace

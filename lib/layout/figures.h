@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "env/mesh.h"
+#include "layout/robot.h"
+#include "layout/scene.h"
+
+namespace ispace {
+
+/// The triangles of what is placed, one mesh a material, in its own frame: x forward, z up, origin
+/// at its pose (a sensor's optical centre, on the floor for the others). All are closed and seen
+/// from outside only. They are drawn, but stop neither rays nor robots.
+///
+/// A laser is a small box with a nose where it faces; a ranger and a camera are boxes with lenses;
+/// an ultrasonic receiver is a disc across its axis, a tag a ball; a mat is a thin plate; a gate
+/// two posts across its heading with a head each at the beam's height; a robot is what sensors see
+/// of it, with a nose; a human is figureOfHuman().
+std::vector<Mesh> figureOf(const Scene& scene, const Placed& placed);
+
+/// Body of a laser: a box with a nose that shows where it faces. Size of a URG-04LX.
+Mesh sensorMesh();
+
+/// Body of a robot, centre of rotation on the floor at the origin: the box or cylinder that sensors
+/// see, with a nose.
+Mesh robotMesh(const RobotModel& model);
+
+/// A person as in the thesis (fig. 5.10): a ball for the head, boxes for body and arms, legs as
+/// upright cylinders, so that a level laser at kScanHeight meets two circles. Facing +x, standing
+/// on the floor at the origin; proportions do not change with `height`.
+std::vector<Mesh> figureOfHuman(double height);
+
+/// What a level laser at kScanHeight meets of a person of that height, in the person's frame.
+std::vector<Polygon> legCircles(double height);
+
+/// Radius of the circle about a person of that height that no thing may reach into.
+double humanRadius(double height);
+
+}  // namespace ispace

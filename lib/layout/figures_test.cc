@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "env/mesh_cut.h"
+#include "layout/test_layout.h"
+
+namespace ispace {
+
+using testing::scene;
+
+namespace {
+
+/// Six times the volume that the triangles enclose, positive if they are seen from outside.
+double sixVolumes(const Mesh& mesh) {
+    double sum = 0;
+    for (const auto& [i, j, k] : mesh.triangles)
+        sum += dot(mesh.vertices[i] - Point3(),
+                   cross(mesh.vertices[j] - Point3(), mesh.vertices[k] - Point3()));
+    return sum;
+}
+
+/// Each edge has a triangle on both sides; where the parts of the figure are, they face outwards.
+void expectSolid(const Mesh& mesh, const std::string& what) {
+    EXPECT_FALSE(mesh.triangles.empty()) << what;
+    EXPECT_TRUE(isWatertight(mesh)) << what;
+    EXPECT_FALSE(mesh.open) << what;
+    EXPECT_GT(sixVolumes(mesh), 0) << what;
+}
+
+struct Box3 {
+    Point3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+};
+
+Box3 boundsOf(const std::vector<Mesh>& figure) {
+    Box3 box;
+    for (const Mesh& mesh : figure)
+        for (const Point3& p : mesh.vertices) {
+            box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y),
+                       std::min(box.low.z, p.z)};
+            box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y),
+                        std::max(box.high.z, p.z)};
+        }
+    return box;
+}
+
+std::vector<Mesh> figure(const std::string& line) {
+    const Scene made = scene("ispace size=8,6\n" + line + "\n");
+    return figureOf(made, made.placed.at(0));
+}
+
+TEST(Figures, AreClosedAndFaceOutwards) {
+    for (const char* line :
+         {"laser at=1,1", "ranger at=1,1", "camera at=1,1 tilt=-30",
+          "ultrasound at=1,1,2.4 tilt=-90", "tag at=0,0,0.3", "mat", "mat size=2,0.5", "gate",
+          "gate width=0.01 height=0.01", "robot", "robot size=0.6,0.4,0.3",
+          "robot model=pioneer-2dx", "human", "human height=1.2"}) {
+        const auto meshes = figure(line);
+        ASSERT_FALSE(meshes.empty()) << line;
+        for (const Mesh& mesh : meshes) expectSolid(mesh, line);
+    }
+}
+
+TEST(Figures, RobotIsWhatSensorsSeeWithANose) {
+    RobotModel box;
+    box.length = 0.6;
+    box.width = 0.4;
+    box.height = 0.3;
+    const double nose = 0.05, base = 2 * nose * 0.25 * box.height;
+    EXPECT_NEAR(sixVolumes(robotMesh(box)) / 6, 0.6 * 0.4 * 0.3 + base * 2 * nose / 3, 1e-12);
+    expectSolid(robotMesh(box), "box");
+    expectSolid(robotMesh(RobotModel()), "cylinder");
+    EXPECT_EQ(robotMesh(box).material, Material::Robot);
+    const Box3 extent = boundsOf(figure("robot size=0.6,0.4,0.3 center=0.1"));
+    EXPECT_NEAR(extent.low.x, -0.2, 1e-12);
+    EXPECT_NEAR(extent.high.x, 0.4 + nose, 1e-12);
+    EXPECT_NEAR(extent.high.z, 0.3, 1e-12);
+    EXPECT_EQ(extent.low.z, 0);
+}
+
+TEST(Figures, EachRobotHasItsOwnModel) {
+    const Scene made =
+        scene("ispace size=8,6\n", "robot at=1,1 height=0.5\nlaser on=robot1\nrobot height=0.9\n");
+    ASSERT_EQ(made.placed.size(), 3U);
+    EXPECT_EQ(boundsOf(figureOf(made, made.placed[0])).high.z, 0.5);
+    EXPECT_EQ(boundsOf(figureOf(made, made.placed[2])).high.z, 0.9);
+}
+
+TEST(Figures, SensorsShowWhereTheyFace) {
+    expectSolid(sensorMesh(), "laser");
+    EXPECT_EQ(sensorMesh().material, Material::Sensor);
+    for (const char* line : {"ranger at=0,0", "camera at=0,0", "ultrasound at=0,0"}) {
+        // The front is at the optical centre, and smaller than what lies behind.
+        const auto meshes = figure(line);
+        const Box3 all = boundsOf(meshes), front = boundsOf({meshes.back()});
+        EXPECT_EQ(all.high.x, 0) << line;
+        EXPECT_EQ(front.high.x, 0) << line;
+        EXPECT_LT(all.low.x, -0.02) << line;
+        EXPECT_LT(front.high.z, all.high.z) << line;
+        EXPECT_NE(meshes.front().material, meshes.back().material) << line;
+    }
+    const Box3 ball = boundsOf(figure("tag at=0,0"));
+    EXPECT_DOUBLE_EQ(ball.high.z, 0.025);
+    EXPECT_DOUBLE_EQ(ball.low.z, -0.025);
+}
+
+TEST(Figures, MatAndGateHaveTheirMeasures) {
+    const Box3 mat = boundsOf(figure("mat size=2,0.5"));
+    EXPECT_EQ(mat.low, (Point3{-1, -0.25, 0}));
+    EXPECT_EQ(mat.high.onFloor(), (Point2{1, 0.25}));
+    EXPECT_LT(mat.high.z, 0.02);
+    const auto gate = figure("gate width=1.5 height=0.4");
+    for (const Mesh& mesh : gate)
+        for (const Point3& p : mesh.vertices) {
+            EXPECT_GE(std::abs(p.y), 0.75) << "free between the posts";
+            EXPECT_LE(std::abs(p.y), 0.85);
+            EXPECT_GE(p.z, 0);
+        }
+    const Box3 heads = boundsOf({gate.back()});
+    EXPECT_NEAR((heads.low.z + heads.high.z) / 2, 0.4, 1e-12);
+}
+
+TEST(Figures, HumanIsAsHighAsWritten) {
+    for (const double height : {0.5, 1.2, 1.7, 2.1}) {
+        const Box3 box = boundsOf(figureOfHuman(height));
+        EXPECT_EQ(box.low.z, 0);
+        EXPECT_NEAR(box.high.z, height, 1e-12);
+        EXPECT_NEAR(box.high.y, humanRadius(height), 1e-12);
+        EXPECT_NEAR(box.low.y, -humanRadius(height), 1e-12);
+        EXPECT_LT(box.high.x, humanRadius(height));
+        for (const Mesh& mesh : figureOfHuman(height)) expectSolid(mesh, "human");
+    }
+    EXPECT_EQ(boundsOf(figure("human height=1.2")).high.z, boundsOf(figureOfHuman(1.2)).high.z);
+    EXPECT_NEAR(2 * humanRadius(1.7), 0.51, 1e-9);
+}
+
+TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
+    const auto circles = legCircles(1.7);
+    ASSERT_EQ(circles.size(), 2U);
+    // Right and left, apart from each other, inside the person's circle.
+    EXPECT_LT(bounds(circles[0]).high.y, 0);
+    EXPECT_GT(bounds(circles[1]).low.y, 0);
+    for (const Polygon& circle : circles) {
+        EXPECT_NEAR(signedArea(circle), std::numbers::pi * 0.0595 * 0.0595, 2e-5);
+        for (const Point2 p : circle) EXPECT_LT(distance(p, {}), humanRadius(1.7));
+    }
+    // The figure has them there, too.
+    Body body;
+    body.meshes = figureOfHuman(1.7);
+    Slice slice;
+    cutMeshes(body, kScanHeight, slice);
+    ASSERT_EQ(slice.solids.size(), 2U);
+    EXPECT_TRUE(slice.sheets.empty());
+    for (const Polygon& solid : slice.solids)
+        EXPECT_NEAR(signedArea(solid), signedArea(circles[0]), 1e-9);
+    EXPECT_TRUE(legCircles(0.2).empty()) << "a doll's legs end below";
+}
+
+TEST(Figures, NothingForWhatHasNone) {
+    const Scene made = scene("ispace size=8,6\n");
+    Placed wrong;
+    EXPECT_TRUE(figureOf(made, wrong).empty());
+}
+
+}  // namespace
+}  // namespace ispace
