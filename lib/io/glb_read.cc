@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -9,76 +14,43 @@
 
 #include "base/error.h"
 #include "io/glb.h"
+#include "io/glb_container.h"
+#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr std::string_view kMagic = "glTF";
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN" and a zero
-constexpr std::size_t kHeaderSize = 12;
-constexpr std::size_t kChunkHeaderSize = 8;
-
 [[noreturn]] void fail(const std::string& name, const std::string& message) {
     throw FormatError(Diagnostic{displayName(name), 0, 0, message});
 }
 
-/// Little-endian. \pre four bytes from `at` on
-std::uint32_t word(std::string_view bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;)
-        value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-    return value;
-}
-
-struct Chunks {
-    std::string_view json, binary;
-};
-
-/// Takes the container apart; every length is checked against what is there.
-Chunks chunksOf(std::string_view bytes, const std::string& name) {
-    if (bytes.size() < kHeaderSize)
-        fail(name, "truncated: " + std::to_string(bytes.size()) + " of at least " +
-                       std::to_string(kHeaderSize) + " bytes");
-    if (const std::uint32_t version = word(bytes, 4); version != 2)
-        fail(name, "binary glTF version " + std::to_string(version) + ", wanted 2");
-    const std::size_t length = word(bytes, 8);
-    if (bytes.size() != length)
-        fail(name, (bytes.size() < length ? "truncated: " : "damaged: ") +
-                       std::to_string(bytes.size()) + " of " + std::to_string(length) + " bytes");
-    Chunks chunks;
-    for (std::size_t at = kHeaderSize, index = 0; at < length; ++index) {
-        if (length - at < kChunkHeaderSize) fail(name, "damaged: a chunk header is cut off");
-        const std::size_t size = word(bytes, at);
-        const std::uint32_t type = word(bytes, at + 4);
-        at += kChunkHeaderSize;
-        if (size > length - at)
-            fail(name, "damaged: a chunk of " + std::to_string(size) + " bytes where " +
-                           std::to_string(length - at) + " are left");
-        // Chunks of other kinds are extensions, to be passed over.
-        if (index == 0 && type == kJsonChunk) chunks.json = bytes.substr(at, size);
-        if (index == 1 && type == kBinaryChunk) chunks.binary = bytes.substr(at, size);
-        at += size;
-    }
-    if (chunks.json.empty()) fail(name, "damaged: wanted JSON as the first chunk");
-    return chunks;
-}
-
-/// Takes the few numbers we need out of glTF's JSON as it streams by: the top level's
-/// extras.ispace and bufferViews. The parser keeps no tree and its depth costs no stack, so that
-/// neither size nor nesting of a hostile file matters.
+/// Takes the few numbers we need out of glTF's JSON as it streams by: the top level's extras and
+/// bufferViews. The parser keeps no tree and its depth costs no stack, so that neither size nor
+/// nesting of a hostile file matters; it stops once it has both.
 class Finder : public nlohmann::json_sax<nlohmann::json> {
   public:
     struct View {
         std::uint64_t buffer = 0, offset = 0, length = 0;
     };
+    /// The content of a file, by the views that hold it.
+    struct FileMesh {
+        std::string digest;
+        std::uint64_t positions = kWrong, indices = kWrong;
+    };
     std::optional<std::uint64_t> records;  ///< extras.ispace
+    std::vector<FileMesh> files;           ///< extras.ispace_meshes
     std::vector<View> views;
+    std::size_t error_position = 0;
 
     /// Stands for a value that is no whole number from 0 on: beyond any file.
     static constexpr std::uint64_t kWrong = std::numeric_limits<std::uint64_t>::max();
+
+    /// False for JSON with errors in what was read of it.
+    bool read(std::string_view json) {
+        return nlohmann::json::sax_parse(json.begin(), json.end(), this) || isComplete();
+    }
 
     bool null() override { return take(kWrong); }
     bool boolean(bool /*value*/) override { return take(kWrong); }
@@ -87,18 +59,27 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
     bool number_float(number_float_t /*value*/, const string_t& /*text*/) override {
         return take(kWrong);
     }
-    bool string(string_t& /*value*/) override { return take(kWrong); }
+    bool string(string_t& value) override {
+        if (inFileMesh() && key_ == "digest") files.back().digest = value;
+        return take(kWrong);
+    }
     bool binary(binary_t& /*value*/) override { return take(kWrong); }
 
     bool key(string_t& name) override {
         (depth_ == 1 ? section_ : key_) = name;
+        if (depth_ == 2) member_ = name;
         return true;
     }
     bool start_object(std::size_t /*size*/) override {
-        if (depth_ == 2 && section_ == "bufferViews") views.emplace_back();
-        return open();
+        ++depth_;
+        if (depth_ == 3 && section_ == "bufferViews") views.emplace_back();
+        if (inFileMesh()) files.emplace_back();
+        return true;
     }
-    bool start_array(std::size_t /*size*/) override { return open(); }
+    bool start_array(std::size_t /*size*/) override {
+        ++depth_;
+        return true;
+    }
     bool end_object() override { return close(); }
     bool end_array() override { return close(); }
     bool parse_error(std::size_t position, const std::string& /*token*/,
@@ -106,9 +87,14 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
         error_position = position;
         return false;
     }
-    std::size_t error_position = 0;
 
   private:
+    [[nodiscard]] bool isComplete() const { return records && has_views_; }
+    /// In an object of the list extras.ispace_meshes.
+    [[nodiscard]] bool inFileMesh() const {
+        return depth_ == 4 && section_ == "extras" && member_ == "ispace_meshes";
+    }
+
     bool take(std::uint64_t value) {
         if (depth_ == 2 && section_ == "extras" && key_ == "ispace") records = value;
         if (depth_ == 3 && section_ == "bufferViews" && !views.empty()) {
@@ -116,45 +102,137 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
             if (key_ == "byteOffset") views.back().offset = value;
             if (key_ == "byteLength") views.back().length = value;
         }
-        return true;
-    }
-    bool open() {
-        ++depth_;
-        return true;
-    }
-    bool close() {
-        --depth_;
+        if (inFileMesh() && !files.empty()) {
+            if (key_ == "positions") files.back().positions = value;
+            if (key_ == "indices") files.back().indices = value;
+        }
         return true;
     }
 
+    /// False once everything is there.
+    bool close() {
+        --depth_;
+        if (depth_ == 1 && section_ == "bufferViews") has_views_ = true;
+        return depth_ != 1 || !isComplete();
+    }
+
     std::size_t depth_ = 0;
-    std::string section_, key_;
+    std::string section_, member_, key_;
+    bool has_views_ = false;
+};
+
+/// A file that has records, and what its buffer views hold.
+class Glb {
+  public:
+    Glb(std::string_view bytes, const std::string& name) : name_(name) {
+        if (!isGlb(bytes)) fail(name, "not a binary glTF file: wanted `glTF` at its beginning");
+        const GlbChunks chunks = glbChunks(bytes, name);
+        binary_ = chunks.binary;
+        if (!finder_.read(chunks.json))
+            fail(name, "damaged: bad JSON at byte " + std::to_string(finder_.error_position) +
+                           " of its chunk");
+    }
+
+    [[nodiscard]] bool hasRecords() const { return finder_.records.has_value(); }
+    [[nodiscard]] std::string_view records() const {
+        return viewOf(*finder_.records, "extras.ispace", "the records lie");
+    }
+
+    /// Gives records of files the content that is in this one.
+    void attachMeshes(std::vector<Record>& records) {
+        for (Record& record : records) {
+            if (record.keyword() != "mesh") continue;
+            const std::string digest = record.has("digest") ? record.text("digest") : "";
+            const auto [place, is_new] = meshes_.try_emplace(digest);
+            if (is_new) place->second = meshOf(digest);
+            if (place->second == nullptr)
+                throw FormatError(record.finding(
+                    "digest", "damaged: the content of `" + record.text("file") +
+                                  "` is not in the file; compile the environment anew"));
+            record.setMesh(place->second);
+        }
+    }
+
+  private:
+    [[nodiscard]] std::string_view viewOf(std::uint64_t index, const std::string& key,
+                                          const std::string& content) const {
+        if (index >= finder_.views.size())
+            fail(name_, "damaged: " + key + " names none of the " +
+                            std::to_string(finder_.views.size()) + " buffer views");
+        const Finder::View& view = finder_.views[index];
+        if (view.buffer != 0 || view.offset > binary_.size() ||
+            view.length > binary_.size() - view.offset)
+            fail(name_, "damaged: " + content + " outside of its " +
+                            std::to_string(binary_.size()) + " bytes of data");
+        return binary_.substr(view.offset, view.length);
+    }
+
+    /// Copies a view of three numbers each.
+    template <typename T>
+    void readTriples(std::uint64_t view, std::vector<std::array<T, 3>>& out) {
+        const std::string_view bytes = viewOf(view, "extras.ispace_meshes", "a mesh lies");
+        if (bytes.size() % sizeof out[0] != 0)
+            fail(name_, "damaged: " + std::to_string(bytes.size()) +
+                            " bytes of a mesh, wanted 12 each for points and triangles");
+        // Else a file could have many times its size of meshes.
+        taken_ += bytes.size();
+        if (taken_ > binary_.size()) fail(name_, "damaged: its meshes overlap");
+        out.resize(bytes.size() / sizeof out[0]);
+        if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
+    }
+
+    /// Null if the file has none of this digest.
+    std::shared_ptr<const TriangleMesh> meshOf(const std::string& digest) {
+        const auto file =
+            std::find_if(finder_.files.begin(), finder_.files.end(),
+                         [&](const Finder::FileMesh& f) { return f.digest == digest; });
+        if (digest.empty() || file == finder_.files.end()) return nullptr;
+        const auto mesh = std::make_shared<TriangleMesh>();
+        readTriples(file->positions, mesh->vertices);
+        readTriples(file->indices, mesh->triangles);
+        const auto is_bad = [](float number) { return !std::isfinite(number); };
+        const auto is_beyond = [&mesh](std::uint32_t i) { return i >= mesh->vertices.size(); };
+        for (const auto& point : mesh->vertices)
+            if (std::any_of(point.begin(), point.end(), is_bad))
+                fail(name_, "damaged: a mesh has a point that is no number");
+        for (const auto& corners : mesh->triangles)
+            if (std::any_of(corners.begin(), corners.end(), is_beyond))
+                fail(name_, "damaged: a triangle of a mesh has a corner beyond its " +
+                                std::to_string(mesh->vertices.size()) + " points");
+        mesh->digest = meshDigest(*mesh);
+        if (mesh->digest != digest)
+            fail(name_, "damaged: the content of a mesh has another digest than " + digest);
+        return mesh;
+    }
+
+    const std::string& name_;
+    std::string_view binary_;
+    Finder finder_;
+    std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
+    std::size_t taken_ = 0;  ///< bytes of meshes that were read
 };
 
 }  // namespace
 
-bool isGlb(std::string_view bytes) { return bytes.starts_with(kMagic); }
+bool isGlb(std::string_view bytes) { return bytes.starts_with("glTF"); }
+
+bool glbHasRecords(std::string_view bytes) {
+    try {
+        return Glb(bytes, "").hasRecords();
+    } catch (const FormatError&) {
+        return true;  // for readGlb to explain
+    }
+}
 
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas) {
-    if (!isGlb(bytes)) fail(name, "not a binary glTF file: wanted `glTF` at its beginning");
-    const Chunks chunks = chunksOf(bytes, name);
-    Finder finder;
-    if (!nlohmann::json::sax_parse(chunks.json.begin(), chunks.json.end(), &finder))
-        fail(name, "damaged: bad JSON at byte " + std::to_string(finder.error_position) +
-                       " of its chunk");
-    if (!finder.records)
+    Glb glb(bytes, name);
+    if (!glb.hasRecords())
         fail(name,
              "no ispace records in this glTF file: compile the environment with `envc … -o "
              "room.glb`");
-    if (*finder.records >= finder.views.size())
-        fail(name, "damaged: extras.ispace names none of the " +
-                       std::to_string(finder.views.size()) + " buffer views");
-    const Finder::View view = finder.views[*finder.records];
-    if (view.buffer != 0 || view.offset > chunks.binary.size() ||
-        view.length > chunks.binary.size() - view.offset)
-        fail(name, "damaged: the records lie outside of its " +
-                       std::to_string(chunks.binary.size()) + " bytes of data");
-    return readRecordText(chunks.binary.substr(view.offset, view.length), name, schemas);
+    Document document = readRecordText(glb.records(), name, schemas);
+    glb.attachMeshes(document.records);
+    return document;
 }
 
 }  // namespace ispace

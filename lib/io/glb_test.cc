@@ -124,9 +124,10 @@ TEST(Glb, OneNamedNodePerElementThatIsSeen) {
     const Json json = jsonOf(compiled(kRoom));
     std::vector<std::string> names;
     for (const Json& node : json["nodes"]) names.push_back(node["name"]);
-    EXPECT_EQ(names, (std::vector<std::string>{"floor", "room", "d1", "table1", "c1", "cylinder1",
+    EXPECT_EQ(names, (std::vector<std::string>{"room", "d1", "table1", "c1", "cylinder1", "floor",
                                                "l1", "room"}));
-    EXPECT_EQ(json["nodes"][2]["extras"]["keyword"], "desk");
+    EXPECT_EQ(json["nodes"][1]["extras"]["keyword"], "desk");
+    EXPECT_FALSE(json["nodes"][5].contains("extras"));
     EXPECT_EQ(json["asset"], (Json{{"version", "2.0"}, {"generator", "ispace"}}));
     EXPECT_EQ(json["scenes"][0]["nodes"], Json({7}));
     EXPECT_EQ(json["nodes"][7]["children"].size(), 7U);
@@ -156,6 +157,7 @@ TEST(Glb, AxesAndBounds) {
     }
     EXPECT_NEAR(top, 0.7, 1e-6);
     const Json laser = json["nodes"][6];
+    EXPECT_EQ(laser["name"], "l1");
     EXPECT_EQ(laser["translation"], Json({1.0, 0.5, 0.0}));
 }
 
@@ -294,6 +296,31 @@ TEST(Glb, ForeignAndDamagedFiles) {
     std::string version = container("{}", "");
     version[4] = 1;
     EXPECT_EQ(errorOf(version), "room.glb: error: binary glTF version 1, wanted 2");
+}
+
+/// The rest of the JSON is not looked at once everything is there.
+TEST(Glb, StopsReadingWhereTheRecordsAreFound) {
+    const std::string text = "#env 1\ndesk at=1,2\n";
+    const std::string view =
+        R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(text.size()) + "}]";
+    for (const std::string& head :
+         {R"({"extras":{"ispace":0},)" + view, '{' + view + R"(,"extras":{"ispace":0})"}) {
+        EXPECT_EQ(read(container(head + "}", text)).records.size(), 1U);
+        EXPECT_EQ(read(container(head + ",]]]", text)).records.size(), 1U);
+    }
+    EXPECT_NE(errorOf(container(view.substr(0, 20) + "]]", text)).find("bad JSON"),
+              std::string::npos);
+}
+
+TEST(Glb, TellsItsOwnFilesFromMeshesOfOthers) {
+    const std::string glb = compiled(kRoom);
+    EXPECT_TRUE(glbHasRecords(glb));
+    EXPECT_FALSE(glbHasRecords(container(R"({"asset":{"version":"2.0"}})", "")));
+    EXPECT_FALSE(glbHasRecords(container(R"({"extras":{"other":0},"bufferViews":[{}]})", "")));
+    // What is damaged is for readGlb to explain.
+    EXPECT_TRUE(glbHasRecords(glb.substr(0, 100)));
+    EXPECT_TRUE(glbHasRecords("glTF"));
+    EXPECT_TRUE(glbHasRecords(container("{]", "")));
 }
 
 TEST(Glb, ReadsWhatOthersWroteAnew) {

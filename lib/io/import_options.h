@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct ImportOptions {
     std::vector<std::string> door_layers;    ///< globs; default none
     std::vector<std::string> window_layers;  ///< globs; default none
     bool points = false;                     ///< points of an ARIA map become obstacles
+    std::size_t most_points = 2'000'000;     ///< drawings that come to more are refused
     bool load_meshes = true;                 ///< false: `mesh` records keep their file unread
 };
 

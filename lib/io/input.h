@@ -4,14 +4,17 @@
 #include <string>
 #include <string_view>
 
-#include "io/ros_map.h"
+#include "io/import_options.h"
 #include "record/record.h"
 
 namespace ispace {
 
 /// Reads any environment or layout the library knows, told apart by content: GLB, `#env`, `#3dm`,
-/// ROS map YAML, other YAML. `operand` is a file name or "-".
-/// \throws FormatError (also: empty input, or no format we know, with a hint), std::system_error
+/// YAML, ROS map YAML, HouseExpo JSON, ARIA map, ASCII DXF, and meshes, which become a `mesh`
+/// record (also GLB without records of ours); what no content tells is a mesh if its suffix says
+/// so. `operand` is a file name or "-". Loads the files of `mesh` records unless
+/// ImportOptions::load_meshes is false. \throws FormatError (also: empty input, or no format we
+/// know, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 

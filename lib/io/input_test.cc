@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/test_dxf.h"
 #include "layout/schemas.h"
 #include "record/text.h"
 
@@ -36,7 +37,9 @@ TEST(Input, ToldApartByContent) {
 }
 
 TEST(Input, SaysWhatItWanted) {
-    const std::string wanted = "wanted GLB, `#env 1`, `#3dm 1`, YAML or a ROS map";
+    const std::string wanted =
+        "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, HouseExpo JSON, an ARIA map, DXF or a "
+        "mesh";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :
@@ -46,7 +49,43 @@ TEST(Input, SaysWhatItWanted) {
               "room: error: not an environment or layout but a PGM picture: name the map.yaml that "
               "goes with it");
     EXPECT_EQ(errorOf("\x89PNG\r\n\x1a\n"),
-              "room: error: not an environment or layout but a PNG picture");
+              "room: error: not an environment or layout but a PNG picture: for a ROS map name the "
+              "map.yaml that goes with it");
+}
+
+TEST(Input, ImportsToldApartByContent) {
+    const std::string dxf = drawing(rectangle("W", 0, 0, 4, 3), "", 6);
+    EXPECT_EQ(parse(dxf).records.size(), 2U);
+    EXPECT_EQ(parse("999\n# not a comment\n" + dxf).records.size(), 2U);
+    EXPECT_EQ(parse("2D-Map\r\nLINES\r\n0 0 9 0\r\n9 0 9 9\r\n9 9 0 0\r\n").records.size(), 2U);
+    EXPECT_EQ(parse("{\"verts\": [[0, 0], [1, 0], [0, 1]]}").records.size(), 2U);
+    // JSON is YAML, too.
+    EXPECT_EQ(parse("{\"desk\": {\"at\": [1, 2]}}").records.size(), 1U);
+    ImportOptions unread;
+    unread.load_meshes = false;
+    for (const std::string& bytes :
+         {"# Blender\nmtllib a.mtl\nv 1 2 3\n"s, "ply\nformat ascii 1.0\n"s,
+          "solid x\nfacet normal\n"s, "<?xml?><COLLADA>"s,
+          std::string(80, ' ') + "\1\0\0\0"s + std::string(50, '\0')})
+        EXPECT_EQ(parseDocument(bytes, "x", unread, sceneSchemas()).records.front().keyword(),
+                  "mesh")
+            << bytes;
+    // Only the suffix tells.
+    EXPECT_EQ(
+        parseDocument("{\"asset\": {\"version\": \"2.0\"}}", "a/chair.gltf", unread, sceneSchemas())
+            .records.front()
+            .text("file"),
+        "chair.gltf");
+}
+
+TEST(Input, OtherFormatsGetAHint) {
+    EXPECT_NE(errorOf("AutoCAD Binary DXF\r\n\x1a\0"s).find("but binary DXF: save it as ASCII DXF"),
+              std::string::npos);
+    EXPECT_NE(errorOf("AC1027\0\0"s).find("but a DWG drawing: save it as ASCII DXF"),
+              std::string::npos);
+    EXPECT_NE(errorOf("{\"type\": \"FeatureCollection\", \"features\": []}").find("but GeoJSON"),
+              std::string::npos);
+    EXPECT_NE(errorOf("{\"id\": 1}").find("error"), std::string::npos);
 }
 
 TEST(Input, RecordsWithoutMagicLine) {
@@ -68,8 +107,19 @@ TEST(Input, FilesThatAreNotThere) {
 
 TEST(Input, RandomBytesAreErrors) {
     std::mt19937_64 random(5);
-    const std::vector<std::string> starts{"",     "glTF", "#env 1\n",           "#3dm 1\n",
-                                          "P5\n", "- ",   "image: resolution: "};
+    const std::vector<std::string> starts{"",
+                                          "glTF",
+                                          "#env 1\n",
+                                          "#3dm 1\n",
+                                          "P5\n",
+                                          "- ",
+                                          "image: resolution: ",
+                                          "2D-Map\n",
+                                          "{\"verts\": [",
+                                          "0\nSECTION\n",
+                                          "ply\n",
+                                          "solid facet",
+                                          "v 1 2 3\n"};
     for (int i = 0; i < 4000; ++i) {
         std::string bytes = starts[static_cast<std::size_t>(i) % starts.size()];
         for (std::size_t n = 1 + random() % 60; n > 0; --n) bytes += static_cast<char>(random());

@@ -16,10 +16,12 @@ struct ModelNode {
     std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
     std::optional<Pose3> pose;  ///< frame of the meshes; none: they are in the world's
     std::vector<Mesh> meshes;   ///< one a material; never empty, each with triangles
+    const Element* element = nullptr;  ///< of the scene; none: the floor, or what is placed
 };
 
 /// Elements in the order of their records, the floor behind them, then what is placed: sensors,
 /// robots, people. Elements without a body (zones, inside points) are left out.
+/// The nodes point into the scene.
 std::vector<ModelNode> modelOf(const Scene& scene);
 
 }  // namespace ispace

@@ -23,17 +23,33 @@ std::size_t MapCells::count() const {
     return static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), 1));
 }
 
-MapCells freeCells(const Pgm& image, const OccupancyRule& rule) {
-    std::vector<std::uint8_t> is_free(static_cast<std::size_t>(image.max_value) + 1);
-    for (int sample = 0; sample <= image.max_value; ++sample)
+MapCells freeCells(const Picture& image, const OccupancyRule& rule) {
+    using Mode = OccupancyRule::Mode;
+    const bool averaged = rule.mode == Mode::Trinary && !image.opacity.empty();
+    const bool wants_opaque = rule.mode == Mode::Scale && !image.opacity.empty();
+    const int white = image.max_value + (averaged ? 255 : 0);
+    std::vector<std::uint8_t> is_free(static_cast<std::size_t>(white) + 1);
+    for (int sample = 0; sample <= white; ++sample)
         is_free[static_cast<std::size_t>(sample)] =
-            classify(sample, image.max_value, rule) == Cell::Free ? 1 : 0;
+            classify(sample, white, rule) == Cell::Free ? 1 : 0;
     MapCells cells(image.width, image.height);
     std::size_t i = 0;
     for (int y = image.height - 1; y >= 0; --y)
-        for (int x = 0; x < image.width; ++x)
-            if (is_free[image.samples[i++]] != 0) cells.insert(x, y);
+        for (int x = 0; x < image.width; ++x, ++i) {
+            if (wants_opaque && image.opacity[i] != 255) continue;
+            const std::size_t opacity = averaged ? image.opacity[i] : 0;
+            if (is_free[image.samples[i] + opacity] != 0) cells.insert(x, y);
+        }
     return cells;
+}
+
+std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule) {
+    constexpr int kUnknown = 205;
+    const int grey = kUnknown * (image.max_value / 255);
+    if (image.max_value % 255 != 0 || rule.negate || rule.mode == OccupancyRule::Mode::Raw ||
+        classify(grey, image.max_value, rule) != Cell::Free)
+        return 0;
+    return static_cast<std::size_t>(std::count(image.samples.begin(), image.samples.end(), grey));
 }
 
 namespace {

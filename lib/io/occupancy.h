@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/pgm.h"
+#include "io/picture.h"
 
 namespace ispace {
 
@@ -55,8 +55,14 @@ class MapCells {
     std::vector<std::uint8_t> cells_;
 };
 
-/// The free cells of a map; the picture's top row becomes the highest row.
-MapCells freeCells(const Pgm& image, const OccupancyRule& rule);
+/// The free cells of a map; the picture's top row becomes the highest row. Opacity counts as
+/// map_server has it: with Trinary it is averaged with the colours, with Scale what is not opaque
+/// is unknown.
+MapCells freeCells(const Picture& image, const OccupancyRule& rule);
+
+/// How many samples count as free that map_server writes for unknown: 205 of 255, which is as dark
+/// as 0.196. Rules written by Nav2 have a free_thresh of 0.25.
+std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule);
 
 /// The largest 4-connected piece, of equal ones the one that begins lowest, then leftmost. O(n).
 MapCells largestPiece(const MapCells& cells);

@@ -74,7 +74,7 @@ TEST(Occupancy, RawTakesThePixelAsValue) {
 }
 
 TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
-    Pgm image;
+    Picture image;
     image.width = 2;
     image.height = 2;
     image.samples = {254, 0, 205, 254};

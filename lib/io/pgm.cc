@@ -20,9 +20,9 @@ class PgmParser {
   public:
     PgmParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-    Pgm parse() {
+    Picture parse() {
         const bool plain = readMagic();
-        Pgm image;
+        Picture image;
         image.width = headerNumber("width", kMaxPgmPixels);
         image.height = headerNumber("height", kMaxPgmPixels);
         const std::int64_t pixels = std::int64_t{image.width} * image.height;
@@ -46,10 +46,6 @@ class PgmParser {
     /// True for P2.
     bool readMagic() {
         if (bytes_.empty()) fail("empty file, wanted a PGM picture (P2 or P5)");
-        if (bytes_.starts_with("\x89PNG"))
-            fail(
-                "a PNG picture, wanted PGM (P2 or P5): convert it, for example with "
-                "`convert map.png map.pgm`");
         const std::string_view word = nextWord();
         if (word != "P2" && word != "P5")
             fail("wrong magic " + excerpt(word) + ", wanted a PGM picture (P2 or P5)");
@@ -77,7 +73,7 @@ class PgmParser {
         return static_cast<int>(*number);
     }
 
-    void readPlain(Pgm& image, std::size_t count) {
+    void readPlain(Picture& image, std::size_t count) {
         // A sample takes a digit and a blank, so the file bounds what is allocated.
         image.samples.reserve(std::min(count, (bytes_.size() - at_) / 2 + 1));
         for (std::size_t i = 0; i < count; ++i) {
@@ -96,7 +92,7 @@ class PgmParser {
                  " behind the last one");
     }
 
-    void readRaw(Pgm& image, std::size_t count) {
+    void readRaw(Picture& image, std::size_t count) {
         const std::size_t width = image.max_value > 255 ? 2 : 1;
         // Exactly one blank ends the header: the next byte may be a sample that looks like one.
         if (at_ < bytes_.size() && !isBlank(bytes_[at_]))
@@ -111,7 +107,7 @@ class PgmParser {
             addSample(image, width == 1 ? byte(i) : byte(i) * 256 + byte(i + 1));
     }
 
-    void addSample(Pgm& image, std::int64_t sample) const {
+    void addSample(Picture& image, std::int64_t sample) const {
         if (sample > image.max_value)
             fail("sample " + std::to_string(sample) + " is above the maximum " +
                  std::to_string(image.max_value));
@@ -125,7 +121,7 @@ class PgmParser {
 
 }  // namespace
 
-Pgm parsePgm(std::string_view bytes, const std::string& name) {
+Picture parsePgm(std::string_view bytes, const std::string& name) {
     return PgmParser(bytes, name).parse();
 }
 

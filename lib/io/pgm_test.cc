@@ -22,7 +22,8 @@ std::string errorOf(const std::string& bytes) {
 }
 
 TEST(Pgm, ReadsBinary) {
-    const Pgm image = parsePgm("P5\n# by hand\n3 2 # of these\n255\n\x00\x01\x02\n\xfe\xff"s, "x");
+    const Picture image =
+        parsePgm("P5\n# by hand\n3 2 # of these\n255\n\x00\x01\x02\n\xfe\xff"s, "x");
     EXPECT_EQ(image.width, 3);
     EXPECT_EQ(image.height, 2);
     EXPECT_EQ(image.max_value, 255);
@@ -31,13 +32,13 @@ TEST(Pgm, ReadsBinary) {
 }
 
 TEST(Pgm, ReadsSixteenBitsBigEndian) {
-    const Pgm image = parsePgm("P5 2 1 65535\n\x01\x02\xff\xff"s, "x");
+    const Picture image = parsePgm("P5 2 1 65535\n\x01\x02\xff\xff"s, "x");
     EXPECT_EQ(image.samples, (std::vector<std::uint16_t>{0x0102, 0xffff}));
     EXPECT_EQ(image.max_value, 65535);
 }
 
 TEST(Pgm, ReadsText) {
-    const Pgm image = parsePgm("P2\n2 2\n1000\n0 7\n# rows\n1000\t999", "x");
+    const Picture image = parsePgm("P2\n2 2\n1000\n0 7\n# rows\n1000\t999", "x");
     EXPECT_EQ(image.samples, (std::vector<std::uint16_t>{0, 7, 1000, 999}));
     EXPECT_EQ(image.max_value, 1000);
 }
@@ -61,7 +62,6 @@ TEST(Pgm, NamesWhatIsWrong) {
     EXPECT_EQ(errorOf("P5\n1 1\n255"), "map.pgm: error: truncated: 0 of 1 bytes");
     EXPECT_EQ(errorOf("P5\n1 1\n255#\na"),
               "map.pgm: error: bad header: wanted one blank between the maximum and the samples");
-    EXPECT_NE(errorOf("\x89PNG\r\n\x1a\n").find("a PNG picture, wanted PGM"), std::string::npos);
     EXPECT_EQ(errorOf(""), "map.pgm: error: empty file, wanted a PGM picture (P2 or P5)");
 }
 
@@ -91,7 +91,7 @@ TEST(Pgm, SurvivesEveryTruncationAndRandomBytes) {
         for (int flips = 0; flips < 3; ++flips)
             bytes[2 + random() % (bytes.size() - 2)] = static_cast<char>(random());
         try {
-            const Pgm image = parsePgm(bytes, "x");
+            const Picture image = parsePgm(bytes, "x");
             EXPECT_EQ(image.samples.size(), static_cast<std::size_t>(image.width * image.height));
         } catch (const FormatError&) {
             // Most of them are bad; none may do worse.

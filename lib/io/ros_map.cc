@@ -18,9 +18,10 @@
 #include "base/suggest.h"
 #include "base/utf8.h"
 #include "geom/pose.h"
+#include "io/import_records.h"
 #include "io/occupancy.h"
 #include "io/outline.h"
-#include "io/pgm.h"
+#include "io/picture.h"
 
 namespace ispace {
 
@@ -75,7 +76,7 @@ class HeaderReader {
         const YAML::Node node = required(key);
         if (!node) return {};
         if (node.IsScalar() && !node.Scalar().empty()) return node.Scalar();
-        fail(node, '`' + key + "`: wanted the name of a PGM picture");
+        fail(node, '`' + key + "`: wanted the name of a picture");
         return {};
     }
 
@@ -162,63 +163,48 @@ std::string imagePath(const std::string& image, const std::string& map_name) {
     return (folder / image).string();
 }
 
-MapCells readRoom(const MapHeader& header, const std::string& path) {
+/// Says so where the thresholds turn much of the picture from unknown to free.
+void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords& out) {
+    if (const std::size_t count = unknownCountedFree(image, rule); count > 0)
+        out.note(countText(count, "pixel") +
+                 " of shade 205, which map_server writes for unknown, count as free because "
+                 "`free_thresh` is " +
+                 formatDouble(rule.free_thresh) + "; with 0.196 they are unknown");
+}
+
+MapCells readRoom(const MapHeader& header, const std::string& path, ImportRecords& out) {
     const auto fail = [&path](const std::string& message) {
         throw FormatError(Diagnostic{path, 0, 0, message});
     };
-    const Pgm image = parsePgm(readAll(path), path);
+    const Picture image = parsePicture(readAll(path), path);
     if (header.resolution * std::max(image.width, image.height) > kLargestExtent)
         fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " cells of " +
              formatDouble(header.resolution) + " m are more than " + formatDouble(kLargestExtent) +
              " m: is `resolution` in metres?");
-    MapCells room = largestPiece(freeCells(image, header.rule));
-    if (room.count() == 0)
+    const MapCells cells = freeCells(image, header.rule);
+    MapCells room = largestPiece(cells);
+    const std::size_t count = room.count();
+    if (count == 0)
         fail("no free cell among " + std::to_string(image.width) + " x " +
              std::to_string(image.height) + ": check `negate` and `free_thresh` of the map");
+    noteUnknown(image, header.rule, out);
+    if (const std::size_t others = cells.count() - count; others > 0)
+        out.note(countText(others, "free cell") + " apart from the room dropped; the room has " +
+                 std::to_string(count));
     return room;
 }
 
-/// Metres on whole micrometres, which keeps the text short and moves no cell edge visibly.
-double rounded(double metres) { return std::round(metres * 1e6) / 1e6; }
+/// From cells to the map's metres.
+Point2 inMap(const MapHeader& header, Point2 cells) {
+    return header.map_from_grid * Point2{cells.x * header.resolution, cells.y * header.resolution};
+}
 
-class RoomWriter {
-  public:
-    RoomWriter(const MapHeader& header, const Schemas& schemas, const std::string& name,
-               double wall_height)
-        : header_(header),
-          schemas_(schemas),
-          place_{std::make_shared<const std::string>(displayName(name)), 0, 0},
-          wall_height_(wall_height) {}
-
-    [[nodiscard]] Record fence(const Polygon& curve) const {
-        TupleList path;
-        path.reserve(curve.size());
-        for (const Point2 corner : curve) path.push_back(inMap(corner));
-        Record record(*schemas_.find("fence"), place_);
-        record.set("path", std::move(path));
-        record.set("closed", true);
-        record.set("height", wall_height_);
-        return record;
-    }
-
-    [[nodiscard]] Record inside(Point2 point) const {
-        Record record(*schemas_.find("inside"), place_);
-        record.set("at", inMap(point));
-        return record;
-    }
-
-  private:
-    [[nodiscard]] Tuple inMap(Point2 cells) const {
-        const Point2 metres{cells.x * header_.resolution, cells.y * header_.resolution};
-        const Point2 map = header_.map_from_grid * metres;
-        return {rounded(map.x), rounded(map.y)};
-    }
-
-    const MapHeader& header_;
-    const Schemas& schemas_;
-    Place place_;
-    double wall_height_;
-};
+Region inMap(const MapHeader& header, Region region) {
+    for (Point2& corner : region.outline) corner = inMap(header, corner);
+    for (Polygon& hole : region.holes)
+        for (Point2& corner : hole) corner = inMap(header, corner);
+    return region;
+}
 
 /// The middle of the widest place; where simplification took it away, another point of the room.
 Point2 insideOf(const MapCells& room, const Region& region) {
@@ -245,17 +231,16 @@ bool isRosMap(std::string_view bytes) {
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas) {
     const MapHeader header = readHeader(yaml, name);
-    const MapCells room = readRoom(header, imagePath(header.image, name));
+    const std::string path = imagePath(header.image, name);
+    ImportRecords out(schemas, name, options);
+    out.source(path);
+    const MapCells room = readRoom(header, path, out);
     const double tolerance =
         options.simplify ? *options.simplify / header.resolution : kDefaultSimplify;
     const Region region = vectorised(room, tolerance);
-
-    Document document;
-    const RoomWriter writer(header, schemas, name, options.wall_height);
-    document.records.push_back(writer.fence(region.outline));
-    for (const Polygon& hole : region.holes) document.records.push_back(writer.fence(hole));
-    document.records.push_back(writer.inside(insideOf(room, region)));
-    return document;
+    const Point2 inside = inMap(header, insideOf(room, region));
+    out.region(inMap(header, region), inside);
+    return out.take();
 }
 
 }  // namespace ispace

@@ -12,7 +12,7 @@ namespace ispace {
 /// True if the bytes are YAML with the top-level keys `image` and `resolution`.
 bool isRosMap(std::string_view bytes);
 
-/// Reads a ROS map (map_server's map.yaml and its PGM, P2 or P5, 8 or 16 bit): the largest free
+/// Reads a ROS map (map_server's map.yaml and its picture, PGM or PNG): the largest free
 /// region (4-connected; unknown is not free) becomes the room, its outline and its holes closed
 /// fences along the cell edges, simplified by at most ImportOptions::simplify (default one
 /// cell: slanted walls become straight lines through their stairs), and `inside` a point far from

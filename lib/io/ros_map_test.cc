@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/occupancy.h"
+#include "io/test_png.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -112,6 +113,30 @@ TEST_F(RosMap, OptionsSetHeightAndTolerance) {
     EXPECT_LT(read(kHeader).records.front().list("path").size(), 8U);
 }
 
+TEST_F(RosMap, PngIsReadAsPgm) {
+    writeImage({"....", ".##.", "... "});
+    const std::string pgm = textOf(read(kHeader));
+    const std::string row = "\xfe\xfe\xfe\xfe", middle("\xfe\x00\x00\xfe", 4);
+    // The suffix does not count.
+    writeAll(path("map.pgm"), pngFile(4, 8, 0, {row, middle, "\xfe\xfe\xfe\xcd"}));
+    const Document png = read(kHeader);
+    EXPECT_EQ(textOf(png), pgm);
+    EXPECT_EQ(png.sources, std::vector<std::string>{path("map.pgm")});
+    EXPECT_TRUE(png.notes.empty());
+}
+
+TEST_F(RosMap, ShadesOfUnknownThatCountAsFreeAreNoted) {
+    writeImage({"..  ", "..  "});
+    EXPECT_EQ(read(kHeader + "free_thresh: 0.25\n").notes,
+              std::vector<std::string>{
+                  "4 pixels of shade 205, which map_server writes for unknown, count as "
+                  "free because `free_thresh` is 0.25; with 0.196 they are unknown"});
+    EXPECT_TRUE(read(kHeader + "free_thresh: 0.196\n").notes.empty());
+    writeImage({".. .", ".. ."});
+    EXPECT_EQ(read(kHeader).notes,
+              std::vector<std::string>{"2 free cells apart from the room dropped; the room has 4"});
+}
+
 TEST_F(RosMap, YawTurnsAboutTheLowerLeftCorner) {
     writeImage({"..", "..", ".."});
     const std::string turned =
@@ -156,7 +181,7 @@ TEST_F(RosMap, FindingsNameTheirPlace) {
               "map.yaml:3:13: error: `origin`: found `.inf`, wanted a number from -900000 to "
               "900000\n");
     EXPECT_EQ(errorsOf("image: [a]\nresolution: [1]\norigin: [1, 2]\n"),
-              "map.yaml:1:8: error: `image`: wanted the name of a PGM picture\n"
+              "map.yaml:1:8: error: `image`: wanted the name of a picture\n"
               "map.yaml:2:13: error: `resolution`: found a list or map, wanted a number from 0.001 "
               "to 1000\n");
     EXPECT_EQ(errorsOf("image: map.pgm\nresolution: 0.05\n  origin: [1, 2]\n").substr(0, 34),

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/aria_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/utf8.h"
+#include "geom/pose.h"
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+#include "io/import_records.h"
+#include "io/plan_region.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kMagic = "2D-Map";
+constexpr double kFarthest = 900000;  // metres; records end at 1000 km
+constexpr double kDefaultSnap = 0.005;
+constexpr double kCell = 0.05;      // edge of an obstacle made of points
+constexpr double kEchoReach = 0.1;  // points this near to a line are the line
+constexpr std::size_t kMostCubes = 100'000;
+
+/// Words between blanks; a word in quotes may have blanks.
+std::vector<std::string_view> wordsOf(std::string_view line) {
+    constexpr std::string_view kBlanks = " \t\r";
+    std::vector<std::string_view> words;
+    while (true) {
+        line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+        if (line.empty()) return words;
+        const bool quoted = line.front() == '"';
+        if (quoted) line.remove_prefix(1);
+        const std::size_t end =
+            std::min(quoted ? line.find('"') : line.find_first_of(kBlanks), line.size());
+        words.push_back(line.substr(0, end));
+        line.remove_prefix(std::min(end + 1, line.size()));
+    }
+}
+
+/// A rectangle about the map's origin, turned as a whole.
+struct ForbiddenArea {
+    std::string name;
+    Angle heading;
+    Point2 a, b;  // opposite corners before turning
+};
+
+/// What the map says, in metres.
+struct AriaMap {
+    std::vector<PlanPath> lines;
+    std::vector<Point2> points;
+    std::vector<ForbiddenArea> areas;
+    std::optional<Point2> home;
+    std::map<std::string, std::size_t> left_out;  // cairns by type
+};
+
+class AriaReader {
+  public:
+    AriaReader(std::string_view bytes, const std::string& name) : rest_(bytes), name_(name) {}
+
+    AriaMap read() {
+        nextLine();  // the magic
+        enum { Header, Lines, Points } section = Header;
+        while (nextLine()) {
+            if (words_.empty()) continue;
+            const std::string_view first = words_.front();
+            if (first == "LINES")
+                section = Lines;
+            else if (first == "DATA")
+                section = Points;
+            else if (section == Lines)
+                readLine();
+            else if (section == Points)
+                readPoint();
+            else
+                readHeader(first);
+        }
+        checkCount(map_.lines.size(), line_count_, "lines");
+        checkCount(map_.points.size(), point_count_, "points");
+        return std::move(map_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const {
+        throw FormatError(Diagnostic{displayName(name_), line_, 1, message});
+    }
+
+    bool nextLine() {
+        if (rest_.empty()) return false;
+        ++line_;
+        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+        words_ = wordsOf(rest_.substr(0, end));
+        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        return true;
+    }
+
+    [[nodiscard]] double number(std::size_t word) const {
+        const auto value = word < words_.size() ? parseDouble(words_[word]) : std::nullopt;
+        if (!value)
+            fail((word < words_.size() ? "found " + excerpt(words_[word])
+                                       : std::string("the line ends early")) +
+                 ", wanted a number");
+        return *value;
+    }
+    /// A place in the file's millimetres.
+    [[nodiscard]] Point2 place(std::size_t word) const {
+        const Point2 p{number(word) / 1000, number(word + 1) / 1000};
+        if (std::max(std::abs(p.x), std::abs(p.y)) > kFarthest)
+            fail("a place more than " + formatDouble(kFarthest / 1000) + " km from the origin");
+        return p;
+    }
+    void wantWords(std::size_t count, const char* what) const {
+        if (words_.size() != count)
+            fail("found " + countText(words_.size(), "word") + ", wanted " + what);
+    }
+
+    void readLine() {
+        wantWords(4, "a line, x1 y1 x2 y2 in mm");
+        map_.lines.push_back({{place(0), place(2)}, false, line_});
+    }
+    void readPoint() {
+        wantWords(2, "a point, x y in mm");
+        map_.points.push_back(place(0));
+    }
+    void readHeader(std::string_view key) {
+        if (key == "Cairn:") readCairn();
+        if (key == "NumLines:") line_count_ = count();
+        if (key == "NumPoints:") point_count_ = count();
+    }
+    [[nodiscard]] std::int64_t count() const {
+        const auto value = words_.size() == 2 ? parseInteger(words_[1]) : std::nullopt;
+        if (!value || *value < 0) fail(excerpt(words_.front()) + ": wanted how many");
+        return *value;
+    }
+    void checkCount(std::size_t found, std::optional<std::int64_t> wanted, const char* what) const {
+        if (wanted && static_cast<std::int64_t>(found) != *wanted)
+            fail(std::to_string(found) + " of " + std::to_string(*wanted) + ' ' + what +
+                 ": is the file whole?");
+    }
+
+    /// Cairn: TYPE x y heading "description" ICON "name" [x1 y1 x2 y2]
+    void readCairn() {
+        if (words_.size() < 2) fail("a cairn without type");
+        const std::string_view type = words_[1];
+        if (type == "ForbiddenArea") {
+            map_.areas.push_back({words_.size() > 7 ? std::string(words_[7]) : "",
+                                  Angle::degrees(number(4)), place(8), place(10)});
+            if (std::abs(number(4)) > 1e6) fail("a heading of " + excerpt(words_[4]));
+        } else if ((type == "RobotHome" || type == "Home" || type == "Dock") && !map_.home) {
+            map_.home = place(2);
+        } else {
+            ++map_.left_out[printable(type.substr(0, 40))];
+        }
+    }
+
+    std::string_view rest_;
+    const std::string& name_;
+    int line_ = 0;
+    std::vector<std::string_view> words_;
+    AriaMap map_;
+    std::optional<std::int64_t> line_count_, point_count_;
+};
+
+/// A block of cells.
+struct Cells {
+    std::int64_t left, right, bottom, top;
+};
+
+/// The cells of the points, runs of a row made one, and equal runs of rows above each other.
+std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
+    using Cell = std::pair<std::int64_t, std::int64_t>;  // row, column
+    std::vector<Cell> cells;
+    cells.reserve(points.size());
+    // In whole micrometres, so that points on the grid's own lines fall to one side of them.
+    const auto cell_of = [](double metres) {
+        return static_cast<std::int64_t>(std::floor(std::round(metres * 1e6) / (kCell * 1e6)));
+    };
+    for (const Point2 p : points) cells.emplace_back(cell_of(p.y), cell_of(p.x));
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<Cells> blocks;
+    std::map<Cell, std::size_t> open;  // block that ends with the run from left to right, by those
+    for (std::size_t i = 0; i < cells.size();) {
+        const auto [row, left] = cells[i];
+        std::int64_t right = left;
+        while (++i < cells.size() && cells[i] == Cell{row, right + 1}) ++right;
+        const auto [it, is_new] = open.try_emplace({left, right}, blocks.size());
+        if (!is_new && blocks[it->second].top == row - 1) {
+            blocks[it->second].top = row;
+            continue;
+        }
+        it->second = blocks.size();
+        blocks.push_back({left, right, row, row});
+    }
+    return blocks;
+}
+
+class AriaPlan {
+  public:
+    AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options)
+        : map_(std::move(map)),
+          name_(name),
+          paths_(withoutRepeats(snapped(map_.lines, options.snap.value_or(kDefaultSnap)))) {
+        const std::vector<Segment2> lines = piecesOf(paths_);
+        if (lines.empty())
+            fail(map_.points.empty()
+                     ? "a map without lines: nothing is a wall"
+                     : "a map of points alone, without LINES: nothing is a wall; draw lines in "
+                       "Mapper3, or export the points as a picture");
+        if (crossTooOften(lines)) fail("the lines cross each other too often to be walls");
+        region_ = PlanFaces(lines).region(map_.home);
+        if (!region_) return;
+        const std::vector<bool> keep = belongsTo(*region_, lines);
+        dropped_ = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
+        paths_ = withPieces(paths_, keep);
+    }
+
+    void write(ImportRecords& out, const ImportOptions& options) const {
+        for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
+        if (options.points) writePoints(out);
+        writeAreas(out);
+        const bool at_home = map_.home && isInside(*map_.home);
+        if (at_home || (map_.home && !region_))
+            out.inside(*map_.home);
+        else if (region_)
+            out.inside(region_->inside);
+        note(out, options);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const {
+        throw FormatError(Diagnostic{displayName(name_), 0, 0, message});
+    }
+
+    [[nodiscard]] bool isInside(Point2 p) const {
+        return region_ && region_->rooms.front().locate(p) == Side::Inside;
+    }
+
+    void writePoints(ImportRecords& out) const {
+        const std::vector<Segment2> lines = piecesOf(paths_);
+        const SegmentGrid grid(lines, kEchoReach);
+        std::vector<Point2> free;
+        std::size_t echoes = 0, outside = 0;
+        for (const Point2 p : map_.points) {
+            const auto near = grid.near(p);
+            const bool is_echo = std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+                return distance(p, lines[i]) <= kEchoReach;
+            });
+            const bool is_outside = !is_echo && region_ && !isInside(p);
+            echoes += is_echo ? 1 : 0;
+            outside += is_outside ? 1 : 0;
+            if (!is_echo && !is_outside) free.push_back(p);
+        }
+        const std::vector<Cells> blocks = cellsOf(free);
+        if (blocks.size() > kMostCubes)
+            fail("the points make " + std::to_string(blocks.size()) +
+                 " obstacles, wanted at most " + std::to_string(kMostCubes) +
+                 ": import the map without them");
+        for (const auto& [left, right, bottom, top] : blocks) {
+            const auto length = static_cast<double>(right - left + 1) * kCell;
+            const auto width = static_cast<double>(top - bottom + 1) * kCell;
+            out.cube({static_cast<double>(left) * kCell + length / 2,
+                      static_cast<double>(bottom) * kCell + width / 2},
+                     length, width);
+        }
+        out.note(countText(free.size(), "point") + " became " + countText(blocks.size(), "cube") +
+                 "; left out: " + std::to_string(echoes) + " at lines, " + std::to_string(outside) +
+                 " outside");
+    }
+
+    void writeAreas(ImportRecords& out) const {
+        for (const auto& [name, heading, a, b] : map_.areas) {
+            const double length = wholeMicrometres(std::abs(b.x - a.x));
+            const double width = wholeMicrometres(std::abs(b.y - a.y));
+            if (length == 0 || width == 0) {
+                out.note("a forbidden area without extent left out");
+                continue;
+            }
+            const Pose2 turned{{}, heading};
+            const Point2 middle = turned * Point2{(a.x + b.x) / 2, (a.y + b.y) / 2};
+            out.zone(out.freeId(name.empty() ? "forbidden" : "forbidden-" + name, "forbidden"),
+                     middle, heading, length, width);
+        }
+    }
+
+    void note(ImportRecords& out, const ImportOptions& options) const {
+        for (const auto& [type, count] : map_.left_out)
+            out.note(countText(count, type) + " left out");
+        if (!options.points && !map_.points.empty())
+            out.note(countText(map_.points.size(), "point") + " left out");
+        if (!region_)
+            out.note("nothing is enclosed: all lines are kept");
+        else if (dropped_ > 0)
+            out.note(countText(dropped_, "line") + " outside of the region of " +
+                     areaText(region_->area()) + " left out");
+    }
+
+    AriaMap map_;
+    const std::string& name_;
+    std::vector<PlanPath> paths_;
+    std::optional<PlanRegion> region_;
+    std::size_t dropped_ = 0;
+};
+
+}  // namespace
+
+bool isAriaMap(std::string_view bytes) {
+    if (!bytes.starts_with(kMagic)) return false;
+    bytes.remove_prefix(kMagic.size());
+    return bytes.substr(0, bytes.find('\n')).find_first_not_of(" \t\r") == std::string_view::npos;
+}
+
+Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                     const Schemas& schemas) {
+    ImportRecords out(schemas, name, options);
+    AriaPlan(AriaReader(bytes, name).read(), name, options).write(out, options);
+    return out.take();
+}
+
+}  // namespace ispace

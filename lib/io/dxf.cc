@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/dxf.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "io/dxf_shapes.h"
+#include "io/import_records.h"
+#include "io/plan_openings.h"
+#include "io/plan_region.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kDefaultSnap = 0.005;
+constexpr double kLargestExtent = 10000;  // metres
+
+/// What openings are if the walls are high enough.
+constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
+
+struct LengthUnit {
+    int code;  ///< of $INSUNITS
+    const char* name;
+    double metres;
+};
+
+constexpr std::array<LengthUnit, 8> kUnits{{{1, "inch", 0.0254},
+                                            {2, "foot", 0.3048},
+                                            {4, "mm", 0.001},
+                                            {5, "cm", 0.01},
+                                            {6, "m", 1},
+                                            {7, "km", 1000},
+                                            {10, "yard", 0.9144},
+                                            {14, "dm", 0.1}}};
+
+[[noreturn]] void fail(const std::string& name, const std::string& message) {
+    throw FormatError(Diagnostic{displayName(name), 0, 0, message});
+}
+
+double unitOf(const DxfDrawing& drawing, const std::string& name, const ImportOptions& options,
+              ImportRecords& out) {
+    const bool asked = !options.units.empty();
+    const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&](const LengthUnit& u) {
+        return asked ? u.name == options.units : u.code == drawing.units;
+    });
+    if (unit == kUnits.end())
+        fail(name,
+             (asked                ? "unknown unit " + options.units
+              : drawing.units == 0 ? std::string("the drawing does not say its unit ($INSUNITS)")
+                                   : "$INSUNITS is " + std::to_string(drawing.units) +
+                                         ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
+                 "; say it, for example with --units mm");
+    out.note(std::string("unit: ") + unit->name +
+             (asked ? ", as asked for" : ", as $INSUNITS of the drawing says"));
+    return unit->metres;
+}
+
+/// "WALLS (24), 0 (3) and 2 more".
+std::string listed(const std::map<std::string, std::size_t>& counts) {
+    constexpr std::size_t kMostNames = 12;
+    std::string text;
+    std::size_t named = 0;
+    for (const auto& [thing, count] : counts) {
+        if (named == kMostNames) break;
+        if (named++ > 0) text += ", ";
+        text += thing + " (" + std::to_string(count) + ')';
+    }
+    if (counts.size() > named) text += " and " + std::to_string(counts.size() - named) + " more";
+    return text;
+}
+
+/// Shapes by what their layers hold.
+struct SortedShapes {
+    std::vector<PlanPath> walls;
+    std::vector<PlanShape> doors, windows;
+};
+
+class LayerSorter {
+  public:
+    LayerSorter(const DxfDrawing& drawing, const ImportOptions& options)
+        : hidden_(drawing.hidden_layers), options_(options) {}
+
+    SortedShapes sort(std::vector<PlanShape> shapes) {
+        SortedShapes sorted;
+        for (PlanShape& shape : shapes) {
+            const Use use = useOf(shape.layer);
+            ++counts_[use][shape.layer];
+            if (use == Walls) sorted.walls.push_back(std::move(shape.path));
+            if (use == Doors) sorted.doors.push_back(std::move(shape));
+            if (use == Windows) sorted.windows.push_back(std::move(shape));
+        }
+        return sorted;
+    }
+
+    void note(ImportRecords& out) const {
+        constexpr std::array<const char*, kUses> kTitles{
+            "layers of walls: ", "layers of doors: ", "layers of windows: ", "layers left out: ",
+            "layers left out because they are off or frozen: "};
+        for (std::size_t use = 0; use < kUses; ++use)
+            if (!counts_[use].empty()) out.note(kTitles[use] + listed(counts_[use]));
+    }
+
+    /// All layers with lines, for a message.
+    [[nodiscard]] std::string all() const {
+        std::map<std::string, std::size_t> all;
+        for (const auto& counts : counts_)
+            for (const auto& [layer, count] : counts) all[layer] += count;
+        return all.empty() ? "none" : listed(all);
+    }
+
+  private:
+    enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
+
+    static bool matches(const std::vector<std::string>& globs, const std::string& layer) {
+        return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+            return ::fnmatch(glob.c_str(), layer.c_str(), FNM_CASEFOLD) == 0;
+        });
+    }
+    Use useOf(const std::string& layer) {
+        const auto [it, is_new] = uses_.try_emplace(layer, Others);
+        if (!is_new) return it->second;
+        Use& use = it->second;
+        if (hidden_.count(layer) != 0)
+            use = Hidden;
+        else if (matches(options_.door_layers, layer))
+            use = Doors;
+        else if (matches(options_.window_layers, layer))
+            use = Windows;
+        else if (options_.wall_layers.empty() || matches(options_.wall_layers, layer))
+            use = Walls;
+        return use;
+    }
+
+    const std::set<std::string>& hidden_;
+    const ImportOptions& options_;
+    std::map<std::string, Use> uses_;
+    std::array<std::map<std::string, std::size_t>, kUses> counts_;
+};
+
+/// A plan's lines and what is kept of them.
+class DxfPlan {
+  public:
+    DxfPlan(const SortedShapes& shapes, const std::string& name, const ImportOptions& options)
+        : paths_(withoutRepeats(snapped(shapes.walls, options.snap.value_or(kDefaultSnap)))),
+          pieces_(piecesOf(paths_)) {
+        check(name);
+        PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
+        openings_ = std::move(found.openings);
+        unused_symbols_ = found.unused;
+        keepRegion();
+    }
+
+    void write(ImportRecords& out, const ImportOptions& options) {
+        std::vector<PlanPath> fences = joinedAtEnds(paths_);
+        const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
+        std::vector<std::string> ids(fences.size());
+        for (const std::size_t fence : fence_of)
+            if (fence < fences.size() && ids[fence].empty())
+                ids[fence] = out.freeId("f" + std::to_string(fence + 1), "f");
+        for (std::size_t i = 0; i < fences.size(); ++i) out.fence(fences[i], ids[i]);
+        for (std::size_t i = 0; i < openings_.size(); ++i) {
+            const std::string wall =
+                openings_[i].wall ? ids[fence_of[i]] : out.freeId("gap", "gap");
+            if (!openings_[i].wall) out.wall(openings_[i].line, wall, openings_[i].drawn_on);
+            writeOpening(openings_[i], wall, out, options.wall_height);
+        }
+        if (region_) out.inside(region_->inside);
+        note(out);
+    }
+
+  private:
+    void check(const std::string& name) const {
+        Box2 box;
+        for (const Segment2& piece : pieces_) {
+            box.add(piece.a);
+            box.add(piece.b);
+        }
+        if (!pieces_.empty() && std::max(box.width(), box.depth()) > kLargestExtent)
+            fail(name, "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
+                           " m wide: is the unit right? Say another, for example with --units mm");
+        if (crossTooOften(pieces_))
+            fail(name,
+                 "the lines cross each other too often to be walls: leave layers of hatching "
+                 "out, for example with --wall-layer 'A-WALL*'");
+    }
+
+    /// Lines that close the gaps of openings, behind those of walls.
+    [[nodiscard]] std::vector<Segment2> allPieces() const {
+        std::vector<Segment2> all(pieces_);
+        for (const PlanOpening& opening : openings_)
+            if (!opening.wall) all.push_back(opening.line);
+        return all;
+    }
+
+    void keepRegion() {
+        std::vector<Segment2> doorways;
+        for (const PlanOpening& opening : openings_)
+            if (!opening.is_window) doorways.push_back(opening.line);
+        const std::vector<Segment2> all = allPieces();
+        region_ = PlanFaces(all, doorways).region();
+        if (!region_) return;
+        const std::vector<bool> keep = belongsTo(*region_, all);
+        std::size_t gap = pieces_.size();
+        std::vector<PlanOpening> kept;
+        for (const PlanOpening& opening : openings_)
+            if (keep[opening.wall ? *opening.wall : gap++]) kept.push_back(opening);
+        dropped_openings_ = openings_.size() - kept.size();
+        openings_ = std::move(kept);
+        const std::vector<bool> walls(keep.begin(),
+                                      keep.begin() + static_cast<std::ptrdiff_t>(pieces_.size()));
+        dropped_lines_ = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), false));
+        paths_ = withPieces(paths_, walls);
+    }
+
+    /// For each opening on a wall the index of the fence it is in.
+    [[nodiscard]] std::vector<std::size_t> fencesOfOpenings(
+        const std::vector<PlanPath>& fences) const {
+        using Ends = std::array<double, 4>;
+        const auto ends_of = [](const Segment2& s) {
+            return lexLess(s.a, s.b) ? Ends{s.a.x, s.a.y, s.b.x, s.b.y}
+                                     : Ends{s.b.x, s.b.y, s.a.x, s.a.y};
+        };
+        std::map<Ends, std::size_t> fence_with;
+        for (const PlanOpening& opening : openings_)
+            if (opening.wall) fence_with[ends_of(pieces_[*opening.wall])] = 0;
+        for (std::size_t i = 0; i < fences.size(); ++i)
+            for (std::size_t k = 0; k < fences[i].pieceCount(); ++k)
+                if (const auto it = fence_with.find(ends_of(fences[i].piece(k)));
+                    it != fence_with.end())
+                    it->second = i;
+        std::vector<std::size_t> result;
+        result.reserve(openings_.size());
+        for (const PlanOpening& opening : openings_)
+            result.push_back(opening.wall ? fence_with.at(ends_of(pieces_[*opening.wall]))
+                                          : fences.size());
+        return result;
+    }
+
+    static void writeOpening(const PlanOpening& opening, const std::string& wall,
+                             ImportRecords& out, double wall_height) {
+        Record& record = out.add(opening.is_window ? "window" : "door", opening.drawn_on);
+        record.set("wall", wall);
+        ImportRecords::setPoint(record, "from", opening.line.a);
+        ImportRecords::setPoint(record, "to", opening.line.b);
+        if (opening.is_window) {
+            const double sill = std::min(kSill, wall_height * kSill / kDoorHeight);
+            record.set("height", std::min(kWindowHeight, wall_height - sill));
+            record.set("sill", sill);
+        } else {
+            record.set("height", std::min(kDoorHeight, wall_height));
+            record.set("open", true);
+        }
+    }
+
+    void note(ImportRecords& out) const {
+        const auto windows = static_cast<std::size_t>(
+            std::count_if(openings_.begin(), openings_.end(),
+                          [](const PlanOpening& opening) { return opening.is_window; }));
+        if (!openings_.empty() || unused_symbols_ > 0)
+            out.note(countText(openings_.size() - windows, "door") + ", " +
+                     countText(windows, "window") +
+                     (unused_symbols_ == 0 ? std::string()
+                                           : "; " + countText(unused_symbols_, "line") +
+                                                 " on their layers open nothing and are left out"));
+        if (!region_) {
+            out.note("nothing is enclosed: all lines are kept");
+            return;
+        }
+        out.note("kept the largest region, " + areaText(region_->area()) + " in " +
+                 countText(region_->rooms.size(), "room"));
+        if (dropped_lines_ + dropped_openings_ > 0)
+            out.note("left out outside of it: " + countText(dropped_lines_, "line") + " and " +
+                     countText(dropped_openings_, "opening"));
+    }
+
+    std::vector<PlanPath> paths_;
+    std::vector<Segment2> pieces_;  // of all walls drawn
+    std::vector<PlanOpening> openings_;
+    std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
+    std::optional<PlanRegion> region_;
+};
+
+}  // namespace
+
+Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                 const Schemas& schemas) {
+    ImportRecords out(schemas, name, options);
+    const DxfDrawing drawing = readDrawing(bytes, name);
+    const double metres = unitOf(drawing, name, options, out);
+    MissingBlocks missing;
+    LayerSorter sorter(drawing, options);
+    const SortedShapes shapes =
+        sorter.sort(shapesOf(drawing, metres, name, options.most_points, missing));
+    sorter.note(out);
+    if (!drawing.left_out.empty()) out.note("entities left out: " + listed(drawing.left_out));
+    if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
+    if (shapes.walls.empty())
+        fail(name, (options.wall_layers.empty() ? "no line to make a wall of"
+                                                : "no line on the layers of walls") +
+                       std::string("; layers with lines: ") + sorter.all());
+    DxfPlan(shapes, name, options).write(out, options);
+    return out.take();
+}
+
+}  // namespace ispace

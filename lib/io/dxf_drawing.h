@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "geom/point.h"
+
+namespace ispace {
+
+/// Straight pieces and arcs; a LINE has two vertices.
+struct DxfPolyline {
+    struct Vertex {
+        Point2 at;
+        double bulge = 0;  ///< of the piece that begins here: tan(sweep / 4), left-turning above 0
+    };
+    std::vector<Vertex> vertices;
+    bool closed = false;
+};
+
+/// An arc counter-clockwise from one angle to the other; a whole circle from 0 to 360 degrees.
+struct DxfArc {
+    Point2 center;
+    double radius = 0;
+    Angle from, to;
+};
+
+/// An ellipse's arc: center + cos(t) major + sin(t) minor, t in radians.
+struct DxfEllipse {
+    Point2 center;
+    Vec2 major, minor;
+    double from = 0, to = 0;
+};
+
+/// A block put somewhere, perhaps many times in a grid.
+struct DxfInsert {
+    std::string block;
+    Point2 at;
+    double scale_x = 1, scale_y = 1;
+    Angle turn;
+    int columns = 1, rows = 1;
+    double column_step = 0, row_step = 0;
+};
+
+struct DxfEntity {
+    std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfInsert> shape;
+    std::string layer;
+    bool mirrored = false;  ///< seen from below: x is turned about
+    int line = 0;           ///< of the file
+};
+
+struct DxfBlock {
+    Point2 base;
+    std::vector<DxfEntity> entities;
+};
+
+/// A DXF file, in its own units.
+struct DxfDrawing {
+    int units = 0;                        ///< $INSUNITS; 0: none
+    std::set<std::string> hidden_layers;  ///< off or frozen
+    std::map<std::string, DxfBlock> blocks;
+    std::vector<DxfEntity> entities;
+    std::map<std::string, std::size_t> left_out;  ///< see DxfText
+
+    /// Entities and vertices, those of blocks included.
+    [[nodiscard]] std::size_t size() const;
+};
+
+/// Reads ASCII DXF through dxflib. Depends on the global C++ locale being the classic one, as it
+/// is unless a program changes it.
+/// \throws FormatError, see checkedDxf
+DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
+
+}  // namespace ispace

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/dxf_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr int kDeepest = 16;                    // blocks in blocks
+constexpr std::size_t kFreePoints = 10'000;     // whatever the file's size …
+constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
+
+constexpr double kFarthest = 900000;  // metres; records end at 1000 km
+
+/// Sagitta of the pieces of an arc, in metres, and their least and largest number in a full circle.
+constexpr double kArcTolerance = 0.001;
+constexpr double kFewestPieces = 8, kMostPieces = 720;
+
+/// Beyond these a bulge is a straight line, or a circle of which an end is missing.
+constexpr double kLeastBulge = 1e-9, kLargestBulge = 1e4;
+
+constexpr double kFullTurn = 2 * std::numbers::pi;
+
+/// Points of one frame in another; linear, so circles may become ellipses.
+struct Frame {
+    Vec2 x{1, 0}, y{0, 1};
+    Vec2 origin;
+
+    [[nodiscard]] Vec2 operator*(Vec2 v) const { return v.x * x + v.y * y; }
+    [[nodiscard]] Point2 operator*(Point2 p) const {
+        const Vec2 v = *this * Vec2{p.x, p.y} + origin;
+        return {v.x, v.y};
+    }
+    [[nodiscard]] Frame operator*(const Frame& inner) const {
+        return {*this * inner.x, *this * inner.y, *this * inner.origin + origin};
+    }
+    /// No length grows by more.
+    [[nodiscard]] double largestScale() const { return std::hypot(length(x), length(y)); }
+};
+
+constexpr Frame kMirror{{-1, 0}, {0, 1}, {}};
+
+/// In how many pieces an arc of so many radians is cut.
+int piecesOf(double sweep, double radius) {
+    const double share = std::min(1.0, kArcTolerance / radius);
+    const double per_turn =
+        std::clamp(std::numbers::pi / std::acos(1 - share), kFewestPieces, kMostPieces);
+    return std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kFullTurn * per_turn - 1e-9)));
+}
+
+class Expander {
+  public:
+    Expander(const DxfDrawing& drawing, const std::string& name, std::size_t most,
+             MissingBlocks& missing)
+        : drawing_(drawing),
+          name_(name),
+          budget_(std::min(most, kFreePoints + kPointsPerEntity * drawing.size())),
+          missing_(missing) {}
+
+    std::vector<PlanShape> expand(double metres_per_unit) {
+        const Frame metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
+        add(drawing_.entities, metres, "", 0);
+        return std::move(shapes_);
+    }
+
+  private:
+    [[noreturn]] void fail(const DxfEntity& entity, const std::string& message) const {
+        throw FormatError(
+            Diagnostic{displayName(name_), entity.line, entity.line == 0 ? 0 : 1, message});
+    }
+
+    void spend(const DxfEntity& entity, std::size_t points) {
+        if (points > budget_)
+            fail(entity,
+                 "the blocks of this drawing make too many lines of it; is one inserted by "
+                 "mistake, or in too large a grid?");
+        budget_ -= points;
+    }
+
+    void add(const std::vector<DxfEntity>& entities, const Frame& outer, const std::string& layer,
+             int depth) {
+        for (const DxfEntity& entity : entities) {
+            const Frame frame = entity.mirrored ? outer * kMirror : outer;
+            const bool inherits = depth > 0 && entity.layer == "0";
+            const std::string& own = inherits ? layer : entity.layer;
+            if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
+                addInsert(entity, *insert, frame, own, depth);
+            else
+                addShape(entity, frame, own);
+        }
+    }
+
+    void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Frame& outer,
+                   const std::string& layer, int depth) {
+        const auto block = drawing_.blocks.find(insert.block);
+        if (block == drawing_.blocks.end()) {
+            ++missing_[insert.block];
+            return;
+        }
+        if (depth == kDeepest)
+            fail(entity, "blocks in each other more than " + std::to_string(kDeepest) +
+                             " deep: does " + excerpt(insert.block) + " contain itself?");
+        const Vec2 along = unitVector(insert.turn), across = perpendicular(along);
+        const Vec2 x = insert.scale_x * along, y = insert.scale_y * across;
+        const Point2 base = block->second.base;
+        for (int row = 0; row < std::max(1, insert.rows); ++row)
+            for (int column = 0; column < std::max(1, insert.columns); ++column) {
+                spend(entity, 1);
+                const Point2 at = insert.at + (column * insert.column_step) * along +
+                                  (row * insert.row_step) * across;
+                const Frame placed{x, y, at - (Point2() + base.x * x + base.y * y)};
+                add(block->second.entities, outer * placed, layer, depth + 1);
+            }
+    }
+
+    void addShape(const DxfEntity& entity, const Frame& frame, const std::string& layer) {
+        shape_ = {};
+        shape_.layer = layer;
+        shape_.path.line = entity.line;
+        if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
+            addPolyline(*polyline, frame);
+        else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
+            addArc(entity, *arc, frame);
+        else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
+            addEllipse(*ellipse, frame);
+        spend(entity, shape_.path.points.size());
+        for (const Point2 p : shape_.path.points)
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthest))
+                fail(entity, "lies more than " + formatDouble(kFarthest / 1000) +
+                                 " km from the origin: are the units right (--units)?");
+        if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
+    }
+
+    void addPolyline(const DxfPolyline& polyline, const Frame& frame) {
+        const auto& vertices = polyline.vertices;
+        Polygon& points = shape_.path.points;
+        shape_.path.closed = polyline.closed && vertices.size() > 1;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            points.push_back(frame * vertices[i].at);
+            const bool is_last = i + 1 == vertices.size();
+            if (is_last && !shape_.path.closed) break;
+            addPiece(vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
+        }
+    }
+
+    /// What lies between a vertex and the next one.
+    void addPiece(const DxfPolyline::Vertex& from, Point2 to, const Frame& frame) {
+        PlanChord chord{{frame * from.at, frame * to}, {}};
+        const double bulge = from.bulge;
+        const Vec2 along = to - from.at;
+        if (std::abs(bulge) > kLeastBulge && std::abs(bulge) < kLargestBulge && length(along) > 0) {
+            const double aside = (1 - bulge * bulge) / (4 * bulge);
+            const Point2 center = from.at + 0.5 * along + aside * perpendicular(along);
+            const Vec2 spoke = from.at - center;
+            const double sweep = 4 * std::atan(bulge);
+            const int count = piecesOf(sweep, length(spoke) * frame.largestScale());
+            for (int i = 1; i < count; ++i)
+                shape_.path.points.push_back(frame * (center + turned(spoke, sweep * i / count)));
+            chord.center = frame * center;
+        }
+        shape_.chords.push_back(chord);
+    }
+
+    static Vec2 turned(Vec2 v, double radians) {
+        return std::cos(radians) * v + std::sin(radians) * perpendicular(v);
+    }
+
+    void addArc(const DxfEntity& entity, const DxfArc& arc, const Frame& frame) {
+        if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
+        const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
+        double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
+        if (degrees <= 0) degrees += 360;
+        const int count = piecesOf(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const Angle angle =
+                i == count ? arc.to : arc.from + Angle::degrees(degrees * i / count);
+            shape_.path.points.push_back(frame * (arc.center + arc.radius * unitVector(angle)));
+        }
+        if (!full)
+            shape_.chords.push_back(
+                {{shape_.path.points.front(), shape_.path.points.back()}, frame * arc.center});
+    }
+
+    void addEllipse(const DxfEllipse& ellipse, const Frame& frame) {
+        double sweep = std::fmod(ellipse.to - ellipse.from, kFullTurn);
+        if (sweep <= 1e-9) sweep += kFullTurn;
+        const bool full = sweep > kFullTurn - 1e-6;
+        const double radius = std::max(length(ellipse.major), length(ellipse.minor));
+        if (!(radius > 0)) return;
+        const int count = piecesOf(sweep, radius * frame.largestScale());
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const double t = ellipse.from + sweep * i / count;
+            shape_.path.points.push_back(frame * (ellipse.center + std::cos(t) * ellipse.major +
+                                                  std::sin(t) * ellipse.minor));
+        }
+    }
+
+    const DxfDrawing& drawing_;
+    const std::string& name_;
+    std::size_t budget_;
+    MissingBlocks& missing_;
+    std::vector<PlanShape> shapes_;
+    PlanShape shape_;  // in the making
+};
+
+}  // namespace
+
+std::vector<PlanShape> shapesOf(const DxfDrawing& drawing, double metres_per_unit,
+                                const std::string& name, std::size_t most, MissingBlocks& missing) {
+    return Expander(drawing, name, most, missing).expand(metres_per_unit);
+}
+
+}  // namespace ispace

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/glb_model.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+#include "io/glb_container.h"
+
+namespace ispace {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF data are copied as they are");
+
+// glTF's numbers for component types and for what a view is used for.
+constexpr int kFloat = 5126, kUnsignedInt = 5125;
+constexpr int kVertices = 34962, kElements = 34963;
+constexpr int kTriangles = 4;
+
+using Vector = GlbSurface::Vector;
+
+template <typename T>
+std::string_view bytesOf(const std::vector<T>& items) {
+    return {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T)};
+}
+
+Vector gltfFloats(Vec3 v) {
+    const std::array<double, 3> axes = gltfAxes(v);
+    Vector floats;
+    for (std::size_t i = 0; i < 3; ++i) floats[i] = static_cast<float>(axes[i]) + 0.0F;
+    return floats;
+}
+
+template <typename List>
+void writeList(JsonWriter& json, const List& list) {
+    json.beginArray();
+    for (const auto number : list) json.value(static_cast<double>(number));
+    json.endArray();
+}
+
+/// Opens the array that a section of the file is, if this is its first item.
+JsonWriter& item(JsonWriter& section, int count) {
+    if (count == 0) section.beginArray();
+    return section;
+}
+
+}  // namespace
+
+std::array<double, 3> gltfAxes(Vec3 v) {
+    // Adding zero makes -0 plain 0.
+    return {v.x + 0.0, v.z + 0.0, -v.y + 0.0};
+}
+
+Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+    return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+            a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+            a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
+}
+
+Quaternion rotationAbout(std::size_t axis, Angle angle) {
+    Quaternion q{0, 0, 0, cos(0.5 * angle)};
+    q[axis] = sin(0.5 * angle);
+    return q;
+}
+
+Quaternion rotationOf(const Pose3& pose) {
+    // Our z is glTF's Y and our -y its Z.
+    return rotationAbout(1, pose.heading) * rotationAbout(2, pose.tilt) *
+           rotationAbout(0, pose.roll);
+}
+
+GlbSurface surfaceOf(const Mesh& mesh, Point3 origin) {
+    GlbSurface surface;
+    surface.indices.reserve(3 * mesh.triangles.size());
+    // What each vertex of the mesh has become so far, one for each normal: a chain of results.
+    constexpr std::uint32_t kNone = 0xffffffff;
+    std::vector<std::uint32_t> first(mesh.vertices.size(), kNone), next;
+    const auto result = [&](std::uint32_t vertex, const Vector& position, const Vector& normal) {
+        std::uint32_t* link = &first[vertex];
+        for (; *link != kNone; link = &next[*link])
+            if (surface.normals[*link] == normal) return *link;
+        const auto made = static_cast<std::uint32_t>(next.size());
+        *link = made;
+        next.push_back(kNone);
+        surface.positions.push_back(position);
+        surface.normals.push_back(normal);
+        return made;
+    };
+    for (const auto& triangle : mesh.triangles) {
+        std::array<Point3, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.vertices[triangle[i]];
+        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        const double area = length(normal);
+        std::array<Vector, 3> floats;
+        for (std::size_t i = 0; i < 3; ++i) floats[i] = gltfFloats(corners[i] - origin);
+        if (area == 0 || floats[0] == floats[1] || floats[1] == floats[2] || floats[2] == floats[0])
+            continue;
+        const Vector unit = gltfFloats(1 / area * normal);
+        for (std::size_t i = 0; i < 3; ++i)
+            surface.indices.push_back(result(triangle[i], floats[i], unit));
+    }
+    return surface;
+}
+
+int GlbBuilder::material(Material material, bool double_sided) {
+    const int next = static_cast<int>(materials_.size());
+    const auto [place, is_new] = materials_.try_emplace({material, double_sided}, next);
+    if (!is_new) return place->second;
+    const Look& look = lookOf(material);
+    JsonWriter& json = item(materials_json_, next).beginObject();
+    json.key("name").value(look.name);
+    if (look.opacity < 1) json.key("alphaMode").value("BLEND");
+    if (double_sided) json.key("doubleSided").value(true);
+    json.key("pbrMetallicRoughness").beginObject().key("baseColorFactor");
+    writeList(json, std::array{look.color[0], look.color[1], look.color[2], look.opacity});
+    json.key("metallicFactor").value(look.metallic);
+    json.key("roughnessFactor").value(look.roughness).endObject().endObject();
+    return next;
+}
+
+int GlbBuilder::addAccessor(int view, std::size_t offset, std::size_t count, bool is_index) {
+    JsonWriter& json = item(accessors_json_, accessors_).beginObject();
+    json.key("bufferView").value(view);
+    if (offset > 0) json.key("byteOffset").value(offset);
+    json.key("componentType").value(is_index ? kUnsignedInt : kFloat).key("count").value(count);
+    json.key("type").value(is_index ? "SCALAR" : "VEC3");
+    // What else positions have follows: the object stays open.
+    return accessors_++;
+}
+
+int GlbBuilder::addPositions(int view, std::size_t offset, const std::vector<Vector>& points) {
+    Vector low = points.front();
+    Vector high = low;
+    for (const Vector& point : points)
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], point[i]);
+            high[i] = std::max(high[i], point[i]);
+        }
+    const int index = addAccessor(view, offset, points.size(), false);
+    writeList(accessors_json_.key("min"), low);
+    writeList(accessors_json_.key("max"), high);
+    accessors_json_.endObject();
+    return index;
+}
+
+GlbBuilder::Primitive GlbBuilder::add(const GlbSurface& surface, int material) {
+    Primitive primitive;
+    primitive.material = material;
+    primitive.positions = addPositions(kPositions, bytesOf(positions_).size(), surface.positions);
+    primitive.normals =
+        addAccessor(kNormals, bytesOf(normals_).size(), surface.normals.size(), false);
+    accessors_json_.endObject();
+    primitive.indices =
+        addAccessor(kIndices, bytesOf(indices_).size(), surface.indices.size(), true);
+    accessors_json_.endObject();
+    positions_.insert(positions_.end(), surface.positions.begin(), surface.positions.end());
+    normals_.insert(normals_.end(), surface.normals.begin(), surface.normals.end());
+    indices_.insert(indices_.end(), surface.indices.begin(), surface.indices.end());
+    return primitive;
+}
+
+GlbBuilder::Primitive GlbBuilder::add(const TriangleMesh& mesh, int material) {
+    const auto known = std::find_if(files_.begin(), files_.end(), [&](const FileMesh& file) {
+        return file.digest == mesh.digest;
+    });
+    if (known != files_.end()) {
+        Primitive primitive = known->primitive;
+        primitive.material = material;
+        return primitive;
+    }
+    const int view = kFiles + static_cast<int>(file_views_.size());
+    file_views_.push_back({bytesOf(mesh.vertices), 0, kVertices});
+    file_views_.push_back({bytesOf(mesh.triangles), 0, kElements});
+    Primitive primitive;
+    primitive.material = material;
+    primitive.positions = addPositions(view, 0, mesh.vertices);
+    primitive.indices = addAccessor(view + 1, 0, 3 * mesh.triangles.size(), true);
+    accessors_json_.endObject();
+    files_.push_back({mesh.digest, primitive});
+    return primitive;
+}
+
+int GlbBuilder::addMesh(std::string_view name, const std::vector<Primitive>& primitives) {
+    JsonWriter& json = item(meshes_json_, meshes_).beginObject();
+    json.key("name").value(name).key("primitives").beginArray();
+    for (const Primitive& primitive : primitives) {
+        json.beginObject().key("attributes").beginObject();
+        json.key("POSITION").value(primitive.positions);
+        if (primitive.normals >= 0) json.key("NORMAL").value(primitive.normals);
+        json.endObject().key("indices").value(primitive.indices);
+        json.key("material").value(primitive.material);
+        json.key("mode").value(kTriangles).endObject();
+    }
+    json.endArray().endObject();
+    return meshes_++;
+}
+
+void GlbBuilder::addNode(const GlbNode& node) {
+    JsonWriter& json = item(nodes_json_, nodes_++).beginObject();
+    json.key("name").value(node.name);
+    if (node.mesh >= 0) json.key("mesh").value(node.mesh);
+    if (node.frame != nullptr) {
+        writeList(json.key("translation"), node.frame->translation);
+        // Adding zero makes -0 plain 0.
+        Quaternion rotation = node.frame->rotation;
+        for (double& part : rotation) part += 0.0;
+        writeList(json.key("rotation"), rotation);
+        if (const double scale = node.frame->scale; scale != 1)
+            writeList(json.key("scale"), std::array{scale, scale, scale});
+    }
+    if (!node.keyword.empty())
+        json.key("extras").beginObject().key("keyword").value(node.keyword).endObject();
+    json.endObject();
+}
+
+void GlbBuilder::writeExtras(JsonWriter& json) const {
+    json.key("extras").beginObject().key("ispace").value(static_cast<int>(kRecords));
+    if (!files_.empty()) {
+        json.key("ispace_meshes").beginArray();
+        int view = kFiles;
+        for (const FileMesh& file : files_) {
+            json.beginObject().key("digest").value(file.digest).key("positions").value(view++);
+            json.key("indices").value(view++).endObject();
+        }
+        json.endArray();
+    }
+    json.endObject();
+}
+
+std::vector<std::string_view> GlbBuilder::writeViews(JsonWriter& json,
+                                                     const std::vector<ViewSpec>& views) {
+    constexpr std::string_view kPadding("\0\0\0", 3);
+    std::vector<std::string_view> parts;
+    std::size_t size = 0;
+    json.key("bufferViews").beginArray();
+    for (const ViewSpec& view : views) {
+        const std::size_t padding = (4 - size % 4) % 4;
+        parts.push_back(kPadding.substr(0, padding));
+        parts.push_back(view.data);
+        size += padding;
+        json.beginObject().key("buffer").value(0).key("byteLength").value(view.data.size());
+        if (size > 0) json.key("byteOffset").value(size);
+        if (view.stride > 0) json.key("byteStride").value(view.stride);
+        if (view.target > 0) json.key("target").value(view.target);
+        json.endObject();
+        size += view.data.size();
+    }
+    json.endArray();
+    json.key("buffers").beginArray().beginObject().key("byteLength").value(size);
+    json.endObject().endArray();
+    return parts;
+}
+
+void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origin) {
+    JsonWriter& nodes = item(nodes_json_, nodes_).beginObject().key("name").value("room");
+    if (origin != std::array<double, 3>{}) writeList(nodes.key("translation"), origin);
+    nodes.key("children").beginArray();
+    for (int child = 0; child < nodes_; ++child) nodes.value(child);
+    nodes.endArray().endObject();
+    json.key("scene").value(0).key("scenes").beginArray().beginObject().key("nodes");
+    json.beginArray().value(nodes_).endArray().endObject().endArray();
+}
+
+std::string GlbBuilder::finish(std::string_view records, const std::array<double, 3>& origin) {
+    constexpr int kStride = sizeof(Vector);
+    if (indices_.empty()) {  // a view has at least one byte
+        positions_.emplace_back();
+        normals_.emplace_back();
+        indices_.emplace_back();
+    }
+    std::vector<ViewSpec> views = {{records},
+                                   {bytesOf(positions_), kStride, kVertices},
+                                   {bytesOf(normals_), kStride, kVertices},
+                                   {bytesOf(indices_), 0, kElements}};
+    views.insert(views.end(), file_views_.begin(), file_views_.end());
+    JsonWriter json;
+    json.beginObject().key("asset").beginObject().key("version").value("2.0");
+    json.key("generator").value("ispace").endObject();
+    writeExtras(json);
+    const std::vector<std::string_view> parts = writeViews(json, views);
+    writeScene(json, origin);
+    std::string text = json.take();
+    const auto append = [&text](std::string_view key, JsonWriter& section) {
+        if (section.text().empty()) return;  // glTF has no empty lists
+        text += key;
+        text += section.endArray().text();
+    };
+    append(R"(,"materials":)", materials_json_);
+    append(R"(,"meshes":)", meshes_json_);
+    append(R"(,"accessors":)", accessors_json_);
+    append(R"(,"nodes":)", nodes_json_);
+    text += '}';
+    return glbContainer(text, parts);
+}
+
+}  // namespace ispace

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the writer of GLB consists of: see glb_write.cc.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/json_writer.h"
+#include "env/mesh.h"
+#include "geom/pose.h"
+#include "geom/triangle_mesh.h"
+
+namespace ispace {
+
+/// glTF's (X, Y, Z) are our (x, z, -y).
+std::array<double, 3> gltfAxes(Vec3 v);
+
+/// A rotation: x, y, z, w as in glTF.
+using Quaternion = std::array<double, 4>;
+Quaternion operator*(const Quaternion& a, const Quaternion& b);
+/// By the angle about glTF's X (0), Y (1) or Z (2).
+Quaternion rotationAbout(std::size_t axis, Angle angle);
+/// Rz(heading) Ry(-tilt) Rx(roll) in glTF's axes.
+Quaternion rotationOf(const Pose3& pose);
+
+/// Triangles as glTF draws them, in its axes, with a normal a face: vertices are shared only where
+/// the normal is the same.
+struct GlbSurface {
+    using Vector = std::array<float, 3>;
+    std::vector<Vector> positions, normals;
+    std::vector<std::uint32_t> indices;
+};
+
+/// The mesh about `origin`. Slivers that floats cannot tell from a line are left out.
+GlbSurface surfaceOf(const Mesh& mesh, Point3 origin);
+
+/// A node of the file.
+struct GlbNode {
+    std::string name;
+    std::string keyword;  ///< in its extras; "" for none
+    int mesh = -1;        ///< index as of GlbBuilder; -1 for none
+    /// Where its mesh stands, in glTF's axes; none: where the whole room does.
+    struct Frame {
+        std::array<double, 3> translation{};
+        Quaternion rotation{0, 0, 0, 1};
+        double scale = 1;
+    };
+    std::unique_ptr<const Frame> frame;
+};
+
+/// Collects nodes, meshes and data of a file, and writes it. The JSON has what a reader of the
+/// records wants at its beginning.
+class GlbBuilder {
+  public:
+    struct Primitive {
+        int positions = 0, normals = -1, indices = 0;  ///< accessors; -1 for none
+        int material = 0;
+    };
+
+    /// Materials are made when first used. \return its index
+    int material(Material material, bool double_sided);
+    /// \pre the surface has triangles
+    Primitive add(const GlbSurface& surface, int material);
+    /// The mesh of a file, in views of its own, once for all of equal digest.
+    /// \pre it has triangles, and stays as it is until finish()
+    Primitive add(const TriangleMesh& mesh, int material);
+    /// \return its index \pre there are primitives
+    int addMesh(std::string_view name, const std::vector<Primitive>& primitives);
+    void addNode(const GlbNode& node);
+
+    /// The whole file. All nodes stand in a node `room` at this place, in glTF's axes.
+    /// \throws FormatError as glbContainer does
+    std::string finish(std::string_view records, const std::array<double, 3>& origin);
+
+  private:
+    // Accessors name views before the later ones are known: those of files follow the four.
+    enum View : int { kRecords, kPositions, kNormals, kIndices, kFiles };
+    struct ViewSpec {
+        std::string_view data;
+        int stride = 0;  ///< bytes; 0: none is given
+        int target = 0;  ///< how glTF uses it; 0: not at all
+    };
+    struct FileMesh {
+        std::string digest;
+        Primitive primitive;
+    };
+
+    int addAccessor(int view, std::size_t offset, std::size_t count, bool is_index);
+    int addPositions(int view, std::size_t offset, const std::vector<GlbSurface::Vector>& points);
+    void writeExtras(JsonWriter& json) const;
+    static std::vector<std::string_view> writeViews(JsonWriter& json,
+                                                    const std::vector<ViewSpec>& views);
+    void writeScene(JsonWriter& json, const std::array<double, 3>& origin);
+
+    std::vector<GlbSurface::Vector> positions_, normals_;
+    std::vector<std::uint32_t> indices_;
+    std::vector<ViewSpec> file_views_;
+    std::vector<FileMesh> files_;
+    std::map<std::pair<Material, bool>, int> materials_;
+    JsonWriter materials_json_, meshes_json_, accessors_json_, nodes_json_;
+    int meshes_ = 0, accessors_ = 0, nodes_ = 0;
+};
+
+}  // namespace ispace

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/import_records.h"
+
+#include <cctype>
+#include <memory>
+
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+Tuple tupleOf(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
+
+/// ASCII only, whatever the locale.
+bool isIdCharacter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
+
+char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+}  // namespace
+
+ImportRecords::ImportRecords(const Schemas& schemas, const std::string& name,
+                             const ImportOptions& options)
+    : schemas_(schemas),
+      place_{std::make_shared<const std::string>(displayName(name)), 0, 0},
+      wall_height_(options.wall_height),
+      wall_thickness_(options.wall_thickness) {}
+
+Record& ImportRecords::add(const char* keyword, int line) {
+    Place place = place_;
+    place.line = line;
+    return document_.records.emplace_back(*schemas_.find(keyword), std::move(place));
+}
+
+void ImportRecords::setPoint(Record& record, const char* key, Point2 point) {
+    record.set(key, tupleOf(point));
+}
+
+void ImportRecords::fence(const PlanPath& path, const std::string& id) {
+    Record& record = add("fence", path.line);
+    if (!id.empty()) record.set("id", id);
+    TupleList points;
+    points.reserve(path.points.size());
+    for (const Point2 p : path.points) points.push_back(tupleOf(p));
+    record.set("path", std::move(points));
+    record.set("closed", path.closed);
+    record.set("height", wall_height_);
+    record.set("thickness", wall_thickness_);
+}
+
+void ImportRecords::wall(const Segment2& line, const std::string& id, int file_line) {
+    Record& record = add("wall", file_line);
+    record.set("id", id);
+    setPoint(record, "from", line.a);
+    setPoint(record, "to", line.b);
+    record.set("height", wall_height_);
+    record.set("thickness", wall_thickness_);
+}
+
+void ImportRecords::region(const Region& region, Point2 inside_point) {
+    fence({region.outline, true, 0});
+    for (const Polygon& hole : region.holes) fence({hole, true, 0});
+    inside(inside_point);
+}
+
+void ImportRecords::inside(Point2 point) { setPoint(add("inside", 0), "at", point); }
+
+void ImportRecords::zone(const std::string& id, Point2 middle, Angle heading, double length,
+                         double width) {
+    Record& record = add("zone", 0);
+    record.set("id", id);
+    setPoint(record, "at", middle);
+    record.set("heading", wholeMicrometres(heading.degrees()));
+    record.set("size", Tuple{wholeMicrometres(length), wholeMicrometres(width)});
+}
+
+void ImportRecords::cube(Point2 middle, double length, double width) {
+    Record& record = add("cube", 0);
+    setPoint(record, "at", middle);
+    record.set("size", Tuple{wholeMicrometres(length), wholeMicrometres(width), wall_height_});
+}
+
+std::string ImportRecords::freeId(std::string_view name, const std::string& fallback) {
+    std::string word;
+    for (const char original : name) {
+        const char c = lowerCase(original);
+        if (isIdCharacter(c))
+            word += c;
+        else if (!word.empty() && word.back() != '-')
+            word += '-';
+    }
+    while (!word.empty() && (word.back() == '-' || word.back() == '.')) word.pop_back();
+    word.erase(0, word.find_first_not_of("-."));
+    if (word.empty()) word = fallback;
+    std::string id = word;
+    for (int i = 2; !ids_.insert(id).second; ++i) id = word + '-' + std::to_string(i);
+    return id;
+}
+
+std::string countText(std::size_t count, const std::string& thing) {
+    return std::to_string(count) + ' ' + thing + (count == 1 ? "" : "s");
+}
+
+std::string areaText(double square_metres) { return formatFixed(square_metres, 1) + " m2"; }
+
+}  // namespace ispace

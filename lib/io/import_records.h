@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <set>
+#include <string>
+#include <utility>
+
+#include "geom/polygon.h"
+#include "io/import_options.h"
+#include "io/plan_lines.h"
+#include "io/plan_region.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// Writes the records of an imported plan, places in metres on whole micrometres.
+class ImportRecords {
+  public:
+    /// \param name the file as the user named it
+    ImportRecords(const Schemas& schemas, const std::string& name, const ImportOptions& options);
+
+    /// A fence of the options' height and thickness; `id` may be "".
+    void fence(const PlanPath& path, const std::string& id = "");
+    /// The same as a wall.
+    void wall(const Segment2& line, const std::string& id, int file_line);
+    /// Outline and holes as closed fences, and a point inside.
+    void region(const Region& region, Point2 inside);
+    void inside(Point2 point);
+    /// A rectangle of the floor, by its middle.
+    void zone(const std::string& id, Point2 middle, Angle heading, double length, double width);
+    /// A box as high as the walls.
+    void cube(Point2 middle, double length, double width);
+    /// Any other record; `line` is where it comes from.
+    Record& add(const char* keyword, int line);
+    /// Sets a key of x,y.
+    static void setPoint(Record& record, const char* key, Point2 point);
+
+    /// An id that is not yet taken, made of a name in a file: letters, digits and _ - . stay,
+    /// others become -; "", "-2", "-3" … behind it. `fallback` where nothing readable is left.
+    std::string freeId(std::string_view name, const std::string& fallback);
+
+    void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
+    void source(std::string path) { document_.sources.push_back(std::move(path)); }
+    [[nodiscard]] Document take() { return std::move(document_); }
+
+  private:
+    const Schemas& schemas_;
+    Place place_;
+    double wall_height_, wall_thickness_;
+    std::set<std::string> ids_;
+    Document document_;
+};
+
+/// "1 line", "3 lines".
+std::string countText(std::size_t count, const std::string& thing);
+
+/// "61.2 m2": an area for people.
+std::string areaText(double square_metres);
+
+}  // namespace ispace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/model.h"
+
+#include <utility>
+
+#include "layout/figures.h"
+
+namespace ispace {
+
+namespace {
+
+/// Adds the node if it has anything to show.
+void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
+    std::erase_if(node.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
+    if (!node.meshes.empty()) nodes.push_back(std::move(node));
+}
+
+}  // namespace
+
+std::vector<ModelNode> modelOf(const Scene& scene) {
+    std::vector<ModelNode> nodes;
+    for (const Element& element : scene.environment.elements())
+        addNode(nodes,
+                {element.id, element.record.keyword(), {}, meshesOf(element.body, true), &element});
+    addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
+    for (const Placed& placed : scene.placed)
+        addNode(nodes, {scene.ids[placed.record], scene.records[placed.record].keyword(),
+                        placed.pose, figureOf(scene, placed)});
+    return nodes;
+}
+
+}  // namespace ispace

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+namespace {
+
+struct LexLess {
+    bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
+};
+
+/// Finds for each point the one that stands for all within a distance of it: the nearest earlier
+/// one in reach, else itself.
+class PointWelder {
+  public:
+    explicit PointWelder(double reach) : reach_(reach) {}
+
+    Point2 standing(Point2 p) {
+        if (reach_ == 0) return p;
+        const Cell home = cellOf(p);
+        Point2 best = p;
+        double nearest = reach_;
+        bool found = false;
+        for (std::int64_t x = home.first - 1; x <= home.first + 1; ++x)
+            for (auto it = points_.lower_bound({x, home.second - 1});
+                 it != points_.end() && it->first <= Cell{x, home.second + 1}; ++it) {
+                const double apart = distance(p, it->second);
+                if (found ? apart >= nearest : apart > nearest) continue;
+                best = it->second;
+                nearest = apart;
+                found = true;
+            }
+        if (!found) points_.emplace(home, p);
+        return best;
+    }
+
+  private:
+    using Cell = std::pair<std::int64_t, std::int64_t>;
+    /// Plans end at 1000 km: far within the integers.
+    [[nodiscard]] Cell cellOf(Point2 p) const {
+        return {static_cast<std::int64_t>(std::floor(p.x / reach_)),
+                static_cast<std::int64_t>(std::floor(p.y / reach_))};
+    }
+
+    double reach_;
+    std::multimap<Cell, Point2> points_;  // standing points are apart: few in a cell
+};
+
+/// Without neighbours that are equal; nothing left of a path without extent.
+void dropRepeatedPoints(std::vector<PlanPath>& paths) {
+    for (PlanPath& path : paths) {
+        path.points.erase(std::unique(path.points.begin(), path.points.end()), path.points.end());
+        while (path.closed && path.points.size() > 1 && path.points.front() == path.points.back())
+            path.points.pop_back();
+        if (path.closed && path.points.size() == 2) path.closed = false;
+    }
+    std::erase_if(paths, [](const PlanPath& path) { return path.points.size() < 2; });
+}
+
+/// Where an end goes that lies on no other path: onto the nearest piece in reach, or nowhere.
+class EndMover {
+  public:
+    EndMover(const std::vector<PlanPath>& paths, double reach)
+        : pieces_(piecesOf(paths)), grid_(pieces_, reach), reach_(reach) {
+        for (const PlanPath& path : paths)
+            for (const Point2 p : path.points) ++uses_[p];
+    }
+
+    [[nodiscard]] Point2 moved(Point2 end) const {
+        if (uses_.at(end) > 1) return end;
+        Point2 best = end;
+        double nearest = reach_;
+        for (const std::uint32_t i : grid_.near(end)) {
+            const Segment2& piece = pieces_[i];
+            if (piece.a == end || piece.b == end) continue;
+            const Point2 foot = nearestPoint(piece, end);
+            const double apart = distance(foot, end);
+            if (apart > nearest) continue;
+            best = {wholeMicrometres(foot.x), wholeMicrometres(foot.y)};
+            nearest = apart;
+        }
+        return best;
+    }
+
+  private:
+    std::vector<Segment2> pieces_;
+    SegmentGrid grid_;
+    double reach_;
+    std::map<Point2, int, LexLess> uses_;
+};
+
+void moveEnds(std::vector<PlanPath>& paths, double reach) {
+    const EndMover mover(paths, reach);
+    for (PlanPath& path : paths) {
+        if (path.closed) continue;
+        const Point2 front = mover.moved(path.points.front());
+        const Point2 back = mover.moved(path.points.back());
+        path.points.front() = front;
+        path.points.back() = back;
+    }
+}
+
+/// Adds the path that begins or ends where `path` ends.
+void append(PlanPath& path, const PlanPath& next) {
+    Polygon& points = path.points;
+    if (next.points.front() == points.back())
+        points.insert(points.end(), next.points.begin() + 1, next.points.end());
+    else
+        points.insert(points.end(), next.points.rbegin() + 1, next.points.rend());
+}
+
+/// The ends of open paths by their places.
+class Joiner {
+  public:
+    explicit Joiner(const std::vector<PlanPath>& paths) : paths_(paths), used_(paths.size()) {
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            if (paths[i].closed) continue;
+            ends_[paths[i].points.front()].push_back(i);
+            ends_[paths[i].points.back()].push_back(i);
+        }
+    }
+
+    std::vector<PlanPath> join() {
+        std::vector<PlanPath> all;
+        for (std::size_t i = 0; i < paths_.size(); ++i) {
+            if (paths_[i].closed) all.push_back(paths_[i]);
+            if (!paths_[i].closed && !used_[i]) all.push_back(chainFrom(i));
+        }
+        return all;
+    }
+
+  private:
+    PlanPath chainFrom(std::size_t first) {
+        used_[first] = true;
+        PlanPath chain = paths_[first];
+        Polygon& points = chain.points;
+        extend(chain);
+        if (points.front() != points.back()) {
+            std::reverse(points.begin(), points.end());
+            extend(chain);
+            std::reverse(points.begin(), points.end());
+        }
+        if (points.front() == points.back()) {
+            points.pop_back();
+            chain.closed = true;
+        }
+        return chain;
+    }
+
+    void extend(PlanPath& chain) {
+        while (chain.points.front() != chain.points.back()) {
+            const auto& meeting = ends_.at(chain.points.back());
+            if (meeting.size() != 2) return;
+            const std::size_t next = used_[meeting[0]] ? meeting[1] : meeting[0];
+            if (used_[next]) return;
+            used_[next] = true;
+            append(chain, paths_[next]);
+        }
+    }
+
+    const std::vector<PlanPath>& paths_;
+    std::vector<bool> used_;
+    std::map<Point2, std::vector<std::size_t>, LexLess> ends_;
+};
+
+}  // namespace
+
+double wholeMicrometres(double metres) {
+    const double whole = std::round(metres * 1e6) / 1e6;
+    return whole == 0 ? 0 : whole;  // no minus zero
+}
+
+std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
+    std::vector<PlanPath> result(paths);
+    PointWelder welder(snap);
+    for (PlanPath& path : result)
+        for (Point2& p : path.points)
+            p = welder.standing({wholeMicrometres(p.x), wholeMicrometres(p.y)});
+    dropRepeatedPoints(result);
+    if (snap > 0 && !result.empty()) {
+        moveEnds(result, snap);
+        dropRepeatedPoints(result);
+    }
+    return result;
+}
+
+std::vector<Segment2> piecesOf(const std::vector<PlanPath>& paths) {
+    std::vector<Segment2> pieces;
+    for (const PlanPath& path : paths)
+        for (std::size_t i = 0; i < path.pieceCount(); ++i) pieces.push_back(path.piece(i));
+    return pieces;
+}
+
+std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths,
+                                 const std::vector<bool>& keep) {
+    std::vector<PlanPath> all;
+    std::size_t first = 0;
+    for (const PlanPath& path : paths) {
+        const std::size_t count = path.pieceCount();
+        const auto is_kept = [&](std::size_t i) { return keep[first + i % count]; };
+        std::size_t begin = 0;
+        while (begin < count && is_kept(begin)) ++begin;
+        if (begin == count) {
+            all.push_back(path);
+        } else {
+            // A closed path is walked from its first gap on, so that no run is cut in two.
+            if (!path.closed) begin = 0;
+            PlanPath run{{}, false, path.line};
+            for (std::size_t i = begin; i < begin + count; ++i) {
+                const auto [a, b] = path.piece(i % count);
+                if (!is_kept(i)) continue;
+                if (run.points.empty()) run.points.push_back(a);
+                run.points.push_back(b);
+                if (i + 1 < begin + count && is_kept(i + 1)) continue;
+                all.push_back(std::exchange(run, {{}, false, path.line}));
+            }
+        }
+        first += count;
+    }
+    return all;
+}
+
+std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths) {
+    std::vector<Segment2> pieces = piecesOf(paths);
+    for (Segment2& piece : pieces)
+        if (lexLess(piece.b, piece.a)) std::swap(piece.a, piece.b);
+    std::vector<std::size_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        return pieces[i].a == pieces[k].a ? lexLess(pieces[i].b, pieces[k].b)
+                                          : lexLess(pieces[i].a, pieces[k].a);
+    });
+    std::vector<bool> keep(pieces.size(), true);
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (pieces[order[i]] == pieces[order[i - 1]]) keep[order[i]] = false;
+    return withPieces(paths, keep);
+}
+
+std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths) {
+    return Joiner(paths).join();
+}
+
+}  // namespace ispace

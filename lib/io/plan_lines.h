@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// A drawn line of straight pieces, in metres.
+struct PlanPath {
+    Polygon points;       ///< two or more; a closed path does not repeat its first point
+    bool closed = false;  ///< the last point joins the first
+    int line = 0;         ///< in the file it was read from; 0: unknown
+
+    [[nodiscard]] std::size_t pieceCount() const { return points.size() - (closed ? 0 : 1); }
+    [[nodiscard]] Segment2 piece(std::size_t i) const {
+        return {points[i], points[i + 1 == points.size() ? 0 : i + 1]};
+    }
+    friend bool operator==(const PlanPath&, const PlanPath&) = default;
+};
+
+/// Metres on whole micrometres, which keeps the text short and moves nothing visibly.
+double wholeMicrometres(double metres);
+
+/// Puts points on whole micrometres and joins what was meant to meet: points within `snap` of an
+/// earlier one move onto it, then ends of open paths within `snap` of another path onto that.
+/// Points that fall together are one; paths without two different points are dropped. With 0 only
+/// equal points are one. O(n log n) for points spread over the plan.
+std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
+
+/// All pieces of all paths, in order.
+std::vector<Segment2> piecesOf(const std::vector<PlanPath>& paths);
+
+/// The paths less the pieces whose `keep` is false, in the order of piecesOf: what is left of a
+/// path may be several.
+std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths, const std::vector<bool>& keep);
+
+/// Without pieces that an earlier one repeats, in either direction.
+std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths);
+
+/// Open paths made one where exactly two of their ends meet, so that a room drawn line by line is
+/// one closed path; it stands where its first part stood, and has that one's `line`. O(n log n).
+std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
+
+}  // namespace ispace

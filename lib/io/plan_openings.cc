@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan_openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+#include "io/plan_lines.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
+constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
+constexpr double kNarrowest = 0.4;  // metres; what is less is a frame or a jamb
+
+/// Each is compared with each other: more are no doors.
+constexpr std::size_t kMostOpenSwings = 4000;
+
+bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
+
+/// Where an end of a symbol meets the walls.
+struct Anchor {
+    Point2 place;
+    double apart = 0;
+};
+
+class Walls {
+  public:
+    explicit Walls(std::span<const Segment2> walls) : walls_(walls), grid_(walls, kReach) {}
+
+    /// The nearest end of a wall, else the nearest point of one, in reach.
+    [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
+        std::optional<Anchor> corner, foot;
+        const auto keep_nearest = [p](std::optional<Anchor>& best, Point2 place) {
+            const double apart = distance(p, place);
+            if (apart <= kReach && (!best || apart < best->apart)) best = Anchor{place, apart};
+        };
+        for (const std::uint32_t i : grid_.near(p)) {
+            keep_nearest(corner, walls_[i].a);
+            keep_nearest(corner, walls_[i].b);
+            keep_nearest(foot, nearestPoint(walls_[i], p));
+        }
+        if (!corner && foot)
+            foot->place = {wholeMicrometres(foot->place.x), wholeMicrometres(foot->place.y)};
+        return corner ? corner : foot;
+    }
+
+    /// The wall piece upon which both ends lie.
+    [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line) const {
+        for (const std::uint32_t i : grid_.near(line.a))
+            if (distance(line.a, walls_[i]) <= kOnWall && distance(line.b, walls_[i]) <= kOnWall)
+                return i;
+        return std::nullopt;
+    }
+
+    [[nodiscard]] bool isOnWall(Point2 p) const {
+        const auto near = grid_.near(p);
+        return std::any_of(near.begin(), near.end(),
+                           [&](std::uint32_t i) { return distance(p, walls_[i]) <= kOnWall; });
+    }
+
+    [[nodiscard]] const Segment2& operator[](std::size_t i) const { return walls_[i]; }
+
+  private:
+    std::span<const Segment2> walls_;
+    SegmentGrid grid_;
+};
+
+/// An arc of a door's leaf.
+struct Swing {
+    PlanChord chord;
+    int drawn_on = 0;
+};
+
+class Finder {
+  public:
+    explicit Finder(std::span<const Segment2> walls) : walls_(walls) {}
+
+    void find(std::span<const PlanShape> symbols, bool are_windows) {
+        are_windows_ = are_windows;
+        open_swings_.clear();
+        for (const PlanShape& shape : symbols)
+            for (const PlanChord& chord : shape.chords)
+                if (chord.center) addSwing({chord, shape.path.line});
+        joinDoubleDoors();
+        for (const PlanShape& shape : symbols)
+            for (const PlanChord& chord : shape.chords)
+                if (!chord.center && !isLeaf(chord.line) && !add(chord.line, shape.path.line))
+                    ++found_.unused;
+    }
+    PlanOpenings take() { return std::move(found_); }
+
+  private:
+    /// The opening that a line stands for, and how far its ends are off the walls.
+    struct Candidate {
+        PlanOpening opening;
+        double apart = 0;
+    };
+
+    [[nodiscard]] std::optional<Candidate> candidate(const Segment2& line, int drawn_on) const {
+        if (distance(line.a, line.b) < kNarrowest) return std::nullopt;
+        if (const auto wall = walls_.wallUnder(line)) {
+            const auto foot = [&](Point2 p) {
+                const Point2 near = nearestPoint(walls_[*wall], p);
+                return Point2{wholeMicrometres(near.x), wholeMicrometres(near.y)};
+            };
+            return Candidate{{{foot(line.a), foot(line.b)}, wall, are_windows_, drawn_on}, 0};
+        }
+        const auto a = walls_.anchor(line.a), b = walls_.anchor(line.b);
+        if (!a || !b || distance(a->place, b->place) < kNarrowest) return std::nullopt;
+        const Point2 middle = a->place + 0.5 * (b->place - a->place);
+        if (walls_.isOnWall(middle)) return std::nullopt;
+        return Candidate{{{a->place, b->place}, std::nullopt, are_windows_, drawn_on},
+                         a->apart + b->apart};
+    }
+
+    void keep(const PlanOpening& opening) {
+        const auto [a, b] = opening.line;
+        if (opening.wall) {
+            std::vector<Segment2>& others = on_wall_[*opening.wall];
+            const Segment2& wall = walls_[*opening.wall];
+            const auto extent = [&](const Segment2& s) {
+                return std::minmax(
+                    {dot(s.a - wall.a, wall.b - wall.a), dot(s.b - wall.a, wall.b - wall.a)});
+            };
+            const auto overlaps = [&, mine = extent(opening.line)](const Segment2& other) {
+                const auto [low, high] = extent(other);
+                return std::max(low, mine.first) < std::min(high, mine.second);
+            };
+            if (std::any_of(others.begin(), others.end(), overlaps)) return;
+            others.push_back(opening.line);
+        } else if (!across_gaps_
+                        .insert(lexLess(a, b) ? Ends{a.x, a.y, b.x, b.y} : Ends{b.x, b.y, a.x, a.y})
+                        .second) {
+            return;
+        }
+        found_.openings.push_back(opening);
+    }
+
+    bool add(const Segment2& line, int drawn_on) {
+        const auto found = candidate(line, drawn_on);
+        if (found) keep(found->opening);
+        return found.has_value();
+    }
+
+    void addSwing(const Swing& swing) {
+        const Point2 hinge = *swing.chord.center;
+        const auto [a, b] = swing.chord.line;
+        const auto first = candidate({hinge, a}, swing.drawn_on);
+        const auto second = candidate({hinge, b}, swing.drawn_on);
+        if (!first && !second) {
+            open_swings_.push_back(swing);
+            return;
+        }
+        const bool takes_first = first && (!second || first->apart <= second->apart);
+        keep(takes_first ? first->opening : second->opening);
+        addLeaf({hinge, takes_first ? b : a});
+    }
+
+    /// Arcs that end in the air: two that meet there are a double door.
+    void joinDoubleDoors() {
+        if (open_swings_.size() > kMostOpenSwings) {
+            found_.unused += open_swings_.size();
+            return;
+        }
+        std::vector<bool> used(open_swings_.size());
+        for (std::size_t i = 0; i < open_swings_.size(); ++i) {
+            for (std::size_t k = i + 1; k < open_swings_.size() && !used[i]; ++k)
+                if (!used[k] && joinLeaves(open_swings_[i], open_swings_[k]))
+                    used[i] = used[k] = true;
+            if (!used[i]) ++found_.unused;
+        }
+    }
+
+    bool joinLeaves(const Swing& left, const Swing& right) {
+        const Segment2 line{*left.chord.center, *right.chord.center};
+        const Segment2 &l = left.chord.line, &r = right.chord.line;
+        for (const auto& [p, other_p] : {std::pair{l.a, l.b}, std::pair{l.b, l.a}})
+            for (const auto& [q, other_q] : {std::pair{r.a, r.b}, std::pair{r.b, r.a}}) {
+                if (!isNear(p, q) || distance(p, line) > kReach) continue;
+                if (!add(line, left.drawn_on)) continue;
+                addLeaf({line.a, other_p});
+                addLeaf({line.b, other_q});
+                return true;
+            }
+        return false;
+    }
+
+    using Cell = std::pair<std::int64_t, std::int64_t>;
+    [[nodiscard]] static Cell cellOf(Point2 p) {
+        return {static_cast<std::int64_t>(std::floor(p.x / kReach)),
+                static_cast<std::int64_t>(std::floor(p.y / kReach))};
+    }
+    void addLeaf(const Segment2& leaf) { leaves_[cellOf(leaf.a)].push_back(leaf); }
+
+    [[nodiscard]] bool isLeaf(const Segment2& line) const {
+        return isLeafFrom(line.a, line.b) || isLeafFrom(line.b, line.a);
+    }
+    [[nodiscard]] bool isLeafFrom(Point2 hinge, Point2 end) const {
+        const Cell home = cellOf(hinge);
+        for (std::int64_t x = home.first - 1; x <= home.first + 1; ++x)
+            for (std::int64_t y = home.second - 1; y <= home.second + 1; ++y) {
+                const auto leaves = leaves_.find({x, y});
+                if (leaves != leaves_.end() &&
+                    std::any_of(leaves->second.begin(), leaves->second.end(),
+                                [&](const Segment2& leaf) {
+                                    return isNear(hinge, leaf.a) && isNear(end, leaf.b);
+                                }))
+                    return true;
+            }
+        return false;
+    }
+
+    using Ends = std::array<double, 4>;
+
+    Walls walls_;
+    PlanOpenings found_;
+    bool are_windows_ = false;
+    std::set<Ends> across_gaps_;
+    std::map<std::size_t, std::vector<Segment2>> on_wall_;
+    std::map<Cell, std::vector<Segment2>> leaves_;  // by hinge: from there to where it is drawn
+    std::vector<Swing> open_swings_;
+};
+
+}  // namespace
+
+PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
+                          std::span<const Segment2> walls) {
+    Finder finder(walls);
+    finder.find(doors, false);
+    finder.find(windows, true);
+    return finder.take();
+}
+
+}  // namespace ispace

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan_region.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "geom/planar_map.h"
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+namespace {
+
+/// How far beside a door the rooms on its sides are looked for: less than any wall is thick.
+constexpr double kBesideDoor = 0.005;
+
+/// An inside point nearer than this to a line that stands free is exchanged for the clearest of a
+/// grid of points.
+constexpr double kClear = 0.05;
+constexpr int kClearSteps = 12;
+
+/// Where a line is looked at that bounds nothing: not at its ends, which often lie on walls.
+constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
+
+/// Pairs of lines that are tested for crossing, at most; and at least so many lines against all.
+constexpr std::size_t kMostTests = 20'000'000;
+constexpr std::size_t kLeastSample = 64;
+/// Walls cross a few others; hatching and terrain cross hundreds.
+constexpr double kManyCrossings = 20;
+constexpr double kFewCrossings = 200'000;
+
+bool contains(const Box2& box, Point2 p) {
+    return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
+}
+
+Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
+
+/// Says for many points whether they lie in one of several regions that do not overlap: an edge is
+/// looked at only where it passes a point's level.
+class RegionLocator {
+  public:
+    explicit RegionLocator(const std::vector<Region>& regions) {
+        for (const Region& region : regions)
+            region.forEachEdge([&](const Segment2& edge) { edges_.push_back(edge); });
+        for (const Segment2& edge : edges_) {
+            box_.add(edge.a);
+            box_.add(edge.b);
+        }
+        levels_.resize(std::clamp<std::size_t>(edges_.size() / 4, 1, kMostLevels));
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            const auto [low, high] = std::minmax(edges_[i].a.y, edges_[i].b.y);
+            for (std::size_t k = levelOf(low); k <= levelOf(high); ++k) levels_[k].push_back(i);
+        }
+    }
+
+    /// Even-odd over all edges: an edge between two of the regions counts twice. Off the edges.
+    [[nodiscard]] bool holds(Point2 p) const {
+        if (!contains(box_, p)) return false;
+        bool inside = false;
+        for (const std::size_t i : levels_[levelOf(p.y)]) {
+            auto [a, b] = edges_[i];
+            if (a.y > b.y) std::swap(a, b);
+            if (a.y <= p.y && p.y < b.y && orientation(a, b, p) == Turn::Left) inside = !inside;
+        }
+        return inside;
+    }
+
+  private:
+    static constexpr std::size_t kMostLevels = 512;
+
+    [[nodiscard]] std::size_t levelOf(double y) const {
+        const double share = (y - box_.low.y) / box_.depth();
+        const auto count = static_cast<double>(levels_.size());
+        return share > 0 ? static_cast<std::size_t>(std::min(share * count, count - 1)) : 0;
+    }
+
+    std::vector<Segment2> edges_;
+    Box2 box_;
+    std::vector<std::vector<std::size_t>> levels_;
+};
+
+double distanceTo(std::span<const Segment2> lines, Point2 p) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Segment2& line : lines) nearest = std::min(nearest, distance(p, line));
+    return nearest;
+}
+
+/// A point of the face that stands on no line within it either.
+Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
+    Point2 best = interiorPoint(face);
+    double best_clear = distanceTo(lines, best);
+    if (best_clear >= kClear) return best;
+    const Box2 box = bounds(face.outline);
+    for (int i = 1; i < kClearSteps * kClearSteps; ++i) {
+        const double u = (i % kClearSteps + 0.5) / kClearSteps,
+                     v = (i / kClearSteps + 0.5) / kClearSteps;
+        const Point2 p{box.low.x + u * box.width(), box.low.y + v * box.depth()};
+        if (face.locate(p) != Side::Inside) continue;
+        const double clear = distanceTo(lines, p);
+        if (clear <= best_clear) continue;
+        best = p;
+        best_clear = clear;
+    }
+    return best;
+}
+
+}  // namespace
+
+double PlanRegion::area() const {
+    return std::accumulate(rooms.begin(), rooms.end(), 0.0,
+                           [](double sum, const Region& room) { return sum + room.area(); });
+}
+
+PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors)
+    : walls_(walls.begin(), walls.end()), faces_(boundedFaces(weld(walls))) {
+    boxes_.reserve(faces_.size());
+    for (const Region& face : faces_) boxes_.push_back(bounds(face.outline));
+    group_.resize(faces_.size());
+    std::iota(group_.begin(), group_.end(), std::size_t{0});
+    const auto root = [this](std::size_t i) {
+        while (group_[i] != i) i = group_[i];
+        return i;
+    };
+    for (const Segment2& door : doors) {
+        const Vec2 along = door.b - door.a;
+        const Vec2 across = kBesideDoor / length(along) * perpendicular(along);
+        const auto left = faceAt(middleOf(door) + across);
+        const auto right = faceAt(middleOf(door) - across);
+        if (!left || !right) continue;
+        const std::size_t a = root(*left), b = root(*right);
+        group_[std::max(a, b)] = std::min(a, b);
+    }
+    for (std::size_t i = 0; i < group_.size(); ++i) group_[i] = root(i);
+}
+
+std::optional<std::size_t> PlanFaces::faceAt(Point2 p) const {
+    for (std::size_t i = 0; i < faces_.size(); ++i)
+        if (contains(boxes_[i], p) && faces_[i].locate(p) == Side::Inside) return i;
+    return std::nullopt;
+}
+
+std::optional<PlanRegion> PlanFaces::region(std::optional<Point2> preferred) const {
+    if (faces_.empty()) return std::nullopt;
+    std::vector<double> areas(faces_.size());
+    for (std::size_t i = 0; i < faces_.size(); ++i) areas[group_[i]] += faces_[i].area();
+    auto best =
+        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+    if (preferred)
+        if (const auto face = faceAt(*preferred)) best = group_[*face];
+    PlanRegion region;
+    for (std::size_t i = 0; i < faces_.size(); ++i)
+        if (group_[i] == best) region.rooms.push_back(faces_[i]);
+    std::stable_sort(region.rooms.begin(), region.rooms.end(),
+                     [](const Region& a, const Region& b) { return a.area() > b.area(); });
+    region.inside = clearPoint(region.rooms.front(), walls_);
+    return region;
+}
+
+std::vector<bool> belongsTo(const PlanRegion& region, std::span<const Segment2> lines) {
+    std::vector<bool> belongs(lines.size());
+    // Lines on which an edge of a room lies; both were welded, which moves by that distance.
+    const SegmentGrid grid(lines, 3 * kWeldDistance);
+    for (const Region& room : region.rooms)
+        room.forEachEdge([&](const Segment2& edge) {
+            const Point2 middle = middleOf(edge);
+            for (const std::uint32_t i : grid.near(middle))
+                if (distance(middle, lines[i]) <= 3 * kWeldDistance) belongs[i] = true;
+        });
+    const RegionLocator locator(region.rooms);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for (const double share : kSharesInside)
+            if (!belongs[i])
+                belongs[i] = locator.holds(lines[i].a + share * (lines[i].b - lines[i].a));
+    return belongs;
+}
+
+bool crossTooOften(std::span<const Segment2> lines) {
+    const std::size_t count = lines.size();
+    if (count < 2) return false;
+    const std::size_t sample = std::clamp(kMostTests / count, std::min(kLeastSample, count), count);
+    std::size_t crossings = 0;
+    for (std::size_t k = 0; k < sample; ++k) {
+        const Segment2& line = lines[k * count / sample];
+        const auto [left, right] = std::minmax(line.a.x, line.b.x);
+        for (const Segment2& other : lines)
+            if (std::max(other.a.x, other.b.x) >= left && std::min(other.a.x, other.b.x) <= right &&
+                intersects(line, other))
+                ++crossings;
+    }
+    const auto all = static_cast<double>(count);
+    // Each line meets itself; each crossing is seen from both of its lines.
+    const double estimate =
+        (static_cast<double>(crossings) / static_cast<double>(sample) - 1) * all / 2;
+    return estimate > std::max(kFewCrossings, kManyCrossings * all);
+}
+
+}  // namespace ispace

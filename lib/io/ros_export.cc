@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ros_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/json_writer.h"
+#include "base/number.h"
+#include "io/cell_raster.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr char kFree = static_cast<char>(254), kOccupied = 0, kUnknown = static_cast<char>(205);
+constexpr int kRim = 4;  ///< unknown cells around the room, the occupied ones among them
+constexpr double kFinest = 0.001, kCoarsest = 1000;  // what readRosMap takes
+
+/// The multiple of `size` at or below, in decimals that read well: -2.05, not -2.0500000000000003.
+double multipleBelow(double value, double size) {
+    return std::round(std::floor(value / size) * size * 1e9) / 1e9;
+}
+
+/// A resolution of one or two digits that keeps this many times as many cells within the limits.
+double coarserResolution(double resolution, double times) {
+    const double least = resolution * times;
+    const double digit = std::pow(10, std::floor(std::log10(least)) - 1);
+    return std::ceil(least / digit) * digit;
+}
+
+CellFrame frameOf(const Box2& box, double resolution) {
+    if (!(resolution >= kFinest && resolution <= kCoarsest))
+        throw UsageError("a map of " + formatDouble(resolution) +
+                         " m a cell cannot be written, wanted " + formatDouble(kFinest) + " to " +
+                         formatDouble(kCoarsest));
+    const double rim = kRim * resolution;
+    CellFrame frame{
+        {multipleBelow(box.low.x - rim, resolution), multipleBelow(box.low.y - rim, resolution)},
+        resolution};
+    const double columns = std::ceil((box.high.x + rim - frame.origin.x) / resolution);
+    const double rows = std::ceil((box.high.y + rim - frame.origin.y) / resolution);
+    const double too_many =
+        std::max(std::max(columns, rows) / kMostMapSide,
+                 std::sqrt(columns * rows / static_cast<double>(kMostMapCells)));
+    if (too_many > 1)
+        throw UsageError("a map of " + formatFixed(columns, 0) + " x " + formatFixed(rows, 0) +
+                         " cells cannot be written, at most " + std::to_string(kMostMapSide) +
+                         " each way and " + std::to_string(kMostMapCells) +
+                         " in all: take a resolution of " +
+                         formatDouble(coarserResolution(resolution, too_many)) + " m");
+    frame.columns = static_cast<int>(columns);
+    frame.rows = static_cast<int>(rows);
+    return frame;
+}
+
+/// Paints the cells, straight into the bytes of the picture, whose top row comes first.
+class MapPainter {
+  public:
+    explicit MapPainter(const CellFrame& frame) : frame_(frame) {
+        pgm_ =
+            "P5\n" + std::to_string(frame.columns) + ' ' + std::to_string(frame.rows) + "\n255\n";
+        header_ = pgm_.size();
+        pgm_.resize(header_ + static_cast<std::size_t>(frame.columns) *
+                                  static_cast<std::size_t>(frame.rows),
+                    kUnknown);
+    }
+
+    void addFloor(const Region& indoor) {
+        std::vector<Polygon> curves{indoor.outline};
+        curves.insert(curves.end(), indoor.holes.begin(), indoor.holes.end());
+        fill(insideRuns(curves, frame_), kFree);
+        indoor.forEachEdge([this](const Segment2& edge) { addMiddlesOn(edge); });
+    }
+
+    void addSolid(const Polygon& solid) {
+        fill(insideRuns(std::span(&solid, 1), frame_), kOccupied);
+        forEachEdge(solid, [this](const Segment2& edge) { addMiddlesOn(edge); });
+    }
+
+    /// After all solids: what stands has been painted, and what is left is too thin for middles.
+    void addLine(const Segment2& line) {
+        for (const CellPair& pair : crossingsOf(line))
+            if (isFree(pair.near_column, pair.near_row) && isFree(pair.far_column, pair.far_row))
+                *cell(pair.near_column, pair.near_row) = kOccupied;
+    }
+
+    /// A body so small that it lies between the middles of cells.
+    void addSmall(const Polygon& body) {
+        bool has_cells = false;
+        forEachEdge(body, [&](const Segment2& edge) {
+            has_cells = has_cells || !crossingsOf(edge).empty();
+        });
+        const Point2 middle = frame_.toCells(bounds(body).center());
+        const auto column = static_cast<std::int64_t>(std::clamp(std::round(middle.x), -1.0, 1e9));
+        const auto row = static_cast<std::int64_t>(std::clamp(std::round(middle.y), -1.0, 1e9));
+        if (!has_cells && isFree(column, row)) *cell(column, row) = kOccupied;
+    }
+
+    /// What touches free cells, at a side or a corner, is known to be no floor.
+    void closeRim() {
+        for (int row = 0; row < frame_.rows; ++row) {
+            const char* const begin = cell(0, row);
+            const char* const end = begin + frame_.columns;
+            for (const char* at = std::find(begin, end, kFree); at != end;) {
+                const char* const stop = std::find_if(at, end, [](char c) { return c != kFree; });
+                closeAround(row, static_cast<int>(at - begin), static_cast<int>(stop - begin) - 1);
+                at = std::find(stop, end, kFree);
+            }
+        }
+    }
+
+    [[nodiscard]] std::string take() { return std::move(pgm_); }
+
+  private:
+    [[nodiscard]] char* cell(std::int64_t column, std::int64_t row) {
+        return pgm_.data() + header_ + (frame_.rows - 1 - row) * frame_.columns + column;
+    }
+    [[nodiscard]] bool isFree(std::int64_t column, std::int64_t row) {
+        return column >= 0 && row >= 0 && column < frame_.columns && row < frame_.rows &&
+               *cell(column, row) == kFree;
+    }
+
+    const std::vector<CellPair>& crossingsOf(const Segment2& segment) {
+        crossings_.clear();
+        appendCrossings(segment, frame_, crossings_);
+        return crossings_;
+    }
+
+    void fill(const std::vector<CellRun>& runs, char value) {
+        for (const CellRun& run : runs)
+            std::fill(cell(run.first, run.row), cell(run.last, run.row) + 1, value);
+    }
+
+    void addMiddlesOn(const Segment2& edge) {
+        for (const CellPair& pair : crossingsOf(edge))
+            if (pair.near_column == pair.far_column && pair.near_row == pair.far_row &&
+                isFree(pair.near_column, pair.near_row))
+                *cell(pair.near_column, pair.near_row) = kOccupied;
+    }
+
+    void closeAround(int row, int first, int last) {
+        const int left = std::max(first - 1, 0), right = std::min(last + 1, frame_.columns - 1);
+        for (int r = std::max(row - 1, 0); r <= std::min(row + 1, frame_.rows - 1); ++r)
+            std::replace(cell(left, r), cell(right, r) + 1, kUnknown, kOccupied);
+    }
+
+    const CellFrame& frame_;
+    std::string pgm_;
+    std::size_t header_ = 0;
+    std::vector<CellPair> crossings_;
+};
+
+/// Names that YAML takes for something else than text, or ends early, are quoted; JSON's strings
+/// are YAML's.
+std::string yamlText(const std::string& text) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '.' || c == '/' || c == '-';
+    };
+    const bool begins_as_word =
+        !text.empty() && text.front() != '-' &&
+        (is_plain(text.front()) && !(text.front() >= '0' && text.front() <= '9'));
+    if (begins_as_word && text.find('.') != std::string::npos &&
+        std::all_of(text.begin(), text.end(), is_plain))
+        return text;
+    JsonWriter json;
+    json.value(text);
+    return json.take();
+}
+
+}  // namespace
+
+RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
+                        const std::string& image_name) {
+    const Region& indoor = scene.environment.indoor();
+    const CellFrame frame = frameOf(bounds(indoor.outline), resolution);
+    const Slice slice = scene.environment.slice(height);
+    MapPainter painter(frame);
+    painter.addFloor(indoor);
+    for (const Polygon& solid : slice.solids) painter.addSolid(solid);
+    slice.forEachLine([&](const Segment2& line) { painter.addLine(line); });
+    indoor.forEachEdge([&](const Segment2& edge) { painter.addLine(edge); });
+    for (const Polygon& solid : slice.solids) painter.addSmall(solid);
+    for (const Polygon& hole : indoor.holes) painter.addSmall(hole);
+    painter.closeRim();
+
+    RosMapFiles files;
+    files.yaml = "image: " + yamlText(image_name) +
+                 "\nmode: trinary\nresolution: " + formatDouble(resolution) + "\norigin: [" +
+                 formatDouble(frame.origin.x) + ", " + formatDouble(frame.origin.y) +
+                 ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    files.pgm = painter.take();
+    return files;
+}
+
+}  // namespace ispace
