@@ -10,6 +10,7 @@
 #include "base/history.h"
 #include "base/number.h"
 #include "base/suggest.h"
+#include "cli/dependencies.h"
 #include "cli/run_tool.h"
 #include "record/schema.h"
 
@@ -83,6 +84,7 @@ struct CommandLine::Data {
     std::vector<std::string> unused_operands;
     std::vector<std::string>* operands = &unused_operands;
     std::size_t most_operands = 0;
+    std::function<void()> check = [] {};  // of options against each other, once all are known
 
     CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
                       Enters enters) {
@@ -182,7 +184,8 @@ void CommandLine::ordered(const std::string& names, const std::string& value,
     data_->entries.back().take = guarded(names, std::move(take));
 }
 
-void CommandLine::dependencies(DependencyOptions& options) {
+void CommandLine::dependencies(DependencyOptions& options, const std::string& output) {
+    data_->check = [&options, &output] { checkDependencies(options, output); };
     flag("--MD", options.wanted, "write a rule for make that names all files read, too",
          Enters::Nothing);
     text("--MF", "FILE", options.file,
@@ -310,6 +313,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     std::vector<std::string> rest = d.app.remaining();
     rest.insert(rest.end(), tail.begin(), tail.end());
     d.sortOut(rest);
+    d.check();
 }
 
 bool isStream(const std::string& operand) {

@@ -56,8 +56,8 @@ class CommandLine {
     /// the command line, and so does the history line. Repeatable.
     void ordered(const std::string& names, const std::string& value,
                  std::function<void(const std::string&)> take, const std::string& help);
-    /// -MD and -MF FILE, as compilers have them.
-    void dependencies(DependencyOptions& options);
+    /// -MD and -MF FILE, as compilers have them, about the product `output`.
+    void dependencies(DependencyOptions& options, const std::string& output);
     /// A whole number in [lowest, highest].
     void count(const std::string& names, const std::string& value, std::optional<int>& variable,
                int lowest, int highest, const std::string& help, Enters enters);
@@ -102,9 +102,10 @@ struct CommonOptions {
     int threads = 0;  ///< 0: all cores this process may use
     std::uint64_t seed = 0;
     std::optional<bool> progress;
+    DependencyOptions dependencies;
 };
-/// Declares -o -q -v -j --seed --progress; `output_help` says what the product is. Without it there
-/// is no -o: the tool writes elsewhere.
+/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` says what the product is. Without
+/// it there is no -o, -MD and -MF: the tool writes elsewhere.
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
 /// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).

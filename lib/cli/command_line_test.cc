@@ -26,7 +26,6 @@ struct Tool {
     int columns = 100, rows = 100;
     bool json = false;
     std::vector<std::string> edits;
-    DependencyOptions dependencies;
 
     Tool() {
         line.operands(operands, 2);
@@ -44,7 +43,6 @@ struct Tool {
                 },
                 "change it");
         line.flag("--json", json, "as JSON", Enters::Nothing);
-        line.dependencies(dependencies);
         addCommonOptions(line, common, "there");
     }
     void parse(std::vector<const char*> words_given) {
@@ -169,18 +167,18 @@ TEST(CommandLine, TakesOrderedOptionsAsTheyCome) {
 
 TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
     Tool tool;
-    tool.parse({"room.glb", "-MD", "-MF", "room.d"});
-    EXPECT_TRUE(tool.dependencies.wanted);
-    EXPECT_EQ(tool.dependencies.file, "room.d");
+    tool.parse({"room.glb", "-MD", "-MF", "room.d", "-o", "x.3dm"});
+    EXPECT_TRUE(tool.common.dependencies.wanted);
+    EXPECT_EQ(tool.common.dependencies.file, "room.d");
     EXPECT_EQ(tool.line.historyLine(tool.operands), "tool room.glb");
     Tool joined;
-    joined.parse({"-MFx.d", "room.glb"});
-    EXPECT_EQ(joined.dependencies.file, "x.d");
-    EXPECT_FALSE(joined.dependencies.wanted);
+    joined.parse({"-MFx.d", "room.glb", "-MD", "-o", "x"});
+    EXPECT_EQ(joined.common.dependencies.file, "x.d");
     EXPECT_EQ(joined.operands, std::vector<std::string>{"room.glb"});
     const std::string help = joined.line.helpText();
     EXPECT_NE(help.find("\n  -MD "), std::string::npos) << help;
     EXPECT_NE(help.find("\n  -MF FILE "), std::string::npos) << help;
+    EXPECT_NE(Tool().errorOf({"-MD"}).find("-o FILE"), std::string::npos);
     // Behind -- they are operands.
     Tool behind;
     behind.parse({"--", "-MD"});

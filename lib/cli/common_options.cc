@@ -31,8 +31,10 @@ int availableThreads() {
 }  // namespace
 
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help) {
-    if (!output_help.empty())
+    if (!output_help.empty()) {
+        line.dependencies(options.dependencies, options.output);
         line.text("-o,--output", "FILE", options.output, output_help, Enters::Nothing);
+    }
     line.flag("-q,--quiet", options.quiet, "say nothing but errors", Enters::Nothing);
     line.flag("-v,--verbose", options.verbose, "say more about the work", Enters::Nothing);
     line.count("-j,--threads", "N", options.threads, 0, kMostThreads,
@@ -77,6 +79,7 @@ std::string outputFormat(const std::string& to, const std::string& output,
     std::string suffix = std::filesystem::path(output).extension().string();
     for (char& c : suffix)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (suffix == ".yml") suffix = ".yaml";
     for (const std::string& format : known)
         if (suffix == '.' + format) return format;
     // A suffix that names another format is a mistake, not a wish for the default.

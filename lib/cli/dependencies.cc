@@ -49,15 +49,11 @@ void checkDependencies(const DependencyOptions& options, const std::string& outp
         throw UsageError("-MD writes a rule for the product: name it with -o FILE");
 }
 
-void writeDependencies(const DependencyOptions& options, const std::string& output,
-                       std::vector<std::string> operands, std::span<const Document> documents) {
-    if (!options.wanted) return;
-    for (const Document& document : documents)
-        operands.insert(operands.end(), document.sources.begin(), document.sources.end());
-    const std::string file = options.file.empty()
-                                 ? std::filesystem::path(output).replace_extension(".d").string()
-                                 : options.file;
-    writeAll(file, dependencyRule(output, operands));
+void writeDependencies(const CommonOptions& options, std::span<const std::string> files) {
+    if (!options.dependencies.wanted) return;
+    std::string file = options.dependencies.file;
+    if (file.empty()) file = std::filesystem::path(options.output).replace_extension(".d").string();
+    writeAll(file, dependencyRule(options.output, files));
 }
 
 }  // namespace ispace

@@ -3,10 +3,8 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "cli/command_line.h"
-#include "record/record.h"
 
 namespace ispace {
 
@@ -19,9 +17,7 @@ std::string dependencyRule(const std::string& target, std::span<const std::strin
 /// Checks -MD and -MF against -o. \throws UsageError for -MF alone, or without a product's name
 void checkDependencies(const DependencyOptions& options, const std::string& output);
 
-/// Writes the rule of `output` if it is wanted.
-/// \param operands files named on the command line \param documents what was read from them
-void writeDependencies(const DependencyOptions& options, const std::string& output,
-                       std::vector<std::string> operands, std::span<const Document> documents);
+/// Writes the rule of -o if it is wanted. \param files all that the product was made from
+void writeDependencies(const CommonOptions& options, std::span<const std::string> files);
 
 }  // namespace ispace

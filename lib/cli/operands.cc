@@ -133,6 +133,17 @@ std::string readStdin() {
 
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
+std::vector<std::string> filesOf(const SceneInput& input) {
+    std::vector<std::string> files{input.environment_operand};
+    if (input.layout) files.push_back(input.layout_operand);
+    const auto add = [&files](const Document& document) {
+        files.insert(files.end(), document.sources.begin(), document.sources.end());
+    };
+    add(input.environment);
+    if (input.layout) add(*input.layout);
+    return files;
+}
+
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand) {
     // Neither stdin nor a pipe by another name (/dev/stdin, <(…)) can be read again.
     if (isStream(environment_operand)) return "";

@@ -31,6 +31,9 @@ struct SceneInput {
     std::vector<std::string> named;
 };
 
+/// The files that a scene was read from, the operands first; for -MD.
+std::vector<std::string> filesOf(const SceneInput& input);
+
 /// Reads and joins ENV and LAYOUT by the rules of operands.
 /// \throws UsageError for missing or doubled operands, two uses of stdin and a terminal as stdin;
 ///         FormatError, std::system_error as the readers do, and for a digest that differs

@@ -278,20 +278,10 @@ void intersectWith(RTCScene scene, const Passed& passed, std::span<const Vec3> d
 
 }  // namespace
 
-std::uint32_t TriangleSoup::add(Point3 corner) {
-    const auto x = static_cast<float>(corner.x), y = static_cast<float>(corner.y),
-               z = static_cast<float>(corner.z);
-    const auto next = static_cast<std::uint32_t>(vertices.size());
-    const auto [place, is_new] = known_.try_emplace({x, y, z}, next);
-    if (is_new) vertices.push_back({x, y, z});
-    return place->second;
-}
-
 void EmbreeScene::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
 void EmbreeScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 
 EmbreeScene::EmbreeScene(TriangleSoup soup, int packet_width) : soup_(std::move(soup)) {
-    soup_.finish();
     // Nothing but this line decides how Embree works: no file in the user's home does.
     device_.reset(rtcNewDevice("ignore_config_files=1"));
     throwOnError(device_.get());

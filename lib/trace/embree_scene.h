@@ -4,10 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "geom/point.h"
@@ -17,27 +15,26 @@ struct RTCSceneTy;
 
 namespace ispace {
 
-/// Triangles in float32; equal corners are one vertex.
-class TriangleSoup {
-  public:
-    std::uint32_t add(Point3 corner);
-    /// Forgets what only add() needs.
-    void finish() { known_.clear(); }
+/// Triangles in float32.
+struct TriangleSoup {
+    std::vector<std::array<float, 3>> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
 
+    /// \return the vertex' index
+    std::uint32_t add(Point3 corner) {
+        vertices.push_back({static_cast<float>(corner.x), static_cast<float>(corner.y),
+                            static_cast<float>(corner.z)});
+        return static_cast<std::uint32_t>(vertices.size() - 1);
+    }
     [[nodiscard]] Point3 corner(std::size_t triangle, std::size_t i) const {
         const auto& [x, y, z] = vertices[triangles[triangle][i]];
         return {x, y, z};
     }
-
-    std::vector<std::array<float, 3>> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-
-  private:
-    std::map<std::tuple<float, float, float>, std::uint32_t> known_;
 };
 
-/// A built Embree scene: ROBUST, so that no ray slips between triangles with a common edge and the
-/// packet width changes no result by more than rounding; high quality.
+/// A built Embree scene: ROBUST, so that no ray slips between triangles with a common edge (corners
+/// in the same places, whether or not they are the same vertices) and the packet width changes no
+/// result by more than rounding; high quality.
 ///
 /// Each scene has a device of its own: one costs some 50 microseconds, and scenes share nothing.
 class EmbreeScene {

@@ -82,11 +82,10 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, int packet_widt
     const Point3 middle = middleOf(plan);
     TriangleSoup soup;
     for (const Mesh& mesh : meshes) {
-        std::vector<std::uint32_t> index;
-        for (const Point3& vertex : mesh.vertices)
-            index.push_back(soup.add(relative(vertex, middle)));
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        for (const Point3& vertex : mesh.vertices) soup.add(relative(vertex, middle));
         for (const auto& [i, j, k] : mesh.triangles)
-            soup.triangles.push_back({index[i], index[j], index[k]});
+            soup.triangles.push_back({first + i, first + j, first + k});
     }
     return RayWorld(std::make_unique<Data>(middle, false, std::move(soup), packet_width));
 }

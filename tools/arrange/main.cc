@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
@@ -45,6 +46,7 @@ void arrange(const ArrangeCommand& command) {
     const Document layout =
         layoutDocument(parts, input.layout ? &*input.layout : nullptr, sensors, arrangement);
     writeAll(options.common.output, writeRecordText(layout));
+    writeDependencies(options.common, filesOf(input));
     report(options, arrangement);
 }
 

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/history.h"
 #include "base/number.h"
+#include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
 #include "coverage/options.h"
@@ -29,6 +30,7 @@ void coverage(CoverageToolOptions options) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
         writeAll(options.common.output, drawCoverageMap(input.scene, measured, options.map));
+        writeDependencies(options.common, filesOf(input));
     }
     writeAll("-", options.json ? coverageJson(measured.report) : coverageText(measured.report));
     talk(options.common, "coverage",

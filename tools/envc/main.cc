@@ -1,82 +1,134 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// envc: compiles rooms and layouts into a model, and converts between record formats.
-#include <algorithm>
+// envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
+#include <filesystem>
 
 #include "base/file.h"
 #include "base/number.h"
-#include "cli/operands.h"
+#include "cli/dependencies.h"
+#include "cli/inputs.h"
 #include "cli/run_tool.h"
 #include "env/info.h"
 #include "envc/options.h"
+#include "io/geojson.h"
 #include "io/glb.h"
-#include "io/input.h"
+#include "io/mesh_file.h"
+#include "io/obj.h"
+#include "io/plan.h"
+#include "io/ros_export.h"
+#include "io/stl.h"
+#include "layout/check_scene.h"
 #include "layout/schemas.h"
 #include "record/text.h"
+#include "record/yaml.h"
 
 namespace {
 
 using namespace ispace;
+namespace fs = std::filesystem;
 
-/// All inputs as one file of records: environments in their order, then layouts, whose records
-/// take the place of those with the same id.
-Document readInputs(const EnvcOptions& options) {
-    std::vector<Document> documents;
-    for (const std::string& input : options.inputs) {
-        const std::string bytes = input == "-" ? readStdin() : readAll(input);
-        documents.push_back(parseDocument(bytes, input, options.import, sceneSchemas()));
-        checkIds(documents.back().records);
-    }
-    std::stable_sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) {
-        return a.kind == DocumentKind::Environment && b.kind == DocumentKind::Layout;
-    });
-    Document joined{documents.front().kind, {}, {}};
-    std::vector<Record> environment;  // before layouts are applied
-    for (const Document& document : documents) {
-        joined.history.insert(joined.history.end(), document.history.begin(),
-                              document.history.end());
-        if (document.kind == DocumentKind::Layout) {
-            const bool compiles = options.info || options.format == "glb";
-            if (compiles && !environment.empty() && !options.any_environment)
-                checkDigest(document, environment, "the environment given");
-            joined.records = joinRecords(joined.records, document.records);
-        } else {
-            joined.records.insert(joined.records.end(), document.records.begin(),
-                                  document.records.end());
-            environment = joined.records;
-        }
-    }
-    checkIds(joined.records);
-    joined.history.push_back(options.history_line);
-    return joined;
+/// Records become records without a look at what they describe.
+bool isRecordFormat(const std::string& format) {
+    return format == "env" || format == "3dm" || format == "yaml";
 }
 
-Scene sceneOf(const Document& document) {
-    return makeScene(document, nullptr, DeviceCatalogue::load(shareFolder() + "/devices"));
+bool isBinary(const std::string& format) {
+    return format == "glb" || format == "stl" || format == "png";
 }
 
-void envc(const EnvcOptions& options) {
+Document readModel(const EnvcOptions& options) {
+    InputRequest request;
+    request.inputs = options.inputs;
+    request.import = options.import;
+    request.compiles = !isRecordFormat(options.format);
+    request.import.load_meshes = request.compiles;
+    request.any_environment = options.any_environment;
+    request.may_be_empty = !options.edits.empty();
+    Document document = readInputs(request);
+    document.records = edited(std::move(document.records), options.edits, sceneSchemas());
+    if (request.compiles) loadMeshes(document, "");
+    document.history.push_back(options.history_line);
+    for (const std::string& note : document.notes) talk(options.common, "envc", note);
+    return document;
+}
+
+std::string withSuffix(const std::string& file, const char* suffix) {
+    return fs::path(file).replace_extension(suffix).string();
+}
+
+std::string drawing(const EnvcOptions& options, const Scene& scene) {
+    PlanOptions plan;
+    plan.format = options.format == "svg" ? PictureFormat::Svg : PictureFormat::Png;
+    plan.slice = options.slice;
+    plan.width = options.width;
+    return drawPlan(scene, plan);
+}
+
+/// The product's bytes. What goes into a file beside it is written first.
+std::string compiled(const EnvcOptions& options, const Scene& scene, const Document& document) {
+    const std::string& format = options.format;
     const std::string& output = options.common.output;
-    if (!options.info && options.format == "glb") refuseTerminal(output, "a GLB");
-    const ThreadLimit threads(options.common.threads);
-    Document document = readInputs(options);
-    if (options.info) {
-        const Scene scene = sceneOf(document);
+    if (format == "obj") {
+        const bool named = !isStream(output);
+        const std::string materials = named ? withSuffix(output, ".mtl") : "";
+        ObjFiles files = writeObj(scene, named ? fs::path(materials).filename().string() : "");
+        if (named) writeAll(materials, files.mtl);
+        return std::move(files.obj);
+    }
+    if (format == "ros") {
+        const std::string picture = withSuffix(output, ".pgm");
+        RosMapFiles files = writeRosMap(scene, options.slice.value_or(kScanHeight),
+                                        options.resolution, fs::path(picture).filename().string());
+        writeAll(picture, files.pgm);
+        return std::move(files.yaml);
+    }
+    if (format == "stl") return writeStl(scene);
+    if (format == "geojson") return writeGeoJson(scene, options.slice);
+    if (format == "svg" || format == "png") return drawing(options, scene);
+    return writeGlb(scene, document);
+}
+
+void compile(const EnvcOptions& options, Document document) {
+    // The model holds its environment: a way to another would only go stale.
+    std::erase_if(document.records,
+                  [](const Record& record) { return record.keyword() == "environment"; });
+    document.kind = DocumentKind::Environment;
+    const Scene scene =
+        makeScene(document, nullptr, DeviceCatalogue::load(shareFolder() + "/devices"));
+    const std::string& output = options.common.output;
+    if (options.check) {
+        checkScene(scene).throwIfAny();
+        talk(options.common, "envc", "nothing found");
+    } else if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);
         writeAll(output, options.json ? infoJson(info) : infoText(info));
-    } else if (options.format == "glb") {
-        // The model holds its environment: a way to another would only go stale.
-        std::erase_if(document.records,
-                      [](const Record& record) { return record.keyword() == "environment"; });
-        document.kind = DocumentKind::Environment;
-        const Scene scene = sceneOf(document);
-        writeAll(output, writeGlb(scene, document));
+    } else {
+        writeAll(output, compiled(options, scene, document));
         talk(options.common, "envc",
              std::to_string(scene.records.size()) + " records compiled, indoor area " +
                  formatFixed(scene.environment.indoor().area(), 2) + " m2");
-    } else {
-        document.kind = options.format == "env" ? DocumentKind::Environment : DocumentKind::Layout;
-        writeAll(output, writeRecordText(document));
     }
+}
+
+void convert(const EnvcOptions& options, Document document) {
+    const std::string& output = options.common.output;
+    rebaseFiles(document.records, "",
+                isStream(output) ? "" : fs::path(output).parent_path().string());
+    if (options.format != "yaml")
+        document.kind = options.format == "env" ? DocumentKind::Environment : DocumentKind::Layout;
+    writeAll(output, options.format == "yaml" ? writeYaml(document) : writeRecordText(document));
+}
+
+void envc(const EnvcOptions& options) {
+    if (isBinary(options.format)) refuseTerminal(options.common.output, "a " + options.format);
+    const ThreadLimit threads(options.common.threads);
+    const Document document = readModel(options);
+    if (isRecordFormat(options.format))
+        convert(options, document);
+    else
+        compile(options, document);
+    std::vector<std::string> files = options.inputs;
+    files.insert(files.end(), document.sources.begin(), document.sources.end());
+    writeDependencies(options.common, files);
 }
 
 }  // namespace

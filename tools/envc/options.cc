@@ -8,32 +8,116 @@
 
 namespace ispace {
 
-EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
-    EnvcOptions options;
-    std::string to;
-    CommandLine line("envc", "[INPUT]...",
-                     "Compile a room (.env, .yaml, .glb, ROS map.yaml) and layouts (.3dm) into one "
-                     "model; without INPUT, or for -, read stdin.");
-    line.operands(options.inputs, 1000);
-    line.choice("--to", to, {"glb", "env", "3dm"},
-                "format of the model (default: suffix of FILE, else glb)", Enters::History);
-    line.meters("--wall-height", options.import.wall_height, 0.001, 1000,
-                "height of walls of imported maps", Enters::History);
-    line.meters("--simplify", options.import.simplify, 0, 1000,
-                "outlines of imported maps may move by this (default: one cell)", Enters::History);
+namespace {
+
+const std::vector<std::string> kUnits{"m", "cm", "mm", "inch", "foot"};
+const std::vector<std::string> kModels{"glb", "env",     "3dm", "yaml", "obj",
+                                       "stl", "geojson", "svg", "png",  "ros"};
+const std::vector<std::string> kMaps{"svg", "png", "geojson", "ros"};
+
+void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {
+    line.choice("--to", to, kModels,
+                "format of the product (default: suffix of FILE, else glb, or svg with --slice)",
+                Enters::History);
+    const auto take_slice = [&options](const std::string& text) {
+        KeySpec key;
+        key.name = "height";
+        key.unit = Unit::Length;
+        key.lower = -1000;
+        key.upper = 1000;
+        options.slice = std::get<double>(parseValue(key, text));
+    };
+    line.parsed("--slice", "M", take_slice, "write the map of obstacles at this height instead",
+                Enters::History);
+    line.meters("--resolution", options.resolution, 0.001, 100, "edge of the cells of a ROS map",
+                Enters::History);
+    line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
-    addAnyEnvironmentOption(line, options.any_environment);
-    addCommonOptions(line, options.common, "write the model there (default: stdout)");
-    line.parse(argc, argv);
+    line.flag("--check", options.check,
+              "explain what is wrong with the environment, and with what stands in it",
+              Enters::Nothing);
+}
 
-    if (options.inputs.empty()) options.inputs.emplace_back("-");
+void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
+    const auto edit = [&](Edit::Kind kind, const char* value, const char* help) {
+        const auto take = [&edits, kind](const std::string& text) {
+            edits.push_back(parseEdit(kind, text));
+        };
+        line.ordered(optionOf(kind), value, take, help);
+    };
+    edit(Edit::Kind::Add, "RECORD", "add a record");
+    edit(Edit::Kind::Fence, "PATH", "add a fence along x,y;x,y;...");
+    edit(Edit::Kind::Set, "ID.KEY=VALUE", "set a key, or without VALUE leave it out");
+    edit(Edit::Kind::Move, "ID:DX,DY[,DZ]", "move along the axes");
+    edit(Edit::Kind::Forward, "ID:M", "move along its heading");
+    edit(Edit::Kind::Rotate, "ID:DEG", "turn counter-clockwise about its place");
+    edit(Edit::Kind::Tilt, "ID:DEG", "tilt a sensor up");
+    edit(Edit::Kind::Delete, "ID", "remove");
+}
+
+void addImportOptions(CommandLine& line, ImportOptions& import) {
+    line.meters("--wall-height", import.wall_height, 0.001, 1000, "height of walls of plans",
+                Enters::History);
+    line.meters("--wall-thickness", import.wall_thickness, 0, 100,
+                "thickness of walls of plans that are drawn as lines", Enters::History);
+    line.meters("--snap", import.snap, 0, 100,
+                "join ends of a plan's lines that are this near (default: 5 mm)", Enters::History);
+    line.meters("--simplify", import.simplify, 0, 1000,
+                "outlines of plans may move by this (default: one cell of a map, else 0)",
+                Enters::History);
+    line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
+    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "axis of a mesh that points up",
+                Enters::History);
+    line.texts("--wall-layer", "GLOB", import.wall_layers,
+               "layers of a drawing that hold walls (default: all others)", Enters::History);
+    line.texts("--door-layer", "GLOB", import.door_layers, "layers that hold doors",
+               Enters::History);
+    line.texts("--window-layer", "GLOB", import.window_layers, "layers that hold windows",
+               Enters::History);
+    line.flag("--points", import.points, "points of an ARIA map become obstacles", Enters::History);
+}
+
+void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1)
         throw UsageError("stdin cannot be read twice: only one operand can be -");
     if (options.json && !options.info) throw UsageError("--json is the form of --info: give both");
-    if (!options.info)
-        options.format = outputFormat(to, options.common.output, {"glb", "env", "3dm"});
+    if (options.check && (options.info || options.slice || line.given("--to")))
+        throw UsageError("--check writes nothing: leave --info, --slice and --to out");
+    if (options.info && options.slice)
+        throw UsageError("--info reports and --slice draws: give one of them");
+    if (line.given("--closed") && !line.given("--fence"))
+        throw UsageError("--closed is about --fence: give both");
+    if (options.format == "ros" && isStream(options.common.output))
+        throw UsageError("a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE");
+}
+
+}  // namespace
+
+EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
+    EnvcOptions options;
+    std::string to;
+    bool closed = false;
+    CommandLine line("envc", "[INPUT]...",
+                     "Compile, check, convert and edit rooms (.env, YAML, .glb, floor plans, "
+                     "meshes) and layouts (.3dm); without INPUT, or for -, read stdin.");
+    line.operands(options.inputs, 1000);
+    addProductOptions(line, options, to);
+    addEditOptions(line, options.edits);
+    line.flag("--closed", closed, "close the fences of --fence", Enters::History);
+    addImportOptions(line, options.import);
+    addAnyEnvironmentOption(line, options.any_environment);
+    addCommonOptions(line, options.common, "write the product there (default: stdout)");
+    line.parse(argc, argv);
+
+    if (options.inputs.empty()) options.inputs.emplace_back("-");
+    for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
+    if (!options.info && !options.check)
+        options.format = outputFormat(to, options.common.output, options.slice ? kMaps : kModels);
+    if (options.slice && std::find(kMaps.begin(), kMaps.end(), options.format) == kMaps.end())
+        throw UsageError("--slice is written as svg, png, geojson or ros, not " + options.format);
+    checkCombination(line, options);
     options.history_line = line.historyLine(options.inputs);
     return options;
 }

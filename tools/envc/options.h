@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "io/import_options.h"
+#include "record/edit.h"
 
 namespace ispace {
 
 struct EnvcOptions {
     CommonOptions common;
     std::vector<std::string> inputs;  ///< "-" if none is given
-    std::string format;               ///< glb, env or 3dm
-    bool info = false, json = false;
+    std::string format;               ///< of the product; "" with info or check
+    bool info = false, json = false, check = false;
+    std::optional<double> slice;  ///< height of the obstacle map, which is the product then
+    double resolution = 0.05;     ///< metres a cell of a ROS map
+    int width = 1200;             ///< pixels of a PNG
     bool any_environment = false;
     ImportOptions import;
+    std::vector<Edit> edits;  ///< in their order
     std::string history_line;
 };
 

@@ -2,6 +2,7 @@
 // scan: simulates what the sensors of a scene read.
 #include "base/error.h"
 #include "base/file.h"
+#include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
 #include "scan/options.h"
@@ -33,6 +34,7 @@ void scan(const ScanCommand& command) {
         text.clear();
     }
     output.commit();
+    writeDependencies(options.common, filesOf(input));
     talk(options.common, "scan", std::to_string(scans.size()) + " scans written");
 }
 
