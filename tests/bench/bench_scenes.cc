@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_scenes.h"
 
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
 #include <random>
 
 #include "base/number.h"
 #include "io/input.h"
 #include "layout/schemas.h"
 #include "place/candidates.h"
+#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace::bench {
@@ -29,6 +34,25 @@ std::string room(double x, double y, bool last) {
     text += "desk at=" + tuple(x + 2.8, y + 1) + " size=1.6,0.8,0.72\n";
     text += "chair at=" + tuple(x + 2.8, y + 2) + " heading=-90\n";
     text += "table at=" + tuple(x + 1.2, y + 3.4) + " size=1,1,0.72\n";
+    return text;
+}
+
+/// A room on a corridor, whose walls have a door and perhaps a window.
+std::string roomWithDoor(double x, double y, int number, Building& out) {
+    const std::string id = "front" + std::to_string(number);
+    const double top = y + kRoomDepth, right = x + kRoomWidth;
+    const bool is_open = number % 4 != 0;
+    std::string text = "wall id=" + id + " from=" + tuple(x, top) + " to=" + tuple(right, top) +
+                       '\n' + wall(right, y, right, top) + "door wall=" + id + " offset=1.5" +
+                       (is_open ? " open=yes\n" : "\n");
+    out.walls += 2;
+    if (!is_open) out.indoor_area -= kRoomWidth * kRoomDepth;
+    if (number % 3 == 0) text += "window wall=" + id + " offset=3\n";
+    if (number % 2 == 0) {
+        text += "desk at=" + tuple(x + 2.8, y + 1) + " size=1.6,0.8,0.72\n";
+        text += "chair at=" + tuple(x + 2.8, y + 2) + " heading=-90\n";
+    }
+    if (number % 5 == 0) text += "pillar at=" + tuple(x + 1, y + 2) + '\n';
     return text;
 }
 
@@ -62,6 +86,64 @@ Scene officeScene(int columns, int rows) {
     }
     const Document document = readRecordText(text, "office", sceneSchemas());
     return makeScene(document, nullptr, DeviceCatalogue());
+}
+
+Building building(std::size_t walls) {
+    // Two walls a room, and one behind each row.
+    const double pitch = kRoomDepth + kCorridor;
+    const auto rooms = static_cast<double>(walls) / 2;
+    const int columns = static_cast<int>(std::ceil(std::sqrt(rooms * pitch / kRoomWidth)));
+    const int rows = static_cast<int>(std::ceil(rooms / columns));
+    const double width = columns * kRoomWidth;
+    Building out;
+    out.text = "#env 1\nfence path=0,0;" + tuple(width, 0) + ';' + tuple(width, rows * pitch) +
+               ';' + tuple(0, rows * pitch) + " closed=yes\n";
+    out.indoor_area = width * rows * pitch;
+    int number = 0;
+    for (int row = 0; row < rows; ++row) {
+        const double y = row * pitch;
+        // It ends short of the fence, so that one gets around it.
+        if (row > 0) out.text += wall(0, y, width - kDoor, y);
+        for (int column = 0; column < columns; ++column, ++number)
+            out.text += roomWithDoor(column * kRoomWidth, y, number, out);
+        out.walls += row > 0 ? 1 : 0;
+    }
+    return out;
+}
+
+std::shared_ptr<const TriangleMesh> bumpyGlobe(std::uint32_t rings, std::uint32_t sectors) {
+    const auto mesh = std::make_shared<TriangleMesh>();
+    const auto add = [&mesh](double polar, double azimuth) {
+        const double radius = 0.5 + 0.02 * std::sin(40 * polar) * std::sin(30 * azimuth);
+        mesh->vertices.push_back({static_cast<float>(radius * std::sin(polar) * std::cos(azimuth)),
+                                  static_cast<float>(radius * std::sin(polar) * std::sin(azimuth)),
+                                  static_cast<float>(0.6 + radius * std::cos(polar))});
+    };
+    add(0, 0);
+    for (std::uint32_t ring = 1; ring < rings; ++ring)
+        for (std::uint32_t sector = 0; sector < sectors; ++sector)
+            add(std::numbers::pi * ring / rings, 2 * std::numbers::pi * sector / sectors);
+    add(std::numbers::pi, 0);
+    const auto south = static_cast<std::uint32_t>(mesh->vertices.size() - 1);
+    const auto at = [&](std::uint32_t ring, std::uint32_t sector) {
+        if (ring == 0) return 0U;
+        return ring == rings ? south : 1 + (ring - 1) * sectors + sector % sectors;
+    };
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+        for (std::uint32_t sector = 0; sector < sectors; ++sector) {
+            const std::uint32_t a = at(ring, sector), b = at(ring + 1, sector);
+            const std::uint32_t c = at(ring + 1, sector + 1), d = at(ring, sector + 1);
+            if (b != c) mesh->triangles.push_back({a, b, c});
+            if (a != d) mesh->triangles.push_back({a, c, d});
+        }
+    mesh->digest = meshDigest(*mesh);
+    return mesh;
+}
+
+std::string willowMap() {
+    const char* const folder = std::getenv("ISPACE_TEST_DATA");
+    const std::string map = folder == nullptr ? "" : folder + std::string("/willow-full.yaml");
+    return !map.empty() && std::filesystem::exists(map) ? map : "";
 }
 
 std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level) {

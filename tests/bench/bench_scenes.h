@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,25 @@ DeviceCatalogue devices();
 /// An office floor as big as real ones: columns x rows rooms of 4 m x 5 m along corridors, each
 /// with a door gap, a desk, a chair and a round table. Some 20 surfaces of a slice a room.
 Scene officeScene(int columns, int rows);
+
+/// Text of a building with this many walls or some more, on one floor as deep as wide: corridors
+/// with rooms of 4 m x 5 m on their upper side, walls that meet at T junctions, a door in each room
+/// (every fourth closed), windows, desks, chairs and pillars. All corridors and the rooms with open
+/// doors are one indoor region.
+struct Building {
+    std::string text;
+    std::size_t walls = 0;
+    double indoor_area = 0;  ///< square metres
+};
+Building building(std::size_t walls);
+
+/// A closed surface with bumps, about a metre wide, as it comes from a scan: a globe of `rings`
+/// times `sectors` quadrangles, those at the poles triangles.
+std::shared_ptr<const TriangleMesh> bumpyGlobe(std::uint32_t rings, std::uint32_t sectors);
+
+/// The map robots made of the floor of Willow Garage, "" if ISPACE_TEST_DATA names no folder with
+/// it.
+std::string willowMap();
 
 /// Places in the free floor, drawn from a fixed seed: `count` lasers with 1081 beams over 270
 /// degrees and 30 m, level at 0.15 m, or at 1.5 m and tilted down by 20 degrees.

@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -26,6 +27,14 @@ struct Vertex {
 
 Vertex vertex(double x, double y, double z) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+}
+
+/// What stops rays.
+std::vector<Mesh> meshesThatStop(const Environment& environment) {
+    std::vector<Mesh> meshes{floorMesh(environment.indoor())};
+    for (const Element& element : environment.elements())
+        for (Mesh& mesh : meshesOf(element.body, false)) meshes.push_back(std::move(mesh));
+    return meshes;
 }
 
 }  // namespace
@@ -88,12 +97,8 @@ RawEmbree RawEmbree::ofSlice(const Slice& slice) {
 }
 
 RawEmbree RawEmbree::ofEnvironment(const Environment& environment) {
-    std::vector<Mesh> meshes{floorMesh(environment.indoor())};
-    for (const Element& element : environment.elements()) {
-        for (Mesh& mesh : meshesOf(element.body, false)) meshes.push_back(std::move(mesh));
-    }
     std::vector<Vertex> vertices;
-    for (const Mesh& mesh : meshes) {
+    for (const Mesh& mesh : meshesThatStop(environment)) {
         for (const auto& triangle : mesh.triangles) {
             for (const std::uint32_t i : triangle) {
                 const Point3& p = mesh.vertices[i];
@@ -175,6 +180,54 @@ std::vector<float> RawEmbree::ranges() const {
         }
     }
     return ranges;
+}
+
+RawTriangles::RawTriangles(const Slice& slice) {
+    slice.forEachLine([&](const Segment2& line) {
+        const auto first = static_cast<std::uint32_t>(vertices_.size());
+        for (const double z : {-1.0, 1.0})
+            for (const Point2 p : {line.a, line.b}) {
+                const Vertex v = vertex(p.x, p.y, z);
+                vertices_.push_back({v.x, v.y, v.z});
+            }
+        triangles_.push_back({first, first + 1, first + 3});
+        triangles_.push_back({first, first + 3, first + 2});
+    });
+}
+
+RawTriangles::RawTriangles(const Environment& environment) {
+    for (const Mesh& mesh : meshesThatStop(environment)) {
+        const auto first = static_cast<std::uint32_t>(vertices_.size());
+        for (const Point3& p : mesh.vertices) {
+            const Vertex v = vertex(p.x, p.y, p.z);
+            vertices_.push_back({v.x, v.y, v.z});
+        }
+        for (const auto& [i, j, k] : mesh.triangles)
+            triangles_.push_back({first + i, first + j, first + k});
+    }
+}
+
+void RawTriangles::build() const {
+    const RTCDevice device = rtcNewDevice(nullptr);
+    const RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* const positions =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                sizeof vertices_[0], vertices_.size());
+    void* const indices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                sizeof triangles_[0], triangles_.size());
+    if (positions == nullptr || indices == nullptr) throw std::runtime_error("Embree failed");
+    std::memcpy(positions, vertices_.data(), vertices_.size() * sizeof vertices_[0]);
+    std::memcpy(indices, triangles_.data(), triangles_.size() * sizeof triangles_[0]);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
 }
 
 }  // namespace ispace::bench

@@ -3,6 +3,8 @@
 // before its time is taken.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -36,6 +38,20 @@ class RawEmbree {
     struct Data;
     explicit RawEmbree(std::unique_ptr<Data> data);
     std::unique_ptr<Data> data_;
+};
+
+/// The triangles of a RayWorld, ready to be built into a scene as that has it.
+class RawTriangles {
+  public:
+    explicit RawTriangles(const Slice& slice);
+    explicit RawTriangles(const Environment& environment);
+    /// Makes the scene and lets it go.
+    void build() const;
+    [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+
+  private:
+    std::vector<std::array<float, 3>> vertices_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 
 }  // namespace ispace::bench

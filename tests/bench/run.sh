@@ -4,7 +4,7 @@
 set -euo pipefail
 build=$1
 mkdir -p "$build/bench"
-for program in grid_job ray_rate sim_rate; do
+for program in plan load grid_job ray_rate sim_rate; do
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
         --benchmark_out_format=json
 done

@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include "base/number.h"
@@ -21,9 +20,7 @@ constexpr int kStepsASecond = 200;
 
 /// The map robots made of that floor if it is at hand, else rooms of like number and size.
 Scene floorPlan(std::string& name) {
-    const char* const folder = std::getenv("ISPACE_TEST_DATA");
-    const std::string map = folder == nullptr ? "" : folder + std::string("/willow-full.yaml");
-    if (!map.empty() && std::filesystem::exists(map)) {
+    if (const std::string map = bench::willowMap(); !map.empty()) {
         name = "willow-full";
         return bench::loadScene(map);
     }

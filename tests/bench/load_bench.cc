@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long a tool waits for a compiled environment until it can cast rays, beside what nobody can
+// avoid: a plain read of the file, and Embree's build of the same triangles.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "base/file.h"
+#include "base/number.h"
+#include "bench_scenes.h"
+#include "embree_raw.h"
+#include "io/glb.h"
+#include "io/input.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+#include "trace/ray_world.h"
+
+namespace {
+
+using namespace ispace;
+
+struct Compiled {
+    std::string name;
+    std::string file;
+};
+
+Document reading(const std::string& file) {
+    return readDocument(file, ImportOptions(), sceneSchemas());
+}
+
+RayWorld worldOf(const Environment& environment, bool level) {
+    return level ? RayWorld::ofSlice(environment.slice(kScanHeight))
+                 : RayWorld::ofEnvironment(environment);
+}
+
+/// What tools do before their first ray: a level one, or one of any direction.
+void load(const std::string& file, bool level) {
+    const Scene scene = makeScene(reading(file), nullptr, DeviceCatalogue());
+    const RayWorld world = worldOf(scene.environment, level);
+    benchmark::DoNotOptimize(&world);
+}
+
+void unavoidable(const std::string& file, const bench::RawTriangles& triangles) {
+    const std::string bytes = readAll(file);
+    benchmark::DoNotOptimize(bytes.data());
+    triangles.build();
+}
+
+Compiled compile(const std::string& name, const std::string& folder, const Document& document) {
+    Compiled compiled{name, folder + '/' + name + ".glb"};
+    const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    writeAll(compiled.file, writeGlb(scene, document));
+    // What is loaded is what was compiled.
+    const Scene again = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
+    if (again.ids == scene.ids && again.digest == scene.digest &&
+        again.environment.indoor().area() == scene.environment.indoor().area())
+        return compiled;
+    std::fprintf(stderr, "load: %s is not what was compiled\n", name.c_str());
+    std::exit(1);
+}
+
+double secondsOf(const std::function<void()>& run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Both in turn, so that whatever else the machine does meets both; the ratio is that of the
+/// quickest of each.
+void loadBeside(benchmark::State& state, const Compiled& compiled, bool level) {
+    const Scene scene = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
+    const bench::RawTriangles triangles =
+        level ? bench::RawTriangles(scene.environment.slice(kScanHeight))
+              : bench::RawTriangles(scene.environment);
+    double quickest = std::numeric_limits<double>::infinity(), beside = quickest;
+    for (auto _ : state) {
+        beside = std::min(beside, secondsOf([&] { unavoidable(compiled.file, triangles); }));
+        const double seconds = secondsOf([&] { load(compiled.file, level); });
+        quickest = std::min(quickest, seconds);
+        state.SetIterationTime(seconds);
+    }
+    state.counters["triangles"] = static_cast<double>(triangles.size());
+    state.counters["quickest_ms"] = 1000 * quickest;
+    state.counters["beside_ms"] = 1000 * beside;
+    state.SetLabel("ratio " + formatFixed(quickest / beside, 2));
+}
+
+std::vector<Compiled> scenes(const std::string& folder) {
+    std::vector<Compiled> out;
+    if (const std::string map = bench::willowMap(); !map.empty())
+        out.push_back(compile("willow-full", folder, reading(map)));
+    for (const std::size_t walls : {1000, 10000}) {
+        const bench::Building plan = bench::building(walls);
+        out.push_back(compile("walls-" + std::to_string(walls), folder,
+                              readRecordText(plan.text, "plan", sceneSchemas())));
+    }
+    Document room =
+        readRecordText("#env 1\nispace size=8,6\nmesh file=globe.stl\n", "room", sceneSchemas());
+    room.records[1].setMesh(bench::bumpyGlobe(501, 1000));
+    out.push_back(compile("mesh-1000000", folder, room));
+    return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    std::string folder = (std::filesystem::temp_directory_path() / "load-bench-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) return 1;
+    for (const Compiled& compiled : scenes(folder))
+        for (const bool level : {true, false}) {
+            // The cut of a mesh needs all of it, Embree's build of that next to nothing.
+            if (level && compiled.name.starts_with("mesh")) continue;
+            benchmark::RegisterBenchmark(
+                ("load/" + compiled.name + (level ? "/level" : "/tilted")).c_str(),
+                [compiled, level](benchmark::State& state) { loadBeside(state, compiled, level); })
+                ->UseManualTime()
+                ->Unit(benchmark::kMillisecond);
+        }
+    benchmark::RunSpecifiedBenchmarks();
+    std::filesystem::remove_all(folder);
+    return 0;
+}

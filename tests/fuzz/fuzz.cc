@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fuzz.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <variant>
+
+#include "env/slice.h"
+#include "io/glb.h"
+#include "layout/scene.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace::fuzz {
+
+namespace {
+
+/// Scenes of more records or numbers are left out, and all but one in this many of the others.
+constexpr std::size_t kMostRecords = 12, kMostNumbers = 200, kEvery = 8;
+
+/// Numbers of all lists: what makes vertices and repetitions.
+std::size_t numbersOf(const Record& record) {
+    std::size_t count = 0;
+    for (const KeySpec& key : record.schema().keys) {
+        if (!record.has(key.name)) continue;
+        const Value* const value = record.find(key.name);
+        if (const auto* list = std::get_if<TupleList>(value)) count += list->size();
+        // Counts and sizes up to a hundred: ten thousand boxes show nothing that fifty do not.
+        if (key.whole && record.number(key.name) > 100) count += kMostNumbers + 1;
+    }
+    return count;
+}
+
+bool isSmall(const Document& document) {
+    if (document.records.size() > kMostRecords) return false;
+    std::size_t numbers = 0;
+    for (const Record& record : document.records) numbers += numbersOf(record);
+    return numbers <= kMostNumbers;
+}
+
+/// FNV-1a
+std::uint64_t hashOf(std::string_view bytes) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    return hash;
+}
+
+}  // namespace
+
+void require(bool condition, const char* message) {
+    if (condition) return;
+    std::fprintf(stderr, "fuzz: %s\n", message);
+    std::abort();
+}
+
+void checkText(const Document& document) {
+    const std::string text = writeRecordText(document);
+    Document again;
+    try {
+        again = readRecordText(text, "again", sceneSchemas());
+    } catch (const FormatError& error) {
+        std::fprintf(stderr, "%s\n%s\n", text.c_str(), error.what());
+        require(false, "what was written is refused");
+    }
+    require(again.kind == document.kind, "another kind after writing and reading");
+    require(again.records == document.records, "other records after writing and reading");
+    require(writeRecordText(again) == text, "another text after writing and reading");
+}
+
+void tryScene(const Document& document, std::string_view bytes) {
+    if (hashOf(bytes) % kEvery != 0 || !isSmall(document)) return;
+    const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    const Environment& room = scene.environment;
+    require(room.indoor().area() > 0, "an indoor region without area");
+    (void)room.freeFloor(kScanHeight);
+    (void)room.band(0, room.height());
+    const Document compiled = readGlb(writeGlb(scene, document), "scene.glb", sceneSchemas());
+    require(compiled.records == document.records, "other records in the compiled file");
+}
+
+void writeFile(const std::string& path, std::string_view bytes) {
+    std::FILE* const file = std::fopen(path.c_str(), "wb");
+    require(file != nullptr, "no file in the scratch folder");
+    const bool whole = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    require(std::fclose(file) == 0 && whole, "the scratch folder is full");
+}
+
+const std::string& scratchFolder() {
+    struct Folder {
+        std::string name;
+        Folder() {
+            const bool in_memory = std::filesystem::is_directory("/dev/shm");
+            name = in_memory ? "/dev/shm" : std::filesystem::temp_directory_path().string();
+            name += "/ispace-fuzz-XXXXXX";
+            require(mkdtemp(name.data()) != nullptr, "no scratch folder");
+        }
+        ~Folder() {
+            std::error_code ignored;
+            std::filesystem::remove_all(name, ignored);
+        }
+    };
+    static const Folder folder;
+    return folder.name;
+}
+
+}  // namespace ispace::fuzz

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The YAML form of records, in a folder with two files that include each other.
+#include "fuzz.h"
+#include "layout/schemas.h"
+#include "record/yaml.h"
+
+namespace {
+
+const std::string& operand() {
+    static const std::string name = [] {
+        const std::string& folder = ispace::fuzz::scratchFolder();
+        ispace::fuzz::writeFile(folder + "/a.yaml",
+                                "- parts: {p: [desk: {id: d}, chair: {at: [0, 1]}]}\n"
+                                "- include: c.env\n");
+        ispace::fuzz::writeFile(folder + "/b.yaml", "- include: [a.yaml, b.yaml]\n");
+        ispace::fuzz::writeFile(folder + "/c.env", "#env 1\nfence path=0,0;4,0;4,3 closed=yes\n");
+        return folder + "/room.yaml";
+    }();
+    return name;
+}
+
+/// Files of the machine are none of its business: paths out of the folder need one of these.
+bool mayLeaveFolder(std::string_view bytes) {
+    return bytes.find("clude") != std::string_view::npos &&
+           bytes.find_first_of("/\\") != std::string_view::npos;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace ispace;
+    return fuzz::guarded(data, size, [](std::string_view bytes) {
+        if (mayLeaveFolder(bytes)) return;
+        const Document document = readYaml(bytes, operand(), sceneSchemas());
+        fuzz::checkText(document);
+        const std::string yaml = writeYaml(document);
+        const Document again = readYaml(yaml, "again.yaml", sceneSchemas());
+        fuzz::require(again.records == document.records, "other records as YAML");
+        fuzz::require(again.kind == document.kind, "another kind as YAML");
+        fuzz::require(writeYaml(again) == yaml, "another text as YAML");
+        fuzz::tryScene(document, bytes);
+    });
+}
