@@ -5,12 +5,13 @@ BUILD = build
 SANITIZED = build-asan
 prefix = /usr/local
 JOBS = $(shell nproc)
+FUZZ_SECONDS = 60
 
 configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo check bench format lint install clean
+.PHONY: all help deps demo check bench fuzz format lint install clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -21,10 +22,11 @@ help:
 	@echo "make demo        deps, build, and run the pipeline on a furnished room"
 	@echo "make check       deps, build, formatting, sanitizers, all tests"
 	@echo "make bench       deps, build, benchmarks"
+	@echo "make fuzz        deps, build with Clang, fuzz each reader for FUZZ_SECONDS=$(FUZZ_SECONDS)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
-	@echo "make clean       remove $(BUILD) and $(SANITIZED)"
+	@echo "make clean       remove $(BUILD), $(SANITIZED) and build-fuzz"
 
 deps:
 	@.ci/deps build check lint
@@ -50,6 +52,10 @@ bench:
 	$(call build,$(BUILD)) --target tools benchmarks
 	@tests/bench/run.sh $(BUILD)
 
+fuzz:
+	@.ci/deps build check
+	@.ci/fuzz $(FUZZ_SECONDS)
+
 format:
 	@.ci/deps check
 	@.ci/format
@@ -63,7 +69,7 @@ install: all
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
 
 clean:
-	rm -rf $(BUILD) $(SANITIZED)
+	rm -rf $(BUILD) $(SANITIZED) build-fuzz
 
 $(BUILD)/configured:
 	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release

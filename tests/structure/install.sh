@@ -11,6 +11,9 @@ for tool in $tools; do
     [ -x "moved/bin/$tool" ] || fail "no bin/$tool"
     [ -s "moved/share/man/man1/$tool.1" ] || fail "no man page of $tool"
 done
+for format in env 3dm yaml; do
+    [ -s "moved/share/man/man5/ispace-$format.5" ] || fail "no man page of the format $format"
+done
 [ "$(ls moved/bin | wc -l)" -eq 5 ] || fail "more than the tools in bin: $(ls moved/bin)"
 if find moved -type l | grep .; then fail "links installed"; fi
 
@@ -25,6 +28,8 @@ grep -q 'model=urg-04lx' best.3dm || fail "no device in the layout"
 scan room.glb best.3dm | tail -n 1 | grep -q '"ranges":' || fail "no scan"
 coverage room.glb best.3dm -o map.png
 [ -s map.png ] || fail "no map"
+# A scene with a mesh beside it.
+envc "$share/scenes/catalogue.env" -o catalogue.glb
 
 # Without its share/ a tool says what is missing.
 rm -rf "$share/devices"

@@ -8,7 +8,7 @@ pages=$binary_dir/share/man/man1
 sections="NAME SYNOPSIS DESCRIPTION OPTIONS DIAGNOSTICS MEMORY USAGE EXAMPLES SEE ALSO"
 
 # A page without the escapes and quotes of roff.
-plain() { sed -e 's/\\-/-/g' -e 's/\\f[A-Z]//g' -e 's/\\e/\\/g' -e 's/"//g' "$1"; }
+plain() { sed -e "s/[\\](aq/'/g" -e 's/\\-/-/g' -e 's/\\f[A-Z]//g' -e 's/\\e/\\/g' -e 's/"//g' "$1"; }
 
 options_of_page() {
     plain "$1" | awk '/^\.SH / { inside = $2 == "OPTIONS" } inside && heading { print } { heading = /^\.T[PQ]/ }' |
@@ -41,10 +41,35 @@ for tool in $tools; do
 
     # Every example runs, in a folder with the scenes.
     mkdir "$tool"
-    cp "$scenes"/*.env "$scenes"/*.3dm "$tool"
+    cp -r "$scenes"/* "$tool"
     plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
         code { print } inside && /^\.EX/ { code = 1 }' >"$tool/examples.sh"
     [ -s "$tool/examples.sh" ] || fail "$tool: no examples"
     (cd "$tool" && bash -euo pipefail examples.sh >../out 2>../err) ||
         fail "$tool: an example fails: $(cat err "$tool/examples.sh")"
 done
+
+# Section 5: every keyword and key that the tools know is there, and the examples are what they say.
+formats=$binary_dir/share/man/man5
+for format in env 3dm yaml; do
+    page=$formats/ispace-$format.5
+    [ -s "$page" ] || fail "no page $page"
+    ! grep -n '@[A-Z_]' "$page" || fail "ispace-$format: text missing"
+    if command -v groff >/dev/null; then
+        groff -man -ww -z -Tutf8 "$page" 2>groff.err
+        [ ! -s groff.err ] || fail "ispace-$format: $(cat groff.err)"
+    fi
+    plain "$page" | awk '/^\.SH / { inside = $2 == "EXAMPLES" } inside && /^\.EE/ { code = 0 }
+        code { print } inside && /^\.EX/ { code = 1 }' >"example.$format"
+    [ -s "example.$format" ] || fail "ispace-$format: no example"
+done
+keywords=$(printf '#env 1\nnothing\n' | { envc --to env 2>&1 >/dev/null || true; } | sed 's/.*known: //; s/,//g')
+[ "$(wc -w <<<"$keywords")" -gt 20 ] || fail "no list of keywords: $keywords"
+for keyword in $keywords; do
+    grep -qx "\.SS $keyword" "$formats"/ispace-env.5 "$formats"/ispace-3dm.5 ||
+        fail "the manual lacks the record $keyword"
+done
+grep -q '^\.BR sill= ' "$formats/ispace-env.5" || fail "the manual lacks keys"
+envc example.env -o example.glb
+envc example.yaml --check
+envc example.3dm --to yaml >/dev/null
