@@ -285,8 +285,7 @@ class AriaPlan {
             }
             const Pose2 turned{{}, heading};
             const Point2 middle = turned * Point2{(a.x + b.x) / 2, (a.y + b.y) / 2};
-            out.zone(out.freeId(name.empty() ? "forbidden" : "forbidden-" + name, "forbidden"),
-                     middle, heading, length, width);
+            out.zone(out.freeId("forbidden-" + name, "forbidden"), middle, heading, length, width);
         }
     }
 

@@ -97,7 +97,7 @@ std::string drawPlan(const Scene& scene, const PlanOptions& options) {
     }
     addFrame(plan, options.title, notes);
     std::stable_sort(plan.items.begin(), plan.items.end(),
-                     [](const PlanItem& a, const PlanItem& b) { return a.layer < b.layer; });
+                     [](const DrawnItem& a, const DrawnItem& b) { return a.layer < b.layer; });
     return on_paper ? planSvg(plan, options.title) : planPng(plan);
 }
 

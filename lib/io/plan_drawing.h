@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 12> kPlanLayers = {
 
 /// Curves, filled by the even-odd rule and stroked. Places are in metres; widths and dashes of the
 /// line are in sizes of text.
-struct PlanPath {
+struct DrawnPath {
     std::vector<std::vector<Point2>> curves;
     bool closed = true;
     std::optional<Color> fill = {};
@@ -43,7 +43,7 @@ struct PlanPath {
 };
 
 /// A line of text at a place in metres; sizes are of the plan's text.
-struct PlanText {
+struct DrawnText {
     Point2 anchor;
     std::string text;
     double size = 1;
@@ -54,12 +54,12 @@ struct PlanText {
 };
 
 /// An element, or a part of the frame.
-struct PlanItem {
+struct DrawnItem {
     PlanLayer layer = PlanLayer::Floor;
     std::string id = {};     ///< "" for what has no name
     std::string title = {};  ///< what it is, in words
-    std::vector<PlanPath> paths = {};
-    std::vector<PlanText> texts = {};
+    std::vector<DrawnPath> paths = {};
+    std::vector<DrawnText> texts = {};
 };
 
 /// Everything on the page, in the order of drawing within each layer.
@@ -69,7 +69,7 @@ struct PlanDrawing {
     PageView view;                 ///< metres to the page
     Box2 box;                      ///< what the plan shows, metres
     Region indoor;                 ///< fields of view are drawn on it alone
-    std::vector<PlanItem> items = {};
+    std::vector<DrawnItem> items = {};
 
     /// Size of text in metres of the plan.
     [[nodiscard]] double metres() const { return em / view.scale; }

@@ -56,9 +56,9 @@ double labelEvery(const PlanDrawing& plan, double step, double width) {
 void addGrid(PlanDrawing& plan, double step) {
     const Box2& box = plan.box;
     const double em = plan.metres();
-    PlanPath fine{{}, false, {}, Stroke{kGrid.faded(0.28), 0.05}};
-    PlanPath strong{{}, false, {}, Stroke{kGrid.faded(0.6), 0.06}};
-    PlanItem labels{PlanLayer::Frame, "", "coordinates in metres"};
+    DrawnPath fine{{}, false, {}, Stroke{kGrid.faded(0.28), 0.05}};
+    DrawnPath strong{{}, false, {}, Stroke{kGrid.faded(0.6), 0.06}};
+    DrawnItem labels{PlanLayer::Frame, "", "coordinates in metres"};
     const auto text = [&](Point2 anchor, const std::string& value, Align align) {
         labels.texts.push_back({anchor, value, 0.75, align, kFaintInk});
     };
@@ -89,7 +89,7 @@ void addScaleBar(PlanDrawing& plan, const std::vector<std::string>& notes) {
     const double left = std::min(plan.box.low.x, plan.box.center().x - 5 * em);
     const double bottom = plan.view.world_anchor.y -
                           (plan.height - plan.view.page_anchor.y) / plan.view.scale + 1.1 * em;
-    PlanItem item{PlanLayer::Frame, "", "bar of scale"};
+    DrawnItem item{PlanLayer::Frame, "", "bar of scale"};
     for (int i = 0; i < pieces; ++i) {
         const double x = left + i * piece;
         item.paths.push_back(

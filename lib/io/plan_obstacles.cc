@@ -27,7 +27,7 @@ void addObstacles(PlanDrawing& plan, const Environment& environment, double heig
          true,
          kOutside,
          {}});
-    PlanPath floor{{environment.indoor().outline}, true, kPaper, {}};
+    DrawnPath floor{{environment.indoor().outline}, true, kPaper, {}};
     for (const Polygon& hole : environment.indoor().holes) floor.curves.push_back(hole);
     plan.items.push_back({PlanLayer::Floor, "", "free floor" + at_height});
     plan.items.back().paths.push_back(std::move(floor));
@@ -46,7 +46,7 @@ void addObstacles(PlanDrawing& plan, const Environment& environment, double heig
     for (auto& [owner, of_one] : parts) {
         const bool known = owner < environment.elements().size();
         const std::string id = known ? environment.elements()[owner].id : "";
-        PlanItem item{PlanLayer::Walls, id, id + at_height};
+        DrawnItem item{PlanLayer::Walls, id, id + at_height};
         for (Polygon& solid : of_one.solids)
             item.paths.push_back({{std::move(solid)}, true, kSolid, Stroke{kSolid, 0.03}});
         if (!of_one.sheets.empty())

@@ -142,6 +142,20 @@ TEST(PlanOpenings, OfADrawing) {
         << notesOf(document);
 }
 
+TEST(PlanOpenings, DrawingsCompile) {
+    const auto area_of = [](const ImportOptions& options) {
+        return environmentOf(
+                   readDxf(drawing(flat(), doorBlock(), 6), "flat.dxf", options, sceneSchemas()))
+            .indoor()
+            .area();
+    };
+    EXPECT_NEAR(area_of(layers()), 18, 1e-9);
+    ImportOptions low = layers();
+    low.wall_height = 0.5;
+    low.wall_thickness = 0.1;
+    EXPECT_NEAR(area_of(low), 18, 1e-9);
+}
+
 TEST(PlanOpenings, LowWallsHaveLowOpenings) {
     ImportOptions options = layers();
     options.wall_height = 1;

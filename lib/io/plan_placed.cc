@@ -64,7 +64,7 @@ class Names {
             const Box2 box = around(middle, half, 0.5 * em_);
             if (!isFree(box)) continue;
             taken_.push_back(box);
-            PlanText name{{middle.x, middle.y - 0.3 * em_}, id, 0.85, Align::Center, color, true};
+            DrawnText name{{middle.x, middle.y - 0.3 * em_}, id, 0.85, Align::Center, color, true};
             name.halo = true;
             plan_.items.push_back({PlanLayer::Labels, "", ""});
             plan_.items.back().texts.push_back(std::move(name));
@@ -93,20 +93,20 @@ bool looksAside(const Record& record, const Pose3& pose) {
 }
 
 /// A sector about the mark that shows the field of view; not the range, which mostly is longer.
-PlanItem viewItem(const PlanDrawing& plan, const Scene& scene, const Placed& placed) {
+DrawnItem viewItem(const PlanDrawing& plan, const Scene& scene, const Placed& placed) {
     const Point2 place = placed.pose.position.onFloor();
     const Angle heading = placed.pose.heading;
     const View view = viewOf(scene, placed);
     const double radius = std::min(4.5 * plan.metres(), view.range);
     std::vector<Point2> curve = planArc(place, radius, heading + view.from, heading + view.to);
     if (view.to - view.from < Angle::degrees(359)) curve.push_back(place);
-    PlanItem item{PlanLayer::Views, "", "field of view of " + scene.ids[placed.record]};
+    DrawnItem item{PlanLayer::Views, "", "field of view of " + scene.ids[placed.record]};
     item.paths.push_back({{std::move(curve)}, true, kSensor.faded(0.2), Stroke{kSensor, 0.05}});
     return item;
 }
 
-PlanItem tagItem(const std::string& id, Point2 place, double size) {
-    PlanItem item{PlanLayer::Sensors, id, id + ": tag"};
+DrawnItem tagItem(const std::string& id, Point2 place, double size) {
+    DrawnItem item{PlanLayer::Sensors, id, id + ": tag"};
     item.paths.push_back({{{{place.x + size, place.y},
                             {place.x, place.y + size},
                             {place.x - size, place.y},
@@ -117,12 +117,12 @@ PlanItem tagItem(const std::string& id, Point2 place, double size) {
     return item;
 }
 
-PlanItem sensorItem(const PlanDrawing& plan, const Record& record, const std::string& id,
-                    const Pose3& pose) {
+DrawnItem sensorItem(const PlanDrawing& plan, const Record& record, const std::string& id,
+                     const Pose3& pose) {
     const double em = plan.metres(), radius = 0.34 * em;
     const Point2 place = pose.position.onFloor();
     const Vec2 forward = unitVector(pose.heading), left = perpendicular(forward);
-    PlanItem item{PlanLayer::Sensors, id, id};
+    DrawnItem item{PlanLayer::Sensors, id, id};
     item.title.append(": ").append(record.keyword()).append(" at height ");
     item.title.append(formatDouble(std::round(pose.position.z * 1000) / 1000)).append(" m");
     const Stroke rim{kPaper, 0.08};
@@ -139,9 +139,9 @@ PlanItem sensorItem(const PlanDrawing& plan, const Record& record, const std::st
     return item;
 }
 
-PlanItem matItem(const Record& record, const std::string& id, Point2 place, Angle heading) {
+DrawnItem matItem(const Record& record, const std::string& id, Point2 place, Angle heading) {
     const Tuple& size = record.tuple("size");
-    PlanItem item{PlanLayer::Sensors, id, id + ": mat"};
+    DrawnItem item{PlanLayer::Sensors, id, id + ": mat"};
     item.paths.push_back({{rectangle(place, size[0], size[1], heading)},
                           true,
                           kMat.faded(0.25),
@@ -149,11 +149,11 @@ PlanItem matItem(const Record& record, const std::string& id, Point2 place, Angl
     return item;
 }
 
-PlanItem gateItem(const PlanDrawing& plan, const Record& record, const std::string& id,
-                  const Pose2& pose) {
+DrawnItem gateItem(const PlanDrawing& plan, const Record& record, const std::string& id,
+                   const Pose2& pose) {
     const double half = record.number("width") / 2, post = 0.25 * plan.metres();
     const Point2 left = pose * Point2{0, half}, right = pose * Point2{0, -half};
-    PlanItem item{PlanLayer::Sensors, id, id + ": gate"};
+    DrawnItem item{PlanLayer::Sensors, id, id + ": gate"};
     item.paths.push_back({{{left, right}}, false, {}, Stroke{kSensor, 0.08, {0.25, 0.2}}});
     for (const Point2 p : {left, right})
         item.paths.push_back({{planCircle(p, post)}, true, kSensor, Stroke{kPaper, 0.06}});
@@ -161,16 +161,16 @@ PlanItem gateItem(const PlanDrawing& plan, const Record& record, const std::stri
 }
 
 /// Where it goes by itself.
-void addCourse(PlanItem& item, const Record& record, Point2 place, Color color) {
+void addCourse(DrawnItem& item, const Record& record, Point2 place, Color color) {
     if (!record.has("path")) return;
     std::vector<Point2> way{place};
     for (const Tuple& point : record.list("path")) way.push_back({point[0], point[1]});
     item.paths.push_back({{std::move(way)}, false, {}, Stroke{color.faded(0.7), 0.07, {0.3, 0.3}}});
 }
 
-PlanItem robotItem(const Record& record, const std::string& id, const Pose2& pose,
-                   const RobotModel& model) {
-    PlanItem item{PlanLayer::Robots, id, id + ": robot"};
+DrawnItem robotItem(const Record& record, const std::string& id, const Pose2& pose,
+                    const RobotModel& model) {
+    DrawnItem item{PlanLayer::Robots, id, id + ": robot"};
     addCourse(item, record, pose.position, kRobot);
     const double half = model.length > 0 ? model.length / 2 : model.radius;
     const Color fill = mixed(kRobot, kPaper, 0.45);
@@ -188,9 +188,9 @@ PlanItem robotItem(const Record& record, const std::string& id, const Pose2& pos
     return item;
 }
 
-PlanItem personItem(const Record& record, const std::string& id, const Pose2& pose) {
+DrawnItem personItem(const Record& record, const std::string& id, const Pose2& pose) {
     const double tall = record.number("height");
-    PlanItem item{PlanLayer::Robots, id, id + ": person"};
+    DrawnItem item{PlanLayer::Robots, id, id + ": person"};
     addCourse(item, record, pose.position, kPerson);
     const Color fill = mixed(kPerson, kPaper, 0.4);
     const Stroke edge{kPerson, 0.07};
@@ -209,7 +209,7 @@ PlanItem personItem(const Record& record, const std::string& id, const Pose2& po
     return item;
 }
 
-PlanItem placedItem(const PlanDrawing& plan, const Scene& scene, const Placed& placed) {
+DrawnItem placedItem(const PlanDrawing& plan, const Scene& scene, const Placed& placed) {
     const Record& record = scene.records[placed.record];
     const std::string& id = scene.ids[placed.record];
     const std::string& keyword = record.keyword();

@@ -14,7 +14,7 @@ Stroke onPage(const Stroke& line, double em) {
     return stroke;
 }
 
-void draw(Canvas& canvas, const PlanPath& path, double em) {
+void draw(Canvas& canvas, const DrawnPath& path, double em) {
     if (path.fill) canvas.fill(path.curves, *path.fill);
     if (!path.line) return;
     const Stroke stroke = onPage(*path.line, em);
@@ -26,7 +26,7 @@ void draw(Canvas& canvas, const PlanPath& path, double em) {
     }
 }
 
-void draw(Canvas& canvas, const PlanText& text, double em) {
+void draw(Canvas& canvas, const DrawnText& text, double em) {
     TextStyle style{text.size * em, text.bold, text.align, text.color, {}};
     if (text.halo) style.halo = plan_colors::kPaper.faded(0.85);
     canvas.text(text.anchor, text.text, style);
@@ -55,10 +55,10 @@ class Painter {
 
   private:
     void paint(PlanLayer first, PlanLayer last) {
-        for (const PlanItem& item : plan_.items) {
+        for (const DrawnItem& item : plan_.items) {
             if (item.layer < first || item.layer > last) continue;
-            for (const PlanPath& path : item.paths) draw(canvas_, path, plan_.em);
-            for (const PlanText& text : item.texts) draw(canvas_, text, plan_.em);
+            for (const DrawnPath& path : item.paths) draw(canvas_, path, plan_.em);
+            for (const DrawnText& text : item.texts) draw(canvas_, text, plan_.em);
         }
     }
 

@@ -46,26 +46,26 @@ std::vector<Polygon> curvesOf(const Region& region) {
 }
 
 /// A covering: its colour, and squares of another in one path.
-PlanItem coveringItem(const Element& element) {
-    PlanItem item{PlanLayer::Floor, element.id, titleOf(element)};
+DrawnItem coveringItem(const Element& element) {
+    DrawnItem item{PlanLayer::Floor, element.id, titleOf(element)};
     const Color light = mixed(displayColor(Material::Floor), kPaper, 0.45);
     const Color dark = mixed(displayColor(Material::FloorDark), kPaper, 0.35);
     item.paths.push_back({{floorOutline(element.record)}, true, light, Stroke{kFaintInk, 0.05}});
-    PlanPath squares{{}, true, dark, {}};
+    DrawnPath squares{{}, true, dark, {}};
     for (const Plate& plate : element.body.plates)
         if (plate.material == Material::FloorDark) squares.curves.push_back(plate.outline);
     if (!squares.curves.empty()) item.paths.push_back(std::move(squares));
     return item;
 }
 
-PlanItem zoneItem(const PlanDrawing& plan, const Element& element, std::size_t index) {
+DrawnItem zoneItem(const PlanDrawing& plan, const Element& element, std::size_t index) {
     const Color color = seriesColor(index);
     const Polygon outline = zoneOutline(element.record);
-    PlanItem item{PlanLayer::Zones, element.id, titleOf(element)};
+    DrawnItem item{PlanLayer::Zones, element.id, titleOf(element)};
     item.paths.push_back({{outline}, true, color.faded(0.13), Stroke{color, 0.09, {0.5, 0.35}}});
     const double em = plan.metres();
     const Point2 corner = bounds(outline).low;
-    PlanText name{{corner.x + 0.5 * em, corner.y + 0.55 * em}, element.id};
+    DrawnText name{{corner.x + 0.5 * em, corner.y + 0.55 * em}, element.id};
     name.size = 0.85;
     name.color = mixed(color, kInk, 0.35);
     name.halo = true;
@@ -82,12 +82,12 @@ double penWidth(const PlanDrawing& plan, const Environment& environment) {
 }
 
 /// Lines as few curves as may be.
-PlanPath linesPath(const std::vector<Segment2>& lines, const Stroke& pen) {
+DrawnPath linesPath(const std::vector<Segment2>& lines, const Stroke& pen) {
     return {chained(lines), false, {}, pen};
 }
 
-PlanItem wallItem(const Element& element, double pen) {
-    PlanItem item{PlanLayer::Walls, element.id, titleOf(element)};
+DrawnItem wallItem(const Element& element, double pen) {
+    DrawnItem item{PlanLayer::Walls, element.id, titleOf(element)};
     std::vector<Segment2> cut, low, high;
     for (const Sheet& sheet : element.body.sheets)
         (sheet.bottom > kCut ? high : sheet.top < kCut ? low : cut).push_back(sheet.line);
@@ -115,14 +115,14 @@ std::vector<Point2> gapOf(const Segment2& line, double width) {
 }
 
 /// Frame and pane.
-void addWindow(PlanItem& item, const Segment2& line, double width) {
+void addWindow(DrawnItem& item, const Segment2& line, double width) {
     item.paths.push_back({{gapOf(line, width)}, true, kPaper, Stroke{kGlass, 0.06}});
     item.paths.push_back({{{line.a, line.b}}, false, {}, Stroke{kGlass, 0.06}});
 }
 
 /// The leaf, open or in its frame, and the way it swings: about the beginning of the opening, to
 /// the left of its wall. Which way is ours; records do not say.
-void addDoor(PlanItem& item, const Segment2& line, double width, bool open) {
+void addDoor(DrawnItem& item, const Segment2& line, double width, bool open) {
     const double length = distance(line.a, line.b);
     const Vec2 along = 1 / length * (line.b - line.a);
     const Angle heading = directionOf(along.x, along.y);
@@ -136,9 +136,9 @@ void addDoor(PlanItem& item, const Segment2& line, double width, bool open) {
     item.paths.push_back({{{line.a, open ? aside : line.b}}, false, {}, Stroke{kDoor, 0.2}});
 }
 
-PlanItem openingItem(const PlanDrawing& plan, const Element& element, const ElementLines& lines,
-                     double pen) {
-    PlanItem item{PlanLayer::Openings, element.id, titleOf(element)};
+DrawnItem openingItem(const PlanDrawing& plan, const Element& element, const ElementLines& lines,
+                      double pen) {
+    DrawnItem item{PlanLayer::Openings, element.id, titleOf(element)};
     const double width = std::max(lines.thickness, 2 * pen * plan.metres());
     for (const std::vector<Point2>& chain : lines.chains) {
         const Segment2 line{chain.front(), chain.back()};

@@ -113,7 +113,7 @@ class SvgWriter {
         out_.append(", y up.</desc>\n<rect width=\"").append(width).append("\" height=\"");
         out_.append(height).append("\" fill=\"#ffffff\"/>\n");
         if (std::any_of(plan_.items.begin(), plan_.items.end(),
-                        [](const PlanItem& item) { return item.layer == PlanLayer::Views; }))
+                        [](const DrawnItem& item) { return item.layer == PlanLayer::Views; }))
             addIndoorClip();
     }
 
@@ -133,18 +133,18 @@ class SvgWriter {
         if (closed) out_ += 'Z';
     }
 
-    void add(const PlanItem& item) {
+    void add(const DrawnItem& item) {
         out_ += "<g";
         if (!item.id.empty()) out_.append(" id=\"").append(ids_.take(item.id)) += '"';
         out_ += '>';
         if (!item.title.empty())
             out_.append("<title>").append(escaped(item.title)).append("</title>");
-        for (const PlanPath& path : item.paths) add(path);
-        for (const PlanText& text : item.texts) add(text);
+        for (const DrawnPath& path : item.paths) add(path);
+        for (const DrawnText& text : item.texts) add(text);
         out_ += "</g>\n";
     }
 
-    void add(const PlanPath& path) {
+    void add(const DrawnPath& path) {
         out_ += "<path d=\"";
         for (const std::vector<Point2>& curve : path.curves) addCurve(curve, path.closed);
         out_ += '"';
@@ -167,7 +167,7 @@ class SvgWriter {
         out_ += '"';
     }
 
-    void add(const PlanText& text) {
+    void add(const DrawnText& text) {
         constexpr std::array<std::string_view, 3> kAnchors{"start", "middle", "end"};
         const Point2 page = plan_.view * text.anchor;
         out_.append("<text x=\"").append(number(page.x)).append("\" y=\"").append(number(page.y));

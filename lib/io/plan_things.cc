@@ -77,8 +77,8 @@ double penWidth(const PlanDrawing& plan, const Thing& thing) {
     return std::clamp(0.05 * std::min(box.width(), box.depth()) / plan.metres(), 0.045, 0.07);
 }
 
-PlanItem hangingItem(const Thing& thing) {
-    PlanItem item{PlanLayer::Infra, thing.element->id, titleOf(thing)};
+DrawnItem hangingItem(const Thing& thing) {
+    DrawnItem item{PlanLayer::Infra, thing.element->id, titleOf(thing)};
     for (const PartAbove& part : thing.parts) {
         const Color edge = mixed(displayColor(part.material), kInk, 0.5);
         item.paths.push_back({part.curves, true, {}, Stroke{edge, 0.07, {0.4, 0.25}}});
@@ -86,8 +86,8 @@ PlanItem hangingItem(const Thing& thing) {
     return item;
 }
 
-PlanItem standingItem(const PlanDrawing& plan, const Thing& thing) {
-    PlanItem item{PlanLayer::Objects, thing.element->id, titleOf(thing)};
+DrawnItem standingItem(const PlanDrawing& plan, const Thing& thing) {
+    DrawnItem item{PlanLayer::Objects, thing.element->id, titleOf(thing)};
     const double pen = penWidth(plan, thing);
     for (const PartAbove& part : thing.parts) {
         if (part.hidden) continue;
@@ -116,8 +116,8 @@ void addName(PlanDrawing& plan, const Thing& thing) {
         textWidth(thing.element->id, style) * em / plan.em > 0.96 * box.width())
         return;
     const Point2 middle = box.center();
-    PlanItem item{PlanLayer::Labels, "", ""};
-    PlanText name{{middle.x, middle.y - 0.25 * em}, thing.element->id, 0.7, Align::Center, kInk};
+    DrawnItem item{PlanLayer::Labels, "", ""};
+    DrawnText name{{middle.x, middle.y - 0.25 * em}, thing.element->id, 0.7, Align::Center, kInk};
     name.halo = true;
     item.texts.push_back(std::move(name));
     plan.items.push_back(std::move(item));

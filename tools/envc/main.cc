@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "base/history.h"
 #include "base/number.h"
 #include "cli/dependencies.h"
 #include "cli/inputs.h"
@@ -60,6 +61,7 @@ std::string drawing(const EnvcOptions& options, const Scene& scene) {
     plan.format = options.format == "svg" ? PictureFormat::Svg : PictureFormat::Png;
     plan.slice = options.slice;
     plan.width = options.width;
+    if (!isStream(options.inputs.front())) plan.title = baseName(options.inputs.front());
     return drawPlan(scene, plan);
 }
 

@@ -2,6 +2,7 @@
 #include "envc/options.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.h"
 #include "cli/scene_options.h"
@@ -89,8 +90,12 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("--info reports and --slice draws: give one of them");
     if (line.given("--closed") && !line.given("--fence"))
         throw UsageError("--closed is about --fence: give both");
-    if (options.format == "ros" && isStream(options.common.output))
-        throw UsageError("a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE");
+    const std::string suffix = std::filesystem::path(options.common.output).extension().string();
+    if (options.format == "ros" && suffix != ".yaml" && suffix != ".yml")
+        throw UsageError(
+            "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
+    if (options.format == "obj" && suffix == ".mtl")
+        throw UsageError("FILE.mtl holds the materials of an OBJ: name the model FILE.obj");
 }
 
 }  // namespace
