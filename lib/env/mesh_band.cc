@@ -62,7 +62,7 @@ void bandOfMeshes(const Body& body, double bottom, double top, Band& out, std::s
             if (signedArea(part) < 0) std::reverse(part.begin() + 1, part.end());
             if (signedArea(part) > 0) {
                 out.solids.push_back(std::move(part));
-            } else if (part.size() >= 2 && mesh.open) {
+            } else if (part.size() >= 2) {
                 out.sheets.push_back(spanOf(part));
             }
         }

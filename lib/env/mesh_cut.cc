@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "env/mesh_loops.h"
@@ -46,9 +48,15 @@ struct Arc {
     EdgeKey from, to;
 };
 
-/// The arcs of all triangles that the plane cuts, each once however often a file repeats its
-/// triangle, from either side.
-std::vector<Arc> arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
+/// The arcs of all triangles that the plane cuts.
+struct Arcs {
+    std::vector<Arc> one_sided;
+    /// Of triangles that are there from both sides: surfaces drawn twice, to be seen from anywhere,
+    /// and faces that two solids have in common. They close curves of their own or none.
+    std::vector<Arc> two_sided;
+};
+
+std::vector<Arc> allArcs(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
     std::vector<Arc> arcs;
     for (const auto& t : mesh.triangles) {
         const int sum = above[t[0]] + above[t[1]] + above[t[2]];
@@ -61,17 +69,29 @@ std::vector<Arc> arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above
         }
         arcs.push_back(arc);
     }
-    std::vector<std::size_t> order(arcs.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto ends = [&](std::size_t i) { return std::minmax(arcs[i].from, arcs[i].to); };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return ends(a) != ends(b) ? ends(a) < ends(b) : a < b;
+    return arcs;
+}
+
+Arcs arcsOf(const Mesh& mesh, const std::vector<std::uint8_t>& above) {
+    std::vector<Arc> all = allArcs(mesh, above);
+    // The two edges of an arc have all three corners: equal ones are of equal triangles.
+    const auto low = [](const Arc& arc) { return std::min(arc.from, arc.to); };
+    const auto high = [](const Arc& arc) { return std::max(arc.from, arc.to); };
+    std::sort(all.begin(), all.end(), [&](const Arc& a, const Arc& b) {
+        return std::tuple(low(a), high(a), a.from) < std::tuple(low(b), high(b), b.from);
     });
-    std::vector<bool> again(arcs.size());
-    for (std::size_t i = 1; i < order.size(); ++i)
-        again[order[i]] = ends(order[i]) == ends(order[i - 1]);
-    std::size_t i = 0;
-    std::erase_if(arcs, [&](const Arc&) { return again[i++]; });
+    Arcs arcs;
+    for (std::size_t i = 0; i < all.size();) {
+        const Arc first{low(all[i]), high(all[i])};
+        int balance = 0;
+        for (; i < all.size() && low(all[i]) == first.from && high(all[i]) == first.to; ++i)
+            balance += all[i].from == first.from ? 1 : -1;
+        if (balance == 0)
+            arcs.two_sided.push_back(first);
+        else
+            arcs.one_sided.insert(arcs.one_sided.end(), static_cast<std::size_t>(std::abs(balance)),
+                                  balance > 0 ? first : Arc{first.to, first.from});
+    }
     return arcs;
 }
 
@@ -242,8 +262,16 @@ class Tracer {
 };
 
 Curves curvesOf(const Mesh& mesh, double height, Moved moved) {
-    const std::vector<Arc> arcs = arcsOf(mesh, verticesAbove(mesh, height, moved));
-    return arcs.empty() ? Curves() : Tracer(mesh, height, arcs).trace();
+    const Arcs arcs = arcsOf(mesh, verticesAbove(mesh, height, moved));
+    Curves curves = Tracer(mesh, height, arcs.one_sided).trace();
+    Curves more = Tracer(mesh, height, arcs.two_sided).trace();
+    for (Polygon& curve : more.closed) {
+        // Neither side of it is known to be the solid.
+        if (signedArea(curve) < 0) std::reverse(curve.begin() + 1, curve.end());
+        curves.closed.push_back(std::move(curve));
+    }
+    curves.open.insert(curves.open.end(), more.open.begin(), more.open.end());
+    return curves;
 }
 
 struct PolygonLess {
@@ -254,17 +282,27 @@ struct PolygonLess {
 
 void cutMesh(const Mesh& mesh, double height, Slice& out) {
     Curves curves = curvesOf(mesh, height, Moved::Down);
-    const std::vector<Polygon> solids = joinCavities(std::move(curves.closed));
-    out.solids.insert(out.solids.end(), solids.begin(), solids.end());
+    std::set<Polygon, PolygonLess> known;
+    const auto add_solids = [&](std::vector<Polygon> solids) {
+        for (Polygon& solid : solids) {
+            if (!known.insert(solid).second) continue;
+            const double area = signedArea(solid);
+            // Surfaces that run through each other may have cavities larger than themselves.
+            if (area < 0) std::reverse(solid.begin() + 1, solid.end());
+            if (area == 0)
+                forEachEdge(solid, [&](const Segment2& line) { out.sheets.push_back(line); });
+            else
+                out.solids.push_back(std::move(solid));
+        }
+    };
+    add_solids(joinCavities(std::move(curves.closed)));
     out.sheets.insert(out.sheets.end(), curves.open.begin(), curves.open.end());
     // Where vertices lie at the very height, what begins there counts as well as what ends there.
     const bool is_between = std::none_of(mesh.vertices.begin(), mesh.vertices.end(),
                                          [height](const Point3& p) { return p.z == height; });
     if (is_between) return;
     Curves more = curvesOf(mesh, height, Moved::Up);
-    const std::set<Polygon, PolygonLess> known(solids.begin(), solids.end());
-    for (Polygon& solid : joinCavities(std::move(more.closed)))
-        if (!known.contains(solid)) out.solids.push_back(std::move(solid));
+    add_solids(joinCavities(std::move(more.closed)));
     // From left to right, so that both ways along a line are the same.
     const auto ordered = [](const Segment2& s) {
         return lexLess(s.b, s.a) ? Polygon{s.b, s.a} : Polygon{s.a, s.b};

@@ -245,7 +245,7 @@ class Cutter {
     }
 
     /// Findings for openings that share a part of a wall. \pre cuts are sorted
-    bool findOverlaps(std::span<const Cut> cuts) const {
+    [[nodiscard]] bool findOverlaps(std::span<const Cut> cuts) const {
         std::vector<std::tuple<std::size_t, std::size_t, const Cut*>> pairs;
         std::vector<const Cut*> open;
         for (const Cut& cut : cuts) {

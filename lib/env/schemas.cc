@@ -292,7 +292,7 @@ void addThings(std::vector<Schema>& out) {
           {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), heightKey(0.9),
            countKey("count", "how many", 3, 100)});
     other("screen", "a projection screen on two feet; its length lies along the heading",
-          {sizeKey(box, 2, 3, {1.8, 0.05}), heightKey(2)});
+          {sizeKey(box, 2, 3, {1.8, 0.5}), heightKey(2)});
     other("cube", "a box",
           {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
            heightKey("height where size gives none; without it the length")});

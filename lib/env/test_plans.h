@@ -42,7 +42,8 @@ inline std::string buildingPlan(int walls, const PlanStyle& style = {}) {
         out += style.open_doors ? " open=yes\n" : "\n";
     };
     const double width = columns * kRoom, pitch = 2 * kDepth + kCorridor;
-    for (int wing = 0; made < walls; ++wing) {
+    int wing = 0;
+    while (made < walls) {
         const double y = wing * pitch;
         const double levels[] = {y, y + kDepth, y + kDepth + kCorridor, y + pitch};
         for (int level = wing == 0 ? 0 : 1; level < 4; ++level)
@@ -53,6 +54,7 @@ inline std::string buildingPlan(int walls, const PlanStyle& style = {}) {
             add({column * kRoom, levels[0]}, {column * kRoom, levels[1]});
             add({column * kRoom, levels[2]}, {column * kRoom, levels[3]});
         }
+        ++wing;
     }
     return out;
 }

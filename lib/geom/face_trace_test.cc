@@ -21,7 +21,7 @@ void append(Lines& lines, const Polygon& curve) {
 /// Both routes, the same to the last bit; returns the faces.
 std::vector<Region> facesByBoth(const Lines& lines, const Lines& passages = {}) {
     const auto traced = tracedFaces(lines, passages);
-    const auto arranged = overlayFaces(lines, passages);
+    auto arranged = overlayFaces(lines, passages);
     if (!traced) {
         ADD_FAILURE() << "not traced";
         return arranged;

@@ -25,12 +25,12 @@ struct CheckContext {
         return scene.environment.elements()[i];
     }
     /// Furniture, pillars, ceiling frames, meshes.
-    [[nodiscard]] bool isObject(std::size_t element) const;
+    [[nodiscard]] bool isObject(std::size_t i) const;
     /// "desk d1", or the id alone where that is keyword and number.
-    [[nodiscard]] std::string name(std::size_t element) const;
+    [[nodiscard]] std::string name(std::size_t i) const;
     [[nodiscard]] std::string placedName(std::size_t placed) const;
     /// A finding at an element, its name before the message.
-    [[nodiscard]] Diagnostic finding(std::size_t element, const std::string& message) const;
+    [[nodiscard]] Diagnostic finding(std::size_t i, const std::string& message) const;
 
     const Scene& scene;
     IndoorIndex indoor;
@@ -56,6 +56,7 @@ class ThingCheck {
     void checkObject(std::size_t element, Diagnostics& findings);
     void checkZone(std::size_t element, Diagnostics& findings) const;
     void checkInRoom(std::size_t element, bool in_wall, Diagnostics& findings) const;
+    [[nodiscard]] bool isPartOfBuilding(std::size_t element) const;
     /// The elements after this one, and walls, that may share space with it; ascending.
     [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t element) const;
     std::optional<Shared> shared(std::size_t a, std::size_t b);

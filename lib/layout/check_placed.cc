@@ -136,7 +136,9 @@ std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle)
     context_->parts.search(box, [&](const Part& part) {
         if (sharedLayer(part, layer).isShared()) look(part.element, part.footprint);
     });
-    for (const auto& [element, mesh] : context_->meshes) {
+    for (const auto& entry : context_->meshes) {
+        const std::size_t element = entry.first;
+        const MeshCuts& mesh = entry.second;
         if (!meets(mesh.box(), box) || !sharedLayer(mesh.layer(), layer).isShared()) continue;
         const MeshBand& near = bandOf(element, circle.height);
         near.solids.search(box, [&](std::size_t i) { look(element, near.band.solids[i]); });

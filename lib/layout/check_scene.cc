@@ -42,11 +42,11 @@ class SceneCheck {
     void checkWalls(std::size_t element) {
         for (const WallCrossing& crossing : crossings_) {
             if (crossing.a != element) continue;
-            const std::string what = crossing.overlap ? " lies on " : " crosses ";
-            const std::string cure = crossing.overlap ? "leave one of them out, or shorten it"
-                                                      : "end one of them at the other";
-            findings_.add(context_.finding(element, what + context_.name(crossing.b) + " near " +
-                                                        placeText(crossing.place) + "; " + cure));
+            std::string message = crossing.overlap ? " lies on " : " crosses ";
+            message += context_.name(crossing.b) + " near " + placeText(crossing.place);
+            message += crossing.overlap ? "; leave one of them out, or shorten it"
+                                        : "; end one of them at the other";
+            findings_.add(context_.finding(element, message));
         }
     }
 

@@ -10,7 +10,8 @@ namespace ispace {
 /// the order of the records, one for each pair, at most Diagnostics::kMost (looking ends there).
 ///
 /// - Objects (furniture, pillars, ceiling frames, meshes) that share space with each other or with
-///   a wall, in 3-D: a chair under a table is fine, and so is what touches within 1 um. Files of
+///   a wall, in 3-D: a chair under a table is fine, and so is what touches within 1 um. What
+///   belongs to the building may run into each other: pillars, ceiling frames and walls. Files of
 ///   meshes are compared at some heights that both sides share.
 /// - Objects, robots, people, sensors, mats and gates that are not, or not wholly, in the room;
 ///   zones of which nothing is in it.

@@ -42,7 +42,7 @@ constexpr const char* kGood =
     "boxes id=b at=7,5\n"
     "screen id=s at=1,4 heading=90\n"
     "infra id=f at=4,3\n"
-    "pillar id=p at=4,5 height=2.4\n"
+    "pillar id=p at=4,5 \n"
     "cylinder id=y at=5,3,0.7\n"
     "zone id=z at=4,3 size=20,20\n"
     "mat id=m at=6,2\n"
@@ -149,13 +149,19 @@ TEST(CheckScene, WallsWithAndWithoutThickness) {
     EXPECT_NE(check("fence id=f path=3,3.38;5,3.38 height=0.3\ndesk id=d at=4,3\n"), "");
 }
 
+TEST(CheckScene, TheBuildingMayRunIntoItself) {
+    EXPECT_EQ(check("pillar at=0,3\ninfra at=2,3\npillar at=4,3\npillar at=4.1,3\n"), "");
+    EXPECT_NE(check("pillar at=0,3\ndesk at=0.7,3\n"), "");
+    EXPECT_NE(check("pillar at=-3,3\n").find("pillar1 lies outside the room"), std::string::npos);
+}
+
 TEST(CheckScene, OutsideAndPartlyOutside) {
     EXPECT_EQ(check("desk id=d at=12,3\n"),
               "room.env:3:1: error: desk d lies outside the room near (11.4, 2.6); move it in or "
               "leave it out\n");
     // Above the walls only the room tells.
-    const std::string partly = check("infra id=f at=7,3 height=3\n");
-    EXPECT_NE(partly.find("infra f lies partly outside the room near"), std::string::npos);
+    const std::string partly = check("cube id=f at=8,3,3\n");
+    EXPECT_NE(partly.find("cube f lies partly outside the room near"), std::string::npos);
     // One finding is enough for what stands in the wall.
     EXPECT_EQ(check("desk id=d at=0,3\n").find("outside"), std::string::npos);
     const std::string zone = check("zone id=z at=20,3 size=2,2\nzone id=y at=8,3 size=1,1\n");

@@ -83,9 +83,10 @@ void ThingCheck::check(std::size_t element, Diagnostics& findings) {
 }
 
 void ThingCheck::checkObject(std::size_t element, Diagnostics& findings) {
-    bool in_wall = false;
+    bool in_wall = isPartOfBuilding(element);
     for (const std::size_t other : neighbours(element)) {
         if (findings.full()) return;
+        if (isPartOfBuilding(element) && isPartOfBuilding(other)) continue;
         const auto place = shared(element, other);
         if (!place) continue;
         const bool is_wall = !context_->isObject(other);
@@ -96,6 +97,12 @@ void ThingCheck::checkObject(std::size_t element, Diagnostics& findings) {
         findings.add(context_->finding(element, message));
     }
     checkInRoom(element, in_wall, findings);
+}
+
+/// Pillars stand in walls and carry ceiling frames.
+bool ThingCheck::isPartOfBuilding(std::size_t element) const {
+    const Record& record = context_->element(element).record;
+    return !context_->isObject(element) || record.schema().type == RecordType::Infra;
 }
 
 std::vector<std::size_t> ThingCheck::neighbours(std::size_t element) const {
@@ -179,11 +186,11 @@ std::optional<Point2> ThingCheck::sharedMeshes(MeshCuts& a, MeshCuts& b) {
 
 void ThingCheck::checkInRoom(std::size_t element, bool in_wall, Diagnostics& findings) const {
     std::optional<Point2> out, in;
-    const auto look = [&](const Box2& box, const auto& points, const auto& floorOf) {
+    const auto look = [&](const Box2& box, const auto& points, const auto& on_floor) {
         // Away from the walls one point tells of all.
         const bool near = context_->indoor.hasEdgeIn(box);
         for (const auto& point : points) {
-            const Point2 p = floorOf(point);
+            const Point2 p = on_floor(point);
             std::optional<Point2>& side = context_->indoor.isOut(p) ? out : in;
             if (!side) side = p;
             if (!near || (out && in)) return;

@@ -33,9 +33,8 @@ using FileReader = std::function<std::string(const std::string& path)>;
 /// - `parts: {workplace: [desk: {id: desk}, chair: {at: [0, 1]}]}`: records to be placed together,
 ///   in a frame of their own. A part is known in the whole file, also before, and in those that
 ///   include it.
-/// - `place: {part: workplace, at: [2, 3], heading: 90, id: w1}`: a part, placed (see placeIn);
-/// with
-///   a third number in `at`, lifted. Parts may place parts. Ids: see expandItems.
+/// - `place: {part: workplace, at: [2, 3], heading: 90, id: w1}`: a part, placed as placeIn does,
+///   with a third number in `at` lifted. Parts may place parts. Ids: see expandItems.
 ///
 /// Every record and placement may have `repeat`. `{count: 5, step: [1.2, 0]}` makes copies along a
 /// line, `{rows: 3, cols: 4, step: [1.5, 2]}` on a grid, row after row, in the frame the record is
