@@ -93,9 +93,12 @@ class LayerSorter {
         for (PlanShape& shape : shapes) {
             const Use use = useOf(shape.layer);
             ++counts_[use][shape.layer];
-            if (use == Walls) sorted.walls.push_back(std::move(shape.path));
-            if (use == Doors) sorted.doors.push_back(std::move(shape));
-            if (use == Windows) sorted.windows.push_back(std::move(shape));
+            if (use == Walls)
+                sorted.walls.push_back(std::move(shape.path));
+            else if (use == Doors)
+                sorted.doors.push_back(std::move(shape));
+            else if (use == Windows)
+                sorted.windows.push_back(std::move(shape));
         }
         return sorted;
     }

@@ -210,14 +210,14 @@ class DxfChecker {
         setting_ = {};
     }
 
-    double integer(const Group& group) const {
+    [[nodiscard]] double integer(const Group& group) const {
         const auto value = parseInteger(group.value);
         if (!value || std::abs(*value) > INT32_MAX)
             groups_.fail(group.line, "found " + excerpt(group.value) + ", wanted a whole number");
         return static_cast<double>(*value);
     }
 
-    double real(const Group& group) const {
+    [[nodiscard]] double real(const Group& group) const {
         const auto value = parseDouble(group.value);
         if (!value || std::abs(*value) > kLargest)
             groups_.fail(group.line, "found " + excerpt(group.value) + ", wanted a number");

@@ -42,11 +42,13 @@ struct HousePlan {
 /// An iterator over bytes that tells how far a parser that holds copies of it has come.
 class CountingIterator {
   public:
+    // NOLINTBEGIN(readability-identifier-naming): names that the standard library wants
     using iterator_category = std::input_iterator_tag;
     using value_type = char;
     using difference_type = std::ptrdiff_t;
     using pointer = const char*;
     using reference = const char&;
+    // NOLINTEND(readability-identifier-naming)
 
     CountingIterator(const char* at, const char** farthest) : at_(at), farthest_(farthest) {}
     reference operator*() const { return *at_; }
@@ -61,9 +63,6 @@ class CountingIterator {
     }
     friend bool operator==(const CountingIterator& a, const CountingIterator& b) {
         return a.at_ == b.at_;
-    }
-    friend bool operator!=(const CountingIterator& a, const CountingIterator& b) {
-        return a.at_ != b.at_;
     }
 
   private:

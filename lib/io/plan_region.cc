@@ -95,10 +95,11 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     double best_clear = distanceTo(lines, best);
     if (best_clear >= kClear) return best;
     const Box2 box = bounds(face.outline);
-    for (int i = 1; i < kClearSteps * kClearSteps; ++i) {
-        const double u = (i % kClearSteps + 0.5) / kClearSteps,
-                     v = (i / kClearSteps + 0.5) / kClearSteps;
-        const Point2 p{box.low.x + u * box.width(), box.low.y + v * box.depth()};
+    const auto share = [](int step) { return (step + 0.5) / kClearSteps; };
+    for (int i = 0; i < kClearSteps * kClearSteps; ++i) {
+        const int row = i / kClearSteps, column = i % kClearSteps;
+        const Point2 p{box.low.x + share(column) * box.width(),
+                       box.low.y + share(row) * box.depth()};
         if (face.locate(p) != Side::Inside) continue;
         const double clear = distanceTo(lines, p);
         if (clear <= best_clear) continue;

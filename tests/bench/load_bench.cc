@@ -96,7 +96,7 @@ std::vector<Compiled> scenes(const std::string& folder) {
     std::vector<Compiled> out;
     if (const std::string map = bench::willowMap(); !map.empty())
         out.push_back(compile("willow-full", folder, reading(map)));
-    for (const std::size_t walls : {1000, 10000}) {
+    for (const std::size_t walls : {1000U, 10000U}) {
         const bench::Building plan = bench::building(walls);
         out.push_back(compile("walls-" + std::to_string(walls), folder,
                               readRecordText(plan.text, "plan", sceneSchemas())));

@@ -113,7 +113,7 @@ void registerFile(const std::string& name, const std::string& file, double area)
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-    for (const std::size_t walls : {1000, 10000, 100000}) {
+    for (const std::size_t walls : {1000U, 10000U, 100000U}) {
         const bench::Building plan = bench::building(walls);
         const std::string name = "walls-" + std::to_string(walls);
         verify(name, compile([&plan] {

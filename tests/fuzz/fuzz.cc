@@ -17,7 +17,7 @@ namespace ispace::fuzz {
 namespace {
 
 /// Scenes of more records or numbers are left out, and all but one in this many of the others.
-constexpr std::size_t kMostRecords = 12, kMostNumbers = 200, kEvery = 8;
+constexpr std::size_t kMostRecords = 12, kMostNumbers = 200, kEvery = 16;
 
 /// Numbers of all lists: what makes vertices and repetitions.
 std::size_t numbersOf(const Record& record) {
