@@ -46,7 +46,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to) {
     if (fs::path(from).lexically_normal() == fs::path(to).lexically_normal()) return;
     const auto canonical = [](const std::string& folder) {
-        return fs::weakly_canonical(folder.empty() ? fs::path(".") : fs::path(folder));
+        return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder));
     };
     const fs::path old_base = canonical(from), new_base = canonical(to);
     if (old_base == new_base) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "base/file.h"
 #include "base/history.h"
@@ -32,9 +34,9 @@ bool isRecordFormat(const std::string& format) {
     return format == "env" || format == "3dm" || format == "yaml";
 }
 
-bool isBinary(const std::string& format) {
-    return format == "glb" || format == "stl" || format == "png";
-}
+/// What no terminal shows, and how messages call it.
+constexpr std::pair<std::string_view, const char*> kBinary[] = {
+    {"glb", "a GLB"}, {"stl", "an STL"}, {"png", "a PNG"}};
 
 Document readModel(const EnvcOptions& options) {
     InputRequest request;
@@ -121,7 +123,8 @@ void convert(const EnvcOptions& options, Document document) {
 }
 
 void envc(const EnvcOptions& options) {
-    if (isBinary(options.format)) refuseTerminal(options.common.output, "a " + options.format);
+    for (const auto& [format, name] : kBinary)
+        if (options.format == format) refuseTerminal(options.common.output, name);
     const ThreadLimit threads(options.common.threads);
     const Document document = readModel(options);
     if (isRecordFormat(options.format))
