@@ -127,17 +127,17 @@ TEST(Dxf, PointsOfArcsLieOnThem) {
 TEST(Dxf, BlocksAreTurnedScaledMirroredAndRepeated) {
     // A room of 2 x 1 about the point (1, 1) of its block.
     const std::string blocks = block("ROOM", 1, 1, rectangle("0", 1, 1, 3, 2));
-    const auto pathOf = [&](const std::string& more) {
+    const auto path_of = [&](const std::string& more) {
         return textOf(drawing(insert("ROOM", "W", 10, 20, more), blocks, 6)).substr(7);
     };
-    EXPECT_EQ(pathOf("").substr(0, 48), "fence path=10,20;12,20;12,21;10,21 closed=yes\nin");
-    EXPECT_EQ(pathOf(group(50, 90)).substr(0, 46),
+    EXPECT_EQ(path_of("").substr(0, 48), "fence path=10,20;12,20;12,21;10,21 closed=yes\nin");
+    EXPECT_EQ(path_of(group(50, 90)).substr(0, 46),
               "fence path=10,20;10,22;9,22;9,20 closed=yes\nin");
-    EXPECT_EQ(pathOf(group(41, 2) + group(42, 3)).substr(0, 44),
+    EXPECT_EQ(path_of(group(41, 2) + group(42, 3)).substr(0, 44),
               "fence path=10,20;14,20;14,23;10,23 closed=ye");
-    EXPECT_EQ(pathOf(group(41, -1)).substr(0, 40), "fence path=10,20;8,20;8,21;10,21 closed=");
+    EXPECT_EQ(path_of(group(41, -1)).substr(0, 40), "fence path=10,20;8,20;8,21;10,21 closed=");
     // Seen from below: the insert's own x is turned, too.
-    EXPECT_EQ(pathOf(group(230, -1)).substr(0, 42), "fence path=-10,20;-12,20;-12,21;-10,21 clo");
+    EXPECT_EQ(path_of(group(230, -1)).substr(0, 42), "fence path=-10,20;-12,20;-12,21;-10,21 clo");
     // Three columns and two rows, turned; only the first room found is kept.
     const std::string grid =
         group(70, 3) + group(71, 2) + group(44, 3) + group(45, 5) + group(50, 90);
