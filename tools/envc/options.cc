@@ -64,7 +64,7 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.meters("--wall-thickness", import.wall_thickness, 0, 100,
                 "thickness of walls of plans that are drawn as lines", Enters::History);
     line.meters("--snap", import.snap, 0, 100,
-                "join ends of a plan's lines that are this near (default: 5 mm)", Enters::History);
+                "join ends of a plan's lines that are this near (default: 5 mm in DXF and ARIA maps)", Enters::History);
     line.meters("--simplify", import.simplify, 0, 1000,
                 "outlines of plans may move by this (default: one cell of a map, else 0)",
                 Enters::History);
