@@ -317,7 +317,9 @@ void CommandLine::parse(int argc, const char* const* argv) {
 }
 
 bool isStream(const std::string& operand) {
-    if (operand == "-" || operand.starts_with("/dev/") || operand.starts_with("/proc/"))
+    // What is open already has a name, too; behind it may be a regular file.
+    if (operand == "-" || operand.starts_with("/dev/std") || operand.starts_with("/dev/fd/") ||
+        (operand.starts_with("/proc/") && operand.find("/fd/") != std::string::npos))
         return true;
     std::error_code ignored;
     const auto status = std::filesystem::status(operand, ignored);

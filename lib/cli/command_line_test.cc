@@ -185,6 +185,13 @@ TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
     EXPECT_EQ(behind.operands, std::vector<std::string>{"-MD"});
 }
 
+TEST(IsStream, KnowsWhatCannotBeReadAgain) {
+    for (const char* stream : {"-", "/dev/stdin", "/dev/fd/3", "/proc/self/fd/0", "/dev/null"})
+        EXPECT_TRUE(isStream(stream)) << stream;
+    for (const char* file : {"room.env", "/dev/shm/no_such_room.env", "/proc/version"})
+        EXPECT_FALSE(isStream(file)) << file;
+}
+
 TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {
     const std::vector<std::string> known{"glb", "env"};
     EXPECT_EQ(outputFormat("", "x.ENV", known), "env");

@@ -33,7 +33,11 @@ int availableThreads() {
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help) {
     if (!output_help.empty()) {
         line.dependencies(options.dependencies, options.output);
-        line.text("-o,--output", "FILE", options.output, output_help, Enters::Nothing);
+        const auto take_output = [&options](const std::string& text) {
+            if (text.empty()) throw UsageError("an empty name is given, - is stdout");
+            options.output = text;
+        };
+        line.parsed("-o,--output", "FILE", take_output, output_help, Enters::Nothing);
     }
     line.flag("-q,--quiet", options.quiet, "say nothing but errors", Enters::Nothing);
     line.flag("-v,--verbose", options.verbose, "say more about the work", Enters::Nothing);
@@ -84,8 +88,10 @@ std::string outputFormat(const std::string& to, const std::string& output,
         if (suffix == '.' + format) return format;
     // A suffix that names another format is a mistake, not a wish for the default.
     constexpr const char* kOthers[] = {
-        ".glb", ".env",  ".3dm", ".yaml", ".yml", ".json", ".jsonl", ".csv",     ".png", ".svg",
-        ".pdf", ".html", ".obj", ".stl",  ".ply", ".pcd",  ".pgm",   ".geojson", ".dxf"};
+        ".glb",  ".env",  ".3dm", ".yaml", ".yml",  ".json", ".jsonl", ".csv",     ".png", ".svg",
+        ".pdf",  ".html", ".obj", ".stl",  ".ply",  ".pcd",  ".pgm",   ".geojson", ".dxf", ".jpg",
+        ".jpeg", ".bmp",  ".gif", ".tif",  ".tiff", ".ps",   ".eps",   ".map",     ".3ds", ".dae",
+        ".fbx",  ".gltf", ".zip", ".dwg",  ".step", ".ifc",  ".blend"};
     if (std::find(std::begin(kOthers), std::end(kOthers), suffix) != std::end(kOthers)) {
         std::string list;
         for (const std::string& format : known) list += (list.empty() ? "" : ", ") + format;

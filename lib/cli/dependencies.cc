@@ -3,40 +3,55 @@
 
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/utf8.h"
 
 namespace ispace {
 
 namespace {
 
-/// A file's name as make reads it back.
-std::string inMake(const std::string& name) {
+/// A file's name as make reads it back. Blanks, # and colons are quoted by a backslash, and % in a
+/// target; backslashes count only before those.
+std::string inMake(const std::string& name, bool is_target) {
+    if (name.find_first_of("=;\n") != std::string::npos)
+        throw UsageError("-MD: make cannot read the name `" + printable(name) +
+                         "`: it has = or ; in it");
+    constexpr std::string_view kQuoted = " \t#:";
     std::string out;
-    for (const char c : name) {
-        if (c == '$')
-            out += '$';
-        else if (c == ' ' || c == '\t' || c == '#' || c == ':' || c == '\\' || c == '%')
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const char c = name[i];
+        const bool quoted = kQuoted.find(c) != std::string_view::npos || (c == '%' && is_target);
+        if (quoted) {
+            // The backslashes right before it would quote each other.
+            for (std::size_t k = i; k > 0 && name[k - 1] == '\\'; --k) out += '\\';
             out += '\\';
+        }
+        if (c == '$') out += '$';
         out += c;
     }
     return out;
+}
+
+std::string ruleFile(const DependencyOptions& options, const std::string& output) {
+    if (!options.file.empty()) return options.file;
+    return std::filesystem::path(output).replace_extension(".d").string();
 }
 
 }  // namespace
 
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources) {
     std::set<std::string> seen;
-    std::string rule = inMake(target) + ":";
+    std::string rule = inMake(target, true) + ":";
     std::string alone;
     for (const std::string& source : sources) {
         if (isStream(source) || !seen.insert(source).second) continue;
-        const std::string name = inMake(source);
         rule += " \\\n  ";
-        rule += name;
+        rule += inMake(source, false);
         alone += '\n';
-        alone += name;
+        alone += inMake(source, true);
         alone += ":\n";
     }
     return rule + '\n' + alone;
@@ -47,13 +62,13 @@ void checkDependencies(const DependencyOptions& options, const std::string& outp
         throw UsageError("-MF says where the rule of -MD goes: give both");
     if (options.wanted && output == "-")
         throw UsageError("-MD writes a rule for the product: name it with -o FILE");
+    if (options.wanted && ruleFile(options, output) == output)
+        throw UsageError("-MD would write its rule over the product: name another file with -MF");
 }
 
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files) {
     if (!options.dependencies.wanted) return;
-    std::string file = options.dependencies.file;
-    if (file.empty()) file = std::filesystem::path(options.output).replace_extension(".d").string();
-    writeAll(file, dependencyRule(options.output, files));
+    writeAll(ruleFile(options.dependencies, options.output), dependencyRule(options.output, files));
 }
 
 }  // namespace ispace

@@ -10,11 +10,12 @@ namespace ispace {
 
 /// A rule for make: `target` depends on `sources`, each named once, in their order; streams are
 /// left out. Each source also stands as a target of its own without recipe, so that make goes on
-/// when a file that is no longer used was deleted. Blanks, # and $ in names are written as make
-/// wants them.
+/// when a file that is no longer used was deleted. Blanks, #, $, % and colons in names are written
+/// as make wants them. \throws UsageError for names with = ; or newline, which make cannot read
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
-/// Checks -MD and -MF against -o. \throws UsageError for -MF alone, or without a product's name
+/// Checks -MD and -MF against -o. \throws UsageError for -MF alone, without a product's name, and
+/// for a rule in the product's place
 void checkDependencies(const DependencyOptions& options, const std::string& output);
 
 /// Writes the rule of -o if it is wanted. \param files all that the product was made from

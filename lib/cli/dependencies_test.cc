@@ -22,12 +22,22 @@ TEST(DependencyRule, WritesNamesAsMakeReadsThem) {
               "r: \\\n  my\\ room\\#1.env \\\n  a$$b\n\nmy\\ room\\#1.env:\n\na$$b:\n");
 }
 
+TEST(DependencyRule, QuotesWhatMakeWouldTakeForSomethingElse) {
+    const std::vector<std::string> sources{"a%b", "a\\b", "a\\ b"};
+    EXPECT_EQ(dependencyRule("r%", sources),
+              "r\\%: \\\n  a%b \\\n  a\\b \\\n  a\\\\\\ b\n\na\\%b:\n\na\\b:\n\na\\\\\\ b:\n");
+    for (const char* name : {"a=b", "a;b", "a\nb"})
+        EXPECT_THROW((void)dependencyRule("r", std::vector<std::string>{name}), UsageError);
+}
+
 TEST(CheckDependencies, WantsAProductWithAName) {
     EXPECT_NO_THROW(checkDependencies({}, "-"));
     EXPECT_NO_THROW(checkDependencies({true, ""}, "room.glb"));
     EXPECT_THROW(checkDependencies({true, ""}, "-"), UsageError);
     EXPECT_THROW(checkDependencies({true, "x.d"}, "-"), UsageError);
     EXPECT_THROW(checkDependencies({false, "x.d"}, "room.glb"), UsageError);
+    EXPECT_THROW(checkDependencies({true, ""}, "room.d"), UsageError);
+    EXPECT_THROW(checkDependencies({true, "room.glb"}, "room.glb"), UsageError);
 }
 
 }  // namespace

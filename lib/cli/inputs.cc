@@ -41,6 +41,24 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
+/// Layouts alone: the first that names its environment brings it along.
+void addEnvironment(std::vector<Document>& documents, const InputRequest& request) {
+    for (const Document& document : documents)
+        if (document.kind == DocumentKind::Environment) return;
+    for (const Document& document : documents) {
+        const auto reference = environmentReference(document);
+        if (!reference || reference->file.empty()) continue;
+        // Names are relative to the current folder by now.
+        Document environment = readInput(reference->file, request);
+        if (environment.kind != DocumentKind::Environment)
+            throw FormatError(reference->record.finding(
+                "file", reference->file + " is a layout, not an environment"));
+        environment.sources.insert(environment.sources.begin(), reference->file);
+        documents.push_back(std::move(environment));
+        return;
+    }
+}
+
 }  // namespace
 
 void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to) {
@@ -65,6 +83,7 @@ Document readInputs(const InputRequest& request) {
     std::vector<Document> documents;
     documents.reserve(request.inputs.size());
     for (const std::string& input : request.inputs) documents.push_back(readInput(input, request));
+    if (request.compiles) addEnvironment(documents, request);
     std::stable_sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) {
         return a.kind == DocumentKind::Environment && b.kind == DocumentKind::Layout;
     });

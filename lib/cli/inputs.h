@@ -19,7 +19,8 @@ struct InputRequest {
 };
 
 /// All inputs as one document: environments in their order, then layouts, whose records take the
-/// place of those with the same id. Names of files are relative to the current folder; history,
+/// place of those with the same id. Layouts alone bring the environment along that they name, if it
+/// is to be compiled. Names of files are relative to the current folder; history,
 /// notes and sources are those of all.
 /// \throws as parseDocument; FormatError for doubled ids and for a digest that differs
 Document readInputs(const InputRequest& request);

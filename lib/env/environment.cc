@@ -31,14 +31,15 @@ void addBody(Body& body, Body&& more) {
     std::move(more.prisms.begin(), more.prisms.end(), std::back_inserter(body.prisms));
 }
 
-/// The `inside` record, or null; a second one is a finding.
+/// The `inside` record, or null; a second, other one is a finding. A layout that was made of a room
+/// and a layout has the room's once more.
 const Record* insideRecord(std::span<const Element> elements, Diagnostics& findings) {
     const Record* inside = nullptr;
     for (const Element& element : elements) {
         if (element.record.keyword() != "inside") continue;
         if (inside == nullptr)
             inside = &element.record;
-        else
+        else if (element.record.tuple("at") != inside->tuple("at"))
             findings.add(element.record.finding("a second `inside` record (the first is on line " +
                                                 std::to_string(inside->place().line) +
                                                 "); one point tells which room is meant"));
@@ -58,6 +59,17 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
         for (const Prism& prism : elements[i].body.prisms)
             if (stands(prism)) on_solid(prism.footprint, i);
     }
+}
+
+/// A few lines can make round and checkered things without end; a plan of any building has fewer
+/// corners than this and that many for each of its records.
+constexpr std::size_t kMostCorners = 6'000'000, kMostCornersEach = 10;
+
+std::size_t cornersOf(const Body& body) {
+    std::size_t corners = 0;
+    for (const Prism& prism : body.prisms) corners += prism.footprint.size();
+    for (const Plate& plate : body.plates) corners += plate.outline.size();
+    return corners;
 }
 
 /// For findings about the file as a whole.
@@ -139,6 +151,11 @@ class Builder {
             if (!findings.empty()) takeFindings(findings);
         }
         elements_.push_back({record, id, bodyBesideWalls(record)});
+        corners_ += cornersOf(elements_.back().body);
+        if (corners_ > kMostCorners + kMostCornersEach * elements_.size())
+            throw FormatError(record.finding(
+                "the shapes up to here have more than " + std::to_string(kMostCorners) +
+                " corners: fewer round or checkered things are wanted, or smaller ones"));
         checkShape(record, elements_.back().body, findings_);
     }
 
@@ -172,6 +189,7 @@ class Builder {
 
     Diagnostics findings_;
     std::vector<Element> elements_;
+    std::size_t corners_ = 0;  // of their bodies, without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;  // every record has all its lines
     const Record* inside_ = nullptr;

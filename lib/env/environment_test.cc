@@ -318,6 +318,15 @@ TEST(Environment, ParityErrsBehindAFreeStandingWall) {
     EXPECT_TRUE(insideByParity({0.5, 0}, env.inside(), env.wallLines()));
 }
 
+TEST(Environment, RefusesShapesWithoutEnd) {
+    std::string lines = "fence path=0,0;8,0;8,6;0,6 closed=yes\n";
+    for (int i = 0; i < 800; ++i) lines += "floor size=40,40 kind=checker\n";
+    const std::string found = findings(lines);
+    // 64 x 64 squares of four corners each: the 369th is too much.
+    EXPECT_TRUE(found.starts_with("room.env:3")) << found;
+    EXPECT_NE(found.find("more than 6000000 corners"), std::string::npos) << found;
+}
+
 TEST(Environment, SameForAnyRun) {
     const std::string plan = "ispace heading=13\ncube at=1,1 heading=5\nwall from=0,0 to=1,2\n";
     const Environment a = environment(plan), b = environment(plan);

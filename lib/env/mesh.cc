@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "env/body.h"
-#include "geom/predicates.h"
 #include "geom/triangulate.h"
 
 namespace ispace {
@@ -15,15 +14,6 @@ namespace {
 
 using Index = std::uint32_t;
 using Triangle = std::array<Index, 3>;
-
-/// True if every corner turns left: then a fan from any vertex triangulates it.
-bool isStrictlyConvex(const Polygon& polygon) {
-    const std::size_t n = polygon.size();
-    for (std::size_t i = 0; i < n; ++i)
-        if (orientation(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]) != Turn::Left)
-            return false;
-    return n >= 3;
-}
 
 /// Counter-clockwise triangles over the polygon's own vertices.
 std::vector<Triangle> trianglesOf(const Polygon& polygon) {

@@ -13,24 +13,11 @@ namespace ispace {
 namespace {
 
 using testing::boxMesh;
+using testing::cut;
+using testing::meshed;
 using testing::torusMesh;
+using testing::unionArea;
 using testing::withMesh;
-
-Body meshed(const TriangleMesh& mesh, const std::string& keys = "") {
-    return bodyOf(withMesh("mesh file=a.stl " + keys, mesh));
-}
-
-Slice cut(const Body& body, double height) {
-    Slice slice;
-    cutMeshes(body, height, slice);
-    return slice;
-}
-
-/// Of the union of solids.
-double areaOf(const std::vector<Polygon>& solids) {
-    const Polygon all = rectangle({0, 0}, 200, 200, {});
-    return 40000 - totalArea(difference({all, {}}, solids));
-}
 
 Band bandOf(const Body& body, double bottom, double top) {
     Band band;
@@ -52,7 +39,7 @@ TEST(BandOfMeshes, BoxWithinThroughAndBeside) {
                                       {1.0, 2.0},
                                       {0.5, 0.5},
                                       {-1.0, 0.25}}) {
-        EXPECT_NEAR(areaOf(bandOf(body, bottom, top).solids), 2, 1e-6) << bottom << ' ' << top;
+        EXPECT_NEAR(unionArea(bandOf(body, bottom, top).solids), 2, 1e-6) << bottom << ' ' << top;
     }
     EXPECT_TRUE(bandOf(body, 1.1, 2).solids.empty());
     EXPECT_TRUE(bandOf(body, 0, 0.1).solids.empty());

@@ -100,7 +100,7 @@ Body meshBody(const Record& record) {
     const auto& [vertices, triangles, digest] = *record.mesh();
     const Welded welded = weldPlaces(vertices);
     const std::string& up = record.text("up");
-    const double scale = unitOf(record.text("unit")) * record.number("scale");
+    const double scale = meshScale(record);
     const Tuple& at = record.tuple("at");
     const Pose2 world_from_file{{at[0], at[1]}, record.angle("heading")};
     const double bottom = at.size() > 2 ? at[2] : 0;
@@ -132,6 +132,10 @@ Body meshBody(const Record& record) {
     Body body;
     body.meshes.push_back(std::move(mesh));
     return body;
+}
+
+double meshScale(const Record& record) {
+    return unitOf(record.text("unit")) * record.number("scale");
 }
 
 void checkMesh(const Record& record, const Body& body, Diagnostics& findings) {

@@ -14,6 +14,9 @@ namespace ispace {
 /// with fewer than three corners are dropped. A closed mesh that is inside out is turned.
 Body meshBody(const Record& record);
 
+/// Metres one of the file's numbers is, by `unit` and `scale` of a `mesh` record.
+double meshScale(const Record& record);
+
 /// A finding about the file of a `mesh` record if it cannot be a body: not loaded, without any
 /// triangle, or reaching too far.
 void checkMesh(const Record& record, const Body& body, Diagnostics& findings);

@@ -60,6 +60,9 @@ TEST(MeshBody, UnitScaleAxesHeadingAndPlace) {
          {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}}) {
         const Point3 p = image(std::string("unit=") + unit, {1, 2, 3});
         EXPECT_DOUBLE_EQ(p.z, 3 * metres) << unit;
+        const Record record =
+            withMesh(std::string("mesh file=a.stl scale=2 unit=") + unit, boxMesh({}, {1, 1, 1}));
+        EXPECT_DOUBLE_EQ(meshScale(record), 2 * metres) << unit;
     }
 }
 

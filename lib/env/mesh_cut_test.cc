@@ -11,34 +11,18 @@
 
 #include "env/test_mesh.h"
 #include "env/test_scene.h"
-#include "geom/boolean.h"
 #include "geom/predicates.h"
 
 namespace ispace {
 namespace {
 
 using testing::boxMesh;
+using testing::cut;
 using testing::joined;
+using testing::meshed;
 using testing::record;
 using testing::torusMesh;
-using testing::withMesh;
-
-Body meshed(const TriangleMesh& mesh, const std::string& keys = "") {
-    return bodyOf(withMesh("mesh file=a.stl " + keys, mesh));
-}
-
-Slice cut(const Body& body, double height) {
-    Slice slice;
-    slice.height = height;
-    cutMeshes(body, height, slice);
-    return slice;
-}
-
-/// Of the union of solids.
-double areaOf(const std::vector<Polygon>& solids) {
-    const Polygon all = rectangle({0, 0}, 200, 200, {});
-    return 40000 - totalArea(difference({all, {}}, solids));
-}
+using testing::unionArea;
 
 double edgeDistance(const std::vector<Polygon>& solids, Point2 p) {
     double least = 1e300;
@@ -104,8 +88,8 @@ TEST(CutMeshes, StepsCountFromBothSides) {
     const Body body =
         meshed(joined(boxMesh({0, 0, 0}, {2, 2, 1}), boxMesh({0.5F, 0.5F, 1}, {1, 1, 2})));
     EXPECT_EQ(cut(body, 1).solids.size(), 2U);
-    EXPECT_NEAR(areaOf(cut(body, 1).solids), 4, 1e-9);
-    EXPECT_NEAR(areaOf(cut(body, 1.5).solids), 0.25, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 1).solids), 4, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 1.5).solids), 0.25, 1e-9);
 }
 
 TEST(CutMeshes, AStepOfOneSurface) {
@@ -128,11 +112,11 @@ TEST(CutMeshes, AStepOfOneSurface) {
     ASSERT_TRUE(isWatertight(mesh));
     ASSERT_NEAR(testing::volume(mesh), 3, 1e-12);
     body.meshes.push_back(mesh);
-    EXPECT_NEAR(areaOf(cut(body, 0.5).solids), 2, 1e-12);
-    EXPECT_NEAR(areaOf(cut(body, 1).solids), 2, 1e-12);
-    EXPECT_NEAR(areaOf(cut(body, 1.5).solids), 1, 1e-12);
-    EXPECT_NEAR(areaOf(cut(body, 2).solids), 1, 1e-12);
-    EXPECT_NEAR(areaOf(cut(body, 0).solids), 2, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 0.5).solids), 2, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 1).solids), 2, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 1.5).solids), 1, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 2).solids), 1, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 0).solids), 2, 1e-12);
 }
 
 TEST(CutMeshes, RidgeThatJustReachesTheHeightIsALine) {
@@ -148,7 +132,7 @@ TEST(CutMeshes, RidgeThatJustReachesTheHeightIsALine) {
     ASSERT_EQ(ridge.sheets.size(), 1U);
     EXPECT_EQ(std::min(ridge.sheets[0].a.x, ridge.sheets[0].b.x), 0);
     EXPECT_EQ(std::max(ridge.sheets[0].a.x, ridge.sheets[0].b.x), 4);
-    EXPECT_NEAR(areaOf(cut(body, 1).solids), 4, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 1).solids), 4, 1e-9);
     // A tip that reaches it is a place without extent: nothing.
     TriangleMesh tip;
     tip.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -164,7 +148,7 @@ TEST(CutMeshes, HoleIsReachedByASeamWithinTheSolid) {
     const Slice slice = cut(body, 2);
     ASSERT_EQ(slice.solids.size(), 1U);
     EXPECT_NEAR(signedArea(slice.solids[0]), 12, 1e-9);
-    EXPECT_NEAR(areaOf(slice.solids), 12, 1e-9);
+    EXPECT_NEAR(unionArea(slice.solids), 12, 1e-9);
     EXPECT_TRUE(slice.blocked({0.5, 2}));
     EXPECT_FALSE(slice.blocked({2, 2}));
     // No line stands in the cavity or outside.
@@ -173,10 +157,10 @@ TEST(CutMeshes, HoleIsReachedByASeamWithinTheSolid) {
         EXPECT_FALSE(middle.x > 1 && middle.x < 3 && middle.y > 1 && middle.y < 3);
         EXPECT_FALSE(middle.x < 0 || middle.x > 4 || middle.y < 0 || middle.y > 4);
     });
-    EXPECT_NEAR(areaOf(cut(body, 0.5).solids), 16, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 0.5).solids), 16, 1e-9);
     // The cavity is open: at its floor and at its roof the solid counts.
-    EXPECT_NEAR(areaOf(cut(body, 1).solids), 16, 1e-9);
-    EXPECT_NEAR(areaOf(cut(body, 3).solids), 16, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 1).solids), 16, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 3).solids), 16, 1e-9);
 }
 
 TEST(CutMeshes, ManyHolesAndIslands) {
@@ -197,7 +181,7 @@ TEST(CutMeshes, ManyHolesAndIslands) {
         }
     const Body body = meshed(mesh, "heading=10");
     const Slice slice = cut(body, 0.5);
-    EXPECT_NEAR(areaOf(slice.solids), expected, 1e-4);
+    EXPECT_NEAR(unionArea(slice.solids), expected, 1e-4);
     expectTrueCut(body, 0.5, 12, 5);
 }
 
@@ -221,9 +205,9 @@ TEST(CutMeshes, AtTheHeightsOfItsVertices) {
         const Slice slice = cut(body, p.z);
         for (const Polygon& solid : slice.solids) EXPECT_GT(signedArea(solid), 0);
         // As much as a plane just beside it, whichever has more.
-        const double below = areaOf(cut(body, p.z - 1e-9).solids),
-                     above = areaOf(cut(body, p.z + 1e-9).solids);
-        EXPECT_NEAR(areaOf(slice.solids), std::max(below, above), 1e-6);
+        const double below = unionArea(cut(body, p.z - 1e-9).solids),
+                     above = unionArea(cut(body, p.z + 1e-9).solids);
+        EXPECT_NEAR(unionArea(slice.solids), std::max(below, above), 1e-6);
     }
 }
 
@@ -258,7 +242,7 @@ TEST(CutMeshes, BoxWithoutLidIsClosedAllTheSame) {
     box.triangles.erase(box.triangles.begin() + 2, box.triangles.begin() + 4);
     const Body body = meshed(box);
     EXPECT_TRUE(body.meshes[0].open);
-    EXPECT_NEAR(areaOf(cut(body, 0.5).solids), 1, 1e-12);
+    EXPECT_NEAR(unionArea(cut(body, 0.5).solids), 1, 1e-12);
     EXPECT_TRUE(cut(body, 0.5).sheets.empty());
 }
 
@@ -269,7 +253,7 @@ TEST(CutMeshes, TrianglesThatFaceAnyWay) {
         for (auto& triangle : box.triangles)
             if (random() % 2 == 0) std::swap(triangle[0], triangle[1]);
         const Slice slice = cut(meshed(box), 0.3);
-        EXPECT_NEAR(areaOf(slice.solids), 2, 1e-12);
+        EXPECT_NEAR(unionArea(slice.solids), 2, 1e-12);
         EXPECT_TRUE(slice.sheets.empty());
     }
 }
@@ -279,14 +263,14 @@ TEST(CutMeshes, PartsThatAreInsideOut) {
     const TriangleMesh beside = joined(big, boxMesh({5, 0, 0}, {8, 3, 4}), true);
     const Body body = meshed(beside);
     EXPECT_FALSE(body.meshes[0].open);
-    EXPECT_NEAR(areaOf(cut(body, 1).solids), 16 + 9, 1e-9);
+    EXPECT_NEAR(unionArea(cut(body, 1).solids), 16 + 9, 1e-9);
     for (const Polygon& solid : cut(body, 1).solids) EXPECT_GT(signedArea(solid), 0);
     // A cavity in it, and a cavity in the first edge of another one's way.
     const Body hollow = meshed(joined(joined(beside, boxMesh({6, 1, 0}, {7, 2, 4}), true),
                                       boxMesh({1, 1, 0}, {2, 2, 4}), true));
     const Slice slice = cut(hollow, 1);
     EXPECT_EQ(slice.solids.size(), 2U);
-    EXPECT_NEAR(areaOf(slice.solids), 16 - 1 + 9 - 1, 1e-9);
+    EXPECT_NEAR(unionArea(slice.solids), 16 - 1 + 9 - 1, 1e-9);
     EXPECT_FALSE(slice.blocked({6.5, 1.5}));
     EXPECT_FALSE(slice.blocked({1.5, 1.5}));
     EXPECT_TRUE(slice.blocked({5.5, 1.5}));
@@ -306,7 +290,7 @@ TEST(CutMeshes, CavitiesInARowAndOnOneEdge) {
     const Body body = meshed(mesh);
     ASSERT_EQ(cut(body, 0.5).solids.size(), 1U);
     EXPECT_NEAR(signedArea(cut(body, 0.5).solids[0]), expected, 1e-5);
-    EXPECT_NEAR(areaOf(cut(body, 0.5).solids), expected, 1e-5);
+    EXPECT_NEAR(unionArea(cut(body, 0.5).solids), expected, 1e-5);
     expectTrueCut(body, 0.5, 10, 31);
 }
 
@@ -319,7 +303,7 @@ TEST(CutMeshes, RepeatedTrianglesCountOnce) {
     for (const TriangleMesh& mesh : {twice, both}) {
         const Slice slice = cut(meshed(mesh), 0.3);
         ASSERT_EQ(slice.solids.size(), 1U);
-        EXPECT_NEAR(areaOf(slice.solids), 2, 1e-12);
+        EXPECT_NEAR(unionArea(slice.solids), 2, 1e-12);
         EXPECT_TRUE(slice.sheets.empty());
     }
 }
@@ -328,12 +312,12 @@ TEST(CutMeshes, BoxesThatShareAnEdgeOrOverlap) {
     // Four triangles meet at the common edge.
     const Body side = meshed(joined(boxMesh({0, 0, 0}, {1, 1, 1}), boxMesh({1, 1, 0}, {2, 2, 1})));
     EXPECT_EQ(side.meshes[0].vertices.size(), 14U);
-    EXPECT_NEAR(areaOf(cut(side, 0.5).solids), 2, 1e-12);
+    EXPECT_NEAR(unionArea(cut(side, 0.5).solids), 2, 1e-12);
     const Body over = meshed(joined(boxMesh({0, 0, 0}, {2, 2, 1}), boxMesh({1, 1, 0}, {3, 3, 1})));
-    EXPECT_NEAR(areaOf(cut(over, 0.5).solids), 7, 1e-12);
+    EXPECT_NEAR(unionArea(cut(over, 0.5).solids), 7, 1e-12);
     // A common face: both sides of it are there.
     const Body face = meshed(joined(boxMesh({0, 0, 0}, {1, 1, 1}), boxMesh({1, 0, 0}, {2, 1, 1})));
-    EXPECT_NEAR(areaOf(cut(face, 0.5).solids), 2, 1e-12);
+    EXPECT_NEAR(unionArea(cut(face, 0.5).solids), 2, 1e-12);
     EXPECT_TRUE(cut(face, 0.5).sheets.empty());
 }
 
@@ -360,7 +344,8 @@ TEST(CutMeshes, AgreesWithPrisms) {
                     expected.solids.push_back(prism.footprint);
             const Slice found = cut(as_mesh, height);
             EXPECT_TRUE(found.sheets.empty()) << line;
-            EXPECT_NEAR(areaOf(found.solids), areaOf(expected.solids), 1e-9) << line << height;
+            EXPECT_NEAR(unionArea(found.solids), unionArea(expected.solids), 1e-9)
+                << line << height;
             for (int i = 0; i < 200; ++i) {
                 const Point2 p{place(random), place(random)};
                 if (edgeDistance(expected.solids, p) < 1e-9) continue;

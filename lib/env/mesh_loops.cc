@@ -80,11 +80,7 @@ class Seams {
         for (std::size_t i = 0; i < curves_.size(); ++i)
             for (std::size_t k = 0; k < curves_[i].size(); ++k) {
                 edges_.push_back({i, k});
-                const Segment2 s = line(edges_.size() - 1);
-                Box2 box;
-                box.add(s.a);
-                box.add(s.b);
-                boxes.push_back(box);
+                boxes.push_back(bounds(line(edges_.size() - 1)));
             }
         tree_ = BoxTree(boxes);
     }

@@ -15,20 +15,13 @@
 namespace ispace {
 namespace {
 
-using testing::withMesh;
+using testing::cut;
+using testing::meshed;
 
 using Tetrahedron = std::array<Point3, 4>;
 /// Faces of a tetrahedron, seen from outside.
 constexpr std::array<std::array<std::uint32_t, 3>, 4> kFaces{
     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-
-Body meshed(const TriangleMesh& mesh) { return bodyOf(withMesh("mesh file=a.stl", mesh)); }
-
-Slice cut(const Body& body, double height) {
-    Slice slice;
-    cutMeshes(body, height, slice);
-    return slice;
-}
 
 void expectSound(const Slice& slice) {
     for (const Polygon& solid : slice.solids) {

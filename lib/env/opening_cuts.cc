@@ -8,14 +8,12 @@
 #include "env/check.h"
 #include "env/openings.h"
 #include "env/texts.h"
-#include "geom/segment_grid.h"
+#include "geom/box_tree.h"
 
 namespace ispace {
 
 namespace {
 
-/// Openings and thick walls reach at most this far to each side of their lines.
-constexpr double kFarthestFace = 1;
 /// Walls upon each other that one opening may go through.
 constexpr std::size_t kMostWalls = 64;
 /// Overlaps that are looked for: more than are shown.
@@ -53,27 +51,19 @@ struct Cut {
 /// Finds the lines that openings go through.
 class CutFinder {
   public:
-    explicit CutFinder(const WallPlan& plan) : plan_(plan), grid_(plan.lines, kWeldDistance) {}
+    explicit CutFinder(const WallPlan& plan) : plan_(plan), tree_(plan.lines) {}
 
     /// All cuts of one opening; more than kMostWalls of them are not looked for.
     void find(std::span<const Opening> openings, std::size_t number, std::vector<Cut>& cuts) {
         const Opening& opening = openings[number];
         const auto [a, b] = jambs(opening);
         const double half = std::min(opening.depth / 2, kFarthestFace);
-        Box2 box;
-        box.add(a);
-        box.add(b);
-        const double reach = half + kFarthestFace + kWeldDistance;
-        box.low = box.low - Vec2{reach, reach};
-        box.high = box.high + Vec2{reach, reach};
         near_.clear();
-        grid_.searchBox(box, [this](std::span<const std::uint32_t> cell) {
-            near_.insert(near_.end(), cell.begin(), cell.end());
-        });
+        tree_.search({a, b}, half + kFarthestFace + kWeldDistance,
+                     [this](std::size_t line) { near_.push_back(line); });
         std::sort(near_.begin(), near_.end());
-        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
         const std::size_t first = cuts.size();
-        for (const std::uint32_t line : near_) {
+        for (const std::size_t line : near_) {
             addCut(line, number, {a, b}, line == opening.line ? 2 * kFarthestFace : half, cuts);
             if (cuts.size() - first > kMostWalls) break;
         }
@@ -118,8 +108,8 @@ class CutFinder {
     }
 
     const WallPlan& plan_;
-    SegmentGrid grid_;
-    std::vector<std::uint32_t> near_;
+    SegmentTree tree_;
+    std::vector<std::size_t> near_;
 };
 
 /// Cuts the pieces of one line.
@@ -305,7 +295,10 @@ class Cutter {
             part.piece.thickness = 0;
             for (const Point2 jamb : {cut.a, cut.b}) {
                 part.piece.line = {host.foot(jamb), jamb};
-                part.along = (1 / cut.beside) * (jamb - host.foot(jamb));
+                const Vec2 across = jamb - part.piece.line.a;
+                // Of walls at an angle one jamb may lie on the host's line.
+                if (!(length(across) > 0)) continue;
+                part.along = (1 / length(across)) * across;
                 if (apart > 0 && part.piece.top > part.piece.bottom) out.parts.push_back(part);
                 out.lines.push_back(part.piece.line);
                 any = any || opening.passage;

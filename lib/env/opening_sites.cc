@@ -19,8 +19,6 @@ namespace {
 /// Walls count as parallel to a heading within a degree, and to the way from `from` to `to` within
 /// thirty, since its ends may be off the line.
 constexpr double kParallel = std::numbers::pi / 180, kAlmostParallel = 30 * kParallel;
-/// A wall is looked for at most this far from its mid-line, however thick it is.
-constexpr double kFarthestFace = 1;
 
 Point2 pointOf(const Tuple& tuple) { return {tuple[0], tuple[1]}; }
 

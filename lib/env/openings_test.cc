@@ -217,6 +217,26 @@ TEST(Openings, CutWhatOverlapsAndWhatDepthReaches) {
     EXPECT_EQ(reveals, 2);
 }
 
+TEST(Openings, RevealsHaveAUnitDirection) {
+    // Walls that are not quite parallel: the jambs are not equally far from the host.
+    const Environment env = environment(
+        "ispace at=0,-9 size=2,2\nwall id=u from=-4,0 to=4,0\nwall from=-4,0.25 to=4,0.35\n"
+        "door id=d wall=u offset=4 size=1,0.8 open=yes\n");
+    WallPlan plan;
+    Diagnostics findings;
+    for (std::size_t i = 0; i < env.elements().size(); ++i)
+        for (const WallLine& wall : wallLinesOf(env.elements()[i].record, findings))
+            plan.add(wall, i);
+    const auto openings = placeOpenings(env.elements(), plan, findings);
+    const CutWalls cut = cutOpenings(env.elements(), plan, weld(plan.lines), openings, findings);
+    std::size_t reveals = 0;
+    for (const WallPart& part : cut.parts) {
+        EXPECT_NEAR(length(part.along), 1, 1e-12);
+        reveals += std::abs(part.along.y) > 0.9 && std::abs(part.piece.line.a.x) < 1;
+    }
+    EXPECT_EQ(reveals, 2U);
+}
+
 TEST(Openings, ByPlaceOnTheNearestWall) {
     const std::string walls =
         "ispace id=r size=8,6\nwall id=v from=0,-3 to=0,3\nwall id=t from=0,0 to=4,0 "

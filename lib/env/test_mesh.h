@@ -8,8 +8,11 @@
 #include <string>
 #include <utility>
 
+#include "env/body.h"
 #include "env/mesh.h"
+#include "env/mesh_cut.h"
 #include "env/schemas.h"
+#include "geom/boolean.h"
 #include "geom/triangle_mesh.h"
 #include "record/text.h"
 
@@ -70,6 +73,24 @@ inline Record withMesh(const std::string& line, TriangleMesh mesh) {
     Record record = readRecord(line, "line", kSchemas);
     record.setMesh(std::make_shared<const TriangleMesh>(std::move(mesh)));
     return record;
+}
+
+/// The body of a mesh record with these contents.
+inline Body meshed(const TriangleMesh& mesh, const std::string& keys = "") {
+    return bodyOf(withMesh("mesh file=a.stl " + keys, mesh));
+}
+
+inline Slice cut(const Body& body, double height) {
+    Slice slice;
+    slice.height = height;
+    cutMeshes(body, height, slice);
+    return slice;
+}
+
+/// Of the union of solids, within 100 m of the origin.
+inline double unionArea(const std::vector<Polygon>& solids) {
+    const Polygon all = rectangle({0, 0}, 200, 200, {});
+    return 40000 - totalArea(difference({all, {}}, solids));
 }
 
 /// By the divergence theorem: that of a closed mesh, positive if it is wound outward.

@@ -5,18 +5,16 @@
 
 #include "env/environment.h"
 #include "env/walls.h"
+#include "geom/box_tree.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
 
 namespace ispace {
 
 namespace {
 
-/// Pairs of lines that are looked at, per line and besides: heaps of walls in one place are told
-/// well enough by the first of them.
-constexpr std::size_t kPairsPerLine = 256, kPairsAnyway = 1U << 22;
-/// How often one crossing may be found, in cells that the lines share.
-constexpr std::size_t kFoundTwice = 16;
+/// Of one element as many times `most` crossings are looked at before they are put in order: one
+/// that runs through heaps of others is told well enough by them.
+constexpr std::size_t kHeap = 16;
 
 struct Meeting {
     Point2 place;
@@ -70,37 +68,75 @@ bool same(const WallCrossing& c, const WallCrossing& d) {
     return c.a == d.a && c.b == d.b && c.place == d.place;
 }
 
+/// The crossings of one plan, found line by line.
+class CrossingFinder {
+  public:
+    explicit CrossingFinder(std::span<const Element> elements) : elements_(elements) {
+        Diagnostics ignored;  // elements are made of records without findings
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            for (const WallLine& wall : wallLinesOf(elements[i].record, ignored))
+                plan_.add(wall, i);
+        }
+    }
+
+    /// Those of the first elements, at most `most`.
+    [[nodiscard]] std::vector<WallCrossing> find(std::size_t most) const {
+        const SegmentTree tree(plan_.lines);
+        std::vector<WallCrossing> found;
+        std::vector<std::size_t> later;
+        std::size_t sorted = 0;  // crossings of elements before the one of this line
+        for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
+            if (i > 0 && plan_.owner[i] != plan_.owner[i - 1]) sortFrom(sorted, found);
+            if (found.size() >= most && (found.size() == sorted || found.size() / kHeap >= most))
+                break;
+            later.clear();
+            tree.search(plan_.lines[i], kWeldDistance, [&](std::size_t k) {
+                if (k > i && mayCross(i, k)) later.push_back(k);
+            });
+            std::sort(later.begin(), later.end());
+            for (const std::size_t k : later) add(i, k, found);
+        }
+        sortFrom(sorted, found);
+        found.resize(std::min(found.size(), most));
+        return found;
+    }
+
+  private:
+    [[nodiscard]] bool areRooms(std::size_t i, std::size_t k) const {
+        const auto is_room = [&](std::size_t line) {
+            return elements_[plan_.owner[line]].record.keyword() == "ispace";
+        };
+        return is_room(i) && is_room(k);
+    }
+
+    /// False for lines of one element, and for the walls of heaps of equal rooms.
+    [[nodiscard]] bool mayCross(std::size_t i, std::size_t k) const {
+        return plan_.owner[i] != plan_.owner[k] &&
+               !(plan_.lines[i] == plan_.lines[k] && areRooms(i, k));
+    }
+
+    void add(std::size_t i, std::size_t k, std::vector<WallCrossing>& found) const {
+        const auto meeting = meetingOf(plan_.lines[i], plan_.lines[k]);
+        if (!meeting || (meeting->overlap && areRooms(i, k))) return;
+        found.push_back({plan_.owner[i], plan_.owner[k], meeting->place, meeting->overlap});
+    }
+
+    /// Puts what was found since into order, each crossing once.
+    static void sortFrom(std::size_t& sorted, std::vector<WallCrossing>& found) {
+        const auto first = found.begin() + static_cast<std::ptrdiff_t>(sorted);
+        std::sort(first, found.end(), less);
+        found.erase(std::unique(first, found.end(), same), found.end());
+        sorted = found.size();
+    }
+
+    std::span<const Element> elements_;
+    WallPlan plan_;
+};
+
 }  // namespace
 
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most) {
-    std::vector<Segment2> lines;
-    std::vector<std::size_t> owner;
-    Diagnostics ignored;  // elements are made of records without findings
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        for (const WallLine& wall : wallLinesOf(elements[i].record, ignored)) {
-            lines.push_back(wall.line);
-            owner.push_back(i);
-        }
-    }
-    const auto is_room = [&](std::size_t i) { return elements[i].record.keyword() == "ispace"; };
-    std::vector<WallCrossing> found;
-    std::size_t pairs_left = kPairsAnyway + kPairsPerLine * lines.size();
-    const auto enough = [&] { return pairs_left == 0 || found.size() >= kFoundTwice * most; };
-    SegmentGrid(lines, kWeldDistance).forEachCell([&](std::span<const std::uint32_t> cell) {
-        for (std::size_t i = 0; i < cell.size(); ++i) {
-            for (std::size_t k = i + 1; k < cell.size() && !enough(); ++k, --pairs_left) {
-                const std::size_t a = owner[cell[i]], b = owner[cell[k]];
-                if (a == b) continue;
-                const auto meeting = meetingOf(lines[cell[i]], lines[cell[k]]);
-                if (!meeting || (meeting->overlap && is_room(a) && is_room(b))) continue;
-                found.push_back({a, b, meeting->place, meeting->overlap});
-            }
-        }
-    });
-    std::sort(found.begin(), found.end(), less);
-    found.erase(std::unique(found.begin(), found.end(), same), found.end());
-    found.resize(std::min(found.size(), most));
-    return found;
+    return CrossingFinder(elements).find(most);
 }
 
 }  // namespace ispace

@@ -79,6 +79,38 @@ TEST(WallCrossings, AgreeWithBruteForce) {
     EXPECT_EQ(found, expected);
 }
 
+TEST(WallCrossings, AllAreFoundHoweverUnevenThePlan) {
+    std::string walls = "wall from=9000,9000 to=9000,9001\n";
+    constexpr int kSide = 50;
+    for (int i = 0; i < kSide; ++i) {
+        for (int k = 0; k < kSide; ++k) {
+            const Point2 corner{0.4 * i, 0.4 * k};
+            walls += "wall from=" + pointText(corner) + " to=" + pointText(corner + Vec2{0.4, 0});
+            walls += "\nwall from=" + pointText(corner) + " to=" + pointText(corner + Vec2{0, 0.4});
+            walls += '\n';
+        }
+    }
+    const auto found =
+        crossings(walls + "wall from=0.1,19.3 to=0.3,19.5\nwall from=0.1,19.5 to=0.3,19.3\n");
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].a, 2U + 2 * kSide * kSide);
+    EXPECT_NEAR(found[0].place.y, 19.4, 1e-9);
+}
+
+TEST(WallCrossings, ComeInTheOrderOfElements) {
+    const std::string fence = "fence path=0,0;10,0;10,1;0,1\n";
+    const Environment env =
+        environment(kRoom + fence + "wall from=5,0.5 to=5,2\nwall from=1,-1 to=1,0.5\n");
+    const auto all = wallCrossings(env.elements());
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(all[0].b, 2U);
+    EXPECT_EQ(all[1].b, 3U);
+    const auto first = wallCrossings(env.elements(), 1);
+    ASSERT_EQ(first.size(), 1U);
+    EXPECT_EQ(first[0].b, 2U) << "though a later line of the fence crosses it";
+    EXPECT_TRUE(wallCrossings(env.elements(), 0).empty());
+}
+
 TEST(WallCrossings, ManyAreCutShort) {
     std::string walls = "inside at=0.5,0.5\n";
     for (int i = 0; i < 100; ++i) {

@@ -2,6 +2,8 @@
 #include "geom/box_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace ispace {
 
@@ -35,6 +37,48 @@ void BoxTree::build(std::uint32_t first, std::uint32_t count) {
     build(first, half);  // depth is the logarithm of the number
     nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());
     build(first + half, count - half);
+}
+
+namespace {
+
+/// Coordinates beyond this are not turned: their products would overflow.
+constexpr double kFarthestTurned = 1e100;
+
+/// The direction, modulo a right angle, in which the segments run, weighted by length.
+Vec2 mainAxis(std::span<const Segment2> segments) {
+    // Four times the angle is the same for all sides of a rectangle: sum its unit vectors.
+    Vec2 sum{0, 0};
+    for (const auto& [a, b] : segments) {
+        const double apart = distance(a, b);
+        if (!(apart > 0)) continue;
+        const Vec2 unit = (1 / apart) * (b - a);
+        const Vec2 twice{unit.x * unit.x - unit.y * unit.y, 2 * unit.x * unit.y};
+        sum = sum + apart * Vec2{twice.x * twice.x - twice.y * twice.y, 2 * twice.x * twice.y};
+    }
+    const double angle = std::atan2(sum.y, sum.x) / 4;
+    return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+SegmentTree::SegmentTree(std::span<const Segment2> segments) {
+    double farthest = 0;
+    for (const auto& [a, b] : segments)
+        farthest = std::max({farthest, std::abs(a.x), std::abs(a.y), std::abs(b.x), std::abs(b.y)});
+    if (farthest <= kFarthestTurned) axis_ = mainAxis(segments);
+    slack_ = 8 * std::numeric_limits<double>::epsilon() * farthest;
+    std::vector<Box2> boxes;
+    boxes.reserve(segments.size());
+    for (const Segment2& segment : segments) boxes.push_back(boxOf(segment, 0));
+    tree_ = BoxTree(boxes);
+}
+
+Box2 SegmentTree::boxOf(const Segment2& segment, double reach) const {
+    Box2 box;
+    for (const Point2 p : {segment.a, segment.b})
+        box.add({axis_.x * p.x + axis_.y * p.y, axis_.x * p.y - axis_.y * p.x});
+    const Vec2 margin{reach + slack_, reach + slack_};
+    return {box.low - margin, box.high + margin};
 }
 
 }  // namespace ispace

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
 
 namespace ispace {
 namespace {
@@ -65,6 +69,74 @@ TEST(BoxTree, WindowMayShrinkAsItIsSearched) {
     });
     EXPECT_EQ(last, 42U);
     EXPECT_LT(visits, 43);
+}
+
+std::vector<std::size_t> near(const SegmentTree& tree, const Segment2& segment, double reach) {
+    std::vector<std::size_t> out;
+    tree.search(segment, reach, [&](std::size_t i) { out.push_back(i); });
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+TEST(SegmentTree, FindsAllInReachOnce) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> place(-10, 10), step(-2, 2);
+    for (const double far : {0.0, 1e7, 1e120, 1e300}) {
+        std::vector<Segment2> segments;
+        for (int i = 0; i < 300; ++i) {
+            const Point2 from{place(random), place(random)};
+            segments.push_back({from, from + Vec2{step(random), step(random)}});
+        }
+        segments.push_back({{far, far}, {-far, far}});
+        const SegmentTree tree(segments);
+        for (int i = 0; i < 100; ++i) {
+            const Point2 p{place(random), place(random)};
+            for (const double reach : {0.0, 1e-6, 0.5}) {
+                const auto found = near(tree, {p, p}, reach);
+                EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+                for (std::size_t k = 0; k < segments.size(); ++k) {
+                    if (!(distance(p, segments[k]) <= reach)) continue;  // or not a number
+                    EXPECT_TRUE(std::binary_search(found.begin(), found.end(), k));
+                }
+            }
+            const Segment2& own = segments[static_cast<std::size_t>(i)];
+            const auto met = near(tree, own, 0);
+            for (std::size_t k = 0; k < segments.size(); ++k) {
+                if (!intersects(own, segments[k])) continue;
+                EXPECT_TRUE(std::binary_search(met.begin(), met.end(), k));
+            }
+        }
+    }
+    EXPECT_TRUE(near(SegmentTree({}), {{0, 0}, {1, 1}}, 1).empty());
+}
+
+TEST(SegmentTree, LooksAtFewOfAHatchInAnyHeading) {
+    for (const double angle : {0.0, 0.3, 0.7853981, 1.4}) {
+        const Vec2 along{std::cos(angle), std::sin(angle)};
+        std::vector<Segment2> hatch;
+        for (int i = 0; i < 1000; ++i) {
+            const Point2 from = Point2{0, 0} + 0.01 * i * perpendicular(along);
+            hatch.push_back({from, from + 10 * along});
+        }
+        const SegmentTree tree(hatch);
+        for (const Segment2& line : hatch) EXPECT_LE(near(tree, line, 1e-6).size(), 3U) << angle;
+    }
+}
+
+TEST(SegmentGrid, PointsBeyondTheBoxCountAsInTheNearestCell) {
+    std::vector<Segment2> row;
+    for (int i = 0; i < 10; ++i) row.push_back({{1.0 * i, 0}, {1.0 * i, 1}});
+    const SegmentGrid grid(row, 0.25);
+    const auto holds = [&](Point2 p, std::uint32_t i) {
+        const auto found = grid.near(p);
+        return std::find(found.begin(), found.end(), i) != found.end();
+    };
+    EXPECT_TRUE(holds({-0.25, 0.5}, 0)) << "within the margin, outside the box";
+    EXPECT_TRUE(holds({9.25, 1}, 9));
+    EXPECT_TRUE(holds({3, 1.25}, 3));
+    EXPECT_TRUE(holds({-1e300, -1e300}, 0));
+    EXPECT_TRUE(holds({1e300, 0.5}, 9));
+    EXPECT_FALSE(holds({1e300, 0.5}, 0));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <tuple>
 #include <utility>
 
+#include "geom/box_tree.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
 
 namespace ispace {
 
@@ -74,7 +74,17 @@ class Vertices {
 class GapFinder {
   public:
     explicit GapFinder(const WeldedLines& lines)
-        : lines_(withoutDoubles(lines)), vertices_(lines_.pieces), grid_(lines_.pieces, 0) {}
+        : lines_(withoutDoubles(lines)), vertices_(lines_.pieces), tree_(lines_.pieces) {
+        Box2 box;
+        double total = 0;
+        for (const auto& [a, b] : lines_.pieces) {
+            box.add(a);
+            box.add(b);
+            total += distance(a, b);
+        }
+        first_reach_ = total / static_cast<double>(4 * lines_.pieces.size() + 1);
+        extent_ = box.width() + box.depth();
+    }
 
     /// From the narrowest on; in an order that depends only on the lines.
     [[nodiscard]] std::vector<Closing> closings() const {
@@ -122,20 +132,21 @@ class GapFinder {
 
     void addClosings(std::size_t own, Point2 end, std::vector<Closing>& all) const {
         std::vector<Way> ways;
-        const auto collect = [&](std::span<const std::uint32_t> cell) {
-            for (const std::uint32_t i : cell) {
-                if (i == own) continue;
-                const Point2 to = nearestPoint(lines_.pieces[i], end);
-                const double width = distance(end, to);
-                if (width > 0 && isNearestOfItsNeighbours(end, to, width))
-                    ways.push_back({width, to, lines_.source[i]});
-            }
+        const auto collect = [&](std::size_t i) {
+            if (i == own) return;
+            const Point2 to = nearestPoint(lines_.pieces[i], end);
+            const double width = distance(end, to);
+            if (width > 0 && isNearestOfItsNeighbours(end, to, width))
+                ways.push_back({width, to, lines_.source[i]});
         };
-        grid_.searchFrom(end, collect, [&](double reach) {
+        for (double reach = first_reach_;; reach *= 4) {
+            ways.clear();
+            tree_.search({end, end}, reach, collect);
             std::sort(ways.begin(), ways.end());
             ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
-            return ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach;
-        });
+            if (ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach) break;
+            if (!(reach < extent_)) break;  // all were seen
+        }
         ways.resize(std::min(ways.size(), kWaysPerEnd));
         const std::size_t source = lines_.source[own];
         for (const Way& way : ways) {
@@ -148,7 +159,9 @@ class GapFinder {
 
     WeldedLines lines_;
     Vertices vertices_;
-    SegmentGrid grid_;
+    SegmentTree tree_;
+    double first_reach_ = 0;  // to look in from an end, where lines are evenly spread
+    double extent_ = 0;       // no two points of lines are farther apart
 };
 
 /// Comparisons of closings with other lines; beyond that they stay whole, which only takes longer.
@@ -161,11 +174,11 @@ class Closed {
         std::vector<Segment2> all(lines.begin(), lines.end());
         for (const Closing& closing : closings) all.push_back(closing.line);
         // Where a closing runs across a line, both get a common end: the weld sees to the line's.
-        const SegmentGrid grid(all, 0);
+        const SegmentTree tree(all);
         std::vector<std::size_t> closing_of(lines.size(), 0);
         std::vector<Segment2> cut(lines.begin(), lines.end());
         for (std::size_t i = 0; i < closings.size(); ++i) {
-            for (const Segment2& part : partsOf(closings[i].line, all, grid)) {
+            for (const Segment2& part : partsOf(closings[i].line, all, tree)) {
                 cut.push_back(part);
                 closing_of.push_back(i + 1);
             }
@@ -191,20 +204,15 @@ class Closed {
   private:
     /// A closing, cut where it runs across lines and other closings.
     std::vector<Segment2> partsOf(const Segment2& closing, std::span<const Segment2> all,
-                                  const SegmentGrid& grid) {
-        Box2 box;
-        box.add(closing.a);
-        box.add(closing.b);
+                                  const SegmentTree& tree) {
         const Vec2 along = closing.b - closing.a;
         std::vector<double> shares;
-        grid.searchBox(box, [&](std::span<const std::uint32_t> cell) {
-            for (const std::uint32_t i : cell) {
-                if (++comparisons_ > kMostComparisons) return;
-                const Vec2 other = all[i].b - all[i].a;
-                const double denominator = cross(along, other);
-                if (denominator == 0 || !intersects(closing, all[i])) continue;
-                shares.push_back(cross(all[i].a - closing.a, other) / denominator);
-            }
+        tree.search(closing, 0, [&](std::size_t i) {
+            if (++comparisons_ > kMostComparisons) return;
+            const Vec2 other = all[i].b - all[i].a;
+            const double denominator = cross(along, other);
+            if (denominator == 0 || !intersects(closing, all[i])) return;
+            shares.push_back(cross(all[i].a - closing.a, other) / denominator);
         });
         std::sort(shares.begin(), shares.end());
         std::vector<Segment2> parts;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "geom/box_tree.h"
 #include "geom/overlay.h"
 #include "geom/predicates.h"
 #include "geom/segment_grid.h"
@@ -58,40 +59,95 @@ std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
     return welded;
 }
 
-/// Points on lines, and looks for them, per line and besides: no plan needs as many, and what does
-/// would not fit into memory.
+/// Points on lines, per line and besides: no plan needs as many, and what does would not fit into
+/// memory.
 constexpr std::size_t kTouchesPerLine = 32, kTouchesAnyway = 1U << 21;
+/// Looks at lines near a point, per line: so many in a grid, which is quickest for what is evenly
+/// spread, then in a tree; so many there, and besides, only where heaps of long lines cross.
+constexpr std::size_t kGridLooksPerLine = 64;
 constexpr std::size_t kLooksPerLine = 1024, kLooksAnyway = 1U << 26;
 /// Crossings that an arrangement may have, about, and the pairs of lines by which they are counted.
 constexpr double kMostCrossings = 500'000;
 constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMostSampled = 1U << 22;
 constexpr std::size_t kSureHits = 16;
 
-/// For each segment the points of others that lie on its inside, in order along it.
-std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments) {
-    std::vector<Point2> points;
-    for (const auto& [a, b] : segments) points.insert(points.end(), {a, b});
-    std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+/// Collects for each segment the points of others that lie on its inside.
+class TouchFinder {
+  public:
+    explicit TouchFinder(const std::vector<Segment2>& segments)
+        : segments_(segments), touching_(segments.size()) {}
 
-    const SegmentGrid grid(segments, kWeldDistance);
-    std::vector<std::vector<Point2>> touching(segments.size());
-    std::size_t touches = 0, looks = 0;
-    for (const Point2 p : points) {
-        const auto near = grid.near(p);
-        looks += near.size();
-        for (const std::uint32_t i : near) {
-            const Segment2& s = segments[i];
-            // Far out distances overflow to what is not near.
-            if (p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) continue;
-            touching[i].push_back(p);
-            ++touches;
+    /// \pre points: all ends, each once
+    std::vector<std::vector<Point2>> find(std::span<const Point2> points) && {
+        const std::size_t done = findInGrid(points);
+        if (done < points.size()) findInTree(points.subspan(done));
+        return std::move(touching_);
+    }
+
+  private:
+    /// Returns how many points it was quick for.
+    std::size_t findInGrid(std::span<const Point2> points) {
+        const SegmentGrid grid(segments_, kWeldDistance);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const auto near = grid.near(points[k]);
+            looks_ += near.size();
+            if (looks_ > kGridLooksPerLine * segments_.size()) return k;
+            for (const std::uint32_t i : near) look(i, points[k]);
+            checkTouches();
         }
-        if (touches > kTouchesAnyway + kTouchesPerLine * segments.size() ||
-            looks > kLooksAnyway + kLooksPerLine * segments.size())
+        return points.size();
+    }
+
+    void findInTree(std::span<const Point2> points) {
+        const SegmentTree tree(segments_);
+        for (const Point2 p : points) {
+            tree.search({p, p}, kWeldDistance, [&](std::size_t i) {
+                ++looks_;
+                if (!isSurelyOff(segments_[i], p)) look(i, p);
+            });
+            checkTouches();
+            if (looks_ > kLooksAnyway + kLooksPerLine * segments_.size())
+                throw FormatError(Diagnostic{
+                    "", 0, 0, "too many wall lines cross each other; end them where they meet"});
+        }
+    }
+
+    /// Told without a division for most of the points beside a line; never wrongly.
+    static bool isSurelyOff(const Segment2& s, Point2 p) {
+        const Vec2 along = s.b - s.a, to = p - s.a;
+        // The second term is far above what rounding makes of a point on the line.
+        const double reach = 2 * kWeldDistance + 1e-14 * (std::abs(to.x) + std::abs(to.y));
+        const double twist = cross(along, to);
+        return twist * twist > reach * reach * dot(along, along) && std::isfinite(twist * twist);
+    }
+
+    void look(std::size_t i, Point2 p) {
+        const Segment2& s = segments_[i];
+        // Far out distances overflow to what is not near.
+        if (p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) return;
+        touching_[i].push_back(p);
+        ++touches_;
+    }
+
+    void checkTouches() const {
+        if (touches_ > kTouchesAnyway + kTouchesPerLine * segments_.size())
             throw FormatError(Diagnostic{
                 "", 0, 0, "too many wall lines lie upon each other; leave out the doubles"});
     }
+
+    const std::vector<Segment2>& segments_;
+    std::vector<std::vector<Point2>> touching_;
+    std::size_t touches_ = 0, looks_ = 0;
+};
+
+/// For each segment the points of others that lie on its inside, in order along it.
+std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& segments) {
+    std::vector<Point2> points;
+    points.reserve(2 * segments.size());
+    for (const auto& [a, b] : segments) points.insert(points.end(), {a, b});
+    std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    auto touching = TouchFinder(segments).find(points);
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Vec2 along = segments[i].b - segments[i].a;
         std::stable_sort(touching[i].begin(), touching[i].end(), [&](Point2 p, Point2 q) {

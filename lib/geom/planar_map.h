@@ -16,9 +16,11 @@ constexpr double kWeldDistance = 1e-6;
 
 /// The lines with end points moved together and lines split where an end point of another touches
 /// them (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the
-/// line that piece i comes from, the pieces of a line in its order. Deterministic; O(n log n) for
-/// lines spread over the plan.
-/// \throws FormatError (without a place) for lines that lie upon each other by the million
+/// line that piece i comes from, the pieces of a line in its order. Deterministic; O((n +
+/// touches) log n) for lines that mostly run in two directions at right angles or are short, in
+/// whatever place they are.
+/// \throws FormatError (without a place) for lines that lie upon each other by the million, and for
+/// heaps of long lines in all directions
 struct WeldedLines {
     std::vector<Segment2> pieces;
     std::vector<std::size_t> source;

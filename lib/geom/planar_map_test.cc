@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "geom/boolean.h"
@@ -270,6 +271,37 @@ TEST(Weld, refusesHeapsOfLinesUponEachOther) {
     EXPECT_THROW(weld(lines), FormatError);
     lines.resize(1000);
     EXPECT_EQ(weld(lines).pieces.size(), 1000U * 1000U);
+}
+
+TEST(Weld, oneLineFarAwayIsNoHindrance) {
+    std::vector<Segment2> lines;  // a lattice of separate walls
+    constexpr int kSide = 120;
+    for (int i = 0; i <= kSide; ++i) {
+        for (int k = 0; k < kSide; ++k) {
+            lines.push_back({{0.4 * k, 0.4 * i}, {0.4 * (k + 1), 0.4 * i}});
+            lines.push_back({{0.4 * i, 0.4 * k}, {0.4 * i, 0.4 * (k + 1)}});
+        }
+    }
+    const std::size_t count = lines.size();
+    lines.push_back({{9000, 9000}, {9000, 9001}});
+    lines.push_back({{-1, 0.2}, {0, 0.2}});  // ends on the middle of one
+    EXPECT_EQ(weld(lines).pieces.size(), count + 3);
+}
+
+TEST(Weld, serpentinesInAnyHeading) {
+    for (const double heading : {0.0, 0.5, 0.7853981}) {
+        const Vec2 along{std::cos(heading), std::sin(heading)};
+        std::vector<Segment2> lines;
+        Point2 from{0, 0};
+        for (int i = 0; i < 40001; ++i) {
+            const Vec2 step = i % 2 == 1   ? 0.02 * perpendicular(along)
+                              : i % 4 == 0 ? 100 * along
+                                           : -100 * along;
+            lines.push_back({from, from + step});
+            from = from + step;
+        }
+        EXPECT_EQ(weld(lines).pieces.size(), lines.size()) << heading;
+    }
 }
 
 TEST(BoundedFaces, smallAndFarAway) {

@@ -27,6 +27,21 @@ Meeting meetRay(const Segment2& edge, Point2 p) {
     return turn == Turn::Left ? Meeting::Crossing : Meeting::None;
 }
 
+/// True if `test` holds of the turn at every corner.
+template <typename Test>
+bool everyTurn(const Polygon& polygon, Test test) {
+    const std::size_t n = polygon.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (!test(orientation(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n])))
+            return false;
+    return true;
+}
+
+void addCurves(std::vector<Polygon>& curves, const Region& region) {
+    curves.push_back(region.outline);
+    curves.insert(curves.end(), region.holes.begin(), region.holes.end());
+}
+
 }  // namespace
 
 double signedArea(const Polygon& polygon) {
@@ -49,6 +64,26 @@ Box2 bounds(const Polygon& polygon) {
     return box;
 }
 
+Box2 bounds(const Segment2& segment) {
+    Box2 box;
+    box.add(segment.a);
+    box.add(segment.b);
+    return box;
+}
+
+bool isConvex(const Polygon& polygon) {
+    bool turns = false;
+    const auto is_allowed = [&turns](Turn turn) {
+        turns = turns || turn == Turn::Left;
+        return turn != Turn::Right;
+    };
+    return everyTurn(polygon, is_allowed) && turns;
+}
+
+bool isStrictlyConvex(const Polygon& polygon) {
+    return !polygon.empty() && everyTurn(polygon, [](Turn turn) { return turn == Turn::Left; });
+}
+
 Side locate(const Polygon& polygon, Point2 p) {
     bool inside = false;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -58,6 +93,18 @@ Side locate(const Polygon& polygon, Point2 p) {
         if (meeting == Meeting::Crossing) inside = !inside;
     }
     return inside ? Side::Inside : Side::Outside;
+}
+
+std::vector<Polygon> curvesOf(const Region& region) {
+    std::vector<Polygon> curves;
+    addCurves(curves, region);
+    return curves;
+}
+
+std::vector<Polygon> curvesOf(const std::vector<Region>& regions) {
+    std::vector<Polygon> curves;
+    for (const Region& region : regions) addCurves(curves, region);
+    return curves;
 }
 
 double Region::area() const {

@@ -23,6 +23,13 @@ using Polygon = std::vector<Point2>;
 double signedArea(const Polygon& polygon);
 double perimeter(const Polygon& polygon);
 Box2 bounds(const Polygon& polygon);
+Box2 bounds(const Segment2& segment);
+/// True if every corner of a polygon that does not cross itself turns left or goes straight on, and
+/// one turns: counter-clockwise, with an area; vertices may lie along edges and be doubled. Exact.
+/// O(n)
+bool isConvex(const Polygon& polygon);
+/// The same without corners that go straight on: then a fan from any vertex triangulates it. O(n)
+bool isStrictlyConvex(const Polygon& polygon);
 /// Even-odd rule, exact (robust orientation of the given doubles). O(n).
 Side locate(const Polygon& polygon, Point2 p);
 
@@ -40,6 +47,11 @@ struct Region {
     template <typename Visit>
     void forEachEdge(Visit visit) const;
 };
+
+/// The outline and then the holes, of one region or of several one after another: by the even-odd
+/// rule the same area, where regions are disjoint.
+std::vector<Polygon> curvesOf(const Region& region);
+std::vector<Polygon> curvesOf(const std::vector<Region>& regions);
 
 /// A point strictly inside the region, well away from its boundary where it can be.
 Point2 interiorPoint(const Region& region);

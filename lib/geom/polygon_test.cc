@@ -34,11 +34,43 @@ TEST(Polygon, areaPerimeterBounds) {
 TEST(Polygon, degenerateHaveNoArea) {
     EXPECT_EQ(signedArea({}), 0);
     EXPECT_EQ(perimeter({}), 0);
-    EXPECT_TRUE(bounds({}).empty());
+    EXPECT_TRUE(bounds(Polygon()).empty());
     EXPECT_EQ(signedArea({{1, 1}}), 0);
     EXPECT_EQ(signedArea({{1, 1}, {2, 5}}), 0);
     EXPECT_EQ(perimeter({{0, 0}, {3, 4}}), 10);
     EXPECT_EQ(signedArea({{0, 0}, {1, 1}, {2, 2}}), 0);
+}
+
+TEST(Segment, bounds) {
+    EXPECT_EQ(bounds(Segment2{{4, 2}, {1, 6}}), (Box2{{1, 2}, {4, 6}}));
+    EXPECT_EQ(bounds(Segment2{{1, 2}, {1, 2}}), (Box2{{1, 2}, {1, 2}})) << "a point has a box";
+}
+
+TEST(Convex, turnsLeftOrGoesStraightOn) {
+    const Polygon square = test::box(0, 0, 1, 1);
+    EXPECT_TRUE(isConvex(square));
+    EXPECT_TRUE(isConvex({{0, 0}, {1, 0}, {2, 0}, {2, 2}})) << "a vertex along an edge";
+    EXPECT_TRUE(isConvex({{0, 0}, {1, 0}, {1, 0}, {1, 1}})) << "a doubled vertex";
+    EXPECT_FALSE(isConvex({{0, 0}, {2, 0}, {1, 0.5}, {0, 2}}));
+    EXPECT_FALSE(isConvex({square.rbegin(), square.rend()})) << "clockwise";
+    EXPECT_TRUE(isConvex({{0, 0}, {0.5, -0x1p-60}, {1, 0}, {0, 1}})) << "decided exactly";
+    EXPECT_FALSE(isConvex({{0, 0}, {0.5, 0x1p-60}, {1, 0}, {0, 1}}));
+}
+
+TEST(Convex, strictlyTurnsLeftOnly) {
+    EXPECT_TRUE(isStrictlyConvex(test::box(0, 0, 1, 1)));
+    EXPECT_TRUE(isStrictlyConvex({{0, 0}, {0.5, -0x1p-60}, {1, 0}, {0, 1}}));
+    EXPECT_FALSE(isStrictlyConvex({{0, 0}, {1, 0}, {2, 0}, {2, 2}}));
+    EXPECT_FALSE(isStrictlyConvex({{0, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 1}})) << "at the seam";
+    EXPECT_FALSE(isStrictlyConvex({{0, 0}, {1, 0}, {1, 0}, {1, 1}}));
+    EXPECT_FALSE(isStrictlyConvex({{0, 0}, {0, 1}, {1, 1}, {1, 0}})) << "clockwise";
+}
+
+TEST(Convex, needsAnArea) {
+    for (const Polygon& none : {Polygon(), {{1, 1}}, {{1, 1}, {2, 5}}, {{0, 0}, {1, 0}, {2, 0}}}) {
+        EXPECT_FALSE(isConvex(none)) << none.size();
+        EXPECT_FALSE(isStrictlyConvex(none)) << none.size();
+    }
 }
 
 TEST(Polygon, areaKeepsItsDigitsFarFromTheOrigin) {
@@ -91,6 +123,16 @@ TEST(Region, areaAndSides) {
     std::size_t edges = 0;
     region.forEachEdge([&](const Segment2&) { ++edges; });
     EXPECT_EQ(edges, 8U);
+}
+
+TEST(Region, curvesAreOutlineAndHoles) {
+    const Polygon outline = test::box(0, 0, 8, 6), one = test::box(2, 2, 4, 4),
+                  two = test::box(5, 2, 6, 4), other = test::box(9, 0, 10, 1);
+    const Region region{outline, {one, two}};
+    EXPECT_EQ(curvesOf(region), (std::vector<Polygon>{outline, one, two}));
+    EXPECT_EQ(curvesOf(Region{outline, {}}), std::vector<Polygon>{outline});
+    EXPECT_EQ(curvesOf({region, {other, {}}}), (std::vector<Polygon>{outline, one, two, other}));
+    EXPECT_TRUE(curvesOf(std::vector<Region>()).empty());
 }
 
 double clearance(const Region& region, Point2 p) {

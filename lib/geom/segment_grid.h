@@ -18,8 +18,8 @@ class SegmentGrid {
   public:
     SegmentGrid(std::span<const Segment2> segments, double margin);
 
-    /// Ascending indices of segments, among them all those within `margin` of p.
-    /// \pre p lies in the bounding box of the segments
+    /// Ascending indices of segments, among them all those within `margin` of p, wherever it is:
+    /// beyond the bounding box of the segments, it counts as in the nearest cell.
     [[nodiscard]] std::span<const std::uint32_t> near(Point2 p) const;
 
     /// Visits cells around p in growing rings: visit(indices of one cell), then, with all segments

@@ -36,14 +36,12 @@ double displacement(const Polygon& a, const Polygon& b) {
 
 /// Curves of the pixel map with collinear vertices gone or not: outlines and holes of its faces.
 std::vector<Polygon> curvesOf(const test::PixelMap& map) {
-    std::vector<Polygon> curves;
-    for (const Region& face : boundedFaces(weld(map.boundary()))) {
+    std::vector<Region> faces = boundedFaces(weld(map.boundary()));
+    std::erase_if(faces, [&map](const Region& face) {
         const Point2 p = interiorPoint(face);
-        if (!map.at(int(std::floor(p.x)), int(std::floor(p.y)))) continue;
-        curves.push_back(face.outline);
-        curves.insert(curves.end(), face.holes.begin(), face.holes.end());
-    }
-    return curves;
+        return !map.at(int(std::floor(p.x)), int(std::floor(p.y)));
+    });
+    return curvesOf(faces);
 }
 
 TEST(Simplified, dropsCollinearVertices) {

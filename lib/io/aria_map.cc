@@ -14,17 +14,16 @@
 #include "base/utf8.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
 #include "io/import_records.h"
+#include "io/near_segments.h"
 #include "io/plan_region.h"
+#include "io/plan_simplify.h"
 
 namespace ispace {
 
 namespace {
 
 constexpr std::string_view kMagic = "2D-Map";
-constexpr double kFarthest = 900000;  // metres; records end at 1000 km
-constexpr double kDefaultSnap = 0.005;
 constexpr double kCell = 0.05;      // edge of an obstacle made of points
 constexpr double kEchoReach = 0.1;  // points this near to a line are the line
 constexpr std::size_t kMostCubes = 100'000;
@@ -82,8 +81,8 @@ class AriaReader {
             else
                 readHeader(first);
         }
-        checkCount(map_.lines.size(), line_count_, "lines");
-        checkCount(map_.points.size(), point_count_, "points");
+        checkCount(map_.lines.size(), line_count_, "line");
+        checkCount(map_.points.size(), point_count_, "point");
         return std::move(map_);
     }
 
@@ -112,8 +111,8 @@ class AriaReader {
     /// A place in the file's millimetres.
     [[nodiscard]] Point2 place(std::size_t word) const {
         const Point2 p{number(word) / 1000, number(word + 1) / 1000};
-        if (std::max(std::abs(p.x), std::abs(p.y)) > kFarthest)
-            fail("a place more than " + formatDouble(kFarthest / 1000) + " km from the origin");
+        if (std::max(std::abs(p.x), std::abs(p.y)) > kFarthestPlan)
+            fail("a place more than " + formatDouble(kFarthestPlan / 1000) + " km from the origin");
         return p;
     }
     void wantWords(std::size_t count, const char* what) const {
@@ -140,9 +139,12 @@ class AriaReader {
         return *value;
     }
     void checkCount(std::size_t found, std::optional<std::int64_t> wanted, const char* what) const {
-        if (wanted && static_cast<std::int64_t>(found) != *wanted)
+        if (wanted && static_cast<std::int64_t>(found) < *wanted)
             fail(std::to_string(found) + " of " + std::to_string(*wanted) + ' ' + what +
-                 ": is the file whole?");
+                 "s: is the file whole?");
+        if (wanted && static_cast<std::int64_t>(found) > *wanted)
+            fail("found " + countText(found, what) + ", the header announces " +
+                 std::to_string(*wanted));
     }
 
     /// Cairn: TYPE x y heading "description" ICON "name" [x1 y1 x2 y2]
@@ -208,13 +210,17 @@ class AriaPlan {
         : map_(std::move(map)),
           name_(name),
           paths_(withoutRepeats(snapped(map_.lines, options.snap.value_or(kDefaultSnap)))) {
-        const std::vector<Segment2> lines = piecesOf(paths_);
+        std::vector<Segment2> lines = piecesOf(paths_);
         if (lines.empty())
             fail(map_.points.empty()
                      ? "a map without lines: nothing is a wall"
                      : "a map of points alone, without LINES: nothing is a wall; draw lines in "
                        "Mapper3, or export the points as a picture");
         if (crossTooOften(lines)) fail("the lines cross each other too often to be walls");
+        if (options.simplify.value_or(0) > 0) {
+            paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify);
+            lines = piecesOf(paths_);
+        }
         region_ = PlanFaces(lines).region(map_.home);
         if (!region_) return;
         const std::vector<bool> keep = belongsTo(*region_, lines);
@@ -245,12 +251,12 @@ class AriaPlan {
 
     void writePoints(ImportRecords& out) const {
         const std::vector<Segment2> lines = piecesOf(paths_);
-        const SegmentGrid grid(lines, kEchoReach);
+        const NearSegments search(lines);
         std::vector<Point2> free;
         std::size_t echoes = 0, outside = 0;
         for (const Point2 p : map_.points) {
-            const auto near = grid.near(p);
-            const bool is_echo = std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+            const auto near = search.near(p, kEchoReach);
+            const bool is_echo = std::any_of(near.begin(), near.end(), [&](std::size_t i) {
                 return distance(p, lines[i]) <= kEchoReach;
             });
             const bool is_outside = !is_echo && region_ && !isInside(p);
@@ -319,7 +325,8 @@ bool isAriaMap(std::string_view bytes) {
 Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas) {
     ImportRecords out(schemas, name, options);
-    AriaPlan(AriaReader(bytes, name).read(), name, options).write(out, options);
+    withFileName(
+        name, [&] { AriaPlan(AriaReader(bytes, name).read(), name, options).write(out, options); });
     return out.take();
 }
 

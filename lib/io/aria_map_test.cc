@@ -118,12 +118,35 @@ TEST(AriaMap, NamesWhatIsWrong) {
               "office.map:15:1: error: a place more than 900 km from the origin\n");
     EXPECT_EQ(errorOf(with("NumLines: 6", "NumLines: 7")),
               "office.map:28:1: error: 6 of 7 lines: is the file whole?\n");
+    EXPECT_EQ(errorOf(with("NumLines: 6", "NumLines: 5")),
+              "office.map:28:1: error: found 6 lines, the header announces 5\n");
     EXPECT_EQ(errorOf(with("NumPoints: 7", "NumPoints: -7")),
               "office.map:7:1: error: `NumPoints:`: wanted how many\n");
     EXPECT_EQ(errorOf(with("6000 4000 8000 6000", "6000 4000")),
               "office.map:11:1: error: the line ends early, wanted a number\n");
     EXPECT_EQ(errorOf("2D-Map\n"), "office.map: error: a map without lines: nothing is a wall\n");
     EXPECT_NE(errorOf("2D-Map\nDATA\n1 2\n").find("a map of points alone"), std::string::npos);
+}
+
+TEST(AriaMap, StarsCompile) {
+    const Document star = read(
+        "2D-Map\nLINES\n0 5000 -2938 -4045\n-2938 -4045 4755 1545\n4755 1545 -4755 1545\n"
+        "-4755 1545 2938 -4045\n2938 -4045 0 5000\n");
+    EXPECT_EQ(errorsOf([&] { EXPECT_GT(environmentOf(star).indoor().area(), 1); }), "no error")
+        << writeRecordText(star);
+}
+
+TEST(AriaMap, SimplifyOnRequest) {
+    std::string map = "2D-Map\nLINES\n10000 0 10000 8000\n10000 8000 0 8000\n0 8000 0 0\n";
+    for (int i = 0; i < 100; ++i)
+        map += std::to_string(100 * i) + (i % 2 == 0 ? " 0 " : " 2 ") +
+               std::to_string(100 * i + 100) + (i % 2 == 0 ? " 2\n" : " 0\n");
+    EXPECT_EQ(read(map).records[0].list("path").size(), 103U);
+    ImportOptions options;
+    options.simplify = 0.01;
+    const Document document = read(map, options);
+    EXPECT_EQ(document.records[0].list("path").size(), 4U);
+    EXPECT_DOUBLE_EQ(environmentOf(document).indoor().area(), 80);
 }
 
 TEST(AriaMap, SurvivesDamage) {

@@ -11,17 +11,20 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "geom/predicates.h"
 #include "io/dxf_shapes.h"
 #include "io/import_records.h"
+#include "io/near_segments.h"
 #include "io/plan_openings.h"
 #include "io/plan_region.h"
+#include "io/plan_simplify.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr double kDefaultSnap = 0.005;
 constexpr double kLargestExtent = 10000;  // metres
+constexpr double kOpeningReach = 1e-5;    // from its end to the wall it was put on
 
 /// What openings are if the walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
@@ -119,6 +122,11 @@ class LayerSorter {
         return all.empty() ? "none" : listed(all);
     }
 
+    [[nodiscard]] bool isUsed(const std::string& layer) {
+        const Use use = useOf(layer);
+        return use == Walls || use == Doors || use == Windows;
+    }
+
   private:
     enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
 
@@ -156,6 +164,10 @@ class DxfPlan {
           pieces_(piecesOf(paths_)) {
         check(name);
         PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
+        if (options.simplify.value_or(0) > 0) {
+            simplify(*options.simplify, found.openings);
+            found = findOpenings(shapes.doors, shapes.windows, pieces_);
+        }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
         keepRegion();
@@ -193,6 +205,20 @@ class DxfPlan {
             fail(name,
                  "the lines cross each other too often to be walls: leave layers of hatching "
                  "out, for example with --wall-layer 'A-WALL*'");
+    }
+
+    /// Pieces on which openings lie, or to which they reach, stay.
+    void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
+        paths_ = joinedAtEnds(paths_);
+        pieces_ = piecesOf(paths_);
+        const NearSegments search(pieces_);
+        std::vector<std::size_t> fixed;
+        for (const PlanOpening& opening : openings)
+            for (const Point2 end : {opening.line.a, opening.line.b})
+                for (const std::size_t i : search.near(end, kOpeningReach))
+                    if (distance(end, pieces_[i]) <= kOpeningReach) fixed.push_back(i);
+        paths_ = simplifiedPaths(paths_, tolerance, fixed);
+        pieces_ = piecesOf(paths_);
     }
 
     /// Lines that close the gaps of openings, behind those of walls.
@@ -301,7 +327,8 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
     MissingBlocks missing;
     LayerSorter sorter(drawing, options);
     const SortedShapes shapes =
-        sorter.sort(shapesOf(drawing, metres, name, options.most_points, missing));
+        sorter.sort(shapesOf(drawing, metres, name, options.most_points, missing,
+                             [&sorter](const std::string& layer) { return sorter.isUsed(layer); }));
     sorter.note(out);
     if (!drawing.left_out.empty()) out.note("entities left out: " + listed(drawing.left_out));
     if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
@@ -309,7 +336,7 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
         fail(name, (options.wall_layers.empty() ? "no line to make a wall of"
                                                 : "no line on the layers of walls") +
                        std::string("; layers with lines: ") + sorter.all());
-    DxfPlan(shapes, name, options).write(out, options);
+    withFileName(name, [&] { DxfPlan(shapes, name, options).write(out, options); });
     return out.take();
 }
 

@@ -19,7 +19,8 @@ namespace ispace {
 ///   frozen, is left out. Names are compared without case.
 /// - Points within ImportOptions::snap (default 5 mm) of each other are one, ends that near to
 ///   another line lie on it; lines drawn twice are one; lines that meet end to end become one
-///   fence, of the options' height and thickness. Arcs are cut to pieces 1 mm off at most.
+///   fence, of the options' height and thickness. Arcs are cut to pieces 1 mm off at most (radii to
+///   10 km). With ImportOptions::simplify lines lose points, see plan_simplify.h.
 /// - Doors (open=yes) and windows, see plan_openings.h: across a gap they come with a wall that
 ///   closes it.
 /// - Of all this only the largest region that is enclosed, rooms joined by doors, is kept: lines

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "io/import_records.h"
 
 namespace ispace {
 
@@ -19,11 +20,9 @@ constexpr int kDeepest = 16;                    // blocks in blocks
 constexpr std::size_t kFreePoints = 10'000;     // whatever the file's size …
 constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
 
-constexpr double kFarthest = 900000;  // metres; records end at 1000 km
-
 /// Sagitta of the pieces of an arc, in metres, and their least and largest number in a full circle.
 constexpr double kArcTolerance = 0.001;
-constexpr double kFewestPieces = 8, kMostPieces = 720;
+constexpr double kFewestPieces = 8, kMostPieces = 7200;  // for 10 km
 
 /// Beyond these a bulge is a straight line, or a circle of which an end is missing.
 constexpr double kLeastBulge = 1e-9, kLargestBulge = 1e4;
@@ -60,10 +59,13 @@ int piecesOf(double sweep, double radius) {
 class Expander {
   public:
     Expander(const DxfDrawing& drawing, const std::string& name, std::size_t most,
-             MissingBlocks& missing)
+             MissingBlocks& missing, const LayerFilter& wanted)
         : drawing_(drawing),
           name_(name),
-          budget_(std::min(most, kFreePoints + kPointsPerEntity * drawing.size())),
+          most_(most),
+          total_(kFreePoints + kPointsPerEntity * drawing.size()),
+          budget_(std::min(most, total_)),
+          wanted_(wanted),
           missing_(missing) {}
 
     std::vector<PlanShape> expand(double metres_per_unit) {
@@ -79,6 +81,9 @@ class Expander {
     }
 
     void spend(const DxfEntity& entity, std::size_t points) {
+        if (points > budget_ && most_ <= total_)
+            fail(entity, "the drawing comes to more than " + std::to_string(most_) +
+                             " points; leave layers out, for example with --wall-layer 'A-WALL*'");
         if (points > budget_)
             fail(entity,
                  "the blocks of this drawing make too many lines of it; is one inserted by "
@@ -95,7 +100,7 @@ class Expander {
             if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
                 addInsert(entity, *insert, frame, own, depth);
             else
-                addShape(entity, frame, own);
+                addShape(entity, frame, own, depth);
         }
     }
 
@@ -122,10 +127,16 @@ class Expander {
             }
     }
 
-    void addShape(const DxfEntity& entity, const Frame& frame, const std::string& layer) {
+    void addShape(const DxfEntity& entity, const Frame& frame, const std::string& layer,
+                  int depth) {
         shape_ = {};
         shape_.layer = layer;
         shape_.path.line = entity.line;
+        if (wanted_ && !wanted_(layer)) {
+            if (depth > 0) spend(entity, 1);
+            shapes_.push_back(std::move(shape_));
+            return;
+        }
         if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
             addPolyline(*polyline, frame);
         else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
@@ -134,8 +145,8 @@ class Expander {
             addEllipse(*ellipse, frame);
         spend(entity, shape_.path.points.size());
         for (const Point2 p : shape_.path.points)
-            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthest))
-                fail(entity, "lies more than " + formatDouble(kFarthest / 1000) +
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
+                fail(entity, "lies more than " + formatDouble(kFarthestPlan / 1000) +
                                  " km from the origin: are the units right (--units)?");
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
     }
@@ -208,7 +219,8 @@ class Expander {
 
     const DxfDrawing& drawing_;
     const std::string& name_;
-    std::size_t budget_;
+    std::size_t most_, total_, budget_;
+    const LayerFilter& wanted_;
     MissingBlocks& missing_;
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
@@ -217,8 +229,9 @@ class Expander {
 }  // namespace
 
 std::vector<PlanShape> shapesOf(const DxfDrawing& drawing, double metres_per_unit,
-                                const std::string& name, std::size_t most, MissingBlocks& missing) {
-    return Expander(drawing, name, most, missing).expand(metres_per_unit);
+                                const std::string& name, std::size_t most, MissingBlocks& missing,
+                                const LayerFilter& wanted) {
+    return Expander(drawing, name, most, missing, wanted).expand(metres_per_unit);
 }
 
 }  // namespace ispace

@@ -212,7 +212,7 @@ class DxfChecker {
 
     [[nodiscard]] double integer(const Group& group) const {
         const auto value = parseInteger(group.value);
-        if (!value || std::abs(*value) > INT32_MAX)
+        if (!value || *value < -INT32_MAX || *value > INT32_MAX)
             groups_.fail(group.line, "found " + excerpt(group.value) + ", wanted a whole number");
         return static_cast<double>(*value);
     }
@@ -308,7 +308,8 @@ class DxfChecker {
     void endPolyline() {
         if (!polyline_) return;
         std::swap(entity_, *polyline_);
-        if ((entity_.flags() & kPolyline3d) != 0) entity_.numbers.erase(230);
+        if ((entity_.flags() & kPolyline3d) != 0)
+            for (const int code : {210, 220, 230}) entity_.numbers.erase(code);
         writeEntity("LWPOLYLINE");
         std::swap(entity_, *polyline_);
         polyline_.reset();
@@ -316,7 +317,6 @@ class DxfChecker {
 
     void writeEntity(std::string_view type) {
         const bool is_drawn = type != "LAYER" && type != "BLOCK";
-        if (is_drawn) ++out_.entities;
         write(0, type);
         write(5, lineAsHandle(entity_.line));
         for (const auto& [code, text] : entity_.texts) write(code, text);

@@ -17,8 +17,7 @@ namespace ispace {
 /// and group 5 (the handle) of each entity holds the line of the file it began on.
 struct DxfText {
     std::string text;
-    std::size_t entities = 0;                     ///< handed on
-    std::map<std::string, std::size_t> left_out;  ///< entities that are not, by type or reason
+    std::map<std::string, std::size_t> left_out;  ///< entities not handed on, by type or reason
 };
 
 /// True if the bytes begin like ASCII DXF: a section, perhaps behind comments.

@@ -39,14 +39,6 @@ bool covers(const Polygon& convex, Point2 p) {
     return inside;
 }
 
-bool isConvex(const Polygon& polygon) {
-    const std::size_t n = polygon.size();
-    for (std::size_t i = 0; i < n; ++i)
-        if (orientation(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]) == Turn::Right)
-            return false;
-    return n >= 3;
-}
-
 bool covers(const Polygon& convex, const std::vector<Polygon>& curves) {
     return std::all_of(curves.begin(), curves.end(), [&](const Polygon& curve) {
         return std::all_of(curve.begin(), curve.end(), [&](Point2 p) { return covers(convex, p); });
@@ -62,15 +54,6 @@ std::vector<Polygon> trianglesAbove(const Mesh& mesh) {
         triangles.push_back(std::move(corners));
     }
     return triangles;
-}
-
-std::vector<Polygon> curvesOf(const std::vector<Region>& regions) {
-    std::vector<Polygon> curves;
-    for (const Region& region : regions) {
-        curves.push_back(region.outline);
-        curves.insert(curves.end(), region.holes.begin(), region.holes.end());
-    }
-    return curves;
 }
 
 /// Cells that triangles touch, with an empty rim of one.

@@ -26,7 +26,9 @@ std::vector<PartAbove> partsFromAbove(const Body& body);
 /// by half a cell. O(triangles + cells).
 std::vector<Polygon> silhouette(const Mesh& mesh);
 
-/// What prisms and meshes of a body cover of the floor: disjoint pieces.
+/// What prisms and meshes of a body cover of the floor: disjoint pieces. Where several parts count,
+/// none of them above all others, holes of meshes are dropped: what a mesh encloses is covered,
+/// too. A single part keeps its holes.
 std::vector<Region> footprintOf(const Body& body);
 
 /// Disjoint pieces of the area that curves bound, outlines counter-clockwise and holes clockwise,

@@ -30,7 +30,7 @@ class FeatureWriter {
   public:
     FeatureWriter() {
         json_.beginObject().key("type").value("FeatureCollection");
-        json_.key("coordinates").value("local-metres");
+        json_.key("coordinate_system").value("local-metres");
     }
     JsonWriter& json() { return json_; }
 

@@ -9,8 +9,8 @@
 namespace ispace {
 
 /// The plan as a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
-/// `"coordinates": "local-metres"` says; outlines counter-clockwise, holes clockwise, doubles in
-/// shortest form.
+/// `"coordinate_system": "local-metres"` says; outlines counter-clockwise, holes clockwise, doubles
+/// in shortest form.
 ///
 /// Features, each with `id`, `keyword`, `type` and the values of its record: the indoor region and
 /// the free floor at kScanHeight (Polygons), then every element: walls, doors and windows as lines

@@ -30,7 +30,7 @@ const char* const kRoom =
 Json featuresOf(const Scene& from, std::optional<double> height = {}) {
     const Json root = Json::parse(writeGeoJson(from, height));
     EXPECT_EQ(root["type"], "FeatureCollection");
-    EXPECT_EQ(root["coordinates"], "local-metres");
+    EXPECT_EQ(root["coordinate_system"], "local-metres");
     return root["features"];
 }
 

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "io/test_glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"
 
@@ -19,26 +20,14 @@ namespace ispace {
 namespace {
 
 using Json = nlohmann::json;
+using testing::errorOf;
+using testing::readCompiled;
 
 Document documentOf(const std::string& text) {
     return readRecordText(text, "room.env", sceneSchemas());
 }
 
-std::string compiled(const std::string& text) {
-    const Document document = documentOf(text);
-    return writeGlb(makeScene(document, nullptr, DeviceCatalogue()), document);
-}
-
-Document read(std::string_view bytes) { return readGlb(bytes, "room.glb", sceneSchemas()); }
-
-std::string errorOf(std::string_view bytes) {
-    try {
-        read(bytes);
-    } catch (const FormatError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string compiled(const std::string& text) { return testing::compiled(documentOf(text)); }
 
 std::uint32_t word(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
@@ -111,7 +100,7 @@ TEST(Glb, GivesTheRecordsBack) {
     const std::string glb = compiled(kRoom);
     EXPECT_TRUE(isGlb(glb));
     EXPECT_FALSE(isGlb("glT"));
-    const Document document = read(glb);
+    const Document document = readCompiled(glb);
     EXPECT_EQ(document.records, documentOf(kRoom).records);
     EXPECT_EQ(document.history, History{"by hand"});
     EXPECT_EQ(document.kind, DocumentKind::Environment);
@@ -174,7 +163,7 @@ TEST(Glb, SensorsFaceAlongTheirBeam) {
         document.records[1].set("heading", pose.heading.degrees());
         document.records[1].set("tilt", pose.tilt.degrees());
         document.records[1].set("roll", pose.roll.degrees());
-        const std::string glb = writeGlb(makeScene(document, nullptr, DeviceCatalogue()), document);
+        const std::string glb = testing::compiled(document);
         const Json json = jsonOf(glb);
         const auto node = std::find_if(json["nodes"].begin(), json["nodes"].end(),
                                        [](const Json& n) { return n["name"] == "l1"; });
@@ -253,7 +242,7 @@ TEST(Glb, TruncatedFilesNameBothNumbers) {
     EXPECT_EQ(errorOf(glb + "x"), "room.glb: error: damaged: " + std::to_string(glb.size() + 1) +
                                       " of " + std::to_string(glb.size()) + " bytes");
     for (std::size_t size = 0; size < glb.size(); size += size < 300 ? 1 : 97)
-        EXPECT_THROW(read(glb.substr(0, size)), FormatError) << size;
+        EXPECT_THROW(readCompiled(glb.substr(0, size)), FormatError) << size;
 }
 
 /// The same with a header that hides it.
@@ -263,7 +252,7 @@ TEST(Glb, ShortenedFilesWithFittingLength) {
         std::string part = glb.substr(0, size);
         const auto length = static_cast<std::uint32_t>(size);
         std::memcpy(part.data() + 8, &length, sizeof length);
-        EXPECT_THROW(read(part), FormatError) << size;
+        EXPECT_THROW(readCompiled(part), FormatError) << size;
     }
 }
 
@@ -305,8 +294,8 @@ TEST(Glb, StopsReadingWhereTheRecordsAreFound) {
         R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(text.size()) + "}]";
     for (const std::string& head :
          {R"({"extras":{"ispace":0},)" + view, '{' + view + R"(,"extras":{"ispace":0})"}) {
-        EXPECT_EQ(read(container(head + "}", text)).records.size(), 1U);
-        EXPECT_EQ(read(container(head + ",]]]", text)).records.size(), 1U);
+        EXPECT_EQ(readCompiled(container(head + "}", text)).records.size(), 1U);
+        EXPECT_EQ(readCompiled(container(head + ",]]]", text)).records.size(), 1U);
     }
     EXPECT_NE(errorOf(container(view.substr(0, 20) + "]]", text)).find("bad JSON"),
               std::string::npos);
@@ -330,7 +319,7 @@ TEST(Glb, ReadsWhatOthersWroteAnew) {
         R"("byteLength":)" +
         std::to_string(text.size()) +
         R"(,"buffer":0}],"extras":{"a":[1,{"ispace":7}],"ispace":1}})";
-    EXPECT_EQ(read(container(json, "____" + text)).records.size(), 1U);
+    EXPECT_EQ(readCompiled(container(json, "____" + text)).records.size(), 1U);
 }
 
 TEST(Glb, NestingCostsNoStack) {
@@ -343,23 +332,8 @@ TEST(Glb, NestingCostsNoStack) {
 
 TEST(Glb, FlippedBytesNeverDoWorseThanAnError) {
     const std::string glb = compiled("#env 1\nispace\ndesk at=1,2\n");
-    std::mt19937_64 random(77);
     const std::size_t front = 20 + word(glb, 12) + 120;  // header, JSON and the records
-    int refused = 0;
-    for (int i = 0; i < 20000; ++i) {
-        std::string bytes = glb;
-        for (std::size_t flips = 1 + random() % 3; flips > 0; --flips)
-            bytes[random() % std::min(front, bytes.size())] ^=
-                static_cast<char>(1U << (random() % 8));
-        try {
-            read(bytes);
-        } catch (const FormatError&) {
-            ++refused;
-        }
-    }
-    // Many flips do not hurt (a mesh's name); none may crash.
-    EXPECT_GT(refused, 1000);
-    EXPECT_LT(refused, 20000);
+    testing::surviveFlips(glb, std::min(front, glb.size()), 77);
 }
 
 }  // namespace

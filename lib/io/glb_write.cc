@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "env/mesh_body.h"
 #include "io/glb.h"
 #include "io/glb_model.h"
 #include "io/model.h"
@@ -30,17 +31,6 @@ Quaternion gltfFromFile(const std::string& up) {
     if (up == "y") return {0, 0, 0, 1};
     if (up == "x") return {std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2, 0, 0};
     return rotationAbout(0, Angle::degrees(-90));
-}
-
-/// Metres a unit of the file's numbers.
-double fileScale(const Record& record) {
-    const std::string& unit = record.text("unit");
-    const double metres = unit == "cm"     ? 0.01
-                          : unit == "mm"   ? 0.001
-                          : unit == "inch" ? 0.0254
-                          : unit == "foot" ? 0.3048
-                                           : 1;
-    return metres * record.number("scale");
 }
 
 /// Adds the nodes of a scene.
@@ -115,7 +105,7 @@ class GlbScene {
         const GlbNode::Frame frame{
             gltfAxes(position - origin_),
             rotationAbout(1, record.angle("heading")) * gltfFromFile(record.text("up")),
-            fileScale(record)};
+            meshScale(record)};
         builder_.addNode(
             {node.id, node.keyword, place->second, std::make_unique<const GlbNode::Frame>(frame)});
     }

@@ -23,9 +23,6 @@ namespace ispace {
 
 namespace {
 
-/// Metres from the origin; records end at 1000 km.
-constexpr double kFarthest = 900000;
-
 struct Box {
     std::string category;
     std::array<double, 4> corners;  // x, y of two opposite corners
@@ -170,11 +167,11 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     bool number(double value) {
         if (depth_ == 0 || !wanted()) return depth_ > 0 || scalar("a number");
         if (depth_ != tupleDepth()) return fail("found a number");
-        if (!(std::abs(value) <= kFarthest))
+        if (!(std::abs(value) <= kFarthestPlan))
             return fail("`" + key_ +
                             "`: " + (std::isfinite(value) ? formatDouble(value) : "a number") +
                             " is too far away",
-                        "wanted metres up to " + formatDouble(kFarthest));
+                        "wanted metres up to " + formatDouble(kFarthestPlan));
         tuple_.push_back(value);
         return tuple_.size() <= 4 || fail("found a list of five numbers");
     }
@@ -230,6 +227,10 @@ class RoomFinder {
         : name_(name),
           outline_(tidied({plan.outline}, options)),
           holes_(tidied(plan.holes, options)) {
+        if (outline_.empty() && !tidied({plan.outline}, {}).empty())
+            fail("`verts`: nothing is left of an outline of " +
+                 countText(plan.outline.size(), "point") +
+                 " after snapping and simplifying, wanted less of that (--snap, --simplify)");
         if (outline_.empty())
             fail("`verts`: an outline of " + countText(plan.outline.size(), "point") +
                  " encloses nothing, wanted three corners or more");
@@ -300,7 +301,7 @@ Document readHouseExpo(std::string_view json, const std::string& name, const Imp
                        const Schemas& schemas) {
     const HousePlan plan = HousePlanHandler(json, name).read();
     RoomFinder finder(plan, name, options);
-    const Region room = finder.room();
+    const Region room = withFileName(name, [&finder] { return finder.room(); });
     ImportRecords out(schemas, name, options);
     out.region(room, interiorPoint(room));
     writeZones(plan.boxes, out);

@@ -84,6 +84,11 @@ TEST(HouseExpo, RingsMayTouchAndCross) {
 }
 
 TEST(HouseExpo, NamesWhatIsWrong) {
+    ImportOptions coarse;
+    coarse.snap = 10;
+    EXPECT_EQ(errorsOf([&] { read(R"({"verts": [[0, 0], [0, 3], [4, 3], [4, 0]]})", coarse); }),
+              "plan.json: error: `verts`: nothing is left of an outline of 4 points after snapping "
+              "and simplifying, wanted less of that (--snap, --simplify)\n");
     EXPECT_EQ(errorOf("{}"),
               "plan.json: error: JSON without `verts`: wanted a HouseExpo plan, an object with "
               "`verts`, the outline as a list of [x, y]\n");

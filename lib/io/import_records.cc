@@ -2,9 +2,12 @@
 #include "io/import_records.h"
 
 #include <cctype>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "base/number.h"
+#include "env/crossing.h"
 
 namespace ispace {
 
@@ -42,10 +45,12 @@ void ImportRecords::fence(const PlanPath& path, const std::string& id) {
     Record& record = add("fence", path.line);
     if (!id.empty()) record.set("id", id);
     TupleList points;
-    points.reserve(path.points.size());
+    points.reserve(path.points.size() + 1);
     for (const Point2 p : path.points) points.push_back(tupleOf(p));
+    const bool crossing = path.closed && selfCrossing(path.points);
+    if (crossing) points.push_back(points.front());
     record.set("path", std::move(points));
-    record.set("closed", path.closed);
+    record.set("closed", path.closed && !crossing);
     record.set("height", wall_height_);
     record.set("thickness", wall_thickness_);
 }
@@ -97,6 +102,13 @@ std::string ImportRecords::freeId(std::string_view name, const std::string& fall
     std::string id = word;
     for (int i = 2; !ids_.insert(id).second; ++i) id = word + '-' + std::to_string(i);
     return id;
+}
+
+std::string reasonNotToRead(const std::string& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (error) return error.message();
+    return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";
 }
 
 std::string countText(std::size_t count, const std::string& thing) {

@@ -4,7 +4,9 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/error.h"
 #include "geom/polygon.h"
 #include "io/import_options.h"
 #include "io/plan_lines.h"
@@ -13,13 +15,20 @@
 
 namespace ispace {
 
+/// Places of plans lie no farther from the origin, in metres; records end at 1000 km.
+constexpr double kFarthestPlan = 900'000;
+
+/// What drawings of lines are joined by, in metres, unless ImportOptions::snap says otherwise.
+constexpr double kDefaultSnap = 0.005;
+
 /// Writes the records of an imported plan, places in metres on whole micrometres.
 class ImportRecords {
   public:
     /// \param name the file as the user named it
     ImportRecords(const Schemas& schemas, const std::string& name, const ImportOptions& options);
 
-    /// A fence of the options' height and thickness; `id` may be "".
+    /// A fence of the options' height and thickness; `id` may be "". A closed path that crosses
+    /// itself, which no closed fence may, becomes an open one that ends where it begins.
     void fence(const PlanPath& path, const std::string& id = "");
     /// The same as a wall.
     void wall(const Segment2& line, const std::string& id, int file_line);
@@ -50,6 +59,23 @@ class ImportRecords {
     std::set<std::string> ids_;
     Document document_;
 };
+
+/// What `read` returns; errors of it that tell no file, as those of the geometry, get this one.
+template <typename Read>
+auto withFileName(const std::string& name, Read read) {
+    try {
+        return read();
+    } catch (const FormatError& error) {
+        std::vector<Diagnostic> all = error.diagnostics();
+        for (Diagnostic& diagnostic : all)
+            if (diagnostic.file.empty()) diagnostic.file = displayName(name);
+        throw FormatError(std::move(all));
+    }
+}
+
+/// Why a file that another one names is not read, or "": it is not there, or it is no regular
+/// file; devices and pipes may have no end.
+std::string reasonNotToRead(const std::string& path);
 
 /// "1 line", "3 lines".
 std::string countText(std::size_t count, const std::string& thing);

@@ -106,7 +106,7 @@ Document parseRecords(std::string_view bytes, const std::string& operand,
     if (isGlb(bytes))
         return glbHasRecords(bytes) ? readGlb(bytes, operand, schemas)
                                     : meshDocument(operand, options, schemas);
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+    bytes = withoutMark(bytes);
     if (bytes.find_first_not_of(kBlanks) == std::string_view::npos)
         fail(0, std::string("empty input: ") + kWanted);
     if (auto document = readByMagic(bytes, operand, options, schemas)) return *std::move(document);

@@ -54,6 +54,8 @@ void checkReadable(const std::string& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error))
         throw std::system_error(std::make_error_code(std::errc::is_a_directory), path);
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        fail(path, "it is no regular file");  // devices and pipes may have no end
     errno = 0;
     if (!std::ifstream(path, std::ios::binary))
         throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), path);
@@ -81,6 +83,15 @@ void checkPlyHeader(const std::string& path) {
                            std::to_string(size) + " bytes");
     }
     fail(path, "bad mesh file: a PLY header without `end_header`");
+}
+
+/// What assimp says, without the name of the file, which every message has, and the full stop.
+std::string assimpsWords(std::string words, const std::string& path) {
+    for (const std::string& part : {" of file \"" + path + '"', " for " + path})
+        if (const std::size_t at = words.find(part); at != std::string::npos)
+            words.erase(at, part.size());
+    while (words.ends_with('.')) words.pop_back();
+    return printable(words);
 }
 
 /// Formats that assimp gives with y upwards.
@@ -226,12 +237,17 @@ class MeshLoader {
             checkDigest(record, *mesh);
             record.setMesh(mesh);
         } catch (const std::system_error& error) {
-            findings_.add(record.finding("file", "mesh file `" + printable(path) + '`' +
-                                                     " cannot be opened: " + reasonOf(error)));
+            addFinding(record, path, " cannot be opened: " + reasonOf(error));
         } catch (const FormatError& error) {
-            findings_.add(record.finding("file", "mesh file `" + printable(path) + '`' + ": " +
-                                                     error.diagnostics().front().message));
+            addFinding(record, path, ": " + error.diagnostics().front().message);
         }
+    }
+
+    /// An operand is named by the finding's place already.
+    void addFinding(const Record& record, const std::string& path, const std::string& what) {
+        const bool is_operand = path == operand_ && what.starts_with(": ");
+        findings_.add(record.finding(
+            "file", is_operand ? what.substr(2) : "mesh file `" + printable(path) + '`' + what));
     }
 
     void checkDigest(const Record& record, const TriangleMesh& mesh) {
@@ -293,7 +309,7 @@ std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const std:
     const aiScene* scene =
         importer.ReadFile(path, aiProcess_Triangulate | aiProcess_ValidateDataStructure);
     if (scene == nullptr || scene->mRootNode == nullptr)
-        fail(path, "bad mesh file: " + printable(importer.GetErrorString()));
+        fail(path, "bad mesh file: " + assimpsWords(importer.GetErrorString(), path));
     auto mesh = std::make_shared<TriangleMesh>(
         Gatherer(*scene, path, !as_is && comesWithYUp(*scene)).gather());
     importer.FreeScene();

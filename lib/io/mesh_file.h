@@ -38,7 +38,8 @@ bool isMeshFile(std::string_view bytes);
 bool hasMeshSuffix(const std::string& operand);
 
 /// A document of one `mesh` record that names the operand, not loaded; its id is the file's name if
-/// that can be one. 	hrows FormatError for "-": other files may belong to it, and records name it
+/// that can be one.
+/// \throws FormatError for "-": other files may belong to it, and records name it
 Document meshDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 

@@ -205,6 +205,10 @@ TEST_F(MeshFile, PolygonsAreCutOthersDropped) {
 TEST_F(MeshFile, NamesWhatIsWrong) {
     EXPECT_THROW(loadMesh(path("none.obj"), "auto"), std::system_error);
     EXPECT_THROW(loadMesh(folder_.string(), "auto"), std::system_error);
+    EXPECT_NE(errorsOf([] { loadMesh("/dev/zero", "auto"); }).find("it is no regular file"),
+              std::string::npos);
+    EXPECT_EQ(errorOf("cut.stl", std::string(90, 'x')),
+              "cut.stl: error: bad mesh file: Failed to determine STL storage representation\n");
     EXPECT_EQ(errorOf("a.obj", "nonsense").find("a.obj: error: bad mesh file: "), 0U);
     EXPECT_EQ(errorOf("a.obj", "").find("a.obj: error: bad mesh file: "), 0U);
     EXPECT_EQ(errorOf("a.xyz", "whatever").find("a.xyz: error: bad mesh file: "), 0U);
@@ -279,6 +283,9 @@ TEST_F(MeshFile, AsOperand) {
               "#env 1\nmesh id=my-chair file=\"My Chair.obj\" unit=cm up=y\n");
     EXPECT_NE(document.records[0].mesh(), nullptr);
     EXPECT_TRUE(document.sources.empty());
+    writeAll(path("bad.ply"), "ply\nformat ascii 1.0\n");
+    EXPECT_EQ(errorsOf([&] { readDocument(path("bad.ply"), {}, sceneSchemas()); }),
+              path("bad.ply") + ": error: bad mesh file: a PLY header without `end_header`\n");
     EXPECT_NE(errorsOf([&] { parseDocument(kObj, "-", {}, sceneSchemas()); }).find("name its file"),
               std::string::npos);
 }

@@ -8,19 +8,12 @@
 #include <random>
 #include <string>
 
+#include "io/test_cells.h"
+
 namespace ispace {
 namespace {
 
-/// Rows from the top, '.' is in the set.
-MapCells cellsOf(const std::vector<std::string>& rows) {
-    MapCells cells(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
-    for (int y = 0; y < cells.height(); ++y)
-        for (int x = 0; x < cells.width(); ++x)
-            if (rows[static_cast<std::size_t>(cells.height() - 1 - y)]
-                    [static_cast<std::size_t>(x)] == '.')
-                cells.insert(x, y);
-    return cells;
-}
+using testing::cellsOf;
 
 std::vector<std::string> rowsOf(const MapCells& cells) {
     std::vector<std::string> rows;

@@ -9,20 +9,12 @@
 #include <string>
 
 #include "geom/predicates.h"
+#include "io/test_cells.h"
 
 namespace ispace {
 namespace {
 
-/// Rows from the top, '.' is in the set.
-MapCells cellsOf(const std::vector<std::string>& rows) {
-    MapCells cells(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
-    for (int y = 0; y < cells.height(); ++y)
-        for (int x = 0; x < cells.width(); ++x)
-            if (rows[static_cast<std::size_t>(cells.height() - 1 - y)]
-                    [static_cast<std::size_t>(x)] == '.')
-                cells.insert(x, y);
-    return cells;
-}
+using testing::cellsOf;
 
 /// Noise, smoothed a little: blobs with holes, pinches and slits.
 MapCells randomBlob(std::mt19937_64& random, int size, unsigned density) {

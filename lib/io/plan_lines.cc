@@ -10,11 +10,14 @@
 #include <utility>
 
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "io/near_segments.h"
 
 namespace ispace {
 
 namespace {
+
+/// Points are whole micrometres: what reaches less far reaches nothing.
+constexpr double kLeastSnap = 1e-6;
 
 struct LexLess {
     bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
@@ -47,7 +50,7 @@ class PointWelder {
 
   private:
     using Cell = std::pair<std::int64_t, std::int64_t>;
-    /// Plans end at 1000 km: far within the integers.
+    /// Plans end at 1000 km, and the reach is a micrometre or more: far within the integers.
     [[nodiscard]] Cell cellOf(Point2 p) const {
         return {static_cast<std::int64_t>(std::floor(p.x / reach_)),
                 static_cast<std::int64_t>(std::floor(p.y / reach_))};
@@ -72,7 +75,7 @@ void dropRepeatedPoints(std::vector<PlanPath>& paths) {
 class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)
-        : pieces_(piecesOf(paths)), grid_(pieces_, reach), reach_(reach) {
+        : pieces_(piecesOf(paths)), search_(pieces_), reach_(reach) {
         for (const PlanPath& path : paths)
             for (const Point2 p : path.points) ++uses_[p];
     }
@@ -81,7 +84,7 @@ class EndMover {
         if (uses_.at(end) > 1) return end;
         Point2 best = end;
         double nearest = reach_;
-        for (const std::uint32_t i : grid_.near(end)) {
+        for (const std::size_t i : search_.near(end, reach_)) {
             const Segment2& piece = pieces_[i];
             if (piece.a == end || piece.b == end) continue;
             const Point2 foot = nearestPoint(piece, end);
@@ -95,7 +98,7 @@ class EndMover {
 
   private:
     std::vector<Segment2> pieces_;
-    SegmentGrid grid_;
+    NearSegments search_;
     double reach_;
     std::map<Point2, int, LexLess> uses_;
 };
@@ -183,6 +186,7 @@ double wholeMicrometres(double metres) {
 
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
     std::vector<PlanPath> result(paths);
+    if (snap < kLeastSnap) snap = 0;
     PointWelder welder(snap);
     for (PlanPath& path : result)
         for (Point2& p : path.points)

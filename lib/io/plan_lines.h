@@ -26,8 +26,8 @@ double wholeMicrometres(double metres);
 
 /// Puts points on whole micrometres and joins what was meant to meet: points within `snap` of an
 /// earlier one move onto it, then ends of open paths within `snap` of another path onto that.
-/// Points that fall together are one; paths without two different points are dropped. With 0 only
-/// equal points are one. O(n log n) for points spread over the plan.
+/// Points that fall together are one; paths without two different points are dropped. With less
+/// than a micrometre only equal points are one. O(n log n) unless most lines lie in one place.
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
 
 /// All pieces of all paths, in order.

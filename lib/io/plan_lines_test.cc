@@ -45,6 +45,12 @@ TEST(PlanLines, EndsMoveOntoLines) {
     EXPECT_EQ(bent[3].points.front(), (Point2{7, 0.006}));
 }
 
+TEST(PlanLines, LeastReachIsNone) {
+    const Paths far{open({{800'000, 0}, {0, 0}}), open({{5, 0.000001}, {5, 3}})};
+    EXPECT_EQ(snapped(far, 1e-300), snapped(far, 0));
+    EXPECT_EQ(snapped(far, 1e-7), far);
+}
+
 TEST(PlanLines, WhatHasNoExtentIsDropped) {
     EXPECT_TRUE(snapped({open({{1, 1}, {1, 1}})}, 0).empty());
     EXPECT_TRUE(

@@ -27,8 +27,7 @@ void addObstacles(PlanDrawing& plan, const Environment& environment, double heig
          true,
          kOutside,
          {}});
-    DrawnPath floor{{environment.indoor().outline}, true, kPaper, {}};
-    for (const Polygon& hole : environment.indoor().holes) floor.curves.push_back(hole);
+    DrawnPath floor{curvesOf(environment.indoor()), true, kPaper, {}};
     plan.items.push_back({PlanLayer::Floor, "", "free floor" + at_height});
     plan.items.back().paths.push_back(std::move(floor));
 

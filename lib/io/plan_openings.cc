@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "io/near_segments.h"
 #include "io/plan_lines.h"
 
 namespace ispace {
@@ -34,7 +34,7 @@ struct Anchor {
 
 class Walls {
   public:
-    explicit Walls(std::span<const Segment2> walls) : walls_(walls), grid_(walls, kReach) {}
+    explicit Walls(std::span<const Segment2> walls) : walls_(walls), search_(walls) {}
 
     /// The nearest end of a wall, else the nearest point of one, in reach.
     [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
@@ -43,7 +43,7 @@ class Walls {
             const double apart = distance(p, place);
             if (apart <= kReach && (!best || apart < best->apart)) best = Anchor{place, apart};
         };
-        for (const std::uint32_t i : grid_.near(p)) {
+        for (const std::size_t i : search_.near(p, kReach)) {
             keep_nearest(corner, walls_[i].a);
             keep_nearest(corner, walls_[i].b);
             keep_nearest(foot, nearestPoint(walls_[i], p));
@@ -55,23 +55,23 @@ class Walls {
 
     /// The wall piece upon which both ends lie.
     [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line) const {
-        for (const std::uint32_t i : grid_.near(line.a))
+        for (const std::size_t i : search_.near(line.a, kOnWall))
             if (distance(line.a, walls_[i]) <= kOnWall && distance(line.b, walls_[i]) <= kOnWall)
                 return i;
         return std::nullopt;
     }
 
     [[nodiscard]] bool isOnWall(Point2 p) const {
-        const auto near = grid_.near(p);
+        const auto near = search_.near(p, kOnWall);
         return std::any_of(near.begin(), near.end(),
-                           [&](std::uint32_t i) { return distance(p, walls_[i]) <= kOnWall; });
+                           [&](std::size_t i) { return distance(p, walls_[i]) <= kOnWall; });
     }
 
     [[nodiscard]] const Segment2& operator[](std::size_t i) const { return walls_[i]; }
 
   private:
     std::span<const Segment2> walls_;
-    SegmentGrid grid_;
+    NearSegments search_;
 };
 
 /// An arc of a door's leaf.

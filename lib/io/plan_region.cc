@@ -9,7 +9,7 @@
 
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "io/near_segments.h"
 
 namespace ispace {
 
@@ -164,11 +164,11 @@ std::optional<PlanRegion> PlanFaces::region(std::optional<Point2> preferred) con
 std::vector<bool> belongsTo(const PlanRegion& region, std::span<const Segment2> lines) {
     std::vector<bool> belongs(lines.size());
     // Lines on which an edge of a room lies; both were welded, which moves by that distance.
-    const SegmentGrid grid(lines, 3 * kWeldDistance);
+    const NearSegments search(lines);
     for (const Region& room : region.rooms)
         room.forEachEdge([&](const Segment2& edge) {
             const Point2 middle = middleOf(edge);
-            for (const std::uint32_t i : grid.near(middle))
+            for (const std::size_t i : search.near(middle, 3 * kWeldDistance))
                 if (distance(middle, lines[i]) <= 3 * kWeldDistance) belongs[i] = true;
         });
     const RegionLocator locator(region.rooms);

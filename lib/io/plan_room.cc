@@ -39,12 +39,6 @@ std::string titleOf(const Element& element) {
     return title;
 }
 
-std::vector<Polygon> curvesOf(const Region& region) {
-    std::vector<Polygon> curves{region.outline};
-    curves.insert(curves.end(), region.holes.begin(), region.holes.end());
-    return curves;
-}
-
 /// A covering: its colour, and squares of another in one path.
 DrawnItem coveringItem(const Element& element) {
     DrawnItem item{PlanLayer::Floor, element.id, titleOf(element)};

@@ -71,9 +71,7 @@ class MapPainter {
     }
 
     void addFloor(const Region& indoor) {
-        std::vector<Polygon> curves{indoor.outline};
-        curves.insert(curves.end(), indoor.holes.begin(), indoor.holes.end());
-        fill(insideRuns(curves, frame_), kFree);
+        fill(insideRuns(curvesOf(indoor), frame_), kFree);
         indoor.forEachEdge([this](const Segment2& edge) { addMiddlesOn(edge); });
     }
 

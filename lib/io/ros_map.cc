@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -30,17 +31,17 @@ namespace {
 /// Cells that outlines move by default: half for stairs, see outline.h, and half for noise.
 constexpr double kDefaultSimplify = 1;
 
-/// A millimetre a cell, ten kilometres of map, and its distance from the origin (records end at
-/// 1000 km): beyond them the numbers are no metres, or the map is no plan of a building.
+/// A millimetre a cell and ten kilometres of map: beyond them the numbers are no metres, or the map
+/// is no plan of a building.
 constexpr double kFinestResolution = 0.001;
 constexpr double kLargestExtent = 10000;
-constexpr double kFarthest = 900000;
 
 /// What map.yaml says.
 struct MapHeader {
     std::string image;
-    double resolution = 0;  ///< metres a cell
-    Pose2 map_from_grid;    ///< the lower left corner of the picture
+    int image_line = 0, image_column = 0;  ///< where it is named
+    double resolution = 0;                 ///< metres a cell
+    Pose2 map_from_grid;                   ///< the lower left corner of the picture
     OccupancyRule rule;
 };
 
@@ -52,6 +53,10 @@ class HeaderReader {
     MapHeader read() {
         MapHeader header;
         header.image = text("image");
+        if (const YAML::Node node = root_["image"]; node) {
+            header.image_line = node.Mark().line + 1;
+            header.image_column = node.Mark().column + 1;
+        }
         header.resolution = resolution();
         header.map_from_grid = origin();
         header.rule = rule();
@@ -102,7 +107,7 @@ class HeaderReader {
             return {};
         }
         const auto entry = [&](std::size_t i) {
-            return number(node[i], "origin", -kFarthest, kFarthest);
+            return number(node[i], "origin", -kFarthestPlan, kFarthestPlan);
         };
         Pose2 pose;
         pose.position = {entry(0), entry(1)};
@@ -163,6 +168,25 @@ std::string imagePath(const std::string& image, const std::string& map_name) {
     return (folder / image).string();
 }
 
+/// \throws FormatError where map.yaml names it
+std::string readImage(const MapHeader& header, const std::string& path, const std::string& name) {
+    const auto refuse = [&](const std::string& reason, const char* hint) {
+        throw FormatError(Diagnostic{
+            displayName(name), header.image_line, header.image_column,
+            "picture `" + printable(header.image) + "` cannot be opened: " + reason + hint});
+    };
+    if (const std::string reason = reasonNotToRead(path); !reason.empty())
+        refuse(reason, std::filesystem::path(header.image).is_absolute()
+                           ? ""
+                           : "; it is looked for beside the map");
+    try {
+        return readAll(path);
+    } catch (const std::system_error& error) {
+        refuse(error.code().message(), "");
+        throw;
+    }
+}
+
 /// Says so where the thresholds turn much of the picture from unknown to free.
 void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords& out) {
     if (const std::size_t count = unknownCountedFree(image, rule); count > 0)
@@ -172,11 +196,12 @@ void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords&
                  formatDouble(rule.free_thresh) + "; with 0.196 they are unknown");
 }
 
-MapCells readRoom(const MapHeader& header, const std::string& path, ImportRecords& out) {
+MapCells readRoom(const MapHeader& header, const std::string& path, const std::string& name,
+                  ImportRecords& out) {
     const auto fail = [&path](const std::string& message) {
         throw FormatError(Diagnostic{path, 0, 0, message});
     };
-    const Picture image = parsePicture(readAll(path), path);
+    const Picture image = parsePicture(readImage(header, path, name), path);
     if (header.resolution * std::max(image.width, image.height) > kLargestExtent)
         fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " cells of " +
              formatDouble(header.resolution) + " m are more than " + formatDouble(kLargestExtent) +
@@ -234,7 +259,7 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
     const std::string path = imagePath(header.image, name);
     ImportRecords out(schemas, name, options);
     out.source(path);
-    const MapCells room = readRoom(header, path, out);
+    const MapCells room = readRoom(header, path, name, out);
     const double tolerance =
         options.simplify ? *options.simplify / header.resolution : kDefaultSimplify;
     const Region region = vectorised(room, tolerance);

@@ -189,7 +189,12 @@ TEST_F(RosMap, FindingsNameTheirPlace) {
 }
 
 TEST_F(RosMap, BadImages) {
-    EXPECT_THROW(read(kHeader), std::system_error);
+    const std::string rest = "\nresolution: 0.5\norigin: [0, 0]\n";
+    EXPECT_EQ(errorsOf("image: none.pgm" + rest),
+              "map.yaml:1:8: error: picture `none.pgm` cannot be opened: No such file or "
+              "directory; it is looked for beside the map\n");
+    EXPECT_EQ(errorsOf("image: /dev/zero" + rest),
+              "map.yaml:1:8: error: picture `/dev/zero` cannot be opened: it is no regular file\n");
     writeImage({"##", "  "});
     EXPECT_EQ(errorsOf(kHeader),
               "map.pgm: error: no free cell among 2 x 2: check `negate` and `free_thresh` of the "

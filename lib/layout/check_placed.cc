@@ -17,15 +17,6 @@ Box2 boxAbout(Point2 center, double radius) {
     return {center - margin, center + margin};
 }
 
-/// Deeper in the polygon than touching.
-bool isDeepIn(const Polygon& polygon, Point2 p) {
-    if (locate(polygon, p) != Side::Inside) return false;
-    double nearest = 2 * kTouching;
-    forEachEdge(polygon,
-                [&](const Segment2& edge) { nearest = std::min(nearest, distance(p, edge)); });
-    return nearest > kTouching;
-}
-
 /// The place of a polygon or line nearest to p.
 Point2 nearestOf(const Polygon& polygon, Point2 p) {
     Point2 best = polygon.front();
@@ -114,7 +105,7 @@ const PlacedCheck::MeshBand& PlacedCheck::bandOf(std::size_t element, double hei
     for (const Polygon& solid : near.band.solids) boxes.push_back(bounds(solid));
     near.solids = BoxTree(boxes);
     boxes.clear();
-    for (const auto& [a, b] : near.band.sheets) boxes.push_back(bounds({a, b}));
+    for (const Segment2& sheet : near.band.sheets) boxes.push_back(bounds(sheet));
     near.sheets = BoxTree(boxes);
     return near;
 }

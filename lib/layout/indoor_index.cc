@@ -10,12 +10,9 @@ IndoorIndex::IndoorIndex(const Region& region) {
     region.forEachEdge([this](const Segment2& edge) { edges_.push_back(edge); });
     std::vector<Box2> boxes;
     boxes.reserve(edges_.size());
-    for (const auto& [a, b] : edges_) {
-        Box2 box;
-        box.add(a);
-        box.add(b);
-        boxes.push_back(box);
-        right_ = std::max(right_, box.high.x);
+    for (const Segment2& edge : edges_) {
+        boxes.push_back(bounds(edge));
+        right_ = std::max(right_, boxes.back().high.x);
     }
     tree_ = BoxTree(boxes);
 }

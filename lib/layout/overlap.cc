@@ -90,31 +90,14 @@ std::optional<Segment2> pieceWithin(const Segment2& line, const Polygon& convex)
     return Segment2{line.a + from * along, line.a + to * along};
 }
 
-Box2 boxOf(const Segment2& line) {
-    Box2 box;
-    box.add(line.a);
-    box.add(line.b);
-    return box;
-}
-
-/// Deeper in the polygon than kTouching.
-bool isDeepIn(const Polygon& polygon, Point2 p) {
-    if (locate(polygon, p) != Side::Inside) return false;
-    bool deep = true;
-    forEachEdge(polygon, [&](const Segment2& edge) {
-        if (deep && distance(p, edge) <= kTouching) deep = false;
-    });
-    return deep;
-}
-
 /// Where along the line (0 .. 1) the polygon's edges meet it, ends included, in order.
 std::vector<double> meetings(const Segment2& line, const Polygon& polygon) {
     const Vec2 along = line.b - line.a;
     const double square = dot(along, along);
-    const Box2 box = boxOf(line);
+    const Box2 box = bounds(line);
     std::vector<double> at{0, 1};
     forEachEdge(polygon, [&](const Segment2& edge) {
-        if (!meets(boxOf(edge), box)) return;
+        if (!meets(bounds(edge), box)) return;
         const Vec2 other = edge.b - edge.a;
         const double turn = cross(along, other);
         if (turn == 0) {
@@ -143,22 +126,20 @@ std::optional<Point2> edgeWithin(const Polygon& a, const Polygon& b) {
     const Box2 box = bounds(b);
     std::optional<Point2> place;
     forEachEdge(a, [&](const Segment2& edge) {
-        if (!place && meets(boxOf(edge), box)) place = placeWithin(edge, b);
+        if (!place && meets(bounds(edge), box)) place = placeWithin(edge, b);
     });
     return place;
 }
 
 }  // namespace
 
-bool isConvex(const Polygon& polygon) {
-    const std::size_t n = polygon.size();
-    bool turns = false;
-    for (std::size_t i = 0; i < n; ++i) {
-        const Turn turn = orientation(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]);
-        if (turn == Turn::Right) return false;
-        turns = turns || turn == Turn::Left;
-    }
-    return turns;
+bool isDeepIn(const Polygon& polygon, Point2 p) {
+    if (locate(polygon, p) != Side::Inside) return false;
+    bool deep = true;
+    forEachEdge(polygon, [&](const Segment2& edge) {
+        if (deep && distance(p, edge) <= kTouching) deep = false;
+    });
+    return deep;
 }
 
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
@@ -205,7 +186,7 @@ std::optional<Point2> sharedPlace(const Slice& cut, const Polygon& convex) {
         return place;
     }
     cut.forEachLine([&](const Segment2& line) {
-        if (place || !meets(boxOf(line), box)) return;
+        if (place || !meets(bounds(line), box)) return;
         if (const auto piece = pieceWithin(line, convex)) place = middleOf({piece->a, piece->b});
     });
     // No line of the cut comes into the polygon: it lies wholly in a solid, or outside all.
@@ -225,7 +206,7 @@ std::optional<Point2> sharedPlace(const Slice& a, const Slice& b) {
     for (const auto& [sheets, solids] : {std::pair(&a.sheets, &b.solids), {&b.sheets, &a.solids}})
         for (const Segment2& line : *sheets)
             for (const Polygon& solid : *solids)
-                if (meets(boxOf(line), bounds(solid)))
+                if (meets(bounds(line), bounds(solid)))
                     if (auto place = placeWithin(line, solid)) return place;
     return std::nullopt;
 }

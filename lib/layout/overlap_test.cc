@@ -21,13 +21,15 @@ Polygon moved(Polygon polygon, Vec2 way) {
     return polygon;
 }
 
-TEST(Overlap, Convex) {
-    EXPECT_TRUE(isConvex(kSquare));
-    EXPECT_TRUE(isConvex({{0, 0}, {1, 0}, {2, 0}, {2, 2}}));
-    EXPECT_FALSE(isConvex({{0, 0}, {2, 0}, {1, 0.5}, {0, 2}}));
-    EXPECT_FALSE(isConvex({{0, 0}, {1, 0}, {2, 0}}));
-    EXPECT_FALSE(isConvex({{0, 0}, {0, 1}, {1, 1}, {1, 0}})) << "clockwise";
-    EXPECT_FALSE(isConvex({}));
+TEST(Overlap, DeepIn) {
+    EXPECT_TRUE(isDeepIn(kSquare, {0.5, 0.5}));
+    EXPECT_TRUE(isDeepIn(kSquare, {0.5, 2 * kTouching}));
+    EXPECT_FALSE(isDeepIn(kSquare, {0.5, kTouching / 2})) << "inside, but touching";
+    EXPECT_FALSE(isDeepIn(kSquare, {1 - kTouching / 2, 0.5}));
+    EXPECT_FALSE(isDeepIn(kSquare, {0, 0.5}));
+    EXPECT_FALSE(isDeepIn(kSquare, {2, 0.5})) << "far from the edges, but outside";
+    EXPECT_FALSE(isDeepIn({{0, 0}, {1, 0}}, {0.5, 0}));
+    EXPECT_FALSE(isDeepIn({}, {0, 0}));
 }
 
 TEST(Overlap, OfSquares) {

@@ -4,8 +4,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -19,16 +18,6 @@
 namespace ispace {
 
 namespace {
-
-/// a + b as a person adds decimals: where the nanometre next to the sum is within the rounding of
-/// the operands, that is what is meant (0.1 + 0.2 is 0.3).
-double decimalSum(double a, double b) {
-    const double sum = a + b;
-    const double near = std::round(sum * 1e9) / 1e9;
-    const double slack =
-        4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b));
-    return std::abs(near - sum) <= slack ? near : sum;
-}
 
 /// Calls visit(key) for each key with the role that the record has written.
 template <typename Visit>
@@ -56,7 +45,10 @@ std::vector<const KeySpec*> placeKeys(const Record& record) {
 class Editor {
   public:
     Editor(std::vector<Record> records, const Schemas& schemas)
-        : records_(std::move(records)), ids_(assignIds(records_)), schemas_(schemas) {}
+        : records_(std::move(records)),
+          ids_(assignIds(records_)),
+          taken_(ids_.begin(), ids_.end()),
+          schemas_(schemas) {}
 
     void apply(const Edit& edit) {
         edit_ = &edit;
@@ -70,10 +62,16 @@ class Editor {
             default:
                 break;
         }
-        for (const std::size_t i : found()) change(i);
+        const std::vector<std::size_t> places = found();
+        // A glob means what has a place of its own; the rest follows what it is in or on.
+        const bool by_glob = places.size() > 1;
+        for (const std::size_t i : places)
+            if (!by_glob || !follows(records_[i], places)) change(i);
     }
 
+    /// \throws FormatError if a record names one that the edits removed
     std::vector<Record> finish() {
+        checkReferences();
         std::erase_if(records_, [](const Record& r) { return r.keyword() == "result"; });
         return std::move(records_);
     }
@@ -89,6 +87,37 @@ class Editor {
     }
 
   private:
+    /// True if a move of the others moves this one, too: it is on one of them, or in its wall.
+    [[nodiscard]] bool follows(const Record& record, const std::vector<std::size_t>& moved) const {
+        if (edit_->kind != Edit::Kind::Move && edit_->kind != Edit::Kind::Forward) return false;
+        bool follows = false;
+        for (const Role role : {Role::Carrier, Role::Reference})
+            forEachWritten(record, role, [&](const KeySpec& key) {
+                const bool in_wall = role == Role::Reference && !placeOf(record);
+                follows = follows || in_wall ||
+                          (role == Role::Carrier &&
+                           std::any_of(moved.begin(), moved.end(), [&](std::size_t i) {
+                               return ids_[i] == record.text(key.name);
+                           }));
+            });
+        return follows;
+    }
+
+    void checkReferences() const {
+        Diagnostics findings;
+        for (std::size_t i = 0; i < records_.size(); ++i)
+            for (const Role role : {Role::Carrier, Role::Reference})
+                forEachWritten(records_[i], role, [&](const KeySpec& key) {
+                    const std::string& named = records_[i].text(key.name);
+                    if (removed_.count(named) == 0 || taken_.count(named) > 0) return;
+                    findings.add(Diagnostic{"", 0, 0,
+                                            "--delete " + named + ": `" + ids_[i] + "` has `" +
+                                                key.name + '=' + named +
+                                                "`; delete it, too, or set that anew"});
+                });
+        findings.throwIfAny();
+    }
+
     [[noreturn]] void fail(const std::string& message) const {
         throw FormatError(
             Diagnostic{"", 0, 0, optionOf(edit_->kind) + ' ' + edit_->text + ": " + message});
@@ -108,9 +137,11 @@ class Editor {
     void add(Record record) {
         std::string id = record.writtenId();
         if (id.empty()) {
-            for (std::size_t n = 1; id.empty() || isTaken(id); ++n)
-                id = record.keyword() + std::to_string(n);
-        } else if (isTaken(id)) {
+            std::size_t& n = count_[record.keyword()];
+            do {
+                id = record.keyword() + std::to_string(++n);
+            } while (!taken_.insert(id).second);
+        } else if (!taken_.insert(id).second) {
             fail("the id `" + id + "` is taken");
         }
         records_.push_back(std::move(record));
@@ -121,21 +152,32 @@ class Editor {
         const Schema* const schema = schemas_.find("fence");
         if (schema == nullptr) throw std::logic_error("no schema of fences");
         Record fence(*schema);
-        fence.set("path", parseValue(*schema->find("path"), edit_->text));
+        try {
+            fence.set("path", parseValue(*schema->find("path"), edit_->text));
+        } catch (const FormatError& error) {
+            fail(error.diagnostics().front().message);
+        }
         fence.set("closed", edit_->closed);
         add(std::move(fence));
     }
 
-    [[nodiscard]] bool isTaken(const std::string& id) const {
-        return std::find(ids_.begin(), ids_.end(), id) != ids_.end();
-    }
-
     void erase() {
+        std::vector<Record> records;
+        std::vector<std::string> ids;
         const std::vector<std::size_t> places = found();
-        for (auto i = places.rbegin(); i != places.rend(); ++i) {
-            records_.erase(records_.begin() + static_cast<std::ptrdiff_t>(*i));
-            ids_.erase(ids_.begin() + static_cast<std::ptrdiff_t>(*i));
+        auto next = places.begin();
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            if (next != places.end() && *next == i) {
+                taken_.erase(ids_[i]);
+                removed_.insert(std::move(ids_[i]));
+                ++next;
+                continue;
+            }
+            records.push_back(std::move(records_[i]));
+            ids.push_back(std::move(ids_[i]));
         }
+        records_ = std::move(records);
+        ids_ = std::move(ids);
     }
 
     void change(std::size_t i) {
@@ -169,6 +211,7 @@ class Editor {
             fail("a " + record.keyword() + " has no key `" + edit_->key + '`' +
                  didYouMean(edit_->key, record.schema().keyNames()));
         if (edit_->value.empty()) {
+            if (edit_->key == "id") fail("an id cannot be left out, others may name it");
             if (key->required) fail("a " + record.keyword() + " must have `" + edit_->key + '`');
             record.erase(edit_->key);
         } else {
@@ -186,13 +229,14 @@ class Editor {
 
     void rename(std::size_t i) {
         const std::string id = records_[i].writtenId();
-        if (id.empty() || id == ids_[i]) return;
-        if (isTaken(id)) fail("the id `" + id + "` is taken");
+        if (id == ids_[i]) return;
+        if (!taken_.insert(id).second) fail("the id `" + id + "` is taken");
         for (Record& record : records_)
             for (const Role role : {Role::Carrier, Role::Reference})
                 forEachWritten(record, role, [&](const KeySpec& key) {
                     if (record.text(key.name) == ids_[i]) record.set(key.name, id);
                 });
+        taken_.erase(ids_[i]);
         ids_[i] = id;
     }
 
@@ -205,6 +249,9 @@ class Editor {
 
     static FormatError noPlace(const Record& record) {
         std::string message = "has no place of its own";
+        if (keyOf(record.schema(), Role::Reference) != nullptr && record.has("offset"))
+            return FormatError(Diagnostic{
+                "", 0, 0, message + ": it is in its wall, move it with --set ID.offset=M"});
         for (const KeySpec& key : record.schema().keys)
             if (key.role == Role::Place && !key.default_value) {
                 message += ", give it one with --set ID." + key.name + "=X,Y";
@@ -244,13 +291,16 @@ class Editor {
         if (key == nullptr || record.find(key->name) == nullptr)
             throw FormatError(
                 Diagnostic{"", 0, 0, std::string("a ") + record.keyword() + ' ' + refusal});
-        const double sum = decimalSum(record.number(key->name), edit_->angle.degrees());
-        const bool wraps = role == Role::Heading && std::abs(sum) > 180;
-        record.set(key->name, wraps ? wrapped(Angle::degrees(sum)).degrees() : sum);
+        const double now = record.number(key->name);
+        record.set(key->name, role == Role::Heading ? turnedHeading(now, edit_->angle)
+                                                    : decimalSum(now, edit_->angle.degrees()));
     }
 
     std::vector<Record> records_;
-    std::vector<std::string> ids_;  // kept through all edits
+    std::vector<std::string> ids_;              // kept through all edits
+    std::set<std::string> taken_;               // the same
+    std::set<std::string> removed_;             // by --delete
+    std::map<std::string, std::size_t> count_;  // last number of added records, by keyword
     const Schemas& schemas_;
     const Edit* edit_ = nullptr;
 };

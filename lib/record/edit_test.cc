@@ -164,12 +164,61 @@ TEST(Edit, TakesGlobsInTheOrderOfTheEdits) {
               "error: --delete d2: nothing has the id `d2`, did you mean `d1`?");
 }
 
+TEST(Edit, MovesAllByAGlobOnce) {
+    EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l at=0.1,0 on=d\nwall id=w from=0,0 to=4,0\n"
+                   "door id=o wall=w offset=1\nlaser id=m at=2,2\n",
+                   {{Kind::Move, "*:1,0"}}),
+              "desk id=d at=2,1\nlaser id=l at=0.1,0 on=d\nwall id=w from=1,0 to=5,0\n"
+              "door id=o wall=w offset=1\nlaser id=m at=3,2\n");
+    // What it is on stays: then it moves there.
+    EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l1 at=0.1,0 on=d\nlaser id=l2 at=2,2\n",
+                   {{Kind::Move, "l*:1,0"}}),
+              "desk id=d at=1,1\nlaser id=l1 at=1.1,0 on=d\nlaser id=l2 at=3,2\n");
+}
+
+TEST(Edit, LeavesNoNameBehind) {
+    EXPECT_EQ(errorOf("desk id=d\nlaser id=l on=d\n", Kind::Delete, "d"),
+              "error: --delete d: `l` has `on=d`; delete it, too, or set that anew");
+    EXPECT_EQ(edit("desk id=d\nlaser id=l on=d\n", {{Kind::Delete, "d"}, {Kind::Delete, "l"}}), "");
+    EXPECT_EQ(edit("desk id=d\nlaser id=l on=d\n",
+                   {{Kind::Delete, "d"}, {Kind::Set, "l.on="}, {Kind::Set, "l.at=1,1"}}),
+              "laser id=l at=1,1\n");
+    // Another file may have what is named.
+    EXPECT_EQ(edit("laser id=l on=r1\ndesk id=d\n", {{Kind::Delete, "d"}}), "laser id=l on=r1\n");
+}
+
 TEST(Edit, AddsFences) {
     Edit fence = parseEdit(Kind::Fence, "0,0;4,0;4,3");
     fence.closed = true;
     const std::vector<Record> records = edited({}, std::vector<Edit>{fence}, schemas());
     ASSERT_EQ(records.size(), 1U);
     EXPECT_EQ(formatRecord(records[0]), "fence path=0,0;4,0;4,3 closed=yes");
+}
+
+TEST(Edit, NamesTheFenceThatIsNone) {
+    EXPECT_EQ(errorOf("desk id=d\n", Kind::Fence, "1,0;x,0"),
+              "error: --fence 1,0;x,0: `path`: `x` is not a number");
+}
+
+TEST(Edit, KeepsIdsThatOthersMayName) {
+    EXPECT_EQ(errorOf("desk id=d\n", Kind::Set, "d.id="),
+              "error: --set d.id=: an id cannot be left out, others may name it");
+    // An id that was given up may be used anew.
+    EXPECT_EQ(edit("desk id=d\n", {{Kind::Set, "d.id=e"}, {Kind::Add, "desk id=d at=1,0"}}),
+              "desk id=e\ndesk id=d at=1,0\n");
+    EXPECT_EQ(edit("desk id=d\n", {{Kind::Delete, "d"}, {Kind::Add, "desk id=d at=1,0"}}),
+              "desk id=d at=1,0\n");
+}
+
+TEST(Edit, TakesNoTimeForManyRecords) {
+    std::string lines;
+    for (int i = 0; i < 20000; ++i) lines += "desk\n";
+    std::vector<std::pair<Kind, std::string>> edits{{Kind::Delete, "desk*[05]"}};
+    for (int i = 0; i < 50; ++i) edits.emplace_back(Kind::Add, "desk at=1,1");
+    // 16 000 are left, the added ones have numbers of their own.
+    const std::string out = edit(lines, edits);
+    EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 16050);
+    EXPECT_NE(out.find("desk id=desk5 at=1,1\n"), std::string::npos);
 }
 
 TEST(Edit, DropsAResultThatIsNoLongerTrue) {
@@ -183,7 +232,8 @@ TEST(Edit, RefusesWhatHasNoPlace) {
               "error: --move l:1,0: `l`: has no place of its own, give it one with --set "
               "ID.at=X,Y");
     EXPECT_EQ(errorOf("door id=d wall=w offset=1\n", Kind::Move, "d:1,0"),
-              "error: --move d:1,0: `d`: has no place of its own");
+              "error: --move d:1,0: `d`: has no place of its own: it is in its wall, move it with "
+              "--set ID.offset=M");
     EXPECT_EQ(errorOf("fence id=f path=0,0;1,0\n", Kind::Move, "f:1,0,1"),
               "error: --move f:1,0,1: `f`: has no height to move by");
 }

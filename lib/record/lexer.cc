@@ -23,6 +23,12 @@ std::string hexByte(unsigned char byte) {
 
 }  // namespace
 
+std::string_view withoutMark(std::string_view bytes) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+    return bytes;
+}
+
 void checkTextBytes(std::string_view bytes, const std::string& name) {
     int line = 1;
     std::size_t line_begin = 0;

@@ -14,8 +14,8 @@ namespace ispace {
 /// \throws FormatError with one finding, at the first byte that is not. O(bytes)
 void checkTextBytes(std::string_view bytes, const std::string& name);
 
-/// A UTF-8 byte order mark, which some editors write, at the start of the bytes.
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+/// The bytes without the UTF-8 byte order mark that some editors write at their start.
+std::string_view withoutMark(std::string_view bytes);
 
 /// Takes lines off the front of a text, their ends (LF or CR LF) removed.
 class LineReader {

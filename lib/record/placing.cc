@@ -38,7 +38,7 @@ Value placeValue(const Record& record, const KeySpec& key) {
     return value == nullptr ? Value(Tuple{0, 0}) : *value;
 }
 
-/// A number as a person would write it, see placeIn.
+/// The number of at most nine decimals that a sum is meant to be, if there is one.
 /// \param size of the terms it is the sum of, together
 double tidy(double number, double size) {
     // Rounding errors of a few moves across a plan of a kilometre, a picometre, and of larger
@@ -60,8 +60,7 @@ struct Motion {
         const bool is_exact =
             (turn.cos == 0 || turn.sin == 0) &&
             static_cast<int>(a != 0) + static_cast<int>(b != 0) + static_cast<int>(c != 0) < 2;
-        const double sum = a + b + c + 0.0;  // + 0: no minus zero
-        return is_exact ? sum : tidy(sum, std::abs(a) + std::abs(b) + std::abs(c));
+        return is_exact ? a + b + c + 0.0 : decimalSum(a, b, c);  // + 0: no minus zero
     }
 
     void move(Tuple& tuple, const KeySpec& key) const {
@@ -70,7 +69,7 @@ struct Motion {
         tuple[1] = sum(position.y, turn.sin * x, turn.cos * y);
         if (dz == 0 || key.max_count < 3) return;
         if (tuple.size() == 2) tuple.push_back(key.standard_z);
-        tuple[2] = tidy(tuple[2] + dz, std::abs(tuple[2]) + std::abs(dz));
+        tuple[2] = decimalSum(tuple[2], dz);
     }
 
     void move(Record& record, const KeySpec& key) const {
@@ -85,10 +84,8 @@ struct Motion {
     void turnHeading(Record& record, const KeySpec& key) const {
         const Value* const value = record.find(key.name);
         if (value == nullptr || !turns()) return;
-        const double before = std::get<double>(*value);
-        const double after = wrapped(Angle::degrees(before) + heading).degrees();
-        const double size = std::abs(before) + std::abs(heading.degrees());
-        record.set(key.name, tidy(after, size), record.keyPlace(key.name));
+        record.set(key.name, turnedHeading(std::get<double>(*value), heading),
+                   record.keyPlace(key.name));
     }
 
     Point2 position;
@@ -98,6 +95,15 @@ struct Motion {
 };
 
 }  // namespace
+
+double decimalSum(double a, double b, double c) {
+    return tidy(a + b + c + 0.0, std::abs(a) + std::abs(b) + std::abs(c));  // + 0: no minus zero
+}
+
+double turnedHeading(double degrees, Angle turn) {
+    const double after = wrapped(Angle::degrees(degrees) + turn).degrees();
+    return tidy(after, std::abs(degrees) + std::abs(turn.degrees()));
+}
 
 void placeIn(Record& record, const Pose2& parent_from_record, double dz) {
     if (!isCarried(record)) moveInFrame(record, parent_from_record, dz);

@@ -8,6 +8,14 @@
 
 namespace ispace {
 
+/// a + b + c as a person adds decimals: 0.1 + 0.2 is 0.3. A sum within rounding errors (a picometre
+/// for terms of up to a kilometre, more for larger ones) of a number of at most nine decimals is
+/// that number. Never minus zero.
+double decimalSum(double a, double b, double c = 0);
+
+/// A heading that is turned: the decimalSum of both within (-180, 180], in degrees.
+double turnedHeading(double degrees, Angle turn);
+
 /// Puts a record that stands in a frame into the frame's parent, by the roles of its keys.
 ///
 /// Places that are written move: tuples and lists of them. If none is written, the one that has a
@@ -21,11 +29,9 @@ namespace ispace {
 /// canRise.
 ///
 /// Numbers stay as a person would write them. A coordinate that nothing is added to, turned by
-/// multiples of 90 degrees, is exact. Any other, and a heading, that lies within rounding errors (a
-/// picometre in plans of a kilometre) of a number of at most nine decimals becomes that number:
-/// 1.2 + 0.5 is 1.7, and a move there and back changes nothing. A heading that turns ends within
-/// (-180, 180].
-/// \throws FormatError with the record's place if a number leaves its bounds; the record may be
+/// multiples of 90 degrees, is exact. Any other is a decimalSum: 1.2 + 0.5 is 1.7, and a move there
+/// and back changes nothing. A heading that turns becomes its turnedHeading. \throws FormatError
+/// with the record's place if a number leaves its bounds; the record may be
 ///         moved in part then
 void placeIn(Record& record, const Pose2& parent_from_record, double dz = 0);
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <random>
 
 #include "record/test_random_records.h"
@@ -27,6 +29,42 @@ std::string moved(std::string_view line, const Pose2& pose, double dz = 0) {
 }
 
 Pose2 pose(double x, double y, double degrees = 0) { return {{x, y}, Angle::degrees(degrees)}; }
+
+TEST(DecimalSum, IsWhatAPersonAdds) {
+    EXPECT_EQ(decimalSum(0.1, 0.2), 0.3);
+    EXPECT_EQ(decimalSum(1.1, 2.2, -3.3), 0);
+    EXPECT_EQ(decimalSum(1.2, 0.5), 1.7);
+    EXPECT_EQ(decimalSum(1e6, 0.1, 0.2), 1000000.3);
+    EXPECT_FALSE(std::signbit(decimalSum(-0.0, -0.0)));
+    EXPECT_FALSE(std::signbit(decimalSum(-1e-15, 0))) << "less than a rounding error";
+}
+
+TEST(DecimalSum, LeavesWhatIsNoDecimal) {
+    const double third = 1.0 / 3;
+    EXPECT_EQ(decimalSum(third, 1), third + 1);
+    EXPECT_EQ(decimalSum(1e-11, 0), 1e-11) << "finer than nine decimals, but no rounding error";
+    EXPECT_EQ(decimalSum(1e300, 1), 1e300) << "too large to have decimals";
+}
+
+TEST(DecimalSum, OfRandomDecimalsIsTheirs) {
+    std::mt19937_64 random(5);
+    for (int round = 0; round < 1000; ++round) {
+        const auto a = static_cast<std::int64_t>(random() % 2000000) - 1000000,
+                   b = static_cast<std::int64_t>(random() % 2000000) - 1000000;
+        const auto number = [](std::int64_t thousandths) {
+            return static_cast<double>(thousandths) / 1000;
+        };
+        EXPECT_EQ(decimalSum(number(a), number(b)), number(a + b)) << a << ' ' << b;
+    }
+}
+
+TEST(TurnedHeading, StaysWithinATurn) {
+    EXPECT_EQ(turnedHeading(30, Angle::degrees(0.1)), 30.1);
+    EXPECT_EQ(turnedHeading(0.1, Angle::degrees(190)), -169.9);
+    EXPECT_EQ(turnedHeading(-90, Angle::degrees(-90)), 180);
+    EXPECT_EQ(turnedHeading(350.2, Angle::degrees(9.8)), 0);
+    EXPECT_EQ(turnedHeading(0, Angle::degrees(720.3)), 0.3);
+}
 
 TEST(PlaceIn, MovesWhatIsWritten) {
     EXPECT_EQ(placed("desk at=1,2 heading=30", pose(10, 20, 90)), "desk at=8,21 heading=120");

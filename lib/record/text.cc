@@ -14,11 +14,6 @@ namespace {
 constexpr std::string_view kEnvironmentMagic = "#env", kLayoutMagic = "#3dm", kVersion = "1";
 constexpr const char* kWantedMagic = "wanted the magic line `#env 1` or `#3dm 1`";
 
-std::string_view withoutMark(std::string_view bytes) {
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
-    return bytes;
-}
-
 DocumentKind parseMagic(std::string_view line, const std::string& name) {
     const auto refuse = [&](const std::string& message) {
         throw FormatError({name, 1, 1, message});

@@ -17,8 +17,7 @@ namespace {
 /// Kind and history behind a magic first line, if there is one.
 Document readHead(std::string_view bytes, const std::string& name) {
     Document document;
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
-    LineReader lines(bytes);
+    LineReader lines(withoutMark(bytes));
     const auto first = lines.next();
     if (!first || !first->starts_with(kYamlMagic)) return document;
     const std::string_view version = first->substr(kYamlMagic.size());

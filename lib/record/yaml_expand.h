@@ -11,7 +11,7 @@ namespace ispace {
 
 /// What parts and repetitions may make, beside what is written as it is: a small file shall not
 /// fill the memory.
-constexpr std::size_t kMostMadeRecords = 1'000'000, kMostMadeBytes = 256'000'000;
+constexpr std::size_t kMostMadeRecords = 50'000, kMostMadeBytes = 64'000'000;
 /// Parts in parts, at most.
 constexpr std::size_t kMostPartDepth = 32;
 

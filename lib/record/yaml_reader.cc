@@ -33,11 +33,6 @@ void checkIndentation(std::string_view bytes, const std::string& name) {
     findings.throwIfAny();
 }
 
-std::string_view withoutMark(std::string_view bytes) {
-    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
-    return bytes;
-}
-
 /// The nodes of a file that is YAML and holds something.
 std::unique_ptr<const YamlTree> parse(std::string_view bytes, const std::string& name) {
     checkTextBytes(bytes, name);

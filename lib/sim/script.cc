@@ -113,7 +113,7 @@ std::vector<TimedCommand> ScriptReader::take() {
 
 std::vector<TimedCommand> readScript(std::string_view text, const std::string& file,
                                      const World& world) {
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    text = withoutMark(text);
     checkTextBytes(text, file);
     ScriptReader reader(file, world);
     LineReader lines(text);

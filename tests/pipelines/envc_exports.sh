@@ -115,7 +115,7 @@ if command -v ogrinfo >/dev/null; then
 else
     echo "no ogrinfo here"
 fi
-grep -q '"coordinates":"local-metres"' room.geojson || fail "GeoJSON does not say that it is local"
+grep -q '"coordinate_system":"local-metres"' room.geojson || fail "GeoJSON does not say that it is local"
 
 # The obstacle map at a height: beside the table's foot there is floor, at its top not.
 for format in geojson svg png; do

@@ -67,28 +67,46 @@ std::string drawing(const EnvcOptions& options, const Scene& scene) {
     return drawPlan(scene, plan);
 }
 
-/// The product's bytes. What goes into a file beside it is written first.
-std::string compiled(const EnvcOptions& options, const Scene& scene, const Document& document) {
+/// Two files that belong together: both are there, or none.
+void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
+               std::string_view second_bytes) {
+    OutputFile one(first), two(second);
+    one.write(first_bytes);
+    two.write(second_bytes);
+    one.commit();
+    two.commit();
+}
+
+void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
     const std::string& format = options.format;
     const std::string& output = options.common.output;
-    if (format == "obj") {
-        const bool named = !isStream(output);
-        const std::string materials = named ? withSuffix(output, ".mtl") : "";
-        ObjFiles files = writeObj(scene, named ? fs::path(materials).filename().string() : "");
-        if (named) writeAll(materials, files.mtl);
-        return std::move(files.obj);
-    }
-    if (format == "ros") {
+    if (format == "obj" && !isStream(output)) {
+        const std::string materials = withSuffix(output, ".mtl");
+        const ObjFiles files = writeObj(scene, fs::path(materials).filename().string());
+        writeBoth(output, files.obj, materials, files.mtl);
+    } else if (format == "obj") {
+        writeAll(output, writeObj(scene, "").obj);
+    } else if (format == "ros") {
         const std::string picture = withSuffix(output, ".pgm");
-        RosMapFiles files = writeRosMap(scene, options.slice.value_or(kScanHeight),
-                                        options.resolution, fs::path(picture).filename().string());
-        writeAll(picture, files.pgm);
-        return std::move(files.yaml);
+        const RosMapFiles files =
+            writeRosMap(scene, options.slice.value_or(kScanHeight), options.resolution,
+                        fs::path(picture).filename().string());
+        writeBoth(output, files.yaml, picture, files.pgm);
+    } else if (format == "stl") {
+        writeAll(output, writeStl(scene));
+    } else if (format == "geojson") {
+        writeAll(output, writeGeoJson(scene, options.slice));
+    } else if (format == "svg" || format == "png") {
+        writeAll(output, drawing(options, scene));
+    } else {
+        writeAll(output, writeGlb(scene, document));
     }
-    if (format == "stl") return writeStl(scene);
-    if (format == "geojson") return writeGeoJson(scene, options.slice);
-    if (format == "svg" || format == "png") return drawing(options, scene);
-    return writeGlb(scene, document);
+}
+
+/// Names of files in a product are relative to its folder.
+void rebaseTo(const std::string& output, Document& document) {
+    rebaseFiles(document.records, "",
+                isStream(output) ? "" : fs::path(output).parent_path().string());
 }
 
 void compile(const EnvcOptions& options, Document document) {
@@ -96,6 +114,7 @@ void compile(const EnvcOptions& options, Document document) {
     std::erase_if(document.records,
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;
+    if (options.format == "glb") rebaseTo(options.common.output, document);
     const Scene scene =
         makeScene(document, nullptr, DeviceCatalogue::load(shareFolder() + "/devices"));
     const std::string& output = options.common.output;
@@ -106,7 +125,7 @@ void compile(const EnvcOptions& options, Document document) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else {
-        writeAll(output, compiled(options, scene, document));
+        writeProduct(options, scene, document);
         talk(options.common, "envc",
              std::to_string(scene.records.size()) + " records compiled, indoor area " +
                  formatFixed(scene.environment.indoor().area(), 2) + " m2");
@@ -115,8 +134,7 @@ void compile(const EnvcOptions& options, Document document) {
 
 void convert(const EnvcOptions& options, Document document) {
     const std::string& output = options.common.output;
-    rebaseFiles(document.records, "",
-                isStream(output) ? "" : fs::path(output).parent_path().string());
+    rebaseTo(output, document);
     if (options.format != "yaml")
         document.kind = options.format == "env" ? DocumentKind::Environment : DocumentKind::Layout;
     writeAll(output, options.format == "yaml" ? writeYaml(document) : writeRecordText(document));

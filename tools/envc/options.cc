@@ -63,8 +63,10 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 Enters::History);
     line.meters("--wall-thickness", import.wall_thickness, 0, 100,
                 "thickness of walls of plans that are drawn as lines", Enters::History);
-    line.meters("--snap", import.snap, 0, 100,
-                "join ends of a plan's lines that are this near (default: 5 mm in DXF and ARIA maps)", Enters::History);
+    line.meters(
+        "--snap", import.snap, 0, 100,
+        "join ends of a plan's lines that are this near (default: 5 mm in DXF and ARIA maps)",
+        Enters::History);
     line.meters("--simplify", import.simplify, 0, 1000,
                 "outlines of plans may move by this (default: one cell of a map, else 0)",
                 Enters::History);
@@ -84,10 +86,11 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
     if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1)
         throw UsageError("stdin cannot be read twice: only one operand can be -");
     if (options.json && !options.info) throw UsageError("--json is the form of --info: give both");
-    if (options.check && (options.info || options.slice || line.given("--to")))
-        throw UsageError("--check writes nothing: leave --info, --slice and --to out");
-    if (options.info && options.slice)
-        throw UsageError("--info reports and --slice draws: give one of them");
+    if (options.check && (options.info || options.slice || line.given("--to") ||
+                          line.given("--output") || options.common.dependencies.wanted))
+        throw UsageError("--check writes nothing: leave --info, --slice, --to, -o and -MD out");
+    if (options.info && (options.slice || line.given("--to")))
+        throw UsageError("--info is the product then: leave --slice and --to out");
     if (line.given("--closed") && !line.given("--fence"))
         throw UsageError("--closed is about --fence: give both");
     const std::string suffix = std::filesystem::path(options.common.output).extension().string();
