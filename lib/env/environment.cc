@@ -61,9 +61,10 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
     }
 }
 
-/// A few lines can make round and checkered things without end; a plan of any building has fewer
-/// corners than this and that many for each of its records.
-constexpr std::size_t kMostCorners = 6'000'000, kMostCornersEach = 10;
+/// What the shapes of things may have in corners: so many, and more for each record that is written
+/// than for those that a repetition makes. A few lines can make round and checkered things without
+/// end; a plan that somebody wrote stays far below.
+constexpr std::size_t kMostCorners = 1'000'000, kMostCornersWritten = 1000, kMostCornersMade = 10;
 
 std::size_t cornersOf(const Body& body) {
     std::size_t corners = 0;
@@ -152,9 +153,10 @@ class Builder {
         }
         elements_.push_back({record, id, bodyBesideWalls(record)});
         corners_ += cornersOf(elements_.back().body);
-        if (corners_ > kMostCorners + kMostCornersEach * elements_.size())
+        most_corners_ += record.isMade() ? kMostCornersMade : kMostCornersWritten;
+        if (corners_ > most_corners_)
             throw FormatError(record.finding(
-                "the shapes up to here have more than " + std::to_string(kMostCorners) +
+                "the shapes up to here have more than " + std::to_string(most_corners_) +
                 " corners: fewer round or checkered things are wanted, or smaller ones"));
         checkShape(record, elements_.back().body, findings_);
     }
@@ -189,7 +191,7 @@ class Builder {
 
     Diagnostics findings_;
     std::vector<Element> elements_;
-    std::size_t corners_ = 0;  // of their bodies, without walls and meshes
+    std::size_t corners_ = 0, most_corners_ = kMostCorners;  // without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;  // every record has all its lines
     const Record* inside_ = nullptr;

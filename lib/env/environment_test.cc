@@ -322,9 +322,15 @@ TEST(Environment, RefusesShapesWithoutEnd) {
     std::string lines = "fence path=0,0;8,0;8,6;0,6 closed=yes\n";
     for (int i = 0; i < 800; ++i) lines += "floor size=40,40 kind=checker\n";
     const std::string found = findings(lines);
-    // 64 x 64 squares of four corners each: the 369th is too much.
-    EXPECT_TRUE(found.starts_with("room.env:3")) << found;
-    EXPECT_NE(found.find("more than 6000000 corners"), std::string::npos) << found;
+    // 64 x 64 squares of four corners each: 66 of them are more than a million and 66 000.
+    EXPECT_TRUE(found.starts_with("room.env:6")) << found;
+    EXPECT_NE(found.find(" corners: fewer"), std::string::npos) << found;
+}
+
+TEST(Environment, BearsAsManyRoundThingsAsSomebodyWrites) {
+    std::string lines = "fence path=0,0;800,0;800,6;0,6 closed=yes\n";
+    for (int i = 0; i < 3000; ++i) lines += "table at=" + std::to_string(5 + i / 4) + ",3\n";
+    EXPECT_EQ(findings(lines), "");
 }
 
 TEST(Environment, SameForAnyRun) {

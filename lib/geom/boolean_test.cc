@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "geom/planar_map.h"
 #include "geom/test_curves.h"
@@ -204,6 +205,49 @@ TEST(Unite, aRingHasAHole) {
     ASSERT_EQ(pieces[0].holes.size(), 1U);
     EXPECT_EQ(signedArea(pieces[0].holes[0]), -9);
     EXPECT_EQ(pieces[0].area(), 16);
+}
+
+TEST(Difference, solidsThatStandClearAreHolesOfTheirPiece) {
+    // A wall of solids cuts the room in two; boxes stand clear on both sides, in a hole and
+    // outside.
+    const Region room{test::box(0, 0, 10, 10), {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
+    std::vector<Polygon> solids{test::box(4.5, -1, 5.5, 6), test::box(4.5, 5, 5.5, 11)};
+    for (const Point2 at : {Point2{2, 8}, {3, 5}, {8, 2}, {8, 8}, {1.5, 1.5}, {12, 5}, {8, -3}})
+        solids.push_back(test::box(at.x, at.y, at.x + 0.5, at.y + 0.5));
+    const std::vector<Region> pieces = difference(room, solids);
+    ASSERT_EQ(pieces.size(), 2U);
+    EXPECT_NEAR(totalArea(pieces), 90 - 4 - 4 * 0.25, 1e-12);
+    for (const Region& piece : pieces) {
+        for (const Polygon& hole : piece.holes) {
+            EXPECT_LT(signedArea(hole), 0);
+            EXPECT_EQ(locate(piece.outline, hole.front()), Side::Inside);
+        }
+    }
+    EXPECT_EQ(pieces[0].holes.size() + pieces[1].holes.size(), 5U);
+}
+
+TEST(Difference, isTheSameWithAndWithoutNeighbours) {
+    // Solids at random, some clear of all others: area by cells.
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> place(-1, 11), size(0.05, 0.9);
+    const Region room{test::box(0, 0, 10, 10), {}};
+    for (int run = 0; run < 30; ++run) {
+        std::vector<Polygon> solids;
+        for (int i = 0; i < 5 + 3 * run; ++i) {
+            const Point2 at{place(random), place(random)};
+            solids.push_back(test::box(at.x, at.y, at.x + size(random), at.y + size(random)));
+        }
+        const std::vector<Region> pieces = difference(room, solids);
+        for (int k = 0; k < 400; ++k) {
+            const Point2 p{place(random), place(random)};
+            const bool covered = std::any_of(solids.begin(), solids.end(), [&](const Polygon& s) {
+                return locate(s, p) != Side::Outside;
+            });
+            const bool wanted = room.locate(p) == Side::Inside && !covered;
+            const auto holds = [&](const Region& r) { return r.locate(p) == Side::Inside; };
+            EXPECT_EQ(std::count_if(pieces.begin(), pieces.end(), holds), wanted ? 1 : 0);
+        }
+    }
 }
 
 }  // namespace

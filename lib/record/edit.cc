@@ -110,10 +110,12 @@ class Editor {
                 forEachWritten(records_[i], role, [&](const KeySpec& key) {
                     const std::string& named = records_[i].text(key.name);
                     if (removed_.count(named) == 0 || taken_.count(named) > 0) return;
-                    findings.add(Diagnostic{"", 0, 0,
-                                            "--delete " + named + ": `" + ids_[i] + "` has `" +
-                                                key.name + '=' + named +
-                                                "`; delete it, too, or set that anew"});
+                    std::string message = "--delete " + named + ": `";
+                    for (const std::string& part :
+                         {ids_[i], std::string("` has `"), key.name, std::string("="), named})
+                        message += part;
+                    message += "`; delete it, too, or set that anew";
+                    findings.add(Diagnostic{"", 0, 0, std::move(message)});
                 });
         findings.throwIfAny();
     }

@@ -91,6 +91,10 @@ class Record {
         place_.included_from = std::move(place);
     }
 
+    /// True if it is one of many that a repetition or a part has made, not one that is written.
+    [[nodiscard]] bool isMade() const { return made_; }
+    void setMade() { made_ = true; }
+
     /// The content of the file that the record names, once somebody has loaded it; else null.
     [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
     void setMesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
@@ -115,6 +119,7 @@ class Record {
     Place place_;
     std::vector<Entry> entries_;  // in the order of the schema's keys
     std::shared_ptr<const TriangleMesh> mesh_;
+    bool made_ = false;
 };
 
 /// What a text holds, told by its content.

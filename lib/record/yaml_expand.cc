@@ -185,6 +185,7 @@ class Expander {
         for (std::size_t i = 0; i < count; ++i) {
             spend(item.record.place(), 1, size);
             Record copy = item.record;
+            copy.setMade();
             if (repetition) moveCopy(copy, *repetition, i, item.repeat->place());
             if (!isPlacement(item))
                 records_.push_back(std::move(copy));
