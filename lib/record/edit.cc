@@ -62,11 +62,14 @@ class Editor {
             default:
                 break;
         }
-        const std::vector<std::size_t> places = found();
-        // A glob means what has a place of its own; the rest follows what it is in or on.
-        const bool by_glob = places.size() > 1;
-        for (const std::size_t i : places)
-            if (!by_glob || !follows(records_[i], places)) change(i);
+        std::vector<std::size_t> places = found();
+        // A glob means what can be changed so; the rest follows what it is in or on, or stays.
+        if (places.size() > 1) {
+            const std::vector<std::size_t> all = places;
+            std::erase_if(places, [&](std::size_t i) { return !isMeant(records_[i], all); });
+            if (places.empty()) fail("nothing of what matches can be changed so");
+        }
+        for (const std::size_t i : places) change(i);
     }
 
     /// \throws FormatError if a record names one that the edits removed
@@ -87,20 +90,31 @@ class Editor {
     }
 
   private:
-    /// True if a move of the others moves this one, too: it is on one of them, or in its wall.
-    [[nodiscard]] bool follows(const Record& record, const std::vector<std::size_t>& moved) const {
-        if (edit_->kind != Edit::Kind::Move && edit_->kind != Edit::Kind::Forward) return false;
-        bool follows = false;
-        for (const Role role : {Role::Carrier, Role::Reference})
-            forEachWritten(record, role, [&](const KeySpec& key) {
-                const bool in_wall = role == Role::Reference && !placeOf(record);
-                follows = follows || in_wall ||
-                          (role == Role::Carrier &&
-                           std::any_of(moved.begin(), moved.end(), [&](std::size_t i) {
-                               return ids_[i] == record.text(key.name);
-                           }));
-            });
-        return follows;
+    /// True if the edit is about this one of several records that its glob names.
+    [[nodiscard]] bool isMeant(const Record& record, const std::vector<std::size_t>& all) const {
+        const Schema& schema = record.schema();
+        switch (edit_->kind) {
+            case Edit::Kind::Move:
+                return placeOf(record) && !isOnOneOf(record, all);
+            case Edit::Kind::Forward:
+                return placeOf(record) && keyOf(schema, Role::Heading) != nullptr &&
+                       !isOnOneOf(record, all);
+            case Edit::Kind::Rotate:
+                return placeOf(record).has_value();
+            case Edit::Kind::Tilt:
+                return keyOf(schema, Role::Tilt) != nullptr;
+            default:
+                return true;
+        }
+    }
+
+    [[nodiscard]] bool isOnOneOf(const Record& record, const std::vector<std::size_t>& all) const {
+        bool is_on = false;
+        forEachWritten(record, Role::Carrier, [&](const KeySpec& key) {
+            is_on = std::any_of(all.begin(), all.end(),
+                                [&](std::size_t i) { return ids_[i] == record.text(key.name); });
+        });
+        return is_on;
     }
 
     void checkReferences() const {

@@ -44,7 +44,7 @@ Edit parseEdit(Edit::Kind kind, std::string_view text);
 /// Ids are those before the first edit (assignIds), written or automatic; where an edit would
 /// change an automatic id that later records or layouts may name, it is written from then on. A
 /// new id (`--set l1.id=west`) is followed by the records that name the old one. Where a glob moves
-/// several records, what is mounted on one of them, and what is placed by its wall, follows by
+/// several records, what is mounted on one of them, or has no place of its own, follows by
 /// itself. `result` records are dropped by any edit: they tell of another layout.
 /// \throws FormatError, each message beginning with the edit ("--move l9:1,0: nothing has the id
 ///         …"): an id that nothing has, a key that the record has not, a value out of bounds, a

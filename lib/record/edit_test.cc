@@ -170,6 +170,13 @@ TEST(Edit, MovesAllByAGlobOnce) {
                    {{Kind::Move, "*:1,0"}}),
               "desk id=d at=2,1\nlaser id=l at=0.1,0 on=d\nwall id=w from=1,0 to=5,0\n"
               "door id=o wall=w offset=1\nlaser id=m at=3,2\n");
+    // Others have no place, or cannot be tilted.
+    EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l\nresult id=r\n", {{Kind::Move, "*:1,0"}}),
+              "desk id=d at=2,1\nlaser id=l\n");
+    EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l at=1,1\n", {{Kind::Tilt, "*:5"}}),
+              "desk id=d at=1,1\nlaser id=l at=1,1 tilt=5\n");
+    EXPECT_EQ(errorOf("desk id=d1\ndesk id=d2\n", Kind::Tilt, "d*:5"),
+              "error: --tilt d*:5: nothing of what matches can be changed so");
     // What it is on stays: then it moves there.
     EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l1 at=0.1,0 on=d\nlaser id=l2 at=2,2\n",
                    {{Kind::Move, "l*:1,0"}}),
