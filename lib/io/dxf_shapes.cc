@@ -186,6 +186,7 @@ class Expander {
     }
 
     void addArc(const DxfEntity& entity, const DxfArc& arc, const Frame& frame) {
+        if (arc.radius == 0) return;  // shows nothing, as a line of no length
         if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
         const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
         double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
