@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "layout/check_doors.h"
 #include "layout/check_parts.h"
 
 namespace ispace {
@@ -20,6 +22,7 @@ class SceneCheck {
     explicit SceneCheck(const Scene& scene)
         : context_(scene), things_(context_), placed_(context_) {
         crossings_ = wallCrossings(scene.environment.elements(), Diagnostics::kMost + 1);
+        blocked_ = blockedDoors(scene.environment);
     }
 
     Diagnostics run() {
@@ -48,12 +51,15 @@ class SceneCheck {
                                         : "; end one of them at the other";
             findings_.add(context_.finding(element, message));
         }
+        if (const auto door = blocked_.find(element); door != blocked_.end())
+            findings_.add(context_.finding(element, door->second));
     }
 
     CheckContext context_;
     ThingCheck things_;
     PlacedCheck placed_;
     std::vector<WallCrossing> crossings_;
+    std::map<std::size_t, std::string> blocked_;
     Diagnostics findings_;
 };
 

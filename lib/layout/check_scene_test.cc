@@ -245,6 +245,20 @@ Scene meshScene(TriangleMesh mesh, const std::string& keys, const std::string& o
     return makeScene(room, nullptr, devices());
 }
 
+TEST(CheckScene, OpenDoorsThatLeadIntoAWall) {
+    // Another room a hand's breadth away: the door cuts the wall of the first only.
+    const std::string annex = "ispace id=annex at=10.1,3 size=4,4\ninside at=1,1\n";
+    EXPECT_EQ(check(annex + "door id=o at=8,3 open=yes\n"),
+              "room.env:5:1: error: door o is open, but leads only to ispace annex, 0.1 m behind, "
+              "near (8.0, 3.0); say how far it reaches through with size=0.9,0.2\n");
+    EXPECT_EQ(check(annex + "door id=o at=8,3 open=yes size=0.9,0.2\n"), "");
+    EXPECT_EQ(check(annex + "door id=o at=8,3\n"), "") << "closed";
+    EXPECT_EQ(check(annex + "door id=o at=0,3 open=yes\n"), "") << "to the outside";
+    EXPECT_EQ(check("ispace id=annex at=10,3 size=4,4\ninside at=1,1\ndoor id=o at=8,3 open=yes\n"),
+              "")
+        << "a wall in common";
+}
+
 TEST(CheckScene, Meshes) {
     const TriangleMesh ring = testing::torusMesh(1, 0.2, 40, 16);
     EXPECT_EQ(check(meshScene(ring, "at=3,3,0.2")), "");
