@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geom/box_tree.h"
 #include "geom/overlay.h"
 #include "geom/predicates.h"
 #include "geom/segment_grid.h"
@@ -78,6 +79,19 @@ bool meetAtEndsOnly(const std::vector<Edge>& edges, const SegmentGrid& grid) {
                 clean = meetAtEndsOnly(edges[cell[i]], edges[cell[k]]);
         }
     });
+    return clean;
+}
+
+/// The same by boxes of edges, which an uneven plan does not crowd as it does cells.
+bool meetAtEndsOnly(const std::vector<Edge>& edges, const SegmentTree& tree) {
+    std::size_t pairs_left = kPairsAnyway + kPairsPerEdge * edges.size();
+    bool clean = true;
+    for (std::size_t i = 0; clean && i < edges.size(); ++i)
+        tree.search({edges[i].a, edges[i].b}, 0, [&](std::size_t k) {
+            if (!clean || k <= i) return;
+            clean = pairs_left > 0 && meetAtEndsOnly(edges[i], edges[k]);
+            if (clean) --pairs_left;
+        });
     return clean;
 }
 
@@ -346,7 +360,8 @@ std::optional<std::vector<Region>> tracedFaces(std::span<const Segment2> lines,
     segments.reserve(edges.size());
     for (const Edge& edge : edges) segments.push_back({edge.a, edge.b});
     const SegmentGrid grid(segments, 0);
-    if (!meetAtEndsOnly(edges, grid)) return std::nullopt;
+    if (!meetAtEndsOnly(edges, grid) && !meetAtEndsOnly(edges, SegmentTree(segments)))
+        return std::nullopt;
     return FaceTrace(edges, grid).regions();
 }
 

@@ -197,5 +197,20 @@ TEST(TracedFaces, crowdsAreLeftToTheArrangementInTime) {
     EXPECT_TRUE(boundedFaces(lines, {}).empty());
 }
 
+TEST(TracedFaces, CombsAreTracedThoughTheyCrowdTheCells) {
+    // Teeth an inch apart along a long wall, and a room far away.
+    std::vector<Segment2> lines;
+    for (int i = 0; i < 20000; ++i) {
+        lines.push_back({{0.04 * i, 0}, {0.04 * (i + 1), 0}});
+        lines.push_back({{0.04 * i, 0}, {0.04 * i, 50}});
+    }
+    for (const Segment2& edge : test::edgesOf(test::box(9000, 9000, 9004, 9003)))
+        lines.push_back(edge);
+    const auto faces = tracedFaces(lines, {});
+    ASSERT_TRUE(faces.has_value()) << "left to the arrangement";
+    ASSERT_EQ(faces->size(), 1U);
+    EXPECT_NEAR((*faces)[0].area(), 12, 1e-6);
+}
+
 }  // namespace
 }  // namespace ispace
