@@ -4,6 +4,9 @@
 # of an include, a mesh; and goes on when an include is no longer there and no longer named.
 . "$(dirname "$0")/common.sh"
 
+# The make that runs the tests is another one.
+unset MAKEFLAGS MFLAGS MAKELEVEL
+
 mkdir parts meshes "a folder"
 cp "$data"/include/parts/* parts
 cp "$data"/include/building.yaml building.yaml
