@@ -100,7 +100,7 @@ class Editor {
                 return placeOf(record) && keyOf(schema, Role::Heading) != nullptr &&
                        !isOnOneOf(record, all);
             case Edit::Kind::Rotate:
-                return placeOf(record).has_value();
+                return placeOf(record) && !isOnOneOf(record, all);
             case Edit::Kind::Tilt:
                 return keyOf(schema, Role::Tilt) != nullptr;
             default:

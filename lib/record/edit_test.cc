@@ -170,6 +170,10 @@ TEST(Edit, MovesAllByAGlobOnce) {
                    {{Kind::Move, "*:1,0"}}),
               "desk id=d at=2,1\nlaser id=l at=0.1,0 on=d\nwall id=w from=1,0 to=5,0\n"
               "door id=o wall=w offset=1\nlaser id=m at=3,2\n");
+    EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l at=0.1,0 on=d\nlaser id=m at=2,2\n",
+                   {{Kind::Rotate, "*:90"}}),
+              "desk id=d at=1,1 heading=90\nlaser id=l at=0.1,0 on=d\n"
+              "laser id=m at=2,2 heading=90\n");
     // Others have no place, or cannot be tilted.
     EXPECT_EQ(edit("desk id=d at=1,1\nlaser id=l\nresult id=r\n", {{Kind::Move, "*:1,0"}}),
               "desk id=d at=2,1\nlaser id=l\n");
