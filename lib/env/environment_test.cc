@@ -7,6 +7,7 @@
 
 #include "env/test_scene.h"
 #include "geom/parity.h"
+#include "record/yaml.h"
 
 namespace ispace {
 namespace {
@@ -325,6 +326,24 @@ TEST(Environment, RefusesShapesWithoutEnd) {
     // 64 x 64 squares of four corners each: 66 of them are more than a million and 66 000.
     EXPECT_TRUE(found.starts_with("room.env:6")) << found;
     EXPECT_NE(found.find(" corners: fewer"), std::string::npos) << found;
+}
+
+TEST(Environment, BearsFewerRoundThingsThatARepetitionMakes) {
+    const auto made = [](const std::string& rows) {
+        const Document scene =
+            readYaml("- ispace: {size: [500, 500]}\n- cylinder: {repeat: {rows: " + rows +
+                         ", cols: 100, step: [1, 1]}}\n",
+                     "hall.yaml", testing::schemas());
+        try {
+            (void)environment(scene.records);
+        } catch (const FormatError& error) {
+            return error.diagnostics().front().text();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(made("50"), "");
+    EXPECT_NE(made("120").find("hall.yaml:2:3: error: the shapes up to here"), std::string::npos)
+        << made("120");
 }
 
 TEST(Environment, BearsAsManyRoundThingsAsSomebodyWrites) {

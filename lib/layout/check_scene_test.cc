@@ -257,6 +257,10 @@ TEST(CheckScene, OpenDoorsThatLeadIntoAWall) {
     EXPECT_EQ(check("ispace id=annex at=10,3 size=4,4\ninside at=1,1\ndoor id=o at=8,3 open=yes\n"),
               "")
         << "a wall in common";
+    EXPECT_EQ(check("ispace id=closet at=8.4,3 size=0.8,4\ninside at=1,1\n"
+                    "door id=o at=8,3 open=yes\n"),
+              "")
+        << "the closet's back is near, but the closet is part of the room";
 }
 
 TEST(CheckScene, Meshes) {
