@@ -104,6 +104,33 @@ std::string readAll(const std::string& operand) {
     return bytes;
 }
 
+InputFile::InputFile(const std::string& operand)
+    : name_(operand),
+      fd_(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC)) {
+    struct stat info {};
+    if (fd_ < 0 || ::fstat(fd_, &info) != 0) fail(operand, errno);
+    if (!S_ISDIR(info.st_mode)) return;
+    if (fd_ > STDERR_FILENO) ::close(fd_);
+    fail(operand, EISDIR);
+}
+
+InputFile::~InputFile() {
+    if (fd_ > STDERR_FILENO) ::close(fd_);
+}
+
+bool InputFile::read(std::string& bytes) {
+    constexpr std::size_t kChunk = 1 << 16;
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kChunk);
+    ssize_t n = 0;
+    do {
+        n = ::read(fd_, bytes.data() + size, kChunk);
+    } while (n < 0 && errno == EINTR);
+    if (n < 0) fail(name_, errno);
+    bytes.resize(size + static_cast<std::size_t>(n));
+    return n > 0;
+}
+
 struct OutputFile::State {
     std::string name;       // as the user wrote it, for messages
     std::string target;     // the file that is replaced, links resolved
@@ -183,6 +210,8 @@ void writeAll(const std::string& target, std::string_view bytes) {
     file.write(bytes);
     file.commit();
 }
+
+bool isTerminalInput() { return ::isatty(STDIN_FILENO) != 0; }
 
 bool isTerminalOutput(const std::string& target) {
     return target == "-" && ::isatty(STDOUT_FILENO) != 0;

@@ -11,6 +11,23 @@ namespace ispace {
 /// \throws std::system_error naming the file; also for a directory
 std::string readAll(const std::string& operand);
 
+/// A file, or standard input for "-", read piece by piece.
+class InputFile {
+  public:
+    /// \throws std::system_error naming the file; also for a directory
+    explicit InputFile(const std::string& operand);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    /// Appends what is there, and waits only if there is nothing; false at the end.
+    bool read(std::string& bytes);
+
+  private:
+    std::string name_;
+    int fd_;
+};
+
 /// A product on its way to its place: a regular file is written beside its target and renamed by
 /// commit(), so that a reader never sees half of it; without commit() (an error, a signal) the old
 /// file stays and nothing is left behind. "-" is standard output; a device, a pipe and
@@ -39,5 +56,7 @@ void writeAll(const std::string& target, std::string_view bytes);
 
 /// True if "-" and standard output is a terminal: binary data does not go there.
 bool isTerminalOutput(const std::string& target);
+/// True if standard input is a terminal.
+bool isTerminalInput();
 
 }  // namespace ispace
