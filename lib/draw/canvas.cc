@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <new>
 #include <optional>
@@ -277,6 +278,33 @@ void Canvas::fillSector(Point2 center, double radius, Angle from, Angle to, Colo
     data_->addArc(center, radius, from, to);
     cairo_close_path(data_->context);
     data_->fillPath(color);
+}
+
+void Canvas::image(Point2 corner, const Image& picture, double pixel_width, double pixel_height) {
+    if (picture.width < 1 || picture.height < 1) return;
+    using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+    const Surface pixels(
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height),
+        cairo_surface_destroy);
+    check(cairo_surface_status(pixels.get()));
+    unsigned char* row = cairo_image_surface_get_data(pixels.get());
+    const auto width = static_cast<std::size_t>(picture.width);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(picture.height); ++y) {
+        std::memcpy(row, &picture.pixels[y * width], width * sizeof(std::uint32_t));
+        row += cairo_image_surface_get_stride(pixels.get());
+    }
+    cairo_surface_mark_dirty(pixels.get());
+
+    const Point2 page = data_->toPage(corner);
+    cairo_t* context = data_->context;
+    cairo_save(context);
+    cairo_translate(context, page.x, page.y);
+    cairo_scale(context, data_->toPage(pixel_width), data_->toPage(pixel_height));
+    cairo_set_source_surface(context, pixels.get(), 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(context), CAIRO_FILTER_NEAREST);
+    cairo_rectangle(context, 0, 0, picture.width, picture.height);
+    cairo_fill(context);
+    cairo_restore(context);
 }
 
 void Canvas::text(Point2 anchor, std::string_view text, const TextStyle& style) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "draw/color.h"
+#include "draw/image.h"
 #include "draw/text.h"
 #include "geom/polygon.h"
 
@@ -82,6 +83,10 @@ class Canvas {
     /// Counter-clockwise from `from` to `to`.
     void strokeArc(Point2 center, double radius, Angle from, Angle to, const Stroke& stroke);
     void fillSector(Point2 center, double radius, Angle from, Angle to, Color color);
+
+    /// A picture's pixels as rectangles of this size, without a seam or a blend; `corner` is the
+    /// upper left one. Sharp in PNG where corner and size are whole page units.
+    void image(Point2 corner, const Image& picture, double pixel_width, double pixel_height);
 
     /// One line of text; `anchor` lies on its base line, at the side or middle that align names.
     void text(Point2 anchor, std::string_view text, const TextStyle& style);

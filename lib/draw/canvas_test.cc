@@ -170,6 +170,28 @@ TEST(Canvas, EmptyThingsDrawNothing) {
     EXPECT_EQ(Pixels(canvas.encode()).countOf(0xFFFFFF), 100);
 }
 
+TEST(Canvas, ImagesHaveSharpPixelsOfAnySize) {
+    const Image picture{2, 2, {0xFF0000, 0x00FF00, 0x0000FF, 0x123456}};
+    Canvas canvas(PictureFormat::Png, 20, 20);
+    canvas.image({3, 4}, picture, 4, 2);
+    canvas.image({0, 0}, {}, 1, 1);
+    const Pixels pixels(canvas.encode());
+    for (const std::uint32_t color : picture.pixels) EXPECT_EQ(pixels.countOf(color), 8);
+    EXPECT_EQ(pixels.countOf(0xFFFFFF), 400 - 32);
+    EXPECT_EQ(pixels.at(3, 4), 0xFF0000U);
+    EXPECT_EQ(pixels.at(7, 4), 0x00FF00U);
+    EXPECT_EQ(pixels.at(6, 6), 0x0000FFU);
+    EXPECT_EQ(pixels.at(10, 7), 0x123456U);
+
+    Canvas world(PictureFormat::Png, 20, 20);
+    world.pushView({10, {0, 0}, {10, 10}});
+    world.image({0, 0.5}, {1, 1, {0xFF0000}}, 0.5, 0.2);
+    const Pixels seen(world.encode());
+    EXPECT_EQ(seen.countOf(0xFF0000), 10);
+    EXPECT_EQ(seen.at(10, 5), 0xFF0000U);
+    EXPECT_EQ(seen.at(14, 6), 0xFF0000U);
+}
+
 TEST(Canvas, TextIsAlignedAtItsAnchor) {
     const auto ink_left_of = [](Align align) {
         Canvas canvas(PictureFormat::Png, 200, 40);
