@@ -27,7 +27,8 @@ enum class Material {
     Skin,
     Cloth,
     Mat,
-    Mesh
+    Mesh,
+    View  ///< what a sensor looks at
 };
 
 /// How a material looks: colour (linear RGB, opacity), metallic share and roughness.

@@ -133,7 +133,7 @@ std::string writeGlb(const Scene& scene, const Document& document) {
     const Point3 origin = meshOrigin(scene.environment.limits());
     GlbBuilder builder;
     GlbScene nodes(builder, origin);
-    const std::vector<ModelNode> model = modelOf(scene);
+    const std::vector<ModelNode> model = modelOf(scene, true);
     for (const ModelNode& node : model) nodes.add(node);
     return builder.finish(recordsText(document), gltfAxes(origin - Point3()));
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "layout/figures.h"
+#include "layout/views.h"
 
 namespace ispace {
 
@@ -17,15 +18,19 @@ void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
 
 }  // namespace
 
-std::vector<ModelNode> modelOf(const Scene& scene) {
+std::vector<ModelNode> modelOf(const Scene& scene, bool with_views) {
     std::vector<ModelNode> nodes;
     for (const Element& element : scene.environment.elements())
         addNode(nodes,
                 {element.id, element.record.keyword(), {}, meshesOf(element.body, true), &element});
     addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
-    for (const Placed& placed : scene.placed)
+    for (const Placed& placed : scene.placed) {
+        std::vector<Mesh> meshes = figureOf(scene, placed);
+        if (auto view = with_views ? viewOf(scene, placed) : std::nullopt)
+            meshes.push_back(std::move(*view));
         addNode(nodes, {scene.ids[placed.record], scene.records[placed.record].keyword(),
-                        placed.pose, figureOf(scene, placed)});
+                        placed.pose, std::move(meshes)});
+    }
     return nodes;
 }
 

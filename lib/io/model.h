@@ -21,7 +21,7 @@ struct ModelNode {
 
 /// Elements in the order of their records, the floor behind them, then what is placed: sensors,
 /// robots, people. Elements without a body (zones, inside points) are left out.
-/// The nodes point into the scene.
-std::vector<ModelNode> modelOf(const Scene& scene);
+/// The nodes point into the scene. `with_views`: sensors with what they look at.
+std::vector<ModelNode> modelOf(const Scene& scene, bool with_views = false);
 
 }  // namespace ispace

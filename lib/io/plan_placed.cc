@@ -10,6 +10,7 @@
 #include "env/body.h"
 #include "io/display_color.h"
 #include "io/plan_drawing.h"
+#include "layout/schemas.h"
 
 namespace ispace {
 
@@ -33,16 +34,20 @@ View viewOf(const Scene& scene, const Placed& placed) {
         const Laser& laser = scene.lasers[placed.index].laser;
         return {laser.first, laser.last(), laser.max_range};
     }
-    double span = record.keyword() == "ultrasound" ? 120 : 45;
-    if (const Value* fov = record.find("fov"); fov != nullptr) {
-        const auto* const tuple = std::get_if<Tuple>(fov);
-        span = tuple != nullptr ? tuple->front() : record.number("fov");
+    const auto about = [](Angle span, double range) {
+        return View{-0.5 * span, 0.5 * span, range};
+    };
+    if (record.keyword() == "ranger") {
+        const Ranger& ranger = scene.rangers[placed.index].ranger;
+        return about(ranger.fov_x, ranger.max_range);
     }
-    View view{Angle::degrees(-span / 2), Angle::degrees(span / 2)};
-    if (const Value* range = record.find("range"); range != nullptr) {
-        const auto* const tuple = std::get_if<Tuple>(range);
-        view.range = tuple != nullptr ? tuple->back() : record.number("range");
+    if (record.keyword() == "ultrasound") {
+        const Receiver& receiver = scene.receivers[placed.index].receiver;
+        return about(receiver.fov, receiver.max_range);
     }
+    View view = about(Angle::degrees(45), 5);
+    if (record.has("fov")) view = about(Angle::degrees(record.tuple("fov").front()), 5);
+    if (record.has("range")) view.range = record.tuple("range").back();
     return view;
 }
 
@@ -89,7 +94,7 @@ class Names {
 };
 
 bool looksAside(const Record& record, const Pose3& pose) {
-    return record.schema().find("fov") != nullptr && std::abs(pose.tilt.degrees()) < 70;
+    return isSensor(record.schema()) && std::abs(pose.tilt.degrees()) < 70;
 }
 
 /// A sector about the mark that shows the field of view; not the range, which mostly is longer.

@@ -7,8 +7,10 @@
 #include "base/file.h"
 #include "base/suggest.h"
 #include "layout/laser.h"
+#include "layout/ranger.h"
 #include "layout/robot.h"
 #include "layout/schemas.h"
+#include "layout/ultrasound.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -16,8 +18,8 @@ namespace ispace {
 namespace {
 
 /// What a device file may hold. A constant, as records point into it.
-const Schemas& deviceSchemas() {
-    static const Schemas schemas({laserDeviceSchema(), robotDeviceSchema()});
+const Schemas& schemasOfDevices() {
+    static const Schemas schemas(deviceSchemas());
     return schemas;
 }
 
@@ -26,6 +28,12 @@ void checkFigures(const Record& device, Diagnostics& findings) {
     try {
         if (device.keyword() == "robot")
             withFigures(RobotModel(), device);
+        else if (device.keyword() == "ranger")
+            withFigures(Ranger(), device);
+        else if (device.keyword() == "ultrasound")
+            withFigures(Receiver(), device);
+        else if (device.keyword() == "tag")
+            withFigures(Tag(), device);
         else
             withFigures(Laser(), device);
     } catch (const FormatError& error) {
@@ -38,17 +46,11 @@ std::string unknownModel(const std::string& model, const std::string& keyword,
     const std::vector<std::string> known = devices.models(keyword);
     std::string message = "unknown model `" + model + "`" + didYouMean(model, known);
     constexpr std::size_t kShort = 12;
-    if (known.empty()) {
-        message += "; the device catalogue has no " + keyword;
-    } else if (known.size() <= kShort) {
-        message += " (known:";
-        for (const std::string& name : known) {
-            message += &name == known.data() ? " " : ", ";
-            message += name;
-        }
-        message += ')';
-    }
-    return message;
+    if (known.empty()) return message + "; the device catalogue has no " + keyword;
+    if (known.size() > kShort) return message + " (scan --list-models names all)";
+    std::string list;
+    for (const std::string& name : known) list.append(list.empty() ? "" : ", ").append(name);
+    return message + " (known: " + list + ")";
 }
 
 std::vector<std::string> deviceFiles(const std::string& folder) {
@@ -67,7 +69,7 @@ DeviceCatalogue DeviceCatalogue::load(const std::string& folder) {
     Diagnostics findings;
     for (const std::string& file : deviceFiles(folder)) {
         try {
-            Document document = readRecordText(readAll(file), file, deviceSchemas());
+            Document document = readRecordText(readAll(file), file, schemasOfDevices());
             for (Record& record : document.records) {
                 const std::string model = record.text("model");
                 if (catalogue.find(model) != nullptr) {

@@ -20,6 +20,8 @@ class DeviceCatalogue {
 
     /// The record of a model, or null. Models are unique over all keywords.
     [[nodiscard]] const Record* find(std::string_view model) const;
+    /// All devices, in catalogue order: by file, then as written.
+    [[nodiscard]] const std::vector<Record>& devices() const { return records_; }
     /// All model names, in catalogue order.
     [[nodiscard]] std::vector<std::string> models() const;
     /// Those of one keyword.

@@ -37,19 +37,29 @@ class DeviceFolder : public ::testing::Test {
 
 const std::string kTail = " source=paper confidence=U\n";
 
+std::string keywordOf(const std::string& model) {
+    const Record* const device = testing::devices().find(model);
+    return device == nullptr ? "" : device->keyword();
+}
+
 TEST(Devices, ProjectsOwnCatalogueLoads) {
     const std::vector<std::string> models = testing::devices().models();
-    EXPECT_EQ(models,
-              (std::vector<std::string>{"urg-04lx", "utm-30lx", "pioneer-2dx", "pioneer-3dx"}));
-    EXPECT_EQ(testing::devices().models("laser"),
-              (std::vector<std::string>{"urg-04lx", "utm-30lx"}));
+    // Files in the order of their names, devices in that of their files.
+    EXPECT_EQ(models.front(), "urg-04lx");
     EXPECT_EQ(testing::devices().models("robot"),
               (std::vector<std::string>{"pioneer-2dx", "pioneer-3dx"}));
+    EXPECT_EQ(testing::devices().models("ultrasound"), std::vector<std::string>{"zps-3d"});
+    EXPECT_EQ(testing::devices().models("tag"), std::vector<std::string>{"zps-3d-tag"});
+    for (const char* laser : {"urg-04lx", "urg-04lx-ug01", "utm-30lx", "utm-30lx-ew", "ust-10lx",
+                              "ust-20lx", "lms200", "lms100", "lms111", "tim551", "tim561",
+                              "tim571", "rplidar-a1", "rplidar-a2", "rplidar-a3", "lds-01"})
+        EXPECT_EQ(keywordOf(laser), "laser") << laser;
+    for (const char* ranger : {"sr-3000", "kinect-v1", "kinect-v2", "d435", "vlp-16", "digiclops"})
+        EXPECT_EQ(keywordOf(ranger), "ranger") << ranger;
     EXPECT_TRUE(testing::devices().models("desk").empty());
     for (const std::string& model : models) {
         const Record* device = testing::devices().find(model);
         ASSERT_NE(device, nullptr);
-        EXPECT_EQ(device->keyword(), model.starts_with("pioneer") ? "robot" : "laser");
         EXPECT_FALSE(device->text("source").empty());
         EXPECT_EQ(device->text("confidence").size(), 1U);
     }

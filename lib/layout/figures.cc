@@ -262,6 +262,21 @@ std::vector<Mesh> figureOfHuman(double height) {
     return {std::move(skin), std::move(cloth)};
 }
 
+std::vector<Upright> uprightsOfHuman(double height) {
+    const double h = height;
+    std::vector<Upright> parts;
+    const auto box = [&](double y, double half_length, double half_width, double low, double high) {
+        parts.push_back({{0, y}, half_length, half_width, 0, low * h, high * h});
+    };
+    for (const double side : {-1.0, 1.0}) {
+        parts.push_back({{0, side * kLegPlace * h}, 0, 0, kLeg * h, 0, kHip * h});
+        box(side * (kBodyWidth + kArm) / 2 * h, kArm / 2 * h, kArm / 2 * h, kFingers, kShoulder);
+    }
+    box(0, kBodyDepth / 2 * h, kBodyWidth / 2 * h, kHip, kShoulder);
+    parts.push_back({{0, 0}, 0, 0, kHead * h, kShoulder * h, h});
+    return parts;
+}
+
 std::vector<Polygon> legCircles(double height) {
     return kScanHeight <= kHip * height ? legs(height) : std::vector<Polygon>();
 }

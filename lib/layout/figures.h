@@ -31,6 +31,16 @@ Mesh robotMesh(const RobotModel& model);
 /// on the floor at the origin; proportions do not change with `height`.
 std::vector<Mesh> figureOfHuman(double height);
 
+/// An upright box or cylinder, as part of something that stands on the floor.
+struct Upright {
+    Point2 center;
+    double half_length = 0, half_width = 0;  ///< of a box, along x and y
+    double radius = 0;                       ///< of a cylinder; 0: a box
+    double bottom = 0, top = 0;
+};
+/// figureOfHuman() as rays see it: its boxes and cylinders, the head as a cylinder around it.
+std::vector<Upright> uprightsOfHuman(double height);
+
 /// What a level laser at kScanHeight meets of a person of that height, in the person's frame.
 std::vector<Polygon> legCircles(double height);
 

@@ -6,6 +6,7 @@
 
 #include "base/number.h"
 #include "env/environment.h"
+#include "layout/limits.h"
 
 namespace ispace {
 
@@ -17,18 +18,10 @@ constexpr double kSlack = 1e-9;
 /// Numbers of beams within a span, both ends included; a double as it may be huge.
 double beamsWithin(double span, double step) { return std::floor(span / step + kSlack) + 1; }
 
-void applyRange(Laser& laser, const Record& record, Diagnostics& findings) {
-    if (!record.has("range")) return;
-    const Tuple& range = record.tuple("range");
-    if (range.size() == 2) laser.min_range = range.front();
-    laser.max_range = range.back();
-    if (laser.max_range <= 0) {
-        findings.add(record.finding("range", "the greatest range is 0, it must be above 0"));
-    } else if (laser.min_range > laser.max_range) {
-        findings.add(record.finding("range", "the least range " + formatDouble(laser.min_range) +
-                                                 " m is above the greatest, " +
-                                                 formatDouble(laser.max_range) + " m"));
-    }
+/// As beamsWithin; a full turn ends before it comes back to where it began.
+double scansWithin(const Laser& laser) {
+    const double span = laser.sweep_span.degrees(), step = laser.sweep_step.degrees();
+    return span < 360 ? beamsWithin(span, step) : std::ceil(span / step - kSlack);
 }
 
 void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
@@ -71,7 +64,30 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
             cause, "the beams cover " + formatDouble(span) + " degrees, more than a full turn"));
 }
 
+void applySweep(Laser& laser, const Record& record, Diagnostics& findings) {
+    if (record.has("sweep")) {
+        const std::string& axis = record.text("sweep");
+        laser.sweep = axis == "heading" ? SweepAxis::Heading
+                      : axis == "tilt"  ? SweepAxis::Tilt
+                      : axis == "roll"  ? SweepAxis::Roll
+                                        : SweepAxis::None;
+    }
+    if (record.has("sweep_span")) laser.sweep_span = record.angle("sweep_span");
+    if (record.has("sweep_step")) laser.sweep_step = record.angle("sweep_step");
+    const double scans = scansWithin(laser);
+    if (laser.sweep != SweepAxis::None && scans > kMostScans)
+        findings.add(
+            record.finding("sweep_step", "a sweep of " + formatDouble(scans) + " scans, at most " +
+                                             std::to_string(kMostScans) + " are possible"));
+}
+
 }  // namespace
+
+int Laser::scans() const {
+    return sweep == SweepAxis::None ? 1 : static_cast<int>(scansWithin(*this));
+}
+
+double Laser::beamTime() const { return spin > 0 ? step.degrees() / (360 * spin) : 0; }
 
 bool Laser::sees(Angle bearing) const {
     double beyond_first = std::fmod((bearing - first).degrees(), 360.0);
@@ -81,9 +97,16 @@ bool Laser::sees(Angle bearing) const {
 
 Laser withFigures(Laser base, const Record& record) {
     Diagnostics findings;
-    applyRange(base, record, findings);
+    applyRange(record, base.min_range, base.max_range, findings);
     applyBeams(base, record, findings);
+    applySweep(base, record, findings);
     if (record.has("rate")) base.rate = record.number("rate");
+    if (record.has("spin")) base.spin = record.number("spin");
+    try {
+        base.noise = withNoiseFigures(base.noise, record);
+    } catch (const FormatError& error) {
+        findings.add(error);
+    }
     findings.throwIfAny();
     return base;
 }

@@ -7,12 +7,23 @@
 
 #include "geom/pose.h"
 #include "layout/devices.h"
+#include "layout/noise.h"
 #include "record/record.h"
 
 namespace ispace {
 
 /// More beams than this are refused: no scanner has them, and a slip of the unit may ask for them.
 constexpr int kMostBeams = 1'000'000;
+/// The same for the scans of a sweep.
+constexpr int kMostScans = 100'000;
+
+/// Which angle of its pose a laser changes from scan to scan of a sweep.
+enum class SweepAxis {
+    None,
+    Heading,  ///< it turns about the vertical
+    Tilt,     ///< it nods
+    Roll,     ///< it turns about the direction it faces
+};
 
 /// A planar laser range finder: beam k (0 .. beams-1) has bearing `first + k * step` in the
 /// sensor's frame. Without model it is the thesis' panel of fig. 3.9 (5 m, 180 degrees, 1 degree).
@@ -22,12 +33,23 @@ struct Laser {
     Angle first = Angle::degrees(-90), step = Angle::degrees(1);
     int beams = 181;
     double rate = 10;  ///< scans a second
+    /// Turns a second of its beam, which give each beam its own time; 0: all beams at once.
+    double spin = 0;
+    /// A sweep is `scans()` scans, scan j with the angle of the axis j * sweep_step more than
+    /// written: 0 .. sweep_span, its end left out if that is a full turn.
+    SweepAxis sweep = SweepAxis::None;
+    Angle sweep_span = Angle::degrees(360), sweep_step = Angle::degrees(1);
+    RangeNoise noise;
 
     [[nodiscard]] Angle bearing(int beam) const { return first + static_cast<double>(beam) * step; }
     [[nodiscard]] Angle last() const { return bearing(beams - 1); }
     /// True if a direction at `bearing` (any turn) lies between first and last beam, ends included
     /// (within 1e-9 degrees).
     [[nodiscard]] bool sees(Angle bearing) const;
+    /// Scans of a sweep; 1 without.
+    [[nodiscard]] int scans() const;
+    /// Seconds from one beam to the next.
+    [[nodiscard]] double beamTime() const;
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 

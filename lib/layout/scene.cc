@@ -3,10 +3,9 @@
 
 #include <map>
 #include <utility>
-#include <variant>
 
-#include "base/number.h"
 #include "layout/carriers.h"
+#include "layout/limits.h"
 #include "record/digest.h"
 #include "record/text.h"
 
@@ -20,27 +19,15 @@ bool isMeta(const Record& record) { return record.schema().type == RecordType::M
 struct Placements {
     std::vector<PlacedLaser> lasers;
     std::vector<PendingLaser> pending;
+    std::vector<PlacedRanger> rangers;
+    std::vector<PlacedReceiver> receivers;
+    std::vector<PlacedTag> tags;
     std::vector<PlacedRobot> robots;
     std::vector<Placed> placed;
 };
 
 Pose3 onFloor(const Pose2& pose) {
     return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
-}
-
-/// As far as figures of sensors are looked at before they are simulated.
-void checkFigures(const Record& sensor, const DeviceCatalogue& devices) {
-    static_cast<void>(deviceOf(sensor, devices));
-    if (sensor.schema().find("range") == nullptr || !sensor.has("range")) return;
-    const Value& value = *sensor.find("range");
-    const Tuple* range = std::get_if<Tuple>(&value);
-    if (range == nullptr) return;
-    if (range->back() <= 0)
-        throw FormatError(sensor.finding("range", "the greatest range is 0, it must be above 0"));
-    if (range->front() > range->back())
-        throw FormatError(sensor.finding(
-            "range", "the least range " + formatDouble(range->front()) +
-                         " m is above the greatest, " + formatDouble(range->back()) + " m"));
 }
 
 /// Resolves the placement records, one after another.
@@ -72,8 +59,14 @@ class Resolver {
             const Pose2 pose = floorPoseOf(record);
             out_.placed.push_back({i, onFloor(pose), out_.robots.size()});
             out_.robots.push_back({ids_[i], std::move(model), pose, record.place()});
+        } else if (record.keyword() == "ranger") {
+            addSensor(i, out_.rangers, rangerOf(record, devices_));
+        } else if (record.keyword() == "ultrasound") {
+            addSensor(i, out_.receivers, receiverOf(record, devices_));
+        } else if (record.keyword() == "tag") {
+            addSensor(i, out_.tags, tagOf(record, devices_));
         } else if (record.schema().find("on") != nullptr) {
-            checkFigures(record, devices_);
+            checkFigures(record);
             if (auto place = placeOf(record))
                 out_.placed.push_back({i, place->pose, 0, place->mount});
         } else {
@@ -90,6 +83,24 @@ class Resolver {
         } else {
             out_.pending.push_back({ids_[i], record, std::move(laser)});
         }
+    }
+
+    /// Of a sensor that is not simulated: as far as they are looked at.
+    void checkFigures(const Record& sensor) {
+        static_cast<void>(deviceOf(sensor, devices_));
+        Diagnostics findings;
+        double least = 0, greatest = 0;
+        applyRange(sensor, least, greatest, findings);
+        findings.throwIfAny();
+    }
+
+    /// One that has its place, or waits for it.
+    template <typename Sensors, typename Figures>
+    void addSensor(std::size_t i, Sensors& sensors, Figures figures) {
+        const auto place = placeOf(records_[i]);
+        if (!place) return;
+        out_.placed.push_back({i, place->pose, sensors.size(), place->mount});
+        sensors.push_back({ids_[i], std::move(figures), place->pose, place->mount});
     }
 
     /// Of a sensor; nothing if it is still to be placed.
@@ -155,6 +166,9 @@ Scene makeScene(const Document& environment, const Document* layout,
             .digest = environmentDigest(environment.records),
             .lasers = std::move(placements.lasers),
             .pending = std::move(placements.pending),
+            .rangers = std::move(placements.rangers),
+            .receivers = std::move(placements.receivers),
+            .tags = std::move(placements.tags),
             .robots = std::move(placements.robots),
             .placed = std::move(placements.placed)};
 }

@@ -9,7 +9,9 @@
 #include "env/environment.h"
 #include "layout/devices.h"
 #include "layout/laser.h"
+#include "layout/ranger.h"
 #include "layout/robot.h"
+#include "layout/ultrasound.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -25,7 +27,7 @@ struct PendingLaser {
 struct Placed {
     std::size_t record = 0;  ///< index in Scene::records
     Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
-    std::size_t index = 0;   ///< in Scene::lasers of a laser, in Scene::robots of a robot
+    std::size_t index = 0;   ///< in the list of its kind: Scene::lasers, rangers, robots, ...
     std::optional<Mount> mount = {};  ///< of a sensor on a robot
 };
 
@@ -39,8 +41,11 @@ struct Scene {
     std::string digest;                 ///< of ENV alone, see environmentDigest
     std::vector<PlacedLaser> lasers;    ///< with a place, or on what has one, in order
     std::vector<PendingLaser> pending;  ///< without a place, in order
-    std::vector<PlacedRobot> robots;    ///< in order
-    std::vector<Placed> placed;         ///< all of them and everything else with a place, in order
+    std::vector<PlacedRanger> rangers;  ///< as lasers; likewise:
+    std::vector<PlacedReceiver> receivers;
+    std::vector<PlacedTag> tags;
+    std::vector<PlacedRobot> robots;  ///< in order
+    std::vector<Placed> placed;       ///< all of them and everything else with a place, in order
 };
 
 /// The records of LAYOUT put in the places of those of ENV with the same written id, the others

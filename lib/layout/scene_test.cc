@@ -300,11 +300,11 @@ TEST(SceneSchemas, CanonicalFormOfTheDesignsExample) {
               "#3dm 1\nrobot radius=0.25\n");
 }
 
-TEST(SceneSchemas, LasersAreSensorsAndRobotsAreNot) {
+TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
     std::vector<std::string> sensors;
     for (const Schema& schema : sceneSchemas().all())
         if (isSensor(schema)) sensors.push_back(schema.keyword);
-    EXPECT_EQ(sensors, std::vector<std::string>{"laser"});
+    EXPECT_EQ(sensors, (std::vector<std::string>{"laser", "ranger", "camera", "ultrasound"}));
 }
 
 }  // namespace

@@ -1,96 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/schemas.h"
 
+#include <algorithm>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
-#include "env/environment.h"
 #include "env/schemas.h"
-#include "layout/laser.h"
+#include "layout/schema_keys.h"
+#include "layout/sensor_schemas.h"
 
 namespace ispace {
 
 namespace {
 
-/// As in the environment: plans lie within this of the origin, in metres.
-constexpr double kFarthest = 1e6;
 /// Above what any robot is or does: metres, metres a second (a second), degrees a second (a
 /// second).
 constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
 
-KeySpec idKey() { return {.name = "id", .type = KeyType::Word, .help = "name of the record"}; }
-
-KeySpec angleKey(std::string name, std::string help, double lower, double upper,
-                 Role role = Role::None) {
-    return {.name = std::move(name),
-            .type = KeyType::Number,
-            .unit = Unit::Angle,
-            .help = std::move(help),
-            .default_value = 0.0,
-            .lower = lower,
-            .upper = upper,
-            .role = role};
-}
-
-KeySpec headingKey(std::string help) {
-    return angleKey("heading", std::move(help), -kFarthest, kFarthest, Role::Heading);
-}
-
-/// Figures that a model gives too; none has a default, as its absence means "as the model".
-void addLaserFigures(std::vector<KeySpec>& keys) {
-    keys.push_back({.name = "range",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "least and greatest distance measured, or the greatest alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = kFarthest});
-    keys.push_back({.name = "fov",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "field of view, half of it to each side",
-                    .lower = 0,
-                    .upper = 360});
-    keys.push_back({.name = "step",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "angle between neighbouring beams",
-                    .lower = 0,
-                    .upper = 360,
-                    .lower_open = true});
-    keys.push_back({.name = "first",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "bearing of the first beam",
-                    .lower = -360,
-                    .upper = 360});
-    keys.push_back({.name = "beams",
-                    .type = KeyType::Number,
-                    .help = "number of beams",
-                    .lower = 1,
-                    .upper = kMostBeams});
-    keys.push_back({.name = "rate",
-                    .type = KeyType::Number,
-                    .unit = Unit::Frequency,
-                    .help = "scans a second",
-                    .lower = 0,
-                    .upper = 1e5,
-                    .lower_open = true});
-}
-
-/// A number above 0 without default.
-KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper) {
-    return {.name = std::move(name),
-            .type = KeyType::Number,
-            .unit = unit,
-            .help = std::move(help),
-            .lower = 0,
-            .upper = upper,
-            .lower_open = true};
-}
-
-/// As addLaserFigures. Speeds are lengths and angles a second, with the suffixes of those.
+/// Figures that a model gives too; none has a default, as its absence means "as the model". Speeds
+/// are lengths and angles a second, with the suffixes of those.
 void addRobotFigures(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("radius", Unit::Length,
                                "of the circle about the centre of rotation that hits things",
@@ -124,99 +53,6 @@ void addRobotFigures(std::vector<KeySpec>& keys) {
                                "speeding up and braking, metres a second a second", kFastest));
     keys.push_back(positiveKey("rotaccel", Unit::Angle,
                                "the same for turning, degrees a second a second", kFastestTurn));
-}
-
-KeySpec modelKey() {
-    return {.name = "model",
-            .type = KeyType::Word,
-            .help = "device of the catalogue that gives the figures not written"};
-}
-
-/// Where a sensor is and how it looks: a pose in space, or one in the frame of its carrier.
-void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
-    keys.push_back({.name = "at",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "optical centre; height 0.15 without z; left out: to be placed, or "
-                            "with `on` 0,0",
-                    .min_count = 2,
-                    .max_count = 3,
-                    .lower = -kFarthest,
-                    .upper = kFarthest,
-                    .role = Role::Place,
-                    .standard_z = kScanHeight});
-    keys.push_back(headingKey(std::move(heading_help)));
-    keys.push_back(angleKey("tilt", "above level, negative looks down", -90, 90, Role::Tilt));
-    keys.push_back(angleKey("roll", "left side up", -180, 180));
-}
-
-KeySpec onKey() {
-    return {.name = "on",
-            .type = KeyType::Word,
-            .help =
-                "id of the robot or object that carries it: `at` and `heading` are in its "
-                "frame, z counts from the floor or from the object's top",
-            .role = Role::Carrier};
-}
-
-Schema sensorSchema(std::string keyword, std::string help, std::string heading_help,
-                    void (*add_figures)(std::vector<KeySpec>&)) {
-    Schema schema{.keyword = std::move(keyword),
-                  .type = RecordType::Placement,
-                  .help = std::move(help),
-                  .keys = {}};
-    schema.keys.push_back(idKey());
-    schema.keys.push_back(modelKey());
-    addSensorPose(schema.keys, std::move(heading_help));
-    add_figures(schema.keys);
-    schema.keys.push_back(onKey());
-    return schema;
-}
-
-/// Figures of what sees a picture: rangers and cameras.
-void addPictureFigures(std::vector<KeySpec>& keys) {
-    keys.push_back({.name = "range",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "least and greatest distance seen, or the greatest alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = kFarthest});
-    keys.push_back({.name = "fov",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Angle,
-                    .help = "field of view across and upright; square pixels without the second",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = 179,
-                    .lower_open = true});
-    keys.push_back({.name = "pixels",
-                    .type = KeyType::Tuple,
-                    .help = "columns,rows of its picture",
-                    .min_count = 2,
-                    .max_count = 2,
-                    .lower = 1,
-                    .upper = 16384,
-                    .whole = true});
-    keys.push_back(positiveKey("rate", Unit::Frequency, "pictures a second", 1e5));
-}
-
-void addUltrasoundFigures(std::vector<KeySpec>& keys) {
-    keys.push_back(positiveKey("range", Unit::Length, "greatest distance heard", kFarthest));
-    keys.push_back({.name = "fov",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "full angle of the cone in which it hears",
-                    .lower = 0,
-                    .upper = 360,
-                    .lower_open = true});
-    keys.push_back(positiveKey("rate", Unit::Frequency, "measurements a second", 1e5));
-}
-
-void addTagFigures(std::vector<KeySpec>& keys) {
-    keys.push_back(positiveKey("rate", Unit::Frequency, "bursts a second", 1e5));
 }
 
 /// A key of a fixed place on the floor, 0,0 without it.
@@ -388,31 +224,26 @@ Schema deviceSchema(std::string keyword, std::string help,
 }  // namespace
 
 std::vector<Schema> layoutSchemas() {
-    return {sensorSchema("laser", "planar laser range finder; bare: range=0,5 fov=180 step=1",
-                         "direction of bearing 0, from +x", addLaserFigures),
-            sensorSchema("ranger", "3-D range camera; bare: range=0,5 fov=47.5,39.6",
-                         "direction of its axis, from +x", addPictureFigures),
-            sensorSchema("camera", "camera; bare: fov=45 pixels=640,480",
-                         "direction of its axis, from +x", addPictureFigures),
-            sensorSchema("ultrasound", "ultrasonic receiver; bare: range=8 fov=120",
-                         "direction of its axis, from +x", addUltrasoundFigures),
-            sensorSchema("tag", "ultrasonic emitter, to be located", "where it faces, from +x",
-                         addTagFigures),
-            matSchema(),
-            gateSchema(),
-            robotSchema(),
-            humanSchema(),
-            environmentSchema(),
-            resultSchema()};
+    std::vector<Schema> schemas = sensorSchemas();
+    std::vector<Schema> others = {matSchema(),   gateSchema(),        robotSchema(),
+                                  humanSchema(), environmentSchema(), resultSchema()};
+    std::move(others.begin(), others.end(), std::back_inserter(schemas));
+    return schemas;
 }
 
-Schema laserDeviceSchema() {
-    return deviceSchema("laser", "a planar laser range finder one can buy", addLaserFigures);
+std::vector<Schema> deviceSchemas() {
+    return {deviceSchema("laser", "a planar laser range finder one can buy", addLaserFigures),
+            deviceSchema("ranger", "a 3-D range camera one can buy", addRangerFigures),
+            deviceSchema("ultrasound", "an ultrasonic receiver one can buy", addUltrasoundFigures),
+            deviceSchema("tag", "an ultrasonic emitter one can buy", addTagFigures),
+            deviceSchema("robot", "a robot one can buy", addRobotFigures)};
 }
 
-Schema robotDeviceSchema() { return deviceSchema("robot", "a robot one can buy", addRobotFigures); }
-
-bool isSensor(const Schema& schema) { return schema.keyword == "laser"; }
+bool isSensor(const Schema& schema) {
+    constexpr std::string_view kSensors[] = {"laser", "ranger", "camera", "ultrasound"};
+    return std::find(std::begin(kSensors), std::end(kSensors), schema.keyword) !=
+           std::end(kSensors);
+}
 
 const Schemas& sceneSchemas() {
     static const Schemas schemas = [] {

@@ -8,16 +8,14 @@
 
 namespace ispace {
 
-/// laser, robot, environment, result.
+/// The keywords of what is placed, and environment and result.
 std::vector<Schema> layoutSchemas();
 
-/// The `laser` of a device file: the figures of a laser record, with model, source and confidence
-/// required, and without a place.
-Schema laserDeviceSchema();
-/// The same for a `robot`.
-Schema robotDeviceSchema();
+/// The keywords of device files: the figures of a laser, ranger, ultrasound, tag or robot record,
+/// with model, source and confidence required, and without a place.
+std::vector<Schema> deviceSchemas();
 
-/// True for the keywords of what sees: what arrange places, and scan and coverage read.
+/// True for the keywords of what sees or hears: laser, ranger, camera, ultrasound.
 bool isSensor(const Schema& schema);
 
 /// Every keyword of `.env` and `.3dm`: environmentSchemas() and layoutSchemas(). A constant.

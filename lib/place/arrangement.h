@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/history.h"
@@ -11,6 +12,9 @@
 #include "place/candidates.h"
 
 namespace ispace {
+
+/// The keywords of what can be placed.
+constexpr std::string_view kArrangedKinds[] = {"laser"};
 
 struct ArrangeOptions {
     std::optional<int> x, y;        ///< interior grid lines; default by eq. (4.1) and (4.2)

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "layout/schemas.h"
-#include "place/sensor_spec.h"
+#include "layout/sensor_spec.h"
 #include "record/digest.h"
 #include "record/text.h"
 
@@ -28,7 +28,7 @@ Document layoutFrom(const std::string& records) {
 }
 
 std::vector<Record> specs(const std::string& text) {
-    return readSensorSpec(text, sceneSchemas(), DeviceCatalogue());
+    return readSensorSpec(text, kArrangedKinds, sceneSchemas(), DeviceCatalogue());
 }
 
 LayoutParts parts(const Scene& scene) {

@@ -9,7 +9,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "layout/schemas.h"
-#include "place/sensor_spec.h"
+#include "layout/sensor_spec.h"
 #include "record/text.h"
 
 namespace {
@@ -29,7 +29,7 @@ void arrange(const ArrangeCommand& command) {
     const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
     std::vector<Record> added;
     for (const std::string& spec : options.sensors)
-        for (Record& record : readSensorSpec(spec, sceneSchemas(), devices))
+        for (Record& record : readSensorSpec(spec, kArrangedKinds, sceneSchemas(), devices))
             added.push_back(std::move(record));
     const SceneInput input = readScene({options.operands, options.any_environment, false});
     const std::vector<PendingLaser> sensors = sensorsToPlace(input.scene, added, devices);

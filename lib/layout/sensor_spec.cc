@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "place/sensor_spec.h"
+#include "layout/sensor_spec.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "base/suggest.h"
-#include "layout/schemas.h"
 
 namespace ispace {
 
 namespace {
+
+using Kinds = std::span<const std::string_view>;
 
 constexpr std::int64_t kMostSensors = 10000;
 
@@ -40,32 +42,33 @@ std::vector<std::string> settings(const std::vector<std::string>& pieces) {
 }
 
 /// What `--sensor` can name: devices first, then bare kinds.
-std::vector<std::string> knownSensors(const Schemas& schemas, const DeviceCatalogue& devices) {
-    std::vector<std::string> known, kinds;
-    for (const Schema& schema : schemas.all()) {
-        if (!isSensor(schema)) continue;
-        kinds.push_back(schema.keyword);
-        for (std::string& model : devices.models(schema.keyword)) known.push_back(std::move(model));
-    }
+std::vector<std::string> knownSensors(Kinds kinds, const DeviceCatalogue& devices) {
+    std::vector<std::string> known;
+    for (const std::string_view kind : kinds)
+        for (std::string& model : devices.models(kind)) known.push_back(std::move(model));
     known.insert(known.end(), kinds.begin(), kinds.end());
     return known;
 }
 
-UsageError unknownSensor(const std::string& model, const Schemas& schemas,
-                         const DeviceCatalogue& devices) {
-    const std::vector<std::string> known = knownSensors(schemas, devices);
-    std::string list;
-    for (const std::string& name : known) list.append(list.empty() ? "" : ", ").append(name);
-    return UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) +
-                      " (known: " + list + ")");
+bool contains(Kinds kinds, std::string_view keyword) {
+    return std::find(kinds.begin(), kinds.end(), keyword) != kinds.end();
 }
 
-Record recordFor(const std::string& model, const Schemas& schemas, const DeviceCatalogue& devices) {
+UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCatalogue& devices) {
+    const std::vector<std::string> known = knownSensors(kinds, devices);
+    std::string list;
+    for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);
+    return UsageError("unknown sensor `" + model + "`" + didYouMean(model, known) + " (" + list +
+                      ", or a device: scan --list-models names all)");
+}
+
+Record recordFor(const std::string& model, Kinds kinds, const Schemas& schemas,
+                 const DeviceCatalogue& devices) {
     const Schema* const kind = schemas.find(model);
-    if (kind != nullptr && isSensor(*kind)) return Record(*kind);
+    if (kind != nullptr && contains(kinds, model)) return Record(*kind);
     const Record* const device = devices.find(model);
-    if (device == nullptr || !isSensor(device->schema()))
-        throw unknownSensor(model, schemas, devices);
+    if (device == nullptr || !contains(kinds, device->keyword()))
+        throw unknownSensor(model, kinds, devices);
     Record record(*schemas.find(device->keyword()));
     record.set("model", Value(model));
     return record;
@@ -73,7 +76,7 @@ Record recordFor(const std::string& model, const Schemas& schemas, const DeviceC
 
 }  // namespace
 
-std::vector<Record> readSensorSpec(const std::string& text, const Schemas& schemas,
+std::vector<Record> readSensorSpec(const std::string& text, Kinds kinds, const Schemas& schemas,
                                    const DeviceCatalogue& devices) {
     std::string body = text;
     std::int64_t count = 1;
@@ -86,7 +89,7 @@ std::vector<Record> readSensorSpec(const std::string& text, const Schemas& schem
         body.resize(colon);
     }
     const std::vector<std::string> pieces = split(body, ',');
-    Record record = recordFor(pieces.front(), schemas, devices);
+    Record record = recordFor(pieces.front(), kinds, schemas, devices);
     for (const std::string& setting : settings(pieces)) {
         const auto equals = setting.find('=');
         const std::string name = setting.substr(0, equals);
