@@ -1,60 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "geom/point.h"
+#include "trace/directions.h"
+#include "trace/ray_grid.h"
+#include "trace/triangle_set.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
 
 namespace ispace {
 
-/// Triangles in float32.
-struct TriangleSoup {
-    std::vector<std::array<float, 3>> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-
-    /// \return the vertex' index
-    std::uint32_t add(Point3 corner) {
-        vertices.push_back({static_cast<float>(corner.x), static_cast<float>(corner.y),
-                            static_cast<float>(corner.z)});
-        return static_cast<std::uint32_t>(vertices.size() - 1);
-    }
-    [[nodiscard]] Point3 corner(std::size_t triangle, std::size_t i) const {
-        const auto& [x, y, z] = vertices[triangles[triangle][i]];
-        return {x, y, z};
-    }
-};
-
 /// A built Embree scene: ROBUST, so that no ray slips between triangles with a common edge (corners
-/// in the same places, whether or not they are the same vertices) and the packet width changes no
-/// result by more than rounding; high quality.
+/// in the same places, whether or not they are the same vertices); high quality.
 ///
-/// Each scene has a device of its own: one costs some 50 microseconds, and scenes share nothing.
+/// Embree finds the triangle that a ray meets, in float32. Near an edge, where rounding may choose
+/// another, the choice is made again in doubles, and the range is computed in doubles from the
+/// triangle's plane: results do not depend on which rays are traced together. (Where surfaces
+/// without a common edge cross or touch, one ray in some ten millions passes the line so near that
+/// float32 alone decides; its range then may differ by some 10 micrometres.)
+///
+/// Surfaces within `contact` of a ray's origin do not stop it, nor do those that continue them, nor
+/// those seen exactly from their edge. Each scene has a device of its own: one costs some 50
+/// microseconds, and scenes share nothing.
 class EmbreeScene {
   public:
-    /// `packet_width`: 4, 8 or 16 rays together, 0 for what the processor traces natively.
+    /// `packet_width`: 1, 4, 8 or 16 rays together, 0 for what the processor traces natively.
     /// \throws std::runtime_error if Embree fails
-    EmbreeScene(TriangleSoup soup, int packet_width);
+    EmbreeScene(TriangleSoup soup, double contact, int packet_width);
 
-    /// Distance of the first surface in (0, reach[i]] along unit vector i; +infinity without. A
-    /// surface seen exactly from its edge stops nothing, nor do surfaces within `contact` of the
-    /// origin and those that continue their plane. Neighbouring directions should be alike.
-    void intersect(Point3 origin, std::span<const Vec3> directions, std::span<const float> reach,
-                   double contact, std::span<float> distances) const;
+    /// Where results go: ranges, +infinity without return, and |cosines| of ray and normal if they
+    /// are wanted, 1 without return.
+    struct Results {
+        std::span<float> ranges, cosines;
+    };
+
+    /// Distance to the first surface along unit vectors, up to most * (1 + 1e-6), but never
+    /// written as more than `most`. Neighbouring directions should be alike.
+    void cast(Point3 origin, const Directions& directions, double most,
+              const Results& results) const;
+    void cast(std::span<const Point3> origins, const Directions& directions, double most,
+              const Results& results) const;
+    /// The same in multiples of a picture's rays, row by row, in square tiles.
+    void cast(Point3 origin, const RayGrid& grid, double most, const Results& results) const;
+    /// seen[i] = 1 if nothing stands on the first reach[i] metres.
+    void look(Point3 origin, const Directions& directions, std::span<const double> reach,
+              std::span<std::uint8_t> seen) const;
 
   private:
+    struct Caster;
     struct Release {
         void operator()(RTCDeviceTy* device) const;
         void operator()(RTCSceneTy* scene) const;
     };
-    TriangleSoup soup_;
+    /// False if no ray from these places starts in contact with a surface.
+    [[nodiscard]] bool touches(std::span<const Point3> origins) const;
+
+    TriangleSet set_;
+    double contact_;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> scene_;
     std::size_t width_ = 4;

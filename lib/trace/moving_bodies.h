@@ -9,6 +9,8 @@
 
 #include "geom/box.h"
 #include "geom/pose.h"
+#include "trace/directions.h"
+#include "trace/ray_grid.h"
 
 namespace ispace {
 
@@ -66,11 +68,21 @@ class MovingBodies {
     void rebuild(std::span<const MovingBody> bodies);
     [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
 
-    /// Shortens the ranges of a fan of rays to the bodies in their way: ray k has bearing
-    /// first + k * step in the plane of `sensor` and direction directions[k]. Bodies of `own` are
-    /// left out. \pre directions.size() == ranges.size()
-    void shorten(const Pose3& sensor, Angle first, Angle step, std::span<const Vec3> directions,
-                 double max_range, std::uint32_t own, std::span<float> ranges) const;
+    /// Shortens the ranges of rays from the sensor's position to the bodies in their way. Bodies of
+    /// `own` are left out. `cosines`, if not empty, become those of the bodies met, as
+    /// RayWorld::cast gives them. Level directions with an arc are fastest.
+    /// \pre directions.size() == ranges.size()
+    void shorten(Point3 origin, const Directions& directions, double max_range, std::uint32_t own,
+                 std::span<float> ranges, std::span<float> cosines = {}) const;
+    /// The same with an origin for each ray.
+    void shorten(std::span<const Point3> origins, const Directions& directions, double max_range,
+                 std::uint32_t own, std::span<float> ranges, std::span<float> cosines = {}) const;
+    /// The same for a picture, whose ranges are multiples of its rays' vectors; only the pixels
+    /// about a body are looked at.
+    void shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,
+                 std::span<float> multiples, std::span<float> cosines = {}) const;
+    /// True if a body stands between two places, or one of them is in it. \pre they differ
+    [[nodiscard]] bool between(Point3 a, Point3 b, std::uint32_t own) const;
 
   private:
     void index();

@@ -195,15 +195,17 @@ struct Sensor {
     std::size_t beams = 1;
     double max_range = 10;
 
-    [[nodiscard]] std::vector<Vec3> directions() const {
-        std::vector<Vec3> out;
+    [[nodiscard]] Directions directions() const {
+        Directions out;
+        out.resize(beams);
         for (std::size_t k = 0; k < beams; ++k)
-            out.push_back(pose.beam(first + static_cast<double>(k) * step));
+            out.set(k, pose.beam(first + static_cast<double>(k) * step));
+        if (pose.isLevel()) out.arc = {pose.heading + first, step};
         return out;
     }
     [[nodiscard]] std::vector<float> read(const MovingBodies& bodies, std::vector<float> ranges,
                                           std::uint32_t own = kNobody) const {
-        bodies.shorten(pose, first, step, directions(), max_range, own, ranges);
+        bodies.shorten(pose.position, directions(), max_range, own, ranges);
         return ranges;
     }
     [[nodiscard]] std::vector<float> read(const MovingBodies& bodies,
@@ -214,7 +216,7 @@ struct Sensor {
     [[nodiscard]] std::vector<float> readSlowly(const MovingBodies& bodies,
                                                 std::vector<float> ranges,
                                                 std::uint32_t own) const {
-        const std::vector<Vec3> rays = directions();
+        const Directions rays = directions();
         for (const MovingBody& body : bodies.bodies()) {
             if (body.owner == own) continue;
             for (std::size_t k = 0; k < beams; ++k) {

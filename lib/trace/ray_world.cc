@@ -2,13 +2,18 @@
 #include "trace/ray_world.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/simd.h"
 #include "env/mesh.h"
 #include "geom/box.h"
 #include "trace/embree_scene.h"
+#include "trace/flat_world.h"
 
 namespace ispace {
 
@@ -16,7 +21,7 @@ namespace {
 
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
-/// Slack for rounding to float32 at the far end of a ray, relative to its length.
+/// Slack for rounding at the far end of a ray, relative to its length.
 constexpr double kFarSlack = 1e-6;
 
 /// The middle of what is built from; coordinates are kept relative to it.
@@ -27,19 +32,52 @@ Point3 middleOf(const Box2& plan) {
 
 Point3 relative(Point3 p, Point3 middle) { return {p.x - middle.x, p.y - middle.y, p.z}; }
 
+/// Each line stands upright about the plane of the rays, high enough for any rounding.
+TriangleSoup standing(const std::vector<Segment2>& lines) {
+    constexpr double kHalfHeight = 1;
+    TriangleSoup soup;
+    soup.vertices.reserve(4 * lines.size());
+    soup.triangles.reserve(2 * lines.size());
+    for (const Segment2& line : lines) {
+        const std::uint32_t a = soup.add({line.a.x, line.a.y, -kHalfHeight});
+        const std::uint32_t b = soup.add({line.b.x, line.b.y, -kHalfHeight});
+        const std::uint32_t c = soup.add({line.b.x, line.b.y, kHalfHeight});
+        const std::uint32_t d = soup.add({line.a.x, line.a.y, kHalfHeight});
+        soup.triangles.push_back({a, b, c});
+        soup.triangles.push_back({a, c, d});
+    }
+    return soup;
+}
+
+/// What lies a hair beyond max_range lies at it.
+ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
+    float* const range = ranges.data();
+    const std::size_t count = ranges.size();
+    for (std::size_t i = 0; i < count; ++i)
+        range[i] = range[i] > far && range[i] < kNoReturn ? far : range[i];
+}
+
 }  // namespace
 
 struct RayWorld::Data {
     Point3 middle;
-    bool is_flat = false;  ///< a slice: z of rays does not count
-    EmbreeScene scene;
+    int packet_width;
+    std::optional<FlatWorld> flat;  ///< of a slice; z of rays does not count
+    std::vector<Segment2> lines;    ///< of a slice
+    mutable std::once_flag is_made;
+    mutable std::optional<EmbreeScene> embree;  ///< of a slice once it is looked through
 
-    Data(Point3 origin, bool flat, TriangleSoup soup, int packet_width)
-        : middle(origin), is_flat(flat), scene(std::move(soup), packet_width) {}
+    Data(Point3 origin, int width) : middle(origin), packet_width(width) {}
 
     [[nodiscard]] Point3 local(Point3 p) const {
         const Point3 near = relative(p, middle);
-        return is_flat ? Point3{near.x, near.y, 0} : near;
+        return flat ? Point3{near.x, near.y, 0} : near;
+    }
+    [[nodiscard]] const EmbreeScene& scene() const {
+        std::call_once(is_made, [this] {
+            if (!embree) embree.emplace(standing(lines), kContact, packet_width);
+        });
+        return *embree;
     }
 };
 
@@ -54,21 +92,13 @@ RayWorld RayWorld::ofSlice(const Slice& slice, int packet_width) {
         plan.add(line.a);
         plan.add(line.b);
     });
-    const Point3 middle = middleOf(plan);
-    // Each line stands upright about the plane of the rays, high enough for any rounding. Lines
-    // that meet have equal corners, through which a ROBUST scene lets no ray slip.
-    constexpr double kHalfHeight = 1;
-    TriangleSoup soup;
+    auto data = std::make_unique<Data>(middleOf(plan), packet_width);
     slice.forEachLine([&](const Segment2& line) {
-        const auto corner = [&](Point2 p, double z) {
-            return soup.add(relative({p.x, p.y, z}, middle));
-        };
-        const std::uint32_t a = corner(line.a, -kHalfHeight), b = corner(line.b, -kHalfHeight);
-        const std::uint32_t c = corner(line.b, kHalfHeight), d = corner(line.a, kHalfHeight);
-        soup.triangles.push_back({a, b, c});
-        soup.triangles.push_back({a, c, d});
+        data->lines.push_back({data->local({line.a.x, line.a.y, 0}).onFloor(),
+                               data->local({line.b.x, line.b.y, 0}).onFloor()});
     });
-    return RayWorld(std::make_unique<Data>(middle, true, std::move(soup), packet_width));
+    data->flat.emplace(data->lines);
+    return RayWorld(std::move(data));
 }
 
 RayWorld RayWorld::ofEnvironment(const Environment& environment, int packet_width) {
@@ -79,42 +109,72 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, int packet_widt
     Box2 plan;
     for (const Mesh& mesh : meshes)
         for (const Point3& vertex : mesh.vertices) plan.add(vertex.onFloor());
-    const Point3 middle = middleOf(plan);
+    auto data = std::make_unique<Data>(middleOf(plan), packet_width);
     TriangleSoup soup;
+    std::size_t vertices = 0, triangles = 0;
+    for (const Mesh& mesh : meshes) {
+        vertices += mesh.vertices.size();
+        triangles += mesh.triangles.size();
+    }
+    soup.vertices.reserve(vertices);
+    soup.triangles.reserve(triangles);
     for (const Mesh& mesh : meshes) {
         const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-        for (const Point3& vertex : mesh.vertices) soup.add(relative(vertex, middle));
+        for (const Point3& vertex : mesh.vertices) soup.add(relative(vertex, data->middle));
         for (const auto& [i, j, k] : mesh.triangles)
             soup.triangles.push_back({first + i, first + j, first + k});
     }
-    return RayWorld(std::make_unique<Data>(middle, false, std::move(soup), packet_width));
+    data->embree.emplace(std::move(soup), kContact, packet_width);
+    return RayWorld(std::move(data));
 }
 
-void RayWorld::cast(Point3 origin, std::span<const Vec3> directions, double max_range,
-                    std::span<float> ranges) const {
-    const auto far = static_cast<float>(max_range);
-    const std::vector<float> reach(directions.size(),
-                                   static_cast<float>(max_range * (1 + kFarSlack)));
-    data_->scene.intersect(data_->local(origin), directions, reach, kContact, ranges);
-    for (float& range : ranges)
-        if (range != kNoReturn) range = std::min(range, far);
+void RayWorld::cast(Point3 origin, const Directions& directions, double max_range,
+                    std::span<float> ranges, std::span<float> cosines) const {
+    assert(ranges.size() == directions.size());
+    const Point3 from = data_->local(origin);
+    if (!data_->flat) return data_->scene().cast(from, directions, max_range, {ranges, cosines});
+    data_->flat->cast(from.onFloor(), directions, max_range * (1 + kFarSlack), kContact, ranges,
+                      cosines);
+    limit(ranges, static_cast<float>(max_range));
+}
+
+void RayWorld::cast(std::span<const Point3> origins, const Directions& directions, double max_range,
+                    std::span<float> ranges, std::span<float> cosines) const {
+    assert(ranges.size() == directions.size() && origins.size() == directions.size());
+    if (!data_->flat) {
+        std::vector<Point3> from;
+        from.reserve(origins.size());
+        for (const Point3& origin : origins) from.push_back(data_->local(origin));
+        return data_->scene().cast(from, directions, max_range, {ranges, cosines});
+    }
+    std::vector<Point2> from;
+    from.reserve(origins.size());
+    for (const Point3& origin : origins) from.push_back(data_->local(origin).onFloor());
+    data_->flat->cast(from, directions, max_range * (1 + kFarSlack), kContact, ranges, cosines);
+    limit(ranges, static_cast<float>(max_range));
+}
+
+void RayWorld::cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
+                    std::span<float> cosines) const {
+    assert(multiples.size() == grid.size() && !data_->flat);
+    data_->scene().cast(data_->local(origin), grid, most, {multiples, cosines});
 }
 
 void RayWorld::look(Point3 origin, std::span<const Point3> targets,
                     std::span<std::uint8_t> seen) const {
     const Point3 from = data_->local(origin);
-    std::vector<Vec3> directions(targets.size());
-    std::vector<float> reach(targets.size()), distances(targets.size());
+    Directions directions;
+    directions.resize(targets.size());
+    std::vector<double> reach(targets.size());
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const Vec3 way = data_->local(targets[i]) - from;
         const double distance = length(way);
         // Nothing stands on a way so short: a ray of no length meets nothing.
         const bool is_short = distance <= 2 * kContact;
-        directions[i] = is_short ? Vec3{1, 0, 0} : (1 / distance) * way;
-        reach[i] = is_short ? 0 : static_cast<float>(distance - kContact);
+        directions.set(i, is_short ? Vec3{1, 0, 0} : (1 / distance) * way);
+        reach[i] = is_short ? 0 : distance - kContact;
     }
-    data_->scene.intersect(from, directions, reach, kContact, distances);
-    for (std::size_t i = 0; i < targets.size(); ++i) seen[i] = distances[i] == kNoReturn ? 1 : 0;
+    data_->scene().look(from, directions, reach, seen);
 }
 
 }  // namespace ispace

@@ -8,6 +8,8 @@
 
 #include "env/environment.h"
 #include "geom/point.h"
+#include "trace/directions.h"
+#include "trace/ray_grid.h"
 
 namespace ispace {
 
@@ -16,18 +18,21 @@ namespace ispace {
 /// this near to a surface reaches its end.
 constexpr double kContact = 1e-4;
 
-/// An Embree scene of a slice or of the whole mesh.
+/// Rays against a slice (a FlatWorld; an Embree scene for sight, made when first looked through) or
+/// against the whole mesh (an Embree scene).
 ///
 /// Surfaces are closed sets without thickness: one seen exactly from its edge (within the rounding
-/// of float32) stops nothing. The scene is ROBUST, so that no ray slips between surfaces that share
-/// an edge or a corner, and that the packet width changes no range by more than rounding.
-/// Coordinates are kept relative to the middle of the plan: float32 then is exact to micrometres in
-/// a building, wherever its coordinates are counted from. Thread-safe once built; the number of
-/// threads changes nothing.
+/// of float32 in the mesh and for sight) stops nothing. No ray slips between surfaces that share an
+/// edge or a corner; what a ray meets decides its range, computed in doubles. Coordinates are kept
+/// relative to the middle of the plan: float32, in which the mesh is searched, then is exact to
+/// micrometres in a building, wherever its coordinates are counted from. Thread-safe once built;
+/// the number of threads changes nothing.
 class RayWorld {
   public:
-    /// What a level sensor at `slice.height` meets: rays must start at that height and be level.
-    /// \param packet_width rays traced together: 4, 8, 16, or 0 for what the processor does best
+    /// What a level sensor at `slice.height` meets: rays must start at that height and be level (z
+    /// does not count).
+    /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for what the processor
+    ///        does best; it changes no result
     /// \throws std::runtime_error if Embree fails (no memory)
     static RayWorld ofSlice(const Slice& slice, int packet_width = 0);
     /// All bodies and the floor, for rays of any direction.
@@ -36,11 +41,22 @@ class RayWorld {
     RayWorld& operator=(RayWorld&&) noexcept;
     ~RayWorld();
 
-    /// Distance to the first surface along each unit vector, up to max_range inclusive; +infinity
-    /// if there is none. Fastest for neighbouring directions (coherent packets).
-    /// \pre ranges.size() == directions.size()
-    void cast(Point3 origin, std::span<const Vec3> directions, double max_range,
-              std::span<float> ranges) const;
+    /// Distance to the first surface along each direction, up to max_range inclusive; +infinity if
+    /// there is none. Fastest for neighbouring directions (coherent packets), and in a slice for
+    /// directions with an arc. The same for any packet width and however rays are put together, but
+    /// for rays of the mesh that pass within 1e-7 m of where surfaces without a common edge meet:
+    /// either may decide, and the ranges differ by some 10 micrometres.
+    /// `cosines`, if not empty: |cosine| of the angle between ray and surface normal, 1 without
+    /// return. \pre ranges.size() == directions.size(), cosines.size() as well or 0
+    void cast(Point3 origin, const Directions& directions, double max_range,
+              std::span<float> ranges, std::span<float> cosines = {}) const;
+    /// The same with an origin for each ray.
+    void cast(std::span<const Point3> origins, const Directions& directions, double max_range,
+              std::span<float> ranges, std::span<float> cosines = {}) const;
+    /// The same for the rays of a picture, row by row: how many times a ray's vector reaches to the
+    /// first surface, up to `most` times inclusive. Traced in square tiles. \pre not of a slice
+    void cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
+              std::span<float> cosines = {}) const;
 
     /// seen[i] = 1 if nothing stands between origin and target i, the last kContact metres left
     /// out. Targets in any order; neighbours are fastest.

@@ -8,12 +8,10 @@
 #include <limits>
 #include <numbers>
 #include <random>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "geom/pose.h"
-#include "geom/predicates.h"
 
 namespace ispace {
 
@@ -33,17 +31,25 @@ std::vector<Segment2> rectangleLines(Point2 low, Point2 high) {
     return {{low, b}, {b, high}, {high, d}, {d, low}};
 }
 
+/// The same direction again and again.
+Directions alike(Vec3 direction, std::size_t count) {
+    Directions directions;
+    directions.resize(count);
+    for (std::size_t i = 0; i < count; ++i) directions.set(i, direction);
+    return directions;
+}
+
 /// One ray in the frame of `pose`, asked alone and in a full packet of its like.
 double range(const RayWorld& world, const Pose2& pose, Point2 from, Angle heading,
              double max_range = 100) {
     const Point2 origin = pose * from;
     const Vec2 direction = unitVector(pose.heading + heading);
-    const std::vector<Vec3> directions(17, {direction.x, direction.y, 0});
+    const Vec3 level{direction.x, direction.y, 0};
     std::vector<float> ranges(17);
-    world.cast({origin.x, origin.y, 0.15}, directions, max_range, ranges);
+    world.cast({origin.x, origin.y, 0.15}, alike(level, 17), max_range, ranges);
     for (const float other : ranges) EXPECT_EQ(other, ranges.front());
     float alone = 0;
-    world.cast({origin.x, origin.y, 0.15}, std::span(directions).first(1), max_range, {&alone, 1});
+    world.cast({origin.x, origin.y, 0.15}, alike(level, 1), max_range, {&alone, 1});
     EXPECT_EQ(alone, ranges.front());
     return alone;
 }
@@ -138,13 +144,14 @@ TEST_P(RayWorldCases, BendsLetNoRayThrough) {
     const RayWorld room = world(lines);
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> place(-15, 15);
-    std::vector<Vec3> directions(lines.size());
+    Directions directions;
+    directions.resize(lines.size());
     std::vector<float> ranges(lines.size());
     for (int i = 0; i < 20; ++i) {
         const Point2 from = pose() * Point2{place(random), place(random)};
         for (std::size_t k = 0; k < lines.size(); ++k) {
             const Vec2 way = pose() * lines[k].a - from;
-            directions[k] = {way.x / length(way), way.y / length(way), 0};
+            directions.set(k, {way.x / length(way), way.y / length(way), 0});
         }
         room.cast({from.x, from.y, 0.15}, directions, 200, ranges);
         for (const float range : ranges) EXPECT_LT(range, 15 * std::sqrt(2.0) + 28) << i;
@@ -257,130 +264,9 @@ TEST(RayWorld, EmptyWorldStopsNothing) {
         // A line without length is none.
         const RayWorld point = RayWorld::ofSlice({0.15, {{{1, 1}, {1, 1}}}, {}}, width);
         EXPECT_TRUE(std::isinf(range(point, {}, {0, 0}, Angle::degrees(45))));
-        nothing.cast({}, {}, 5, {});
+        nothing.cast(Point3(), Directions(), 5, {});
         nothing.look({}, {}, {});
     }
-}
-
-/// Lines of all sizes and directions.
-std::vector<Segment2> tangle(std::mt19937_64& random, int count, double size) {
-    std::uniform_real_distribution<double> place(0, size), turn(0, 360), exponent(-3, 0);
-    std::vector<Segment2> lines;
-    for (int i = 0; i < count; ++i) {
-        const Point2 a{place(random), place(random)};
-        const double reach = size * std::pow(10, exponent(random));
-        lines.push_back({a, a + reach * unitVector(Angle::degrees(turn(random)))});
-    }
-    return lines;
-}
-
-/// In doubles, over all lines but those in whose own line the origin lies.
-double bruteForce(const std::vector<Segment2>& lines, Point2 origin, Angle heading) {
-    const Vec2 direction = unitVector(heading);
-    double nearest = kInfinity;
-    for (const Segment2& line : lines) {
-        const Vec2 along = line.b - line.a, way = line.a - origin;
-        if (std::fabs(cross(along, way)) <= kContact * length(along)) continue;
-        const double slope = cross(direction, along);
-        const double t = cross(way, along) / slope, s = cross(way, direction) / slope;
-        if (t > 0 && s >= 0 && s <= 1) nearest = std::min(nearest, t);
-    }
-    return nearest;
-}
-
-TEST(RayWorld, TangleAgreesWithBruteForceAtEveryWidth) {
-    std::mt19937_64 random(11);
-    for (const double size : {10.0, 300.0}) {
-        const std::vector<Segment2> lines = tangle(random, 300, size);
-        std::uniform_real_distribution<double> place(0, size);
-        std::vector<RayWorld> worlds;
-        for (const int width : kWidths)
-            worlds.push_back(RayWorld::ofSlice({0.15, lines, {}}, width));
-        int beside = 0;
-        for (int i = 0; i < 50; ++i) {
-            const Point2 origin{place(random), place(random)};
-            std::vector<Angle> headings;
-            std::vector<Vec3> directions;
-            for (int k = 0; k < 731; ++k) {
-                headings.push_back(Angle::degrees(0.5 * k + 0.01 * i));
-                const Vec2 direction = unitVector(headings.back());
-                directions.push_back({direction.x, direction.y, 0});
-            }
-            for (const RayWorld& world : worlds) {
-                std::vector<float> ranges(directions.size());
-                world.cast({origin.x, origin.y, 0.15}, directions, 2 * size, ranges);
-                for (std::size_t k = 0; k < directions.size(); ++k) {
-                    const double exact = bruteForce(lines, origin, headings[k]);
-                    if (ranges[k] == exact || std::fabs(ranges[k] - exact) < 1e-6 * size) continue;
-                    // Past an end or along a line a hair of direction is much in range.
-                    ++beside;
-                    const Angle hair = Angle::radians(2e-6);
-                    const double left = bruteForce(lines, origin, headings[k] + hair);
-                    const double right = bruteForce(lines, origin, headings[k] - hair);
-                    EXPECT_GE(ranges[k], std::min({left, exact, right}) - 1e-6 * size);
-                    EXPECT_LE(ranges[k], std::max({left, exact, right}) + 1e-6 * size);
-                }
-            }
-        }
-        EXPECT_LT(beside, 3 * 50 * 731 / 500) << size;
-    }
-}
-
-TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
-    std::mt19937_64 random(12);
-    const std::vector<Segment2> lines = tangle(random, 100, 10);
-    std::vector<RayWorld> worlds;
-    for (const int width : kWidths) worlds.push_back(RayWorld::ofSlice({0.15, lines, {}}, width));
-    std::uniform_real_distribution<double> place(0, 10);
-    for (int i = 0; i < 50; ++i) {
-        const Point2 origin{place(random), place(random)};
-        std::vector<Point3> targets;
-        targets.reserve(301);
-        for (int k = 0; k < 301; ++k) targets.push_back({place(random), place(random), 0.15});
-        for (const RayWorld& world : worlds) {
-            std::vector<std::uint8_t> seen(targets.size(), 7);
-            world.look({origin.x, origin.y, 0.15}, targets, seen);
-            for (std::size_t k = 0; k < targets.size(); ++k) {
-                const bool free = std::none_of(lines.begin(), lines.end(), [&](const Segment2& s) {
-                    return intersects(s, {origin, targets[k].onFloor()});
-                });
-                EXPECT_EQ(seen[k] == 1, free) << i << ' ' << k;
-            }
-        }
-    }
-}
-
-TEST(RayWorld, SightIsSymmetric) {
-    std::mt19937_64 random(13);
-    const RayWorld world = RayWorld::ofSlice({0.15, tangle(random, 100, 10), {}});
-    std::uniform_real_distribution<double> place(0, 10);
-    for (int i = 0; i < 5000; ++i) {
-        const Point2 a{place(random), place(random)}, b{place(random), place(random)};
-        EXPECT_EQ(sees(world, {}, a, b), sees(world, {}, b, a));
-    }
-}
-
-TEST(RayWorld, SeveralThreadsShareAWorld) {
-    std::mt19937_64 random(14);
-    const std::vector<Segment2> lines = tangle(random, 2000, 10);
-    const RayWorld world = RayWorld::ofSlice({0.15, lines, {}});
-    std::vector<Vec3> directions;
-    for (int k = 0; k < 2000; ++k) {
-        const Vec2 direction = unitVector(Angle::degrees(0.18 * k));
-        directions.push_back({direction.x, direction.y, 0});
-    }
-    std::vector<std::vector<float>> found(4, std::vector<float>(directions.size()));
-    std::vector<std::thread> threads;
-    threads.reserve(found.size());
-    for (auto& ranges : found)
-        threads.emplace_back([&] { world.cast({5, 5, 0.15}, directions, 20, ranges); });
-    for (std::thread& thread : threads) thread.join();
-    for (const auto& ranges : found) EXPECT_EQ(ranges, found.front());
-    // A world built again, and moved, answers the same.
-    RayWorld again = RayWorld::ofSlice({0.15, lines, {}});
-    const RayWorld moved_world = std::move(again);
-    moved_world.cast({5, 5, 0.15}, directions, 20, found.back());
-    EXPECT_EQ(found.back(), found.front());
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "base/number.h"
@@ -14,8 +16,6 @@
 namespace ispace {
 
 namespace {
-
-constexpr int kWidths[] = {4, 8, 16};
 
 Scene furnishedRoom() {
     return testing::scene(
@@ -32,10 +32,11 @@ Pose3 at(double x, double y, double z, double heading = 0, double tilt = 0) {
     return {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), {}};
 }
 
+Directions along(Vec3 direction) { return {{direction.x}, {direction.y}, {direction.z}}; }
+
 float ahead(const Worlds& worlds, const Pose3& pose) {
-    const Vec3 direction = pose.beam({});
     float range = 0;
-    worlds.at(pose).cast(pose.position, {&direction, 1}, 100, {&range, 1});
+    worlds.at(pose).cast(pose.position, along(pose.beam({})), 100, {&range, 1});
     return range;
 }
 
@@ -56,31 +57,132 @@ TEST(Worlds, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
     EXPECT_NE(&worlds.at(down), &worlds.at(low));
 }
 
-TEST(Mesh, PacketWidthChangesRoundingAtMost) {
+TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
+    const Scene scene = furnishedRoom();
+    Worlds worlds(scene.environment);
+    const auto pose = [](std::size_t i) {
+        return at(7.5, 3, 0.1 + 0.01 * static_cast<double>(i), 180);
+    };
+    const std::size_t count = Worlds::kMostSlices + 20;
+    for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
+    worlds.prepareMesh();
+    for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= Worlds::kMostSlices) << i;
+        // The cube is met up to its top.
+        EXPECT_NEAR(ahead(worlds, pose(i)), i <= 40 ? 1 : 7.5, 1e-6) << i;
+    }
+    // Those prepared first stay.
+    for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
+    EXPECT_NE(&worlds.at(pose(0)), &worlds.mesh());
+    EXPECT_EQ(&worlds.at(pose(count - 1)), &worlds.mesh());
+}
+
+TEST(Worlds, LevelRaysMeetInTheMeshWhatTheyMeetInTheSlice) {
+    const Scene scene = furnishedRoom();
+    std::mt19937_64 random(24);
+    std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), turn(0, 360);
+    const RayWorld mesh = RayWorld::ofEnvironment(scene.environment);
+    int beside = 0;
+    for (const double height : {0.15, 0.31, 0.9}) {
+        const RayWorld slice = RayWorld::ofSlice(scene.environment.slice(height));
+        for (int i = 0; i < 20; ++i) {
+            // Every fifth hangs on a wall.
+            const Point3 origin{i % 5 == 0 ? 0 : x(random), y(random), height};
+            Directions directions;
+            directions.resize(300);
+            for (std::size_t k = 0; k < 300; ++k) {
+                const Vec2 d = unitVector(Angle::degrees(turn(random)));
+                directions.set(k, {d.x, d.y, 0});
+            }
+            std::vector<float> flat(300), solid(300), flat_cosines(300), cosines(300);
+            slice.cast(origin, directions, 30, flat, flat_cosines);
+            mesh.cast(origin, directions, 30, solid, cosines);
+            for (std::size_t k = 0; k < 300; ++k)
+                if (flat[k] != solid[k] && !(std::fabs(flat[k] - solid[k]) < 1e-5F &&
+                                             std::fabs(flat_cosines[k] - cosines[k]) < 1e-5F))
+                    ++beside;
+        }
+    }
+    EXPECT_LE(beside, 3);  // of 18 000
+}
+
+TEST(Worlds, OthersReadWhileOneThreadPrepares) {
+    const Scene scene = furnishedRoom();
+    Worlds worlds(scene.environment);
+    const auto pose = [](int i) { return at(7.5, 3, 0.1 + 0.005 * i, 180); };
+    std::atomic<int> ready = 0;
+    std::vector<std::thread> readers;
+    readers.reserve(3);
+    std::atomic<int> wrong = 0;
+    for (int reader = 0; reader < 3; ++reader)
+        readers.emplace_back([&] {
+            for (int i = 0; i < 40;) {
+                if (i >= ready) {
+                    std::this_thread::yield();
+                    continue;
+                }
+                if (ahead(worlds, pose(i)) != 1) ++wrong;
+                ++i;
+            }
+        });
+    for (int i = 0; i < 40; ++i) {
+        worlds.prepare(pose(i));
+        ready = i + 1;
+    }
+    for (std::thread& reader : readers) reader.join();
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST(Mesh, PacketWidthChangesNothing) {
     const Scene scene = furnishedRoom();
     std::vector<RayWorld> worlds;
-    for (const int width : kWidths)
+    for (const int width : {16, 8, 4, 1})
         worlds.push_back(RayWorld::ofEnvironment(scene.environment, width));
     std::mt19937_64 random(21);
     std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), z(0.05, 2.4), any(-1, 1);
     for (int i = 0; i < 100; ++i) {
         const Point3 origin{x(random), y(random), z(random)};
-        std::vector<Vec3> directions;
-        for (int k = 0; k < 333; ++k) {
+        Directions directions;
+        directions.resize(333);
+        for (std::size_t k = 0; k < 333; ++k) {
             const Vec3 way{any(random), any(random), any(random)};
-            directions.push_back((1 / length(way)) * way);
+            directions.set(k, (1 / length(way)) * way);
         }
-        std::vector<float> first(directions.size()), again(directions.size());
-        worlds.front().cast(origin, directions, 20, first);
+        std::vector<float> first(333), again(333), cosines(333), cosines_again(333);
+        worlds.front().cast(origin, directions, 20, first, cosines);
         for (const RayWorld& world : worlds) {
-            world.cast(origin, directions, 20, again);
-            for (std::size_t k = 0; k < first.size(); ++k)
-                if (std::isinf(first[k]))
-                    EXPECT_TRUE(std::isinf(again[k]));
-                else
-                    EXPECT_NEAR(first[k], again[k], 1e-5);
+            world.cast(origin, directions, 20, again, cosines_again);
+            EXPECT_EQ(first, again);
+            EXPECT_EQ(cosines, cosines_again);
         }
     }
+}
+
+TEST(Mesh, PicturesAndMovingOriginsFarFromTheOriginOfThePlan) {
+    const Scene scene = testing::scene("ispace at=5000,-7000 size=8,6,2.5 ceiling=yes\n");
+    const RayWorld world = RayWorld::ofEnvironment(scene.environment);
+    const Point3 origin{5001, -7000, 1};
+    // Ahead of it lies a wall at 3 m, seen at right angles.
+    const RayGrid grid{{1, 0.3, 0.2}, {0, -0.1, 0}, {0, 0, -0.1}, 7, 5};
+    std::vector<float> multiples(grid.size()), cosines(grid.size());
+    world.cast(origin, grid, 10, multiples, cosines);
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        EXPECT_EQ(multiples[k], 3);
+        const Vec3 ray = grid.ray(static_cast<int>(k % 7), static_cast<int>(k / 7));
+        EXPECT_NEAR(cosines[k], 1 / length(ray), 1e-7);
+    }
+    Directions directions;
+    directions.resize(40);
+    std::vector<Point3> origins;
+    for (std::size_t k = 0; k < 40; ++k) {
+        directions.set(k, {0.8, 0, 0.6});
+        origins.push_back({5001 + 0.01 * static_cast<double>(k), -7000, 0.2});
+    }
+    std::vector<float> ranges(40);
+    world.cast(origins, directions, 10, ranges);
+    for (std::size_t k = 0; k < 40; ++k)
+        EXPECT_NEAR(ranges[k], std::min(2.3 / 0.6, (3 - 0.01 * static_cast<double>(k)) / 0.8),
+                    1e-6);
 }
 
 TEST(Mesh, EdgesAndCornersLetNoRayThrough) {
@@ -109,9 +211,8 @@ TEST(Mesh, EdgesAndCornersLetNoRayThrough) {
                                       place(-4, 3, 2 * share(random)), place(-4, -3, 0.1)};
             for (const Point3& target : targets) {
                 const Vec3 way = target - origin;
-                const Vec3 direction = (1 / length(way)) * way;
                 float range = 0;
-                world.cast(origin, {&direction, 1}, 100, {&range, 1});
+                world.cast(origin, along((1 / length(way)) * way), 100, {&range, 1});
                 EXPECT_NEAR(range, length(way), 1e-4) << i << ' ' << k;
             }
         }

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trace/moving_bodies.h"
+
+namespace ispace {
+
+/// The stretch of a ray within a closed set, in multiples of its direction, with |slopes| of the
+/// surfaces at its ends: their normals times the direction.
+struct Stretch {
+    double from = -std::numeric_limits<double>::infinity();
+    double to = std::numeric_limits<double>::infinity();
+    double slope_from = 0, slope_to = 0;
+
+    void cut(double near, double far, double slope) {
+        if (near > from) {
+            from = near;
+            slope_from = slope;
+        }
+        if (far < to) {
+            to = far;
+            slope_to = slope;
+        }
+    }
+    void clear() {
+        from = std::numeric_limits<double>::infinity();
+        to = -from;
+    }
+    /// A ray parallel to two planes lies between them, or it does not.
+    void cutSlab(double origin, double direction, double low, double high) {
+        if (direction != 0) {
+            const double a = (low - origin) / direction, b = (high - origin) / direction;
+            cut(std::min(a, b), std::max(a, b), std::fabs(direction));
+        } else if (origin < low || origin > high) {
+            clear();
+        }
+    }
+    void cutDisc(Vec2 origin, Vec2 direction, double radius) {
+        const double a = dot(direction, direction), b = dot(origin, direction);
+        const double side = cross(origin, direction);
+        const double root = a * radius * radius - side * side;
+        if (a == 0 ? dot(origin, origin) > radius * radius : root < 0) {
+            clear();
+        } else if (a != 0) {
+            const double half = std::sqrt(root);
+            cut((-b - half) / a, (-b + half) / a, half / radius);
+        }
+    }
+};
+
+/// Where a ray meets a surface.
+struct BodyMeeting {
+    double multiple = std::numeric_limits<double>::infinity();  ///< of the ray's direction
+    double slope = 0;  ///< |normal times direction|: the cosine, if that is a unit vector
+};
+
+/// A body as rays from one place meet it: what they share is computed once.
+class BodyFrom {
+  public:
+    BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
+        : body_(body), axes_(axes), height_(origin.z) {
+        offset_ = turned(origin.onFloor() - body.pose.position);
+    }
+
+    [[nodiscard]] Stretch within(Vec3 direction) const {
+        const Vec2 flat = turned({direction.x, direction.y});
+        Stretch stretch;
+        stretch.cutSlab(height_, direction.z, body_.bottom, body_.top);
+        if (body_.radius > 0) {
+            stretch.cutDisc(offset_, flat, body_.radius);
+        } else {
+            stretch.cutSlab(offset_.x, flat.x, -body_.half_length, body_.half_length);
+            stretch.cutSlab(offset_.y, flat.y, -body_.half_width, body_.half_width);
+        }
+        return stretch;
+    }
+    /// The first place on its surface: from inside where the ray leaves.
+    [[nodiscard]] BodyMeeting meet(Vec3 direction) const {
+        const Stretch stretch = within(direction);
+        if (stretch.from > stretch.to || stretch.to < 0) return {};
+        if (stretch.from >= 0) return {stretch.from, stretch.slope_from};
+        return {stretch.to, stretch.slope_to};
+    }
+
+  private:
+    /// From the world into the body's frame.
+    [[nodiscard]] Vec2 turned(Vec2 v) const {
+        return {axes_.cos * v.x + axes_.sin * v.y, axes_.cos * v.y - axes_.sin * v.x};
+    }
+
+    const MovingBody& body_;
+    CosSin axes_;
+    Vec2 offset_;  // of the rays' origin, in the body's frame
+    double height_;
+};
+
+/// Ranges that bodies shorten, and their cosines.
+class ShortenedRanges {
+  public:
+    ShortenedRanges(double most, std::span<float> ranges, std::span<float> cosines)
+        : far_(static_cast<float>(most)), ranges_(ranges), cosines_(cosines) {}
+
+    [[nodiscard]] float operator[](std::size_t i) const { return ranges_[i]; }
+    /// `size`: the direction's length.
+    void shorten(std::size_t i, const BodyMeeting& met, double size) {
+        // As float32: what begins exactly at the limit is met.
+        const auto range = static_cast<float>(met.multiple);
+        if (!(range <= far_ && range < ranges_[i])) return;
+        ranges_[i] = range;
+        if (!cosines_.empty()) cosines_[i] = std::min(1.0F, static_cast<float>(met.slope / size));
+    }
+
+  private:
+    float far_;
+    std::span<float> ranges_, cosines_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace ispace {
+
+// One query of Embree 3 or 4. Its context is the first member, so that a filter gets the query
+// back.
+#if RTC_VERSION_MAJOR >= 4
+constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+struct EmbreeQuery {
+    RTCRayQueryContext context;
+    RTCIntersectArguments arguments;
+
+    explicit EmbreeQuery(RTCFilterFunctionN filter = nullptr) {
+        rtcInitRayQueryContext(&context);
+        rtcInitIntersectArguments(&arguments);
+        arguments.context = &context;
+        arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        if (filter == nullptr) return;
+        arguments.filter = filter;
+        arguments.flags = static_cast<RTCRayQueryFlags>(arguments.flags |
+                                                        RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+    }
+    template <auto kCall, typename Rays>
+    void trace(const int* valid, RTCScene scene, Rays* rays) {
+        kCall(valid, scene, rays, &arguments);
+    }
+    void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, &arguments); }
+};
+#else
+constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+struct EmbreeQuery {
+    RTCIntersectContext context;
+
+    explicit EmbreeQuery(RTCFilterFunctionN filter = nullptr) {
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        context.filter = filter;
+    }
+    template <auto kCall, typename Rays>
+    void trace(const int* valid, RTCScene scene, Rays* rays) {
+        kCall(valid, scene, &context, rays);
+    }
+    void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, &context, ray); }
+};
+#endif
+
+/// Packets are made and read in this many lanes, however many Embree traces together.
+constexpr std::size_t kLanes = 16;
+
+/// Traces the lanes of a packet in parts as wide as Rays; trace(valid, rays) does one.
+template <typename Rays, std::size_t kWidth, typename Trace>
+void traceParts(const int* valid, RTCRayHit16& packet, Trace trace) {
+    // All fields are arrays of four bytes a lane.
+    constexpr std::size_t kFields = sizeof(RTCRayHit16) / (4 * kLanes);
+    static_assert(sizeof(Rays) >= 4 * kFields * kWidth);
+    auto* const wide = reinterpret_cast<std::uint32_t*>(&packet);
+    Rays rays{};
+    auto* const narrow = reinterpret_cast<std::uint32_t*>(&rays);
+    for (std::size_t begin = 0; begin < kLanes; begin += kWidth) {
+        if (valid[begin] == 0) continue;
+        for (std::size_t k = 0; k < kFields; ++k)
+            std::memcpy(narrow + k * kWidth, wide + k * kLanes + begin, 4 * kWidth);
+        trace(valid + begin, &rays);
+        for (std::size_t k = 0; k < kFields; ++k)
+            std::memcpy(wide + k * kLanes + begin, narrow + k * kWidth, 4 * kWidth);
+    }
+}
+
+/// Traces a packet in parts of 1, 4, 8 or 16 lanes. \pre those that are valid come first
+inline void tracePacket(EmbreeQuery& query, RTCScene scene, std::size_t width, const int* valid,
+                        RTCRayHit16& packet) {
+    switch (width) {
+        case 16:
+            return query.trace<rtcIntersect16>(valid, scene, &packet);
+        case 8:
+            return traceParts<RTCRayHit8, 8>(valid, packet,
+                                             [&](const int* lanes, RTCRayHit8* rays) {
+                                                 query.trace<rtcIntersect8>(lanes, scene, rays);
+                                             });
+        case 4:
+            return traceParts<RTCRayHit4, 4>(valid, packet,
+                                             [&](const int* lanes, RTCRayHit4* rays) {
+                                                 query.trace<rtcIntersect4>(lanes, scene, rays);
+                                             });
+        default:
+            return traceParts<RTCRayHit, 1>(
+                valid, packet, [&](const int*, RTCRayHit* ray) { query.trace(scene, ray); });
+    }
+}
+
+}  // namespace ispace

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace/embree_scene.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+constexpr double kContact = 1e-4;
+constexpr int kWidths[] = {16, 8, 4, 1};
+
+/// A box of twelve triangles, turned about the vertical.
+void addBox(TriangleSoup& soup, Point3 middle, Vec3 half, double turn) {
+    std::uint32_t corners[8];
+    const double c = std::cos(turn), s = std::sin(turn);
+    for (unsigned i = 0; i < 8; ++i) {
+        const double x = (i & 1U ? 1 : -1) * half.x, y = (i & 2U ? 1 : -1) * half.y;
+        corners[i] = soup.add({middle.x + c * x - s * y, middle.y + s * x + c * y,
+                               middle.z + (i & 4U ? 1 : -1) * half.z});
+    }
+    const unsigned faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+    for (const auto& [i, j, k, l] : faces) {
+        soup.triangles.push_back({corners[i], corners[j], corners[k]});
+        soup.triangles.push_back({corners[i], corners[k], corners[l]});
+    }
+}
+
+/// A globe with bumps, whose triangles share no vertices but places.
+void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> bump(0.45, 0.55);
+    std::vector<Point3> places;
+    for (int i = 0; i <= rings; ++i) {
+        for (int k = 0; k < sectors; ++k) {
+            const double a = std::numbers::pi * (i + 0.5) / (rings + 1);
+            const double b = 2 * std::numbers::pi * k / sectors, radius = bump(random);
+            places.push_back(middle + radius * Vec3{std::sin(a) * std::cos(b),
+                                                    std::sin(a) * std::sin(b), std::cos(a)});
+        }
+    }
+    const auto at = [&](int i, int k) {
+        return soup.add(places[static_cast<std::size_t>(i) * static_cast<std::size_t>(sectors) +
+                               static_cast<std::size_t>(k % sectors)]);
+    };
+    for (int i = 0; i < rings; ++i) {
+        for (int k = 0; k < sectors; ++k) {
+            soup.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k)});
+            soup.triangles.push_back({at(i, k + 1), at(i + 1, k + 1), at(i + 1, k)});
+        }
+    }
+}
+
+/// A room 8 m by 6 m with boxes and globes that touch nothing.
+TriangleSoup furnished() {
+    std::mt19937_64 random(30);
+    TriangleSoup soup;
+    addBox(soup, {0, 0, 1.25}, {4, 3, 1.25}, 0);
+    for (int i = 0; i < 4; ++i) {
+        addBox(soup, {2.0 * i - 3, -1.5, 0.8}, {0.4, 0.3, 0.4}, 0.7 * i);
+        addGlobe(soup, {2.0 * i - 3, 1.5, 1}, 12, 18, random);
+    }
+    return soup;
+}
+
+struct Beams {
+    Directions directions;
+    std::vector<float> ranges, cosines;
+
+    explicit Beams(std::size_t count) : ranges(count), cosines(count) { directions.resize(count); }
+    void aim(std::size_t i, Vec3 way) { directions.set(i, (1 / length(way)) * way); }
+    void cast(const EmbreeScene& scene, Point3 origin, double most = 60) {
+        scene.cast(origin, directions, most, {ranges, cosines});
+    }
+};
+
+/// Over all triangles, in doubles.
+double bruteForce(const TriangleSet& set, const Ray& ray) {
+    double nearest = kInfinity;
+    for (std::size_t i = 0; i < set.size(); ++i) nearest = std::min(nearest, set.meet(i, ray));
+    return nearest;
+}
+
+/// Beams of all kinds: any directions, neighbours, through edges, through corners.
+void aimAll(Beams& beams, const TriangleSoup& soup, Point3 origin, int kind,
+            std::mt19937_64& random) {
+    std::uniform_real_distribution<double> any(-1, 1), hair(-1e-7, 1e-7);
+    const Vec3 ahead{any(random), any(random), any(random)}, aside{any(random), any(random), 0.1};
+    for (std::size_t k = 0; k < beams.ranges.size(); ++k) {
+        const auto& [a, b, c] = soup.triangles[random() % soup.triangles.size()];
+        const Point3 p = soup.vertices[a], q = soup.vertices[b];
+        const double share = kind == 2 ? 0.5 + 0.5 * any(random) : 0;
+        const double off = k % 3 == 0 ? 0 : hair(random);
+        if (kind == 0)
+            beams.aim(k, {any(random), any(random), any(random)});
+        else if (kind == 1)
+            beams.aim(k, Point3{} + ahead + 0.001 * static_cast<double>(k) * aside - Point3{});
+        else
+            beams.aim(k, (p + share * (q - p)) + Vec3{off, -off, off} - origin);
+    }
+}
+
+TEST(EmbreeScene, EveryWidthFindsTheSameAsAllTrianglesInDoubles) {
+    const TriangleSoup soup = furnished();
+    const TriangleSet set(soup);
+    std::vector<EmbreeScene> scenes;
+    for (const int width : kWidths) scenes.emplace_back(soup, kContact, width);
+    std::mt19937_64 random(31);
+    std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), z(0.1, 2.4);
+    int beside = 0;
+    for (int i = 0; i < 80; ++i) {
+        const Point3 origin{x(random), y(random), z(random)};
+        Beams beams(997);
+        aimAll(beams, soup, origin, i % 4, random);
+        beams.cast(scenes.front(), origin);
+        const Beams first = beams;
+        for (const EmbreeScene& scene : scenes) {
+            beams.cast(scene, origin);
+            EXPECT_EQ(beams.ranges, first.ranges) << i;
+            EXPECT_EQ(beams.cosines, first.cosines) << i;
+        }
+        for (std::size_t k = 0; k < 997; k += 10) {
+            const Ray ray{origin, first.directions[k], 60};
+            if (first.ranges[k] == static_cast<float>(bruteForce(set, ray))) continue;
+            // What is aimed at a rim to the nanometre, and grazes it, may pass.
+            EXPECT_GE(i % 4, 2) << i << ' ' << k;
+            ++beside;
+        }
+    }
+    EXPECT_LE(beside, 4);  // of 4000
+}
+
+TEST(EmbreeScene, ARayDoesNotDependOnItsPacket) {
+    const TriangleSoup soup = furnished();
+    const EmbreeScene scene(soup, kContact, 0);
+    std::mt19937_64 random(32);
+    for (int kind = 0; kind < 4; ++kind) {
+        const Point3 origin{0.3, -0.2, 1.1};
+        Beams all(500);
+        aimAll(all, soup, origin, kind, random);
+        all.cast(scene, origin);
+        for (std::size_t k = 0; k < 500; ++k) {
+            Beams one(1);
+            one.directions.set(0, all.directions[k]);
+            one.cast(scene, origin);
+            EXPECT_EQ(one.ranges[0], all.ranges[k]);
+            EXPECT_EQ(one.cosines[0], all.cosines[k]);
+        }
+    }
+}
+
+TEST(EmbreeScene, PlanesAreMetToTheLastBit) {
+    TriangleSoup soup;
+    addBox(soup, {0, 0, 0}, {4, 3, 2}, 0);
+    const EmbreeScene scene(soup, kContact, 0);
+    std::mt19937_64 random(33);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const Point3 origin{3.9 * any(random), 2.9 * any(random), 1.9 * any(random)};
+        Beams beams(100);
+        for (std::size_t k = 0; k < 100; ++k)
+            beams.aim(k, {any(random), any(random), 0.01 * any(random)});
+        beams.cast(scene, origin);
+        for (std::size_t k = 0; k < 100; ++k) {
+            const Vec3 d = beams.directions[k];
+            const double walls[] = {((d.x > 0 ? 4 : -4) - origin.x) / d.x,
+                                    ((d.y > 0 ? 3 : -3) - origin.y) / d.y,
+                                    ((d.z > 0 ? 2 : -2) - origin.z) / d.z};
+            const double* const first = std::min_element(walls, walls + 3);
+            EXPECT_NEAR(beams.ranges[k], *first, 3e-7 * *first);
+            const double cosines[] = {std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};
+            EXPECT_NEAR(beams.cosines[k], cosines[first - walls], 1e-6);
+        }
+    }
+}
+
+TEST(EmbreeScene, FarAndNearEndsOfRays) {
+    TriangleSoup soup;
+    addBox(soup, {0, 0, 0}, {1, 1, 1}, 0);
+    const EmbreeScene scene(soup, kContact, 0);
+    Beams one(1);
+    one.aim(0, {1, 0, 0});
+    one.cast(scene, {}, 1);
+    EXPECT_EQ(one.ranges[0], 1);
+    one.cast(scene, {}, 1 - 1e-7);  // within the slack, but written as no more
+    EXPECT_EQ(one.ranges[0], static_cast<float>(1 - 1e-7));
+    one.cast(scene, {}, 1 - 1e-5);
+    EXPECT_EQ(one.ranges[0], kNoReturn);
+    EXPECT_EQ(one.cosines[0], 1);
+    one.cast(scene, {}, kInfinity);
+    EXPECT_EQ(one.ranges[0], 1);
+    one.cast(scene, {2, 0, 0}, kInfinity);
+    EXPECT_EQ(one.ranges[0], kNoReturn);
+    // From the surface, along it, and from a little beyond.
+    one.cast(scene, {-1, 0.1, 0.2});
+    EXPECT_EQ(one.ranges[0], 2);
+    one.cast(scene, {-1 - 0.9e-4, 0.1, 0.2});
+    EXPECT_NEAR(one.ranges[0], 2 + 0.9e-4, 1e-6);
+    one.cast(scene, {-1 - 1.1e-4, 0.1, 0.2});
+    EXPECT_NEAR(one.ranges[0], 1.1e-4, 1e-9);
+    one.cast(scene, {0.1, 1, 0.2});
+    EXPECT_NEAR(one.ranges[0], 0.9, 1e-7);
+}
+
+TEST(EmbreeScene, OriginsOfEachRay) {
+    const TriangleSoup soup = furnished();
+    const EmbreeScene scene(soup, kContact, 0);
+    std::mt19937_64 random(34);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int i = 0; i < 30; ++i) {
+        // Free, along a wall at its contact distance, and from one side of it to the other.
+        const Point3 begin =
+            i % 3 == 0 ? Point3{2 * any(random), 0, 1} : Point3{-4, any(random), 1};
+        const Vec3 step{i % 3 == 2 ? 2e-6 : 0, 1e-4 * any(random), 0};
+        Beams moving(211), still(1);
+        aimAll(moving, soup, begin, 0, random);
+        std::vector<Point3> origins;
+        origins.reserve(211);
+        for (int k = 0; k < 211; ++k) origins.push_back(begin + (k - 105.0) * step);
+        scene.cast(origins, moving.directions, 60, {moving.ranges, moving.cosines});
+        for (std::size_t k = 0; k < origins.size(); ++k) {
+            still.directions.set(0, moving.directions[k]);
+            still.cast(scene, origins[k]);
+            EXPECT_EQ(moving.ranges[k], still.ranges[0]) << i << ' ' << k;
+            EXPECT_EQ(moving.cosines[k], still.cosines[0]) << i << ' ' << k;
+        }
+    }
+}
+
+TEST(EmbreeScene, PicturesOfAnySizeAreTheirRays) {
+    const TriangleSoup soup = furnished();
+    const EmbreeScene scene(soup, kContact, 0);
+    const std::pair<int, int> sizes[] = {{1, 1}, {17, 3}, {3, 17}, {4, 4}, {64, 50}, {1, 100}};
+    for (const auto& [columns, rows] : sizes) {
+        for (const Point3 origin : {Point3{0, 0, 1}, Point3{-4, 0.3, 1.2}}) {
+            const RayGrid grid{
+                {2, 1.03, 0.61}, {0, -2.0 / columns, 0}, {0, 0, -1.5 / rows}, columns, rows};
+            std::vector<float> multiples(grid.size(), -1), cosines(grid.size(), -1);
+            scene.cast(origin, grid, 100, {multiples, cosines});
+            Beams beams(grid.size());
+            std::size_t next = 0;
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column)
+                    beams.aim(next++, grid.ray(column, row));
+            beams.cast(scene, origin, 1000);
+            for (std::size_t k = 0; k < grid.size(); ++k) {
+                const auto column = static_cast<int>(k) % columns;
+                const double size = length(grid.ray(column, static_cast<int>(k) / columns));
+                EXPECT_NEAR(multiples[k] * size, beams.ranges[k], 1e-6 * beams.ranges[k]);
+                EXPECT_NEAR(cosines[k], beams.cosines[k], 1e-6);
+            }
+            // The same without cosines, on one thread, and with the depth as the limit.
+            std::vector<float> again(grid.size(), -1);
+            const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+            scene.cast(origin, grid, 100, {again, {}});
+            EXPECT_EQ(again, multiples);
+            scene.cast(origin, grid, 1.5, {again, {}});
+            for (std::size_t k = 0; k < grid.size(); ++k)
+                EXPECT_EQ(again[k], multiples[k] <= 1.5F ? multiples[k] : kNoReturn);
+        }
+    }
+}
+
+TEST(EmbreeScene, SightEndsWhereItIsTold) {
+    TriangleSoup soup;
+    addBox(soup, {0, 0, 0}, {1, 1, 1}, 0);
+    const EmbreeScene scene(soup, kContact, 0);
+    Directions directions;
+    directions.resize(20);
+    std::vector<double> reach;
+    for (std::size_t i = 0; i < 20; ++i) {
+        directions.set(i, {0, 1, 0});
+        reach.push_back(0.1 * static_cast<double>(i) + 0.05);
+    }
+    std::vector<std::uint8_t> seen(20, 7);
+    scene.look({0.2, 0, 0.1}, directions, reach, seen);
+    for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], reach[i] < 1 ? 1 : 0);
+}
+
+TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {
+    TriangleSoup points;
+    for (int i = 0; i < 3; ++i) points.add({1, 0, 0});
+    points.triangles.push_back({0, 1, 2});
+    for (const TriangleSoup& soup : {TriangleSoup(), points}) {
+        const EmbreeScene scene(soup, kContact, 0);
+        Beams one(3);
+        for (std::size_t k = 0; k < 3; ++k) one.aim(k, {1, 0, 0});
+        one.cast(scene, {});
+        EXPECT_EQ(one.ranges, std::vector<float>(3, kNoReturn));
+        EXPECT_EQ(one.cosines, std::vector<float>(3, 1));
+        const std::vector<Point3> origins(3);
+        scene.cast(origins, one.directions, 5, {one.ranges, {}});
+        EXPECT_EQ(one.ranges, std::vector<float>(3, kNoReturn));
+        std::vector<float> picture(6);
+        scene.cast({}, RayGrid{{1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}, 3, 2}, 5, {picture, {}});
+        EXPECT_EQ(picture, std::vector<float>(6, kNoReturn));
+    }
+}
+
+TEST(TriangleSet, EnlargedTrianglesHoldTheirSlack) {
+    std::mt19937_64 random(35);
+    std::uniform_real_distribution<double> any(-5, 5);
+    TriangleSoup soup;
+    for (int i = 0; i < 200; ++i) {
+        const auto a = soup.add({any(random), any(random), any(random)});
+        const auto b = soup.add({any(random), any(random), any(random)});
+        const auto c = soup.add({any(random), any(random), any(random)});
+        soup.triangles.push_back({a, b, c});
+    }
+    const TriangleSet set(soup);
+    ASSERT_EQ(set.size(), 200U);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        // Rounding turns the sides of splinters.
+        if (set.margins()[i] > 2.5 * set.slack()) continue;
+        const auto corners = set.enlarged(i);
+        for (std::size_t k = 0; k < 3; ++k) {
+            // Each side lies farther from the corner opposite by the slack.
+            const auto at = [&](std::size_t m) {
+                const auto& [x, y, z] = corners[m % 3];
+                return Point3{x, y, z};
+            };
+            const Vec3 side = at(k + 1) - at(k), inner = set.corner(i, (k + 2) % 3) - at(k);
+            const Vec3 own = set.corner(i, (k + 1) % 3) - set.corner(i, k);
+            const Vec3 opposite = set.corner(i, (k + 2) % 3) - set.corner(i, k);
+            const double height = length(cross(own, opposite)) / length(own);
+            const double now = length(cross(side, inner)) / length(side);
+            EXPECT_NEAR(now - height, set.slack(), 0.5 * set.slack()) << i;
+        }
+    }
+}
+
+}  // namespace
+
+}  // namespace ispace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "geom/polygon.h"
+#include "trace/directions.h"
+
+namespace ispace {
+
+/// The lines of a slice, for level rays: exact to rounding of doubles, and faster than a general
+/// ray tracer.
+///
+/// A fan is drawn like a picture with one row: a bounding volume hierarchy is walked front to back,
+/// what lies behind the farthest range of the beams it could shorten is left out, and each line
+/// that is not is drawn into the beams between its ends. A beam meets a line if it crosses it or
+/// passes one of its ends within a nanometre, decided in doubles for each beam and line: none slips
+/// between lines with a common end, and one that just touches a corner meets it.
+///
+/// Lines in contact with the origin (nearer than `contact`) stop nothing, nor do those that
+/// continue them within it; nor does a line seen exactly from its edge (its straight continuation
+/// passes the origin within a nanometre). Thread-safe; results depend on nothing but the lines and
+/// the ray, not on the order of lines, the fan a ray is part of, or the processor.
+class FlatWorld {
+  public:
+    explicit FlatWorld(std::span<const Segment2> lines);
+    FlatWorld(FlatWorld&&) noexcept;
+    FlatWorld& operator=(FlatWorld&&) noexcept;
+    ~FlatWorld();
+
+    /// Distance of the first line along each direction (x and y count), up to max_range inclusive;
+    /// +infinity if there is none. Fast for directions with an arc.
+    /// `cosines`, if not empty: |cosine| of the angle between ray and normal, 1 without return;
+    /// the larger where two lines are met at once.
+    /// \pre ranges.size() == directions.size(), cosines.size() as well or 0
+    void cast(Point2 origin, const Directions& directions, double max_range, double contact,
+              std::span<float> ranges, std::span<float> cosines) const;
+    /// The same with an origin for each ray.
+    void cast(std::span<const Point2> origins, const Directions& directions, double max_range,
+              double contact, std::span<float> ranges, std::span<float> cosines) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "trace/embree_query.h"
+#include "trace/ray_grid.h"
+#include "trace/triangle_set.h"
+
+namespace ispace {
+
+/// Rays traced together, in doubles, and what comes of them.
+struct alignas(64) RayPacket {
+    using Lanes = std::array<double, kLanes>;
+
+    Lanes x, y, z;                       ///< of the directions
+    Lanes origin_x, origin_y, origin_z;  ///< of the rays
+    Lanes reach;                         ///< in multiples of the directions, inclusive
+    /// To where they meet a surface, of its direction: +infinity if a ray meets none.
+    std::array<float, kLanes> multiples;
+    std::array<float, kLanes> slopes;  ///< |normal times direction|; +infinity likewise
+
+    [[nodiscard]] Ray ray(std::size_t lane) const {
+        return {{origin_x[lane], origin_y[lane], origin_z[lane]},
+                {x[lane], y[lane], z[lane]},
+                reach[lane]};
+    }
+    void setOrigin(Point3 origin) {
+        origin_x.fill(origin.x);
+        origin_y.fill(origin.y);
+        origin_z.fill(origin.z);
+    }
+};
+
+/// The rays of a square tile of a picture; beyond its edges those at the edge.
+constexpr int kTile = 4;
+void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet);
+
+/// For Embree, in float32. `tail` is added to the reach, which decides once the hits are known.
+void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays);
+
+/// Where the rays meet the planes of the triangles hit; multiples are at most `most`.
+/// Planes nearer than `clear` to the origin need a closer look, as do hits near an edge.
+/// \return a bit for each lane that does
+std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes, const double* margins,
+                         double clear, float most, RayPacket& packet);
+
+}  // namespace ispace

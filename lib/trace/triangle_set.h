@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/point.h"
+
+namespace ispace {
+
+/// Triangles as they come: vertices may be shared or not.
+struct TriangleSoup {
+    std::vector<Point3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+
+    /// \return the vertex' index
+    std::uint32_t add(Point3 corner) {
+        vertices.push_back(corner);
+        return static_cast<std::uint32_t>(vertices.size() - 1);
+    }
+};
+
+/// A ray up to `reach` times its direction.
+struct Ray {
+    Point3 origin;
+    Vec3 direction;
+    double reach = 0;
+};
+
+/// A plane: where dot(normal, p) = offset, counted from the coordinates' origin.
+struct alignas(32) Plane {
+    Vec3 normal;  ///< unit length
+    double offset = 0;
+
+    /// Over a point, along the normal.
+    [[nodiscard]] double heightOver(Point3 p) const {
+        return offset - (normal.x * p.x + normal.y * p.y + normal.z * p.z);
+    }
+};
+
+/// Triangles in doubles, and all that decides exactly which of them a ray meets.
+///
+/// A ray tracer that works in float32 finds the candidates. It is given triangles that are larger
+/// by slack() on each side, which is more than its errors: no triangle that a ray meets is lost to
+/// it, unless the ray grazes its rim. A hit whose least barycentric coordinate times the cosine of
+/// ray and normal is over margin() lies in the triangle for certain; others are decided here.
+class TriangleSet {
+  public:
+    /// Triangles thinner than a nanometre are left out; vertices at one place become one.
+    explicit TriangleSet(TriangleSoup soup);
+
+    [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+    [[nodiscard]] Point3 corner(std::size_t triangle, std::size_t i) const {
+        return vertices_[triangles_[triangle][i]];
+    }
+    [[nodiscard]] std::span<const Plane> planes() const { return planes_; }
+    [[nodiscard]] std::span<const double> margins() const { return margins_; }
+    [[nodiscard]] double slack() const { return slack_; }
+    /// The triangle's corners moved outwards, in float32.
+    [[nodiscard]] std::array<std::array<float, 3>, 3> enlarged(std::size_t triangle) const;
+
+    /// How many times its direction the ray goes to where it meets the closed triangle, within a
+    /// nanometre aside; +infinity if it does not within its reach.
+    [[nodiscard]] double meet(std::size_t triangle, const Ray& ray) const;
+    /// Of a point from the closed triangle.
+    [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
+
+    /// Calls visit(index) for all triangles with a corner in common with this one's corner i.
+    template <typename Visit>
+    void forEachAtCorner(std::size_t triangle, std::size_t i, Visit visit) const {
+        const std::uint32_t vertex = triangles_[triangle][i];
+        for (std::uint32_t k = first_[vertex]; k < first_[vertex + 1]; ++k)
+            visit(std::size_t{around_[k]});
+    }
+    /// The same for the side between this one's corners i and k.
+    template <typename Visit>
+    void forEachAtSide(std::size_t triangle, std::size_t i, std::size_t k, Visit visit) const {
+        const std::uint32_t other = triangles_[triangle][k];
+        forEachAtCorner(triangle, i, [&](std::size_t index) {
+            const auto& [a, b, c] = triangles_[index];
+            if (a == other || b == other || c == other) visit(index);
+        });
+    }
+
+  private:
+    void merge(std::vector<Point3> vertices);
+    void measure();
+    void listCorners();
+
+    std::vector<Point3> vertices_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::vector<Plane> planes_;
+    std::vector<double> margins_;
+    std::vector<std::uint32_t> first_, around_;  // triangles about each vertex
+    double slack_ = 0;
+};
+
+}  // namespace ispace
