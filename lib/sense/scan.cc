@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/scan.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "base/simd.h"
+#include "sense/noise.h"
 
 namespace ispace {
 
 namespace {
 
 /// Surfaces in the blind zone give no return, and hide what lies behind them all the same.
-void applyBlindZone(const Laser& laser, std::vector<float>& ranges) {
+void applyBlindZone(const Laser& laser, std::span<float> ranges) {
     // As float32, as max_range is: a surface exactly at min_range is seen.
     const auto blind = static_cast<float>(laser.min_range);
     for (float& range : ranges) {
@@ -22,105 +23,122 @@ void applyBlindZone(const Laser& laser, std::vector<float>& ranges) {
 
 }  // namespace
 
-Beams::Beams(const PlacedLaser& sensor)
-    : first_(sensor.laser.first), step_(sensor.laser.step), rides_(sensor.mount.has_value()) {
-    const auto count = static_cast<std::size_t>(sensor.laser.beams);
+Beams::Beams(const Laser& laser, bool turns)
+    : first_(laser.first), step_(laser.step), turns_(turns) {
+    const auto count = static_cast<std::size_t>(laser.beams);
     directions_.resize(count);
-    if (isSum(sensor.pose)) return;
-    local_.reserve(count);
-    for (int k = 0; k < sensor.laser.beams; ++k)
-        local_.push_back(unitVector(sensor.laser.bearing(k)));
+    local_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec2 flat = unitVector(laser.bearing(static_cast<int>(k)));
+        local_.set(k, {flat.x, flat.y, 0});
+    }
 }
 
-std::span<const Vec3> Beams::at(const Pose3& pose) {
+const Directions& Beams::at(const Pose3& pose) {
     if (!known_ || pose.heading != heading_ || pose.tilt != tilt_ || pose.roll != roll_)
         point(pose);
     return directions_;
 }
+
+namespace {
+
+/// Turns directions in the plane of the sensor into the world.
+ISPACE_SIMD_CLONES void turn(const double* x, const double* y, std::size_t count, Vec3 forward,
+                             Vec3 left, double* out_x, double* out_y, double* out_z) {
+    for (std::size_t k = 0; k < count; ++k) {
+        out_x[k] = x[k] * forward.x + y[k] * left.x;
+        out_y[k] = x[k] * forward.y + y[k] * left.y;
+        out_z[k] = x[k] * forward.z + y[k] * left.z;
+    }
+}
+
+}  // namespace
 
 void Beams::point(const Pose3& pose) {
     known_ = true;
     heading_ = pose.heading;
     tilt_ = pose.tilt;
     roll_ = pose.roll;
-    if (isSum(pose)) {
+    directions_.arc.reset();
+    if (pose.isLevel()) directions_.arc = Directions::Arc{heading_ + first_, step_};
+    if (pose.isLevel() && !turns_) {
         for (std::size_t k = 0; k < directions_.size(); ++k) {
             const Vec2 flat = unitVector(heading_ + (first_ + static_cast<double>(k) * step_));
-            directions_[k] = {flat.x, flat.y, 0};
+            directions_.set(k, {flat.x, flat.y, 0});
         }
         return;
     }
-    const Vec3 forward = pose.beam({}), left = pose.beam(Angle::degrees(90));
-    for (std::size_t k = 0; k < directions_.size(); ++k) {
-        const auto [x, y] = local_[k];
-        directions_[k] = {x * forward.x + y * left.x, x * forward.y + y * left.y,
-                          x * forward.z + y * left.z};
-    }
+    turn(local_.x.data(), local_.y.data(), local_.size(), pose.beam({}),
+         pose.beam(Angle::degrees(90)), directions_.x.data(), directions_.y.data(),
+         directions_.z.data());
 }
 
 std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
-    Beams beams(sensor);
-    const std::span<const Vec3> directions = beams.at(sensor.pose);
+    Beams beams(sensor.laser, false);
+    const Directions& directions = beams.at(sensor.pose);
     std::vector<float> ranges(directions.size());
     world.cast(sensor.pose.position, directions, sensor.laser.max_range, ranges);
     return ranges;
 }
 
-Scan castScan(const RayWorld& world, const PlacedLaser& sensor) {
-    Scan scan;
-    scan.ranges = castBeams(world, sensor);
-    applyBlindZone(sensor.laser, scan.ranges);
-    return scan;
+LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies,
+                         const PlacedLaser& sensor, bool turns, const ReadingOptions& options)
+    : worlds_(&worlds),
+      bodies_(&bodies),
+      sensor_(&sensor),
+      options_(options),
+      id_hash_(hashOf(sensor.id)),
+      own_(sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody),
+      beams_(sensor.laser, turns) {}
+
+void LaserCaster::cast(Scan& scan) {
+    const Laser& laser = sensor_->laser;
+    const auto count = static_cast<std::size_t>(laser.beams);
+    scan.ranges.resize(count);
+    const bool noisy = options_.noise_seed.has_value();
+    const NoiseKey key{.seed = options_.noise_seed.value_or(0),
+                       .sensor = id_hash_,
+                       .frame = static_cast<std::uint64_t>(scan.frame) *
+                                    static_cast<std::uint64_t>(laser.scans()) +
+                                static_cast<std::uint64_t>(scan.number)};
+    cosines_.resize(noisy && laser.noise.dropsByIncidence() ? count : 0);
+    errors_.resize(noisy && laser.noise.angle_sigma > Angle() ? count : 0);
+    if (!errors_.empty()) bearingErrors(laser.noise, key, errors_);
+    if (errors_.empty() && scan.beam_poses.empty())
+        castFrom(scan.pose, scan.ranges);
+    else
+        castApart(scan);
+    if (noisy)
+        addNoise(laser.noise, laser.min_range, laser.max_range, key, cosines_, scan.ranges);
+    else
+        applyBlindZone(laser, scan.ranges);
 }
 
-Scan castScan(const RayWorld& world, const PlacedLaser& sensor, Beams& beams,
-              const MovingBodies& bodies) {
-    const Laser& laser = sensor.laser;
-    const std::span<const Vec3> directions = beams.at(sensor.pose);
-    Scan scan;
-    scan.ranges.resize(directions.size());
-    world.cast(sensor.pose.position, directions, laser.max_range, scan.ranges);
-    const std::uint32_t own =
-        sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody;
-    bodies.shorten(sensor.pose, laser.first, laser.step, directions, laser.max_range, own,
-                   scan.ranges);
-    applyBlindZone(laser, scan.ranges);
-    return scan;
+void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges) {
+    const Directions& directions = beams_.at(pose);
+    const double far = sensor_->laser.max_range;
+    worlds_->at(pose).cast(pose.position, directions, far, ranges, cosines_);
+    bodies_->shorten(pose.position, directions, far, own_, ranges, cosines_);
 }
 
-std::vector<Scan> castScans(Worlds& worlds, std::span<const PlacedLaser> sensors,
-                            const MovingBodies& bodies) {
-    for (const PlacedLaser& sensor : sensors) worlds.prepare(sensor.pose);
-    const Worlds& ready = worlds;
-    std::vector<Scan> scans(sensors.size());
-    tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
-        Beams beams(sensors[i]);
-        scans[i] = castScan(ready.at(sensors[i].pose), sensors[i], beams, bodies);
-    });
-    return scans;
-}
-
-MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {
-    MovingBody body;
-    body.pose = {pose * Point2{model.center, 0}, pose.heading};
-    if (model.length > 0) {
-        body.half_length = model.length / 2;
-        body.half_width = model.width / 2;
-    } else {
-        body.radius = model.radius;
+/// Each beam by itself: it has a place or an error of its own.
+void LaserCaster::castApart(Scan& scan) {
+    const Laser& laser = sensor_->laser;
+    const std::size_t count = scan.ranges.size();
+    apart_.resize(count);
+    origins_.resize(count);
+    bool level = true;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Pose3& pose = scan.poseAt(k);
+        Angle bearing = laser.bearing(static_cast<int>(k));
+        if (!errors_.empty()) bearing = bearing + Angle::radians(static_cast<double>(errors_[k]));
+        apart_.set(k, pose.beam(bearing));
+        origins_[k] = pose.position;
+        level = level && pose.isLevel() && pose.position.z == scan.pose.position.z;
     }
-    body.top = model.height;
-    body.owner = owner;
-    return body;
-}
-
-std::vector<MovingBody> robotBodies(std::span<const PlacedRobot> robots) {
-    std::vector<MovingBody> bodies;
-    bodies.reserve(robots.size());
-    for (const PlacedRobot& robot : robots)
-        bodies.push_back(
-            robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
-    return bodies;
+    const RayWorld& world = level ? worlds_->at(scan.pose) : worlds_->mesh();
+    world.cast(origins_, apart_, laser.max_range, scan.ranges, cosines_);
+    bodies_->shorten(origins_, apart_, laser.max_range, own_, scan.ranges, cosines_);
 }
 
 double sliceArea(const Laser& laser, std::span<const float> ranges) {

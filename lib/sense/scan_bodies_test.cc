@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scans with robots in the way.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "layout/test_layout.h"
-#include "sense/scan.h"
+#include "sense/bodies.h"
+#include "sense/test_readings.h"
 
 namespace ispace {
 namespace {
@@ -15,10 +15,7 @@ namespace {
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
 
 /// What the sensors of a scene read with its robots at their start.
-std::vector<Scan> scansOf(const Scene& scene) {
-    Worlds worlds(scene.environment);
-    return castScans(worlds, scene.lasers, MovingBodies(robotBodies(scene.robots)));
-}
+std::vector<Scan> scansOf(const Scene& scene) { return testing::scans(scene); }
 
 std::vector<Scan> scansOf(const std::string& layout) {
     return scansOf(testing::scene(kRoom, layout));
@@ -87,34 +84,35 @@ TEST(ScanOfRobots, TheBlindZoneIsAppliedLast) {
 
 TEST(ScanOfRobots, WithoutBodiesNothingChanges) {
     const Scene scene = testing::scene(kRoom + "desk at=3,3\n", "laser at=1,3\nrobot at=2,3\n");
-    Worlds worlds(scene.environment);
-    const std::vector<Scan> plain = castScans(worlds, scene.lasers);
-    const PlacedLaser& sensor = scene.lasers[0];
-    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor).ranges);
-    Beams beams(sensor);
-    EXPECT_EQ(plain[0].ranges, castScan(worlds.at(sensor.pose), sensor, beams, {}).ranges);
-    EXPECT_NE(plain[0].ranges, scansOf(scene)[0].ranges);
+    const std::vector<float> plain = testing::scan(scene, scene.lasers[0]).ranges;
+    EXPECT_EQ(plain,
+              testing::scans(testing::scene(kRoom + "desk at=3,3\n", "laser at=1,3\n"))[0].ranges);
+    EXPECT_NE(plain, scansOf(scene)[0].ranges);
 }
 
-TEST(ScanOfRobots, SameForAnyNumberOfThreads) {
-    std::string layout;
-    for (int i = 0; i < 40; ++i) {
-        const std::string x = std::to_string(1 + i % 7), y = std::to_string(1 + i % 5);
-        layout.append("robot at=").append(x).append(",").append(y).append(" radius=0.1\n");
-        layout.append("laser on=robot").append(std::to_string(i + 1)).append("\n");
-    }
-    const Scene scene = testing::scene(kRoom, layout);
-    const std::vector<Scan> many = scansOf(scene);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-    const std::vector<Scan> one = scansOf(scene);
-    ASSERT_EQ(many.size(), one.size());
-    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(many[i].ranges, one[i].ranges);
+TEST(ScanOfPeople, LegsTrunkAndHeadAreMet) {
+    const auto scans = scansOf(
+        "human at=4,3 heading=0\n"
+        "laser at=2,3,0.15 range=8\n"
+        "laser at=2,3,1.2 range=8\n"
+        "laser at=2,3,1.65 range=8\n"
+        "laser at=2,3,1.75 range=8\n"
+        "laser at=4,3,2.4 tilt=-90 range=8\n");
+    // Between the legs, 0.187 m apart from middle to middle, runs the middle beam; beside it they
+    // are met.
+    EXPECT_EQ(scans[0].ranges[90], 6);
+    EXPECT_NEAR(*std::min_element(scans[0].ranges.begin(), scans[0].ranges.end()),
+                std::hypot(2, 0.0935) - 0.0595, 2e-3);
+    EXPECT_NEAR(scans[1].ranges[90], 2 - 0.102, 1e-6);
+    EXPECT_NEAR(scans[2].ranges[90], 2 - 0.1105, 1e-6);
+    EXPECT_EQ(scans[3].ranges[90], 6);
+    EXPECT_NEAR(scans[4].ranges[90], 0.7, 1e-6) << "onto the head";
 }
 
 /// Largest distance of the directions of a sensor's beams to those of Pose3::beam.
 double worstDirection(Beams& beams, const PlacedLaser& sensor) {
     double worst = 0;
-    const std::span<const Vec3> directions = beams.at(sensor.pose);
+    const Directions& directions = beams.at(sensor.pose);
     for (int k = 0; k < sensor.laser.beams; ++k) {
         const Vec3 wanted = sensor.pose.beam(sensor.laser.bearing(k));
         const Vec3 found = directions[static_cast<std::size_t>(k)];
@@ -129,8 +127,7 @@ TEST(Beams, FollowThePose) {
         for (const bool rides : {false, true}) {
             PlacedLaser sensor;
             sensor.pose = {{1, 2, 0.5}, {}, Angle::degrees(tilt), {}};
-            if (rides) sensor.mount = Mount{};
-            Beams beams(sensor);
+            Beams beams(sensor.laser, rides);
             for (const double heading : {0.0, 33.0, 33.0, -170.5, 90.0}) {
                 sensor.pose.heading = Angle::degrees(heading);
                 EXPECT_LT(worstDirection(beams, sensor), 1e-15) << tilt << rides << heading;
@@ -142,7 +139,7 @@ TEST(Beams, FollowThePose) {
 TEST(Beams, DegreesOfASensorThatStandsAddUpExactly) {
     PlacedLaser sensor;
     sensor.pose.heading = Angle::degrees(30);
-    Beams beams(sensor);
+    Beams beams(sensor.laser, false);
     EXPECT_EQ(beams.at(sensor.pose)[150], (Vec3{0, 1, 0}));  // bearing 60
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/scan.h"
+#include "sense/test_readings.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -29,18 +30,12 @@ Laser laserWithRange(double min_range, double max_range) {
     return laser;
 }
 
-/// All beams of a sensor in a scene, as the tools cast them.
-Scan scanIn(const Scene& scene, const PlacedLaser& sensor) {
-    Worlds worlds(scene.environment);
-    return castScans(worlds, {&sensor, 1}).front();
-}
-
 /// One beam at this bearing.
 float beam(const Scene& scene, const Pose3& pose, double bearing, double max_range = 100) {
     Laser laser = laserWithRange(0, max_range);
     laser.first = Angle::degrees(bearing);
     laser.beams = 1;
-    return scanIn(scene, placed(laser, pose)).ranges.front();
+    return testing::scan(scene, placed(laser, pose)).ranges.front();
 }
 
 Pose3 at(double x, double y, double z, double heading = 0, double tilt = 0, double roll = 0) {
@@ -49,7 +44,7 @@ Pose3 at(double x, double y, double z, double heading = 0, double tilt = 0, doub
 
 TEST(Scan, BeamsRunCounterClockwiseFromFirst) {
     const Scene scene = testing::scene(kRoom);
-    const Scan scan = scanIn(scene, placed(laserWithRange(0, 100), at(3, 2, 0.15)));
+    const Scan scan = testing::scan(scene, placed(laserWithRange(0, 100), at(3, 2, 0.15)));
     ASSERT_EQ(scan.ranges.size(), 181U);
     EXPECT_EQ(scan.ranges[0], 2);    // -y
     EXPECT_EQ(scan.ranges[90], 5);   // +x
@@ -113,12 +108,12 @@ TEST(Scan, BlindZone) {
     Worlds worlds(scene.environment);
     worlds.prepare(sensor.pose);
     const RayWorld& world = worlds.at(sensor.pose);
-    EXPECT_EQ(castScan(world, sensor).ranges[90], 0.5F);  // exactly at its edge
+    EXPECT_EQ(testing::scan(scene, sensor).ranges[90], 0.5F);  // exactly at its edge
     const PlacedLaser near = placed(laserWithRange(0.5, 5), at(7.6, 3, 0.15));
-    EXPECT_TRUE(std::isinf(castScan(world, near).ranges[90]));
+    EXPECT_TRUE(std::isinf(testing::scan(scene, near).ranges[90]));
     EXPECT_NEAR(castBeams(world, near)[90], 0.4, 1e-6);
     // What the blind zone hides does not uncover what lies behind.
-    EXPECT_FALSE(std::isinf(castScan(world, near).ranges[160]));
+    EXPECT_FALSE(std::isinf(testing::scan(scene, near).ranges[160]));
 }
 
 TEST(Scan, TwoHeightsMeetDifferentThings) {
@@ -210,7 +205,7 @@ TEST_F(Rooms, RectangularAtAnyPoseWithinAMillimetre) {
                            formatDouble(box.pose.position.y) + "\n");
         Point3 local;
         const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 3 == 0));
-        const Scan scan = scanIn(scene, sensor);
+        const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.laser.beams; ++k) {
             const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
             bool doubt = false;
@@ -237,7 +232,7 @@ TEST_F(Rooms, FarFromTheOriginWithinAMillimetre) {
         const Scene scene = testing::scene(box.record());
         Point3 local;
         const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 2 == 0));
-        const Scan scan = scanIn(scene, sensor);
+        const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.laser.beams; ++k) {
             const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
             bool doubt = false;
@@ -285,7 +280,7 @@ TEST_F(Rooms, AroundCylinders) {
         do pose = anywhere(box, local, i % 3 == 0);
         while (std::hypot(local.x, local.y) < radius + 0.05);
         const PlacedLaser sensor = placed(fullTurn(), pose);
-        const Scan scan = scanIn(scene, sensor);
+        const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.laser.beams; ++k) {
             const Vec3 direction = pose.beam(sensor.laser.bearing(k));
             bool doubt = false;
@@ -306,27 +301,6 @@ TEST_F(Rooms, AroundCylinders) {
         }
     }
     EXPECT_GT(on_cylinder, 1000);
-}
-
-TEST(CastScans, SameForAnyNumberOfThreadsAndInOrder) {
-    const Scene scene = testing::scene(kRoom + "cube at=6,3\ncylinder at=2,4\ntable at=3,1\n");
-    std::vector<PlacedLaser> sensors;
-    sensors.reserve(40);
-    for (int i = 0; i < 40; ++i)
-        sensors.push_back(
-            placed(Laser(), at(1 + 0.1 * i, 2, 0.15 + (i % 3) * 0.1, 9 * i, i % 4 == 0 ? -20 : 0)));
-    std::vector<std::vector<float>> alone;
-    alone.reserve(sensors.size());
-    for (const PlacedLaser& sensor : sensors) alone.push_back(scanIn(scene, sensor).ranges);
-    for (const std::size_t threads : {1U, 2U, 4U}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        Worlds worlds(scene.environment);
-        const std::vector<Scan> scans = castScans(worlds, sensors);
-        ASSERT_EQ(scans.size(), sensors.size());
-        for (std::size_t i = 0; i < scans.size(); ++i) EXPECT_EQ(scans[i].ranges, alone[i]);
-    }
-    Worlds worlds(scene.environment);
-    EXPECT_TRUE(castScans(worlds, {}).empty());
 }
 
 TEST(SliceArea, HalfDiscInTheOpen) {

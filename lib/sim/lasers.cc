@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "sense/bodies.h"
+
 namespace ispace {
 
 namespace {
@@ -51,13 +53,15 @@ LaserReader::LaserReader(const Scene& scene)
     : scene_(&scene), worlds_(scene.environment), due_(scene.lasers.size()) {
     periods_.reserve(scene.lasers.size());
     readings_.reserve(scene.lasers.size());
-    beams_.reserve(scene.lasers.size());
+    casters_.reserve(scene.lasers.size());
     for (const PlacedLaser& laser : scene.lasers) {
         periods_.emplace_back(laser.laser.rate);
         readings_.push_back({.sensor = laser, .scan = {}});
-        beams_.emplace_back(laser);
         worlds_.prepare(laser.pose);
     }
+    for (const SensorReading& reading : readings_)
+        casters_.emplace_back(worlds_, bodies_, reading.sensor, reading.sensor.mount.has_value(),
+                              ReadingOptions());
     latest_.reserve(scene.lasers.size());
     places_.resize(scene.robots.size());
 }
@@ -69,11 +73,10 @@ void LaserReader::read(SimTime time, std::span<const Motion> robots) {
     }
     if (latest_.empty()) return;
     update(time, robots);
-    const Worlds& worlds = worlds_;
     tbb::parallel_for(std::size_t{0}, latest_.size(), [&](std::size_t k) {
         SensorReading& reading = readings_[latest_[k]];
-        reading.scan =
-            castScan(worlds.at(reading.sensor.pose), reading.sensor, beams_[latest_[k]], bodies_);
+        reading.scan.pose = reading.sensor.pose;
+        casters_[latest_[k]].cast(reading.scan);
         reading.scan.time = seconds(time);
         constexpr std::int64_t kLast = std::numeric_limits<int>::max();
         reading.scan.frame = static_cast<int>(std::min(reading.seq, kLast));

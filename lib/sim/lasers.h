@@ -50,7 +50,7 @@ class LaserReader {
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
     std::vector<SensorReading> readings_;
-    std::vector<Beams> beams_;
+    std::vector<LaserCaster> casters_;
     std::vector<std::size_t> latest_;
     bool moved_ = true;  // since the bodies were made
     std::vector<MovingBody> places_;

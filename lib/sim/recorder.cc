@@ -15,7 +15,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/scan_jsonl.h"
+#include "sense/reading_jsonl.h"
 
 namespace ispace {
 

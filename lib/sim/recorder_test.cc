@@ -12,7 +12,7 @@
 
 #include "base/file.h"
 #include "layout/test_layout.h"
-#include "sense/scan_jsonl.h"
+#include "sense/reading_jsonl.h"
 
 namespace ispace {
 namespace {

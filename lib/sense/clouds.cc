@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <limits>
+
+#include "sense/depth.h"
+
+namespace ispace {
+
+namespace {
+
+/// A frame as its axes and origin. Where an angle is a multiple of 90 degrees they are exact.
+struct Axes {
+    Point3 origin;
+    Vec3 forward{1, 0, 0}, left{0, 1, 0}, up{0, 0, 1};
+
+    Axes() = default;
+    explicit Axes(const Pose3& pose)
+        : origin(pose.position),
+          forward(pose.beam({})),
+          left(pose.beam(Angle::degrees(90))),
+          up(cross(forward, left)) {}
+
+    [[nodiscard]] Point3 toOuter(Vec3 local) const {
+        return {origin.x + (local.x * forward.x + local.y * left.x + local.z * up.x),
+                origin.y + (local.x * forward.y + local.y * left.y + local.z * up.y),
+                origin.z + (local.x * forward.z + local.y * left.z + local.z * up.z)};
+    }
+    [[nodiscard]] Point3 toLocal(Point3 outer) const {
+        const Vec3 way = outer - origin;
+        return {dot(way, forward), dot(way, left), dot(way, up)};
+    }
+};
+
+/// Fills a cloud point by point.
+class Filler {
+  public:
+    Filler(PointCloud& cloud, std::size_t width, std::size_t height) {
+        cloud.width = width;
+        cloud.height = height;
+        cloud.xyz.resize(3 * cloud.size());
+        next_ = cloud.xyz.data();
+    }
+    void add(Point3 p) {
+        *next_++ = static_cast<float>(p.x);
+        *next_++ = static_cast<float>(p.y);
+        *next_++ = static_cast<float>(p.z);
+    }
+    void addMissing() {
+        for (int i = 0; i < 3; ++i) *next_++ = std::numeric_limits<float>::quiet_NaN();
+    }
+
+  private:
+    float* next_;
+};
+
+/// The rays of all pixels: those of a column share a part, and so do those of a row.
+struct PixelRays {
+    std::vector<Vec3> columns;  ///< with z 0
+    std::vector<Vec2> rows;     ///< what a column's ray is multiplied by, and its z
+
+    explicit PixelRays(const Ranger& ranger) {
+        const bool spherical = ranger.projection == Projection::Spherical;
+        columns.reserve(static_cast<std::size_t>(ranger.columns));
+        for (int column = 0; column < ranger.columns; ++column) {
+            Vec3 ray = ranger.ray(column, ranger.cy());
+            ray.z = 0;
+            columns.push_back(spherical ? 1 / length(ray) * ray : ray);
+        }
+        rows.reserve(static_cast<std::size_t>(ranger.rows));
+        for (int row = 0; row < ranger.rows; ++row) {
+            const Vec3 ray = ranger.ray(ranger.cx(), row);
+            rows.push_back({spherical ? std::hypot(ray.x, ray.y) : 1, ray.z});
+        }
+    }
+};
+
+}  // namespace
+
+PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in) {
+    PointCloud cloud;
+    Filler filler(cloud, static_cast<std::size_t>(ranger.columns),
+                  static_cast<std::size_t>(ranger.rows));
+    const Axes axes = in == CloudFrame::World ? Axes(frame.pose) : Axes();
+    if (in == CloudFrame::Sensor) cloud.viewpoint = frame.pose;
+    const PixelRays rays(ranger);
+    const float* depth = frame.depths.data();
+    for (const auto [across, z] : rays.rows) {
+        for (const Vec3& column : rays.columns) {
+            const double range = *depth++;
+            if (std::isfinite(range)) {
+                filler.add(axes.toOuter(range * Vec3{across * column.x, across * column.y, z}));
+            } else {
+                filler.addMissing();
+            }
+        }
+    }
+    return cloud;
+}
+
+PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame in) {
+    PointCloud cloud;
+    Filler filler(cloud, static_cast<std::size_t>(laser.beams), scans.size());
+    if (scans.empty()) return cloud;
+    std::vector<Vec2> beams;
+    beams.reserve(static_cast<std::size_t>(laser.beams));
+    for (int k = 0; k < laser.beams; ++k) beams.push_back(unitVector(laser.bearing(k)));
+    const Pose3& first = scans.front().pose;
+    if (in == CloudFrame::Sensor) cloud.viewpoint = first;
+    const Axes target = in == CloudFrame::Sensor ? Axes(first) : Axes();
+
+    for (const Scan& scan : scans) {
+        const bool at_home =
+            in == CloudFrame::Sensor && scan.beam_poses.empty() && scan.pose == first;
+        Axes axes(scan.pose);
+        for (std::size_t k = 0; k < beams.size(); ++k) {
+            const double range = scan.ranges[k];
+            if (!std::isfinite(range)) {
+                filler.addMissing();
+                continue;
+            }
+            const Vec3 local{range * beams[k].x, range * beams[k].y, 0};
+            if (!scan.beam_poses.empty()) axes = Axes(scan.beam_poses[k]);
+            if (at_home) {
+                filler.add({local.x, local.y, 0});
+            } else {
+                filler.add(target.toLocal(axes.toOuter(local)));
+            }
+        }
+    }
+    return cloud;
+}
+
+}  // namespace ispace

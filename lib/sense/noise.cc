@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/noise.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "base/simd.h"
+#include "sense/noise_loops.h"
+
+namespace ispace {
+
+namespace {
+
+using noise_loops::Figures;
+
+/// Elements that are dealt with together; a multiple of what random numbers are drawn in.
+constexpr std::size_t kBlock = 512;
+
+ISPACE_SIMD_CLONES void disturb(const Figures& figures, std::size_t count, const float* normal,
+                                const float* uniform, const float* cosines, float* ranges) {
+    noise_loops::apply(figures, count, normal, uniform, cosines, ranges);
+}
+
+Figures figuresOf(const RangeNoise& noise, double min_range, double max_range) {
+    Figures figures;
+    figures.bias = static_cast<float>(noise.bias);
+    std::transform(noise.sigma.begin(), noise.sigma.end(), figures.sigma.begin(),
+                   [](double s) { return static_cast<float>(s); });
+    figures.dropout = static_cast<float>(noise.dropout);
+    figures.graze_from = static_cast<float>(noise.graze_from.radians());
+    if (const Angle ramp = noise.graze_to - noise.graze_from; ramp > Angle())
+        figures.graze_slope = static_cast<float>(1 / ramp.radians());
+    figures.graze_cosine = static_cast<float>(cos(noise.graze_to));
+    // Steps far below those of a float change nothing, and would be too many to count.
+    if (noise.resolution > 1e-12) {
+        figures.resolution = noise.resolution;
+        figures.per_metre = 1 / noise.resolution;
+    }
+    figures.min_range = static_cast<float>(min_range);
+    figures.max_range = static_cast<float>(max_range);
+    return figures;
+}
+
+RandomKey randomKey(const NoiseKey& key) {
+    return {.seed = key.seed, .purpose = key.purpose, .sensor = key.sensor, .frame = key.frame};
+}
+
+}  // namespace
+
+void addNoise(const RangeNoise& noise, double min_range, double max_range, const NoiseKey& key,
+              std::span<const float> cosines, std::span<float> ranges) {
+    const bool grazes = noise.dropsByIncidence();
+    assert(!grazes || cosines.size() == ranges.size());
+    const bool spreads = noise.sigma != std::array<double, 3>{0, 0, 0};
+    const bool drops = grazes || noise.dropout > 0;
+    const Figures figures = figuresOf(noise, min_range, max_range);
+    const RandomKey random = randomKey(key);
+    alignas(64) std::array<float, kBlock> normal;   // NOLINT: drawn if needed
+    alignas(64) std::array<float, kBlock> uniform;  // NOLINT
+    for (std::size_t k = 0; k < ranges.size(); k += kBlock) {
+        const std::size_t count = std::min(kBlock, ranges.size() - k);
+        RandomDraws draws;
+        if (spreads) draws.normal = std::span(normal).first(count);
+        if (drops) draws.uniform = std::span(uniform).first(count);
+        draw(random, static_cast<std::uint32_t>(k), draws);
+        disturb(figures, count, spreads ? normal.data() : nullptr, drops ? uniform.data() : nullptr,
+                grazes ? cosines.data() + k : nullptr, ranges.data() + k);
+    }
+}
+
+void bearingErrors(const RangeNoise& noise, const NoiseKey& key, std::span<float> radians) {
+    const auto sigma = static_cast<float>(noise.angle_sigma.radians());
+    if (!(sigma > 0)) {
+        std::fill(radians.begin(), radians.end(), 0.0F);
+        return;
+    }
+    draw(randomKey(key), 0, {.other = radians});
+    for (float& error : radians) error *= sigma;
+}
+
+}  // namespace ispace

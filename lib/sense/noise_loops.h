@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "base/simd.h"
+#include "base/simd_math.h"
+
+/// The loops of addNoise(), to be compiled for one processor or another.
+namespace ispace::noise_loops {
+
+/// A device's figures as the loops need them.
+struct Figures {
+    float bias = 0;
+    std::array<float, 3> sigma{0, 0, 0};
+    float dropout = 0;
+    /// Of incidence: where the ramp begins, its slope (0: a step), and the cosine where it ends.
+    float graze_from = 0, graze_slope = 0, graze_cosine = 0;
+    double resolution = 0, per_metre = 0;  // its inverse
+    float min_range = 0, max_range = 0;
+};
+
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+
+/// `normal` null: no spread.
+ISPACE_INLINE void spread(const Figures& figures, std::size_t count, const float* normal,
+                          float* __restrict ranges) {
+    const float bias = figures.bias;
+    if (normal == nullptr) {
+        for (std::size_t k = 0; k < count; ++k) ranges[k] += bias;
+        return;
+    }
+    const auto [s0, s1, s2] = figures.sigma;
+    for (std::size_t k = 0; k < count; ++k) {
+        // That of infinity may not be a number, which is no return in the end.
+        const float r = ranges[k];
+        const float sigma = s0 + r * (s1 + r * s2);
+        ranges[k] = r + (bias + 0.5F * (sigma + std::fabs(sigma)) * normal[k]);
+    }
+}
+
+/// `cosines` null: none is lost by incidence.
+ISPACE_INLINE void drop(const Figures& figures, std::size_t count, const float* cosines,
+                        const float* uniform, float* __restrict ranges) {
+    const float dropout = figures.dropout;
+    if (cosines == nullptr) {
+        for (std::size_t k = 0; k < count; ++k) {
+            ranges[k] = simd::choose(uniform[k] < dropout, kNoReturn, ranges[k]);
+        }
+        return;
+    }
+    const float kept = 1.0F - dropout;
+    const float from = figures.graze_from;
+    const float slope = figures.graze_slope;
+    const float end = figures.graze_cosine;
+    for (std::size_t k = 0; k < count; ++k) {
+        // Rounding may have left a cosine above 1.
+        const float cosine = simd::choose(cosines[k] < 1.0F, cosines[k], 1.0F);
+        const float ramp = (simd::arcCosine(cosine) - from) * slope;
+        const float share = simd::choose(ramp > 0, ramp, 0.0F);
+        const float lost = simd::choose(cosine <= end, 1.0F, dropout + kept * share);
+        ranges[k] = simd::choose(uniform[k] < lost, kNoReturn, ranges[k]);
+    }
+}
+
+ISPACE_INLINE void quantise(const Figures& figures, std::size_t count, float* __restrict ranges) {
+    // Added and taken off again this rounds to a whole number; one too large for that is left as it
+    // is, but for the rounding of doubles.
+    constexpr double kRounder = 0x1.8p52;
+    const double resolution = figures.resolution;
+    const double per_metre = figures.per_metre;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double n = static_cast<double>(ranges[k]) * per_metre;
+        const double rounded = (n + kRounder) - kRounder;
+        ranges[k] = static_cast<float>(rounded * resolution);
+    }
+}
+
+/// What is not a number is no return.
+ISPACE_INLINE void limit(const Figures& figures, std::size_t count, float* __restrict ranges) {
+    const float low = figures.min_range;
+    const float high = figures.max_range;
+    for (std::size_t k = 0; k < count; ++k) {
+        const float r = ranges[k];
+        const float not_low = simd::choose(r >= low, r, kNoReturn);
+        ranges[k] = simd::choose(r <= high, not_low, kNoReturn);
+    }
+}
+
+/// What a block of ranges goes through; arrays are null if not needed.
+ISPACE_INLINE void apply(const Figures& figures, std::size_t count, const float* normal,
+                         const float* uniform, const float* cosines, float* ranges) {
+    if (normal != nullptr || figures.bias != 0) spread(figures, count, normal, ranges);
+    if (uniform != nullptr) drop(figures, count, cosines, uniform, ranges);
+    if (figures.resolution > 0) quantise(figures, count, ranges);
+    limit(figures, count, ranges);
+}
+
+}  // namespace ispace::noise_loops

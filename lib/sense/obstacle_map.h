@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "layout/laser.h"
+#include "sense/scan.h"
+
+namespace ispace {
+
+/// What a scan met, as points about the sensor on a polar grid (thesis fig. 3.24): the sensor in
+/// the middle, bearing 0 upwards, rings at round distances with their labels, spokes each 30
+/// degrees, the field of view shaded up to max_range. PNG, `pixels` wide and high; equal input
+/// gives equal bytes.
+std::string obstacleMapPng(const PlacedLaser& sensor, const Scan& scan, int pixels);
+
+}  // namespace ispace

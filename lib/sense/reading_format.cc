@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/reading_format.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "sense/carmen_log.h"
+#include "sense/depth_picture.h"
+#include "sense/obstacle_map.h"
+#include "sense/reading_csv.h"
+#include "sense/reading_jsonl.h"
+
+namespace ispace {
+
+namespace {
+
+using Kind = SensorKind;
+
+constexpr std::string_view nameOf(Kind kind) {
+    return kind == Kind::Laser ? "laser" : kind == Kind::Ranger ? "ranger" : "tag";
+}
+
+/// What formats have in common: the sensors, and one file a reading.
+class Base : public ReadingFormat {
+  public:
+    Base(const Sensors& sensors, FormatOptions options, std::string ending)
+        : sensors_(sensors), options_(std::move(options)), ending_(std::move(ending)) {}
+
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+                                                 const Reading& reading) const override {
+        std::string bytes = header();
+        append(bytes, sensor, reading);
+        std::vector<ReadingFile> files;
+        files.push_back({ending_, std::move(bytes)});
+        return files;
+    }
+
+  protected:
+    [[nodiscard]] const PlacedLaser& laser(std::size_t sensor) const {
+        return sensors_.lasers[sensors_.order[sensor].index];
+    }
+    [[nodiscard]] const PlacedRanger& ranger(std::size_t sensor) const {
+        return sensors_.rangers[sensors_.order[sensor].index];
+    }
+    [[nodiscard]] const PlacedTag& tag(std::size_t sensor) const {
+        return sensors_.tags[sensors_.order[sensor].index];
+    }
+    /// \throws UsageError for the first sensor that is of another kind
+    void accept(std::string_view format, std::string_view what,
+                std::initializer_list<Kind> kinds) const {
+        for (const Sensors::Entry& entry : sensors_.order) {
+            if (std::find(kinds.begin(), kinds.end(), entry.kind) != kinds.end()) continue;
+            throw UsageError(std::string(format) + " holds " + std::string(what) + ", and " +
+                             sensors_.id(entry) + " is a " + std::string(nameOf(entry.kind)) +
+                             "; choose sensors with --select, or another format with --to");
+        }
+    }
+
+    const Sensors& sensors_;
+    const FormatOptions options_;
+
+  private:
+    std::string ending_;
+};
+
+class Jsonl final : public Base {
+  public:
+    Jsonl(const Sensors& sensors, FormatOptions options)
+        : Base(sensors, std::move(options), ".jsonl") {}
+    [[nodiscard]] std::string header() const override {
+        return scanHeaderLine(options_.history, options_.seed);
+    }
+    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
+            for (const Scan& scan : *scans) appendScanLine(out, laser(sensor), scan);
+        } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
+            appendDepthLine(out, ranger(sensor), *frame);
+        } else {
+            appendBurstLine(out, tag(sensor), std::get<Burst>(reading), sensors_.receivers);
+        }
+    }
+};
+
+class Csv final : public Base {
+  public:
+    Csv(const Sensors& sensors, FormatOptions options)
+        : Base(sensors, std::move(options), ".csv"), kind_(sensors.order.front().kind) {
+        accept("csv", "sensors of one kind", {kind_});
+    }
+    [[nodiscard]] std::string header() const override {
+        return kind_ == Kind::Laser    ? laserCsvHeader()
+               : kind_ == Kind::Ranger ? rangerCsvHeader()
+                                       : ultrasoundCsvHeader();
+    }
+    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
+            for (const Scan& scan : *scans)
+                appendLaserRows(out, laser(sensor), scan, options_.frame);
+        } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
+            appendRangerRows(out, ranger(sensor), *frame, options_.frame);
+        } else {
+            appendBurstRow(out, tag(sensor), std::get<Burst>(reading), sensors_.receivers);
+        }
+    }
+
+  private:
+    Kind kind_;
+};
+
+/// Ranges and depths, float32, little-endian, nothing else; no return is +infinity.
+class Raw final : public Base {
+  public:
+    Raw(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".raw") {
+        accept("raw", "ranges", {Kind::Laser, Kind::Ranger});
+    }
+    void append(std::string& out, std::size_t /*sensor*/, const Reading& reading) const override {
+        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
+            for (const Scan& scan : *scans) append(out, scan.ranges);
+        } else {
+            append(out, std::get<DepthFrame>(reading).depths);
+        }
+    }
+    [[nodiscard]] bool isBinary() const override { return true; }
+
+  private:
+    static void append(std::string& out, const std::vector<float>& values) {
+        static_assert(std::endian::native == std::endian::little);
+        const std::size_t begin = out.size(), bytes = values.size() * sizeof(float);
+        out.resize(begin + bytes);
+        if (bytes > 0) std::memcpy(out.data() + begin, values.data(), bytes);
+    }
+};
+
+class Cloud final : public Base {
+  public:
+    Cloud(const Sensors& sensors, FormatOptions options, bool is_pcd)
+        : Base(sensors, std::move(options), is_pcd ? ".pcd" : ".ply"), is_pcd_(is_pcd) {
+        accept(is_pcd ? "pcd" : "ply", "points", {Kind::Laser, Kind::Ranger});
+    }
+    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+        const PointCloud cloud = cloudOf(sensors_, sensor, reading, options_.frame);
+        out += is_pcd_ ? pcdOf(cloud, options_.encoding) : plyOf(cloud, options_.encoding);
+    }
+    [[nodiscard]] bool isStream() const override { return false; }
+    [[nodiscard]] bool isBinary() const override { return options_.encoding == Encoding::Binary; }
+
+  private:
+    bool is_pcd_;
+};
+
+class Carmen final : public Base {
+  public:
+    Carmen(const Sensors& sensors, FormatOptions options)
+        : Base(sensors, std::move(options), ".log") {
+        accept("carmen", "scans of level lasers", {Kind::Laser});
+    }
+    [[nodiscard]] std::string header() const override { return carmenHeader(); }
+    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+        for (const Scan& scan : std::get<std::vector<Scan>>(reading)) {
+            const PlacedLaser& placed = laser(sensor);
+            if (!scan.pose.isLevel())
+                throw FormatError({"", 0, 0,
+                                   placed.id +
+                                       " is tilted or rolled at t=" + std::to_string(scan.time) +
+                                       ", and a CARMEN log is flat; take jsonl, csv or pcd"});
+            appendCarmenLine(out, placed, scan, carrierOf(placed, scan));
+        }
+    }
+
+  private:
+    static Pose2 carrierOf(const PlacedLaser& sensor, const Scan& scan) {
+        const Pose2 own{scan.pose.position.onFloor(), scan.pose.heading};
+        if (!sensor.mount) return own;
+        const Pose3& mount = sensor.mount->robot_from_sensor;
+        const Angle heading = own.heading - mount.heading;
+        const Pose2 turned{{}, heading};
+        const Vec2 way = turned * Vec2{mount.position.x, mount.position.y};
+        return {own.position - way, heading};
+    }
+};
+
+/// Depths and obstacle maps.
+class Png final : public Base {
+  public:
+    Png(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".png") {
+        accept("png", "depths and obstacle maps", {Kind::Laser, Kind::Ranger});
+    }
+    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
+            if (scans->size() > 1)
+                throw UsageError("an obstacle map shows one scan, and " + laser(sensor).id +
+                                 " sweeps; take pcd or ply");
+            out += obstacleMapPng(laser(sensor), scans->front(), options_.map_pixels);
+        } else {
+            out += depthPng(ranger(sensor).ranger, std::get<DepthFrame>(reading),
+                            options_.depth_per_metre);
+        }
+    }
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+                                                 const Reading& reading) const override {
+        std::vector<ReadingFile> files = Base::files(sensor, reading);
+        if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
+            const PlacedRanger& placed = ranger(sensor);
+            if (options_.color) files.push_back({"-color.png", colorDepthPng(placed, *frame)});
+            if (placed.ranger.projection == Projection::Pinhole)
+                files.push_back({".yaml", cameraInfoYaml(placed.ranger, placed.id)});
+        }
+        return files;
+    }
+    [[nodiscard]] bool isStream() const override { return false; }
+    [[nodiscard]] bool isBinary() const override { return true; }
+};
+
+}  // namespace
+
+const std::vector<std::string>& readingFormats() {
+    static const std::vector<std::string> names = {"jsonl", "csv",    "raw", "pcd",
+                                                   "ply",   "carmen", "png"};
+    return names;
+}
+
+std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
+                                          FormatOptions options) {
+    if (name == "csv") return std::make_unique<Csv>(sensors, std::move(options));
+    if (name == "raw") return std::make_unique<Raw>(sensors, std::move(options));
+    if (name == "pcd") return std::make_unique<Cloud>(sensors, std::move(options), true);
+    if (name == "ply") return std::make_unique<Cloud>(sensors, std::move(options), false);
+    if (name == "carmen") return std::make_unique<Carmen>(sensors, std::move(options));
+    if (name == "png") return std::make_unique<Png>(sensors, std::move(options));
+    return std::make_unique<Jsonl>(sensors, std::move(options));
+}
+
+PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
+                   CloudFrame in) {
+    const std::size_t index = sensors.order[sensor].index;
+    if (const auto* scans = std::get_if<std::vector<Scan>>(&reading))
+        return cloudOf(sensors.lasers[index].laser, *scans, in);
+    if (const auto* frame = std::get_if<DepthFrame>(&reading))
+        return cloudOf(sensors.rangers[index].ranger, *frame, in);
+    return {};
+}
+
+PointCloud joined(const std::vector<PointCloud>& clouds) {
+    PointCloud all;
+    if (clouds.empty()) return all;
+    const bool organised = std::all_of(clouds.begin(), clouds.end(), [&](const PointCloud& cloud) {
+        return cloud.width == clouds.front().width;
+    });
+    std::size_t points = 0;
+    for (const PointCloud& cloud : clouds) points += cloud.size();
+    all.xyz.reserve(3 * points);
+    for (const PointCloud& cloud : clouds) {
+        if (organised) {
+            all.xyz.insert(all.xyz.end(), cloud.xyz.begin(), cloud.xyz.end());
+            continue;
+        }
+        for (std::size_t i = 0; i < cloud.xyz.size(); i += 3)
+            if (!std::isnan(cloud.xyz[i]))
+                all.xyz.insert(all.xyz.end(), {cloud.xyz[i], cloud.xyz[i + 1], cloud.xyz[i + 2]});
+    }
+    all.width = organised ? clouds.front().width : all.xyz.size() / 3;
+    all.height = organised && all.width > 0 ? points / all.width : 1;
+    return all;
+}
+
+}  // namespace ispace

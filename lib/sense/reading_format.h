@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/history.h"
+#include "sense/point_cloud.h"
+#include "sense/reading.h"
+
+namespace ispace {
+
+/// A file made of one reading: its name is that of the reading and this ending.
+struct ReadingFile {
+    std::string ending;  ///< ".png", "-color.png"
+    std::string bytes;
+};
+
+/// How readings are written. Thread-safe.
+class ReadingFormat {
+  public:
+    virtual ~ReadingFormat() = default;
+    /// What stands before all readings.
+    [[nodiscard]] virtual std::string header() const { return ""; }
+    /// Appends a reading of a sensor (in Sensors::order).
+    virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
+    /// A reading as files of its own.
+    [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
+                                                         const Reading& reading) const = 0;
+    /// Readings may follow each other in one file; else each needs one of its own.
+    [[nodiscard]] virtual bool isStream() const { return true; }
+    /// Bytes, not text.
+    [[nodiscard]] virtual bool isBinary() const { return false; }
+};
+
+struct FormatOptions {
+    History history;
+    std::uint64_t seed = 0;
+    CloudFrame frame = CloudFrame::World;  ///< of points: csv, pcd, ply
+    Encoding encoding = Encoding::Binary;  ///< of pcd and ply
+    double depth_per_metre = 1000;         ///< of png
+    bool color = true;                     ///< of png: a picture for people, too
+    int map_pixels = 800;                  ///< of png: side of an obstacle map
+};
+
+/// Names of the formats: jsonl, csv, raw, pcd, ply, carmen, png.
+const std::vector<std::string>& readingFormats();
+
+/// \throws UsageError for sensors that the format cannot hold
+std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
+                                          FormatOptions options);
+
+/// Clouds one below the other: a row of one stays a row if all are equally wide, else points
+/// without return are left out and the rest is one row. \pre clouds are in the world's frame
+PointCloud joined(const std::vector<PointCloud>& clouds);
+
+/// The points of a reading; empty for a burst.
+PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
+                   CloudFrame in);
+
+}  // namespace ispace

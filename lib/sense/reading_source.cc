@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/reading_source.h"
+
+#include <limits>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+/// A line longer than this is no pose.
+constexpr std::size_t kLongestLine = 4096;
+
+constexpr int kLastFrame = std::numeric_limits<int>::max();
+
+}  // namespace
+
+std::int64_t StillSource::count() const {
+    return static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(sensors_->order.size());
+}
+
+void StillSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    while (batch.size() < most && frame_ < frames_ && !sensors_->order.empty()) {
+        const Sensors::Entry& entry = sensors_->order[sensor_];
+        batch.push_back({.sensor = sensor_,
+                         .frame = frame_,
+                         .time = frame_ / sensors_->rate(entry),
+                         .pose = sensors_->pose(entry),
+                         .way = {}});
+        if (++sensor_ == sensors_->order.size()) {
+            sensor_ = 0;
+            ++frame_;
+        }
+    }
+}
+
+FormatError PoseLines::error(const std::string& message) const {
+    return FormatError({name_, line_, 0, message});
+}
+
+std::optional<std::string_view> PoseLines::nextLine() {
+    std::size_t end = buffer_.find('\n', begin_);
+    while (end == std::string::npos && !done_) {
+        buffer_.erase(0, begin_);
+        begin_ = 0;
+        if (buffer_.size() > kLongestLine) {
+            ++line_;
+            throw error("a line of more than " + std::to_string(kLongestLine) +
+                        " bytes; a pose is `t x y z qx qy qz qw`");
+        }
+        const std::size_t searched = buffer_.size();
+        done_ = !read_(buffer_);
+        end = buffer_.find('\n', searched);
+    }
+    if (end == std::string::npos) {
+        if (begin_ == buffer_.size()) return std::nullopt;
+        end = buffer_.size();  // the last line, without newline
+    }
+    const std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
+    begin_ = std::min(end + 1, buffer_.size());
+    ++line_;
+    return line;
+}
+
+std::optional<TimedPose> PoseLines::next() {
+    while (const auto line = nextLine()) {
+        try {
+            if (auto pose = parseTumLine(*line)) return pose;
+        } catch (const FormatError& bad) {
+            throw error(bad.diagnostics().front().message);
+        }
+    }
+    return std::nullopt;
+}
+
+void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    // Whoever writes a pose and waits for its scan gets it.
+    while (batch.size() < most && (batch.empty() || poses_.ready())) {
+        const auto timed = poses_.next();
+        if (!timed) return;
+        batch.push_back(
+            {.sensor = 0, .frame = frame_, .time = timed->time, .pose = timed->pose, .way = {}});
+        if (frame_ < kLastFrame) ++frame_;
+    }
+}
+
+/// Reads on until the way reaches a time; false if it ends before.
+bool MotionSource::reach(double time) {
+    while (window_.empty() || window_.back().time < time) {
+        const auto timed = poses_.next();
+        if (!timed) return false;
+        if (!window_.empty() && timed->time <= window_.back().time)
+            throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
+        window_.push_back(*timed);
+    }
+    return true;
+}
+
+void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    if (window_.empty()) {
+        const auto first = poses_.next();
+        if (!first) return;
+        window_.push_back(*first);
+        begin_ = first->time;
+    }
+    while (batch.size() < most && (batch.empty() || poses_.ready())) {
+        const double time = begin_ + frame_ / rate_;
+        if (!reach(time + duration_)) return;
+        // What lies behind is of no use any more, but for the pose it comes from.
+        while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();
+        ReadingJob job{.sensor = 0, .frame = frame_, .time = time, .pose = {}, .way = {}};
+        for (const TimedPose& timed : window_) {
+            job.way.push_back(timed);
+            if (timed.time >= time + duration_) break;
+        }
+        job.pose = poseAlong(job.way, time);
+        batch.push_back(std::move(job));
+        if (frame_ < kLastFrame) ++frame_;
+    }
+}
+
+}  // namespace ispace

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr Angle kLeft = Angle::degrees(90);
+
+Pose3 pose(double heading, double tilt, double roll) {
+    return {{1, 2, 3}, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
+}
+
+void expectNear(Vec3 a, Vec3 b, double tolerance) {
+    EXPECT_NEAR(a.x, b.x, tolerance);
+    EXPECT_NEAR(a.y, b.y, tolerance);
+    EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+/// A vector turned by a quaternion, by the textbook.
+Vec3 turned(const Quaternion& q, Vec3 v) {
+    const Vec3 axis{q.x, q.y, q.z};
+    const Vec3 first = cross(axis, v);
+    const Vec3 second =
+        cross(axis, Vec3{first.x + q.w * v.x, first.y + q.w * v.y, first.z + q.w * v.z});
+    return {v.x + 2 * second.x, v.y + 2 * second.y, v.z + 2 * second.z};
+}
+
+TEST(Trajectory, QuaternionsTurnAsPosesDo) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> any(-180, 180), tilts(-90, 90);
+    for (int i = 0; i < 500; ++i) {
+        Pose3 p = pose(any(random), tilts(random), any(random));
+        if (i % 5 == 0) p.tilt = Angle::degrees(i % 2 == 0 ? 90 : -90);
+        const Quaternion q = quaternionOf(p);
+        expectNear(turned(q, {1, 0, 0}), p.beam({}), 1e-12);
+        expectNear(turned(q, {0, 1, 0}), p.beam(kLeft), 1e-12);
+        const Pose3 back = poseOf(p.position, {-3 * q.x, -3 * q.y, -3 * q.z, -3 * q.w});
+        expectNear(back.beam({}), p.beam({}), 1e-7);
+        expectNear(back.beam(kLeft), p.beam(kLeft), 1e-7);
+    }
+}
+
+TEST(Trajectory, ATurnAboutTheVerticalIsExactlyLevel) {
+    const auto line = parseTumLine("12.5 1 -2 0.15 0 0 0.7071067811865476 0.7071067811865476");
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->time, 12.5);
+    EXPECT_EQ(line->pose.position, (Point3{1, -2, 0.15}));
+    EXPECT_TRUE(line->pose.isLevel());
+    EXPECT_NEAR(line->pose.heading.degrees(), 90, 1e-12);
+    // Not of unit length, and with the other sign.
+    EXPECT_NEAR(parseTumLine("0 0 0 0 0 0 -2 2")->pose.heading.degrees(), -90, 1e-12);
+    EXPECT_EQ(parseTumLine("0 0 0 0 0 0 0 1e-200")->pose.heading, Angle());
+    EXPECT_FALSE(parseTumLine("0 0 0 0 0 0.1 0 1")->pose.isLevel());
+    EXPECT_LT(parseTumLine("0 0 0 0 0 0.1 0 1")->pose.tilt, Angle()) << "Ry(+) looks down";
+}
+
+TEST(Trajectory, SkipsCommentsAndBlankLines) {
+    EXPECT_FALSE(parseTumLine(""));
+    EXPECT_FALSE(parseTumLine(" \t\r"));
+    EXPECT_FALSE(parseTumLine("# timestamp tx ty tz qx qy qz qw"));
+    EXPECT_FALSE(parseTumLine("  #1 2 3"));
+    EXPECT_TRUE(parseTumLine("\t1  2 3 4 0 0 0 1 \r"));
+}
+
+std::string messageOf(std::string_view line) {
+    try {
+        static_cast<void>(parseTumLine(line));
+    } catch (const FormatError& error) {
+        return error.diagnostics().front().message;
+    }
+    return "";
+}
+
+TEST(Trajectory, RefusesWhatIsNoPose) {
+    EXPECT_EQ(messageOf("1 2 3"), "3 columns; a pose is `t x y z qx qy qz qw`");
+    EXPECT_EQ(messageOf("1 2 3 4 0 0 0 1 9"),
+              "more than 8 columns; a pose is `t x y z qx qy qz qw`");
+    EXPECT_EQ(messageOf("1 2 3 4 0 0 0 0"), "the quaternion is 0, which is no rotation");
+    EXPECT_EQ(messageOf("1 2 x 4 0 0 0 1"), "y `x` is not a number");
+    EXPECT_EQ(messageOf("nan 2 3 4 0 0 0 1"), "t `nan` is not a number");
+    EXPECT_EQ(messageOf("1 inf 3 4 0 0 0 1"), "x `inf` is not a number");
+    EXPECT_EQ(messageOf("1 2 3 4 0 0 0 1e999"), "qw `1e999` is not a number");
+    EXPECT_EQ(messageOf("1 2e7 3 4 0 0 0 1"), "the place is more than 1000 km away");
+}
+
+TEST(Trajectory, BetweenIsStraightAndEven) {
+    const Pose3 a{{0, 0, 0.15}, Angle::degrees(170), {}, {}};
+    const Pose3 b{{1, 2, 0.15}, Angle::degrees(-170), {}, {}};
+    const Pose3 middle = between(a, b, 0.25);
+    EXPECT_TRUE(middle.isLevel());
+    EXPECT_EQ(middle.position, (Point3{0.25, 0.5, 0.15}));
+    EXPECT_NEAR(middle.heading.degrees(), 175, 1e-9) << "by the shortest way";
+    EXPECT_EQ(between(a, a, 0.7), a);
+    // At an even speed about any axis: thirds of the way are thirds of the angle.
+    const Pose3 c = pose(20, 30, -40), d = pose(100, -20, 10);
+    const auto apart = [](const Pose3& p, const Pose3& q) {
+        const Quaternion m = quaternionOf(p), n = quaternionOf(q);
+        return 2 *
+               std::acos(std::min(1.0, std::fabs(m.x * n.x + m.y * n.y + m.z * n.z + m.w * n.w)));
+    };
+    EXPECT_NEAR(apart(c, between(c, d, 1.0 / 3)), apart(c, d) / 3, 1e-9);
+    EXPECT_NEAR(apart(between(c, d, 1.0 / 3), d), 2 * apart(c, d) / 3, 1e-9);
+    expectNear(between(c, d, 0).beam({}), c.beam({}), 1e-12);
+    expectNear(between(c, d, 1).beam({}), d.beam({}), 1e-12);
+}
+
+}  // namespace
+
+}  // namespace ispace

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/ultrasound.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "base/random.h"
+#include "sense/noise.h"
+
+namespace ispace {
+
+namespace {
+
+std::uint32_t carrierOf(const std::optional<Mount>& mount) {
+    return mount ? static_cast<std::uint32_t>(mount->robot) : MovingBodies::kNobody;
+}
+
+/// Cosine of the angle between a sensor's axis and the direction to a place; 1 at its own place.
+double axisCosine(const Pose3& pose, Point3 place) {
+    const Vec3 towards = place - pose.position;
+    const double distance = length(towards);
+    return distance > 0 ? dot(pose.beam({}), towards) / distance : 1;
+}
+
+/// Directions on the cone itself are in it, whatever rounding makes of them.
+bool isWithinCone(Angle fov, double axis_cosine) {
+    constexpr double kRounding = 1e-12;
+    return axis_cosine >= cos(0.5 * fov) - kRounding;
+}
+
+/// Bodies of neither carrier are in the way.
+bool isBodyBetween(const MovingBodies& bodies, Point3 a, Point3 b, std::uint32_t carrier_of_a,
+                   std::uint32_t carrier_of_b) {
+    if (carrier_of_a == MovingBodies::kNobody || carrier_of_a == carrier_of_b)
+        return bodies.between(a, b, carrier_of_b);
+    if (carrier_of_b == MovingBodies::kNobody) return bodies.between(a, b, carrier_of_a);
+    // A robot that hears another one is rare.
+    const double distance = length(b - a);
+    const Vec3 direction = (1 / distance) * (b - a);
+    return std::any_of(bodies.bodies().begin(), bodies.bodies().end(), [&](const auto& body) {
+        return body.owner != carrier_of_a && body.owner != carrier_of_b &&
+               body.meet(a, direction) < distance;
+    });
+}
+
+bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
+               const PlacedReceiver& receiver) {
+    const Point3 from = receiver.pose.position;
+    const Point3 to = tag.pose.position;
+    if (from == to) return true;
+    std::uint8_t seen = 0;
+    environment.look(from, std::span(&to, 1), std::span(&seen, 1));
+    return seen != 0 &&
+           !isBodyBetween(bodies, from, to, carrierOf(receiver.mount), carrierOf(tag.mount));
+}
+
+/// Of the pair, in this order.
+std::uint64_t hashOfPair(const PlacedTag& tag, const PlacedReceiver& receiver) {
+    return (std::rotl(hashOf(tag.id), 29) ^ hashOf(receiver.id)) * 0x9e3779b97f4a7c15U;
+}
+
+/// The distance that is measured, if the burst is heard.
+std::optional<double> distanceHeard(const RayWorld& environment, const MovingBodies& bodies,
+                                    const PlacedTag& tag, const PlacedReceiver& placed, int frame,
+                                    std::optional<std::uint64_t> noise_seed) {
+    const Receiver& receiver = placed.receiver;
+    const double distance = length(tag.pose.position - placed.pose.position);
+    auto range = static_cast<float>(distance);
+    if (range < static_cast<float>(receiver.min_range) ||
+        range > static_cast<float>(receiver.max_range))
+        return std::nullopt;
+    const double axis_cosine = axisCosine(placed.pose, tag.pose.position);
+    if (!isWithinCone(receiver.fov, axis_cosine)) return std::nullopt;
+    if (!isWithinCone(tag.tag.fov, axisCosine(tag.pose, placed.pose.position))) return std::nullopt;
+    if (!isInSight(environment, bodies, tag, placed)) return std::nullopt;
+    if (!noise_seed || receiver.noise.isNone()) return distance;
+
+    const NoiseKey key{*noise_seed, hashOfPair(tag, placed), static_cast<std::uint64_t>(frame),
+                       Purpose::Ultrasound};
+    const auto cosine = static_cast<float>(std::max(axis_cosine, 0.0));
+    addNoise(receiver.noise, receiver.min_range, receiver.max_range, key, std::span(&cosine, 1),
+             std::span(&range, 1));
+    if (range == std::numeric_limits<float>::infinity()) return std::nullopt;
+    return static_cast<double>(range);
+}
+
+std::optional<Fix> fixOf(std::span<const TimeOfFlight> heard,
+                         std::span<const PlacedReceiver> receivers) {
+    std::vector<Point3> places;
+    std::vector<double> distances;
+    places.reserve(heard.size());
+    distances.reserve(heard.size());
+    Vec3 towards;
+    for (const TimeOfFlight& flight : heard) {
+        const Pose3& pose = receivers[flight.receiver].pose;
+        const Vec3 axis = pose.beam({});
+        towards = {towards.x + axis.x, towards.y + axis.y, towards.z + axis.z};
+        places.push_back(pose.position);
+        distances.push_back(flight.distance);
+    }
+    return locate(places, distances, towards);
+}
+
+/// Eq. (3.7)-(3.10) of the thesis, whose floor is x-z.
+Point2 simplePlace(const PlacedTag& tag, int frame, std::optional<std::uint64_t> noise_seed) {
+    const Point2 place = tag.pose.position.onFloor();
+    if (!noise_seed) return place;
+    const RandomKey key{*noise_seed, Purpose::Ultrasound, hashOf(tag.id),
+                        static_cast<std::uint64_t>(frame)};
+    std::array<float, 1> along_x{};
+    std::array<float, 1> along_y{};
+    draw(key, 0, {.normal = along_x, .other = along_y});
+    const double sigma = tag.tag.simple_sigma;
+    return place +
+           Vec2{sigma * static_cast<double>(along_x[0]), sigma * static_cast<double>(along_y[0])};
+}
+
+}  // namespace
+
+double speedOfSound(double celsius) { return 331.3 + 0.606 * celsius; }
+
+Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
+                std::span<const PlacedReceiver> receivers, int frame, double time,
+                const UltrasoundOptions& options) {
+    Burst burst{
+        .time = time, .frame = frame, .pose = tag.pose, .heard = {}, .fix = {}, .simple = {}};
+    const double speed = speedOfSound(options.celsius);
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const auto distance =
+            distanceHeard(environment, bodies, tag, receivers[i], frame, options.noise_seed);
+        if (distance) burst.heard.push_back({i, *distance / speed, *distance});
+    }
+    if (tag.tag.is_simple) {
+        burst.simple = simplePlace(tag, frame, options.noise_seed);
+    } else {
+        burst.fix = fixOf(burst.heard, receivers);
+    }
+    return burst;
+}
+
+}  // namespace ispace

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "layout/ultrasound.h"
+#include "trace/moving_bodies.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// Metres a second in dry air: 331.3 + 0.606 T for T degrees Celsius.
+double speedOfSound(double celsius);
+
+/// One receiver's measurement of one burst.
+struct TimeOfFlight {
+    std::size_t receiver = 0;  ///< index of those given
+    double time = 0;           ///< seconds
+    double distance = 0;       ///< metres: time times the speed of sound
+};
+
+/// A place from distances, by least squares.
+struct Fix {
+    Point3 position;
+    double residual = 0;  ///< root mean square of measured less computed distances, metres
+    /// Dilution of precision: how many times the error of a distance becomes that of the place, in
+    /// space, across the floor and upright; sqrt of the trace of (J^T J)^-1 and of its parts.
+    double pdop = 0, hdop = 0, vdop = 0;
+};
+
+/// Least receivers for a fix (thesis 3.4.3).
+constexpr std::size_t kLeastReceivers = 4;
+
+/// The place whose distances to the receivers fit best: Gauss-Newton (Levenberg-Marquardt) from the
+/// linear solution; of the two mirror images of receivers in one plane (a ceiling) the one on the
+/// side that `towards` points to, on average the axes of the receivers. So it is for receivers
+/// nearly in one plane, unless the other side fits clearly better. Nothing with fewer than
+/// kLeastReceivers, or where they do not fix a place (in one line). A place in the plane of the
+/// receivers has a dilution of precision beyond all bounds across that plane, which may be
+/// +infinity. \pre as many distances as receivers, all finite
+std::optional<Fix> locate(std::span<const Point3> receivers, std::span<const double> distances,
+                          Vec3 towards);
+
+/// One burst of a tag.
+struct Burst {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;                       ///< the tag's true one
+    std::vector<TimeOfFlight> heard;  ///< in the order of receivers; whatever locates the tag
+    std::optional<Fix> fix;           ///< of a tag located by times of flight
+    std::optional<Point2> simple;     ///< of one located by the simple model
+};
+
+struct UltrasoundOptions {
+    double celsius = 20;
+    std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
+};
+
+/// What is heard of a tag's burst, and where that puts it. A receiver hears a tag within its range
+/// (ends included, as float32) and its cone and the tag's cone, in sight of it: neither the mesh
+/// nor a moving body is between them but those of the robots that carry the two. `environment` is
+/// that of the mesh.
+///
+/// Noise of a distance depends on seed, tag, receiver and frame alone, not on what else hears; the
+/// angle that incidence is about is that between the sound and the receiver's axis.
+Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
+                std::span<const PlacedReceiver> receivers, int frame, double time,
+                const UltrasoundOptions& options);
+
+}  // namespace ispace
