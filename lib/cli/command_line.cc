@@ -144,14 +144,15 @@ void CommandLine::flag(const std::string& names, int& variable, const std::strin
 }
 
 void CommandLine::switchFlag(const std::string& on, const std::string& off,
-                             std::optional<bool>& variable, const std::string& help) {
+                             std::optional<bool>& variable, const std::string& help,
+                             Enters enters) {
     const auto set = [&variable](bool value) {
         return [&variable, value](std::int64_t) { variable = value; };
     };
     data_->keep(data_->app.add_flag_function(on, set(true))->disable_flag_override(), "", help,
-                Enters::Nothing);
+                enters);
     data_->keep(data_->app.add_flag_function(off, set(false))->disable_flag_override(), "",
-                "do not", Enters::Nothing);
+                "do not", enters);
 }
 
 void CommandLine::parsed(const std::string& names, const std::string& value,

@@ -46,7 +46,7 @@ class CommandLine {
     void flag(const std::string& names, int& variable, const std::string& help, Enters enters);
     /// A pair --name / --no-name; `off` wins if both are given, empty if neither is.
     void switchFlag(const std::string& on, const std::string& off, std::optional<bool>& variable,
-                    const std::string& help);
+                    const std::string& help, Enters enters);
     /// Any other option: `take` gets the text; what it throws (UsageError) is prefixed with the
     /// option's name.
     void parsed(const std::string& names, const std::string& value,

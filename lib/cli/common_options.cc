@@ -52,7 +52,8 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
     line.parsed("--seed", "N", take_seed, "seed of all random numbers (default 0)",
                 Enters::History);
     line.switchFlag("--progress", "--no-progress", options.progress,
-                    "show progress of long work on stderr (default: if that is a terminal)");
+                    "show progress of long work on stderr (default: if that is a terminal)",
+                    Enters::Nothing);
 }
 
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {

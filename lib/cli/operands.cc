@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/operands.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -126,7 +124,7 @@ void checkDigest(const Document& layout, std::span<const Record> environment,
 }
 
 std::string readStdin() {
-    if (::isatty(STDIN_FILENO) != 0)
+    if (isTerminalInput())
         throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
     return readAll("-");
 }

@@ -45,6 +45,8 @@ violations() {
             report("lib/" folder " must not include " target)
         if (in_lib && index($0, "\"") && !(parts[1] in known))
             report("name the folder: " target)
+        # One private header hides the versions of Embree from the sources beside it.
+        if (FILENAME == "lib/trace/embree_query.h" && target ~ /^embree/) next
         if (FILENAME ~ /\.h$/ && target ~ heavy) report("keep " target " out of headers")
         if (target ~ /^CLI\// && in_lib && folder != "cli") report("only lib/cli may include " target)
         next

@@ -1,22 +1,104 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan/options.h"
 
+#include <cmath>
+
+#include "base/error.h"
+#include "base/number.h"
 #include "cli/scene_options.h"
+#include "sense/reading_format.h"
 
 namespace ispace {
 
+namespace {
+
+double numberWithin(const std::string& text, double lowest, double highest) {
+    const std::optional<double> number = parseDouble(text);
+    if (!number || !(*number >= lowest && *number <= highest))
+        throw UsageError("`" + text + "` is no number from " + formatDouble(lowest) + " to " +
+                         formatDouble(highest));
+    return *number;
+}
+
+}  // namespace
+
 ScanCommand::ScanCommand(int argc, const char* const* argv)
     : line_("scan", "[ENV] [LAYOUT]",
-            "Simulate one reading of every placed sensor. Without LAYOUT read it from stdin unless "
-            "ENV holds placed sensors.") {
+            "Simulate what placed sensors read: lasers, 3-D rangers, ultrasonic receivers. Without "
+            "LAYOUT read it from stdin unless ENV holds placed sensors.") {
+    declare();
+    line_.parse(argc, argv);
+    ScanToolOptions& o = options_;
+    o.format = outputFormat(to_, o.common.output, readingFormats());
+    if (to_.empty() && o.common.output.ends_with(".log")) o.format = "carmen";
+    o.noise = noise_.value_or(false);
+    o.color = color_.value_or(true);
+    o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
+    o.coordinates = coordinates_ == "sensor" ? CloudFrame::Sensor : CloudFrame::World;
+    check();
+}
+
+void ScanCommand::declare() {
     ScanToolOptions& o = options_;
     line_.operands(o.operands, 2);
-    std::string to;
-    line_.choice("--to", to, {"jsonl"}, "format of the readings (default jsonl)", Enters::History);
+    line_.choice("--to", to_, readingFormats(),
+                 "format of the readings (default: by the suffix of -o, else jsonl)",
+                 Enters::History);
+    line_.texts("--select", "GLOB", o.select,
+                "read only sensors whose ids match (* ? [a-z]); may be given again",
+                Enters::History);
+    constexpr int kMostFrames = 1'000'000'000;
+    line_.count("--frames", "N", o.frames, 1, kMostFrames,
+                "readings of each sensor, at its rate (default 1)", Enters::History);
+    line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
+                     Enters::History);
+    line_.text("--poses", "FILE", o.poses,
+               "one reading at each pose of a TUM trajectory, - for stdin: `t x y z qx qy qz qw`",
+               Enters::BaseName);
+    line_.text("--model", "MODEL[,KEY=VALUE...]", o.model,
+               "sensor that takes the poses: a device or a bare kind, e.g. urg-04lx or "
+               "laser,range=8,fov=270 (default: the one sensor there is)",
+               Enters::History);
+    line_.flag("--motion", o.motion,
+               "drive along the poses at the sensor's rate, each beam from where it then is",
+               Enters::History);
+    line_.choice("--coordinates", coordinates_, {"world", "sensor"},
+                 "frame of the points in csv, pcd and ply (default world)", Enters::History);
+    line_.choice("--encoding", encoding_, {"binary", "ascii"}, "of pcd and ply (default binary)",
+                 Enters::History);
+    constexpr double kMostScale = 1e6;
+    line_.parsed(
+        "--depth-scale", "N",
+        [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMostScale); },
+        "depth png: units a metre (default 1000: millimetres)", Enters::History);
+    line_.switchFlag("--color", "--no-color", color_,
+                     "depth png: also NAME-color.png for people (default on)", Enters::History);
+    line_.count("--size", "N", o.map_pixels, 200, 8000,
+                "obstacle map png: pixels a side (default 800)", Enters::History);
+    constexpr double kColdest = -100, kHottest = 100;
+    line_.parsed(
+        "--temperature", "C",
+        [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
+        "of the air, for ultrasound (default 20)", Enters::History);
+    line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
+               Enters::Nothing);
     addAnyEnvironmentOption(line_, o.any_environment);
-    addCommonOptions(line_, o.common, "write the readings there (default: stdout)");
-    line_.parse(argc, argv);
-    o.format = outputFormat(to, o.common.output, {"jsonl"});
+    addCommonOptions(line_, o.common,
+                     "write the readings there: a file, a folder, or a pattern with %d (frame) and "
+                     "%s (sensor) (default: stdout)");
+}
+
+void ScanCommand::check() const {
+    const ScanToolOptions& o = options_;
+    if (o.poses.empty()) {
+        if (!o.model.empty()) throw UsageError("--model is the sensor of --poses: give both");
+        if (o.motion) throw UsageError("--motion goes along --poses: give both");
+    } else {
+        if (line_.given("--frames"))
+            throw UsageError("--frames counts readings of placed sensors; --poses has its own");
+        if (!o.model.empty() && !o.select.empty())
+            throw UsageError("--select and --model both say which sensor takes the poses");
+    }
 }
 
 }  // namespace ispace

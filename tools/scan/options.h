@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
+#include "sense/depth.h"
 
 namespace ispace {
 
@@ -12,6 +14,19 @@ struct ScanToolOptions {
     CommonOptions common;
     std::vector<std::string> operands;
     std::string format = "jsonl";
+    std::vector<std::string> select;  ///< globs of ids; empty: all
+    int frames = 1;
+    bool noise = false;
+    std::string poses;  ///< "": placed sensors; "-": stdin
+    std::string model;  ///< of --poses
+    bool motion = false;
+    CloudFrame coordinates = CloudFrame::World;
+    Encoding encoding = Encoding::Binary;
+    double depth_per_metre = 1000;
+    bool color = true;
+    int map_pixels = 800;
+    double celsius = 20;
+    bool list_models = false;
     bool any_environment = false;
 };
 
@@ -26,7 +41,12 @@ class ScanCommand {
     }
 
   private:
+    void declare();
+    void check() const;
+
     ScanToolOptions options_;
+    std::optional<bool> noise_, color_;
+    std::string to_, encoding_, coordinates_;
     CommandLine line_;
 };
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/output_set.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A piece of a pattern: text, or what stands for the frame (with a least width) or the id.
+struct Piece {
+    enum class Kind { Text, Frame, Id } kind = Kind::Text;
+    std::string text;
+    std::size_t width = 0;
+};
+
+[[noreturn]] void refuse(const std::string& pattern, const std::string& piece) {
+    throw UsageError("--output: `" + pattern + "`: `" + piece +
+                     "` is no part of a pattern; %d or %04d is the frame, %s the sensor, %% a "
+                     "percent sign");
+}
+
+std::vector<Piece> piecesOf(const std::string& pattern) {
+    constexpr std::size_t kWidest = 9;
+    std::vector<Piece> pieces(1);
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        if (pattern[i] != '%') {
+            pieces.back().text += pattern[i];
+            continue;
+        }
+        const std::size_t begin = i++;
+        std::size_t width = 0;
+        const bool zero = i < pattern.size() && pattern[i] == '0';
+        for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9' && width <= kWidest;
+             ++i)
+            width = 10 * width + static_cast<std::size_t>(pattern[i] - '0');
+        const char sign = i < pattern.size() ? pattern[i] : '\0';
+        const bool plain = i == begin + 1;
+        if (sign == '%' && plain) {
+            pieces.back().text += '%';
+            continue;
+        }
+        const bool frame = sign == 'd' && width <= kWidest && (plain || (zero && width > 0));
+        if (!frame && !(sign == 's' && plain))
+            refuse(pattern, pattern.substr(begin, i - begin + 1));
+        pieces.push_back({frame ? Piece::Kind::Frame : Piece::Kind::Id, "", width});
+        pieces.emplace_back();
+    }
+    return pieces;
+}
+
+bool has(const std::vector<Piece>& pieces, Piece::Kind kind) {
+    return std::any_of(pieces.begin(), pieces.end(),
+                       [kind](const Piece& piece) { return piece.kind == kind; });
+}
+
+std::string padded(int number, std::size_t width) {
+    std::string text = std::to_string(number);
+    if (text.size() < width) text.insert(0, width - text.size(), '0');
+    return text;
+}
+
+}  // namespace
+
+std::string withoutSuffix(const std::string& file) {
+    const fs::path path(file);
+    return (path.parent_path() / path.stem()).string();
+}
+
+std::optional<OutputSet> OutputSet::of(const std::string& output) {
+    OutputSet set;
+    std::error_code ignored;
+    if (output != "-" && (output.ends_with('/') || fs::is_directory(output, ignored)))
+        set.folder_ = output;
+    else if (output.find('%') != std::string::npos)
+        set.pattern_ = output;
+    else
+        return std::nullopt;
+    return set;
+}
+
+void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames) const {
+    if (!folder_.empty()) {
+        fs::create_directories(folder_);
+    } else {
+        const std::vector<Piece> pieces = piecesOf(pattern_);
+        if (several_frames && !has(pieces, Piece::Kind::Frame))
+            throw UsageError("--output: `" + pattern_ +
+                             "` gives all frames one name; write %04d where their number goes");
+        if (ids.size() > 1 && !has(pieces, Piece::Kind::Id))
+            throw UsageError("--output: `" + pattern_ +
+                             "` gives all sensors one name; write %s where their id goes");
+    }
+    std::set<std::string> names;
+    for (const std::string& id : ids)
+        if (!names.insert(stem(id, 0)).second && ids.size() > 1)
+            throw UsageError("--output: two sensors would be written to " + stem(id, 0));
+}
+
+std::string OutputSet::stem(const std::string& id, int frame) const {
+    std::string name = id;
+    // Ids may hold what would lead to another folder.
+    std::replace(name.begin(), name.end(), '/', '_');
+    if (!folder_.empty()) {
+        constexpr std::size_t kDigits = 4;
+        name.append("-").append(padded(frame, kDigits));
+        return (fs::path(folder_) / name).string();
+    }
+    std::string out;
+    for (const Piece& piece : piecesOf(withoutSuffix(pattern_))) {
+        if (piece.kind == Piece::Kind::Frame)
+            out += padded(frame, piece.width);
+        else
+            out += piece.kind == Piece::Kind::Id ? name : piece.text;
+    }
+    return out;
+}
+
+}  // namespace ispace
