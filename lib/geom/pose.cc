@@ -10,14 +10,36 @@ Vec2 Pose2::operator*(Vec2 local) const {
     return {c * local.x - s * local.y, s * local.x + c * local.y};
 }
 
+namespace {
+
+/// The three turns of a pose.
+struct Turns {
+    CosSin heading, tilt, roll;
+
+    explicit Turns(const Pose3& pose)
+        : heading(cosSin(pose.heading)), tilt(cosSin(pose.tilt)), roll(cosSin(pose.roll)) {}
+    /// Rx(roll), then Ry(-tilt), then Rz(heading), applied to (x, y, 0).
+    [[nodiscard]] Vec3 turn(double x, double y) const {
+        const Vec3 rolled{x, roll.cos * y, roll.sin * y};
+        const Vec3 tilted{tilt.cos * rolled.x - tilt.sin * rolled.z, rolled.y,
+                          tilt.sin * rolled.x + tilt.cos * rolled.z};
+        return {heading.cos * tilted.x - heading.sin * tilted.y,
+                heading.sin * tilted.x + heading.cos * tilted.y, tilted.z};
+    }
+};
+
+}  // namespace
+
 Vec3 Pose3::beam(Angle bearing) const {
-    const double cb = cos(bearing), sb = sin(bearing);
-    const double ct = cos(tilt), st = sin(tilt), cr = cos(roll), sr = sin(roll);
-    const double ch = cos(heading), sh = sin(heading);
-    // Rx(roll), then Ry(-tilt), then Rz(heading), applied to (cb, sb, 0).
-    const Vec3 rolled{cb, cr * sb, sr * sb};
-    const Vec3 tilted{ct * rolled.x - st * rolled.z, rolled.y, st * rolled.x + ct * rolled.z};
-    return {ch * tilted.x - sh * tilted.y, sh * tilted.x + ch * tilted.y, tilted.z};
+    const auto [c, s] = cosSin(bearing);
+    return Turns(*this).turn(c, s);
+}
+
+Frame3::Frame3(const Pose3& pose) : origin(pose.position) {
+    const Turns turns(pose);
+    forward = turns.turn(1, 0);
+    left = turns.turn(0, 1);
+    up = cross(forward, left);
 }
 
 }  // namespace ispace

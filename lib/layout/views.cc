@@ -58,16 +58,14 @@ Mesh sweptOf(const PlacedLaser& sensor, Limits limits) {
     const Laser& laser = sensor.laser;
     Mesh mesh{Material::View, {}, {}, true};
     const Angle span = laser.last() - laser.first;
-    const Vec3 forward = sensor.pose.beam({}), left = sensor.pose.beam(Angle::degrees(90)),
-               up = cross(forward, left);
+    const Frame3 frame(sensor.pose);
     addSheet(mesh, piecesOf(span), piecesOf(laser.sweep_span), [&](double u, double v) {
         Pose3 pose = sensor.pose;
         const Angle turn = v * laser.sweep_span;
         if (laser.sweep == SweepAxis::Heading) pose.heading = pose.heading + turn;
         if (laser.sweep == SweepAxis::Tilt) pose.tilt = pose.tilt + turn;
         if (laser.sweep == SweepAxis::Roll) pose.roll = pose.roll + turn;
-        const Vec3 beam = pose.beam(laser.first + u * span);
-        return limits.far * Vec3{dot(beam, forward), dot(beam, left), dot(beam, up)};
+        return limits.far * frame.toLocal(frame.origin + pose.beam(laser.first + u * span));
     });
     return mesh;
 }

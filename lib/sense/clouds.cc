@@ -8,29 +8,6 @@ namespace ispace {
 
 namespace {
 
-/// A frame as its axes and origin. Where an angle is a multiple of 90 degrees they are exact.
-struct Axes {
-    Point3 origin;
-    Vec3 forward{1, 0, 0}, left{0, 1, 0}, up{0, 0, 1};
-
-    Axes() = default;
-    explicit Axes(const Pose3& pose)
-        : origin(pose.position),
-          forward(pose.beam({})),
-          left(pose.beam(Angle::degrees(90))),
-          up(cross(forward, left)) {}
-
-    [[nodiscard]] Point3 toOuter(Vec3 local) const {
-        return {origin.x + (local.x * forward.x + local.y * left.x + local.z * up.x),
-                origin.y + (local.x * forward.y + local.y * left.y + local.z * up.y),
-                origin.z + (local.x * forward.z + local.y * left.z + local.z * up.z)};
-    }
-    [[nodiscard]] Point3 toLocal(Point3 outer) const {
-        const Vec3 way = outer - origin;
-        return {dot(way, forward), dot(way, left), dot(way, up)};
-    }
-};
-
 /// Fills a cloud point by point.
 class Filler {
   public:
@@ -80,7 +57,7 @@ PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in)
     PointCloud cloud;
     Filler filler(cloud, static_cast<std::size_t>(ranger.columns),
                   static_cast<std::size_t>(ranger.rows));
-    const Axes axes = in == CloudFrame::World ? Axes(frame.pose) : Axes();
+    const Frame3 world = in == CloudFrame::World ? Frame3(frame.pose) : Frame3();
     if (in == CloudFrame::Sensor) cloud.viewpoint = frame.pose;
     const PixelRays rays(ranger);
     const float* depth = frame.depths.data();
@@ -88,7 +65,8 @@ PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in)
         for (const Vec3& column : rays.columns) {
             const double range = *depth++;
             if (std::isfinite(range)) {
-                filler.add(axes.toOuter(range * Vec3{across * column.x, across * column.y, z}));
+                filler.add(world.origin +
+                           world * (range * Vec3{across * column.x, across * column.y, z}));
             } else {
                 filler.addMissing();
             }
@@ -106,12 +84,12 @@ PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame i
     for (int k = 0; k < laser.beams; ++k) beams.push_back(unitVector(laser.bearing(k)));
     const Pose3& first = scans.front().pose;
     if (in == CloudFrame::Sensor) cloud.viewpoint = first;
-    const Axes target = in == CloudFrame::Sensor ? Axes(first) : Axes();
+    const Frame3 target = in == CloudFrame::Sensor ? Frame3(first) : Frame3();
 
     for (const Scan& scan : scans) {
         const bool at_home =
             in == CloudFrame::Sensor && scan.beam_poses.empty() && scan.pose == first;
-        Axes axes(scan.pose);
+        Frame3 world(scan.pose);
         for (std::size_t k = 0; k < beams.size(); ++k) {
             const double range = scan.ranges[k];
             if (!std::isfinite(range)) {
@@ -119,11 +97,11 @@ PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame i
                 continue;
             }
             const Vec3 local{range * beams[k].x, range * beams[k].y, 0};
-            if (!scan.beam_poses.empty()) axes = Axes(scan.beam_poses[k]);
+            if (!scan.beam_poses.empty()) world = Frame3(scan.beam_poses[k]);
             if (at_home) {
                 filler.add({local.x, local.y, 0});
             } else {
-                filler.add(target.toLocal(axes.toOuter(local)));
+                filler.add(Point3{} + target.toLocal(world.origin + world * local));
             }
         }
     }

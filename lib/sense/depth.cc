@@ -16,20 +16,7 @@ constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 /// Beyond everything there is, in metres.
 constexpr double kEverything = 1e7;
 
-/// Takes vectors of a sensor's frame to the world.
-struct Axes {
-    Vec3 forward, left, up;
-
-    explicit Axes(const Pose3& pose)
-        : forward(pose.beam({})), left(pose.beam(Angle::degrees(90))), up(cross(forward, left)) {}
-    [[nodiscard]] Vec3 operator*(Vec3 v) const {
-        return {v.x * forward.x + v.y * left.x + v.z * up.x,
-                v.x * forward.y + v.y * left.y + v.z * up.y,
-                v.x * forward.z + v.y * left.z + v.z * up.z};
-    }
-};
-
-RayGrid gridOf(const Ranger& ranger, const Axes& axes) {
+RayGrid gridOf(const Ranger& ranger, const Frame3& axes) {
     const Vec3 corner = ranger.ray(0, 0);
     return {.corner = axes * corner,
             .right = axes * Vec3{0, -1 / ranger.fx(), 0},
@@ -39,7 +26,7 @@ RayGrid gridOf(const Ranger& ranger, const Axes& axes) {
 }
 
 /// Rays of a spherical ranger: cosines are those of its columns and of its rows.
-Directions sphereOf(const Ranger& ranger, const Axes& axes) {
+Directions sphereOf(const Ranger& ranger, const Frame3& axes) {
     std::vector<CosSin> bearings, elevations;
     bearings.reserve(static_cast<std::size_t>(ranger.columns));
     elevations.reserve(static_cast<std::size_t>(ranger.rows));
@@ -55,7 +42,7 @@ Directions sphereOf(const Ranger& ranger, const Axes& axes) {
 }
 
 /// Rays of any ranger with an error of bearing each, of unit length.
-Directions strayRays(const Ranger& ranger, const Axes& axes, std::span<const float> errors) {
+Directions strayRays(const Ranger& ranger, const Frame3& axes, std::span<const float> errors) {
     Directions directions;
     directions.resize(ranger.pixels());
     std::size_t pixel = 0;
@@ -93,8 +80,10 @@ ISPACE_SIMD_CLONES void divide(float* values, const float* by, std::size_t count
 
 /// What is outside the limits is no return; ends included, as float32.
 ISPACE_SIMD_CLONES void limit(float* values, std::size_t count, float least, float greatest) {
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = values[i] >= least && values[i] <= greatest ? values[i] : kNoReturn;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool within = values[i] >= least && values[i] <= greatest;
+        if (!within) values[i] = kNoReturn;
+    }
 }
 
 /// Distances modulo the ambiguity.
@@ -143,7 +132,7 @@ class Exposure {
     void cast() {
         const double most = ranger_.ambiguity > 0 ? kEverything : ranger_.max_range;
         const Point3 origin = frame_.pose.position;
-        const Axes axes(frame_.pose);
+        const Frame3 axes(frame_.pose);
         const std::uint32_t own = sensor_.mount ? static_cast<std::uint32_t>(sensor_.mount->robot)
                                                 : MovingBodies::kNobody;
         const bool pinhole = ranger_.projection == Projection::Pinhole;

@@ -31,15 +31,6 @@ double multipleInRoom(Point3 from, Vec3 ray) {
         {leave(from.x, ray.x, 0, 8), leave(from.y, ray.y, 0, 6), leave(from.z, ray.z, 0, 2.5)});
 }
 
-/// A vector of a sensor's frame in the world's.
-Vec3 turned(const Pose3& pose, Vec3 v) {
-    const Vec3 forward = pose.beam({}), left = pose.beam(Angle::degrees(90)),
-               up = cross(forward, left);
-    return {v.x * forward.x + v.y * left.x + v.z * up.x,
-            v.x * forward.y + v.y * left.y + v.z * up.y,
-            v.x * forward.z + v.y * left.z + v.z * up.z};
-}
-
 TEST(Depth, OfPlanesAtAnyPoseWithinAMillimetre) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> x(0.2, 7.8), y(0.2, 5.8), z(0.1, 2.4), turn(-180, 180),
@@ -63,7 +54,8 @@ TEST(Depth, OfPlanesAtAnyPoseWithinAMillimetre) {
         for (int row = 0; row < 17; ++row)
             for (int column = 0; column < 21; ++column) {
                 const Vec3 ray = sensor.ranger.ray(column, row);
-                const double exact = multipleInRoom(sensor.pose.position, turned(sensor.pose, ray));
+                const double exact =
+                    multipleInRoom(sensor.pose.position, Frame3(sensor.pose) * ray);
                 const double found = frame.depths[static_cast<std::size_t>(row * 21 + column)];
                 EXPECT_NEAR(found * length(ray), exact * length(ray), 1e-3)
                     << line << ' ' << column << ' ' << row;

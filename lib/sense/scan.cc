@@ -68,9 +68,9 @@ void Beams::point(const Pose3& pose) {
         }
         return;
     }
-    turn(local_.x.data(), local_.y.data(), local_.size(), pose.beam({}),
-         pose.beam(Angle::degrees(90)), directions_.x.data(), directions_.y.data(),
-         directions_.z.data());
+    const Frame3 frame(pose);
+    turn(local_.x.data(), local_.y.data(), local_.size(), frame.forward, frame.left,
+         directions_.x.data(), directions_.y.data(), directions_.z.data());
 }
 
 std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
@@ -128,11 +128,16 @@ void LaserCaster::castApart(Scan& scan) {
     apart_.resize(count);
     origins_.resize(count);
     bool level = true;
+    Frame3 frame;
     for (std::size_t k = 0; k < count; ++k) {
         const Pose3& pose = scan.poseAt(k);
-        Angle bearing = laser.bearing(static_cast<int>(k));
-        if (!errors_.empty()) bearing = bearing + Angle::radians(static_cast<double>(errors_[k]));
-        apart_.set(k, pose.beam(bearing));
+        if (k == 0 || !scan.beam_poses.empty()) frame = Frame3(pose);
+        Vec2 beam = beams_.local(k);
+        if (!errors_.empty()) {
+            const auto [c, s] = cosSin(Angle::radians(static_cast<double>(errors_[k])));
+            beam = {c * beam.x - s * beam.y, s * beam.x + c * beam.y};
+        }
+        apart_.set(k, frame * Vec3{beam.x, beam.y, 0});
         origins_[k] = pose.position;
         level = level && pose.isLevel() && pose.position.z == scan.pose.position.z;
     }

@@ -41,6 +41,8 @@ class Beams {
     /// Unit vectors of all beams in the world frame, of the sensor at this pose; valid until the
     /// next call.
     const Directions& at(const Pose3& pose);
+    /// Unit vector of a beam in the sensor's frame.
+    [[nodiscard]] Vec2 local(std::size_t beam) const { return {local_.x[beam], local_.y[beam]}; }
 
   private:
     void point(const Pose3& pose);
