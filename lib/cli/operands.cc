@@ -22,9 +22,10 @@ Document read(const std::string& operand) {
     return parseDocument(bytes, operand, ImportOptions(), sceneSchemas());
 }
 
-bool hasPlacedSensor(const Document& document) {
-    return std::any_of(document.records.begin(), document.records.end(), [](const Record& r) {
-        return isSensor(r.schema()) && (r.has("at") || r.has("on"));
+bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
+    return std::any_of(document.records.begin(), document.records.end(), [&](const Record& r) {
+        return std::find(keywords.begin(), keywords.end(), r.keyword()) != keywords.end() &&
+               (r.has("at") || r.has("on"));
     });
 }
 
@@ -72,7 +73,8 @@ class OperandReader {
     [[nodiscard]] bool wantsStdin() const {
         if (layout_) return false;
         if (!environment_ && !request_.layout_from_stdin) throw UsageError("no environment given");
-        return request_.layout_from_stdin && !(environment_ && hasPlacedSensor(*environment_));
+        return request_.layout_from_stdin &&
+               !(environment_ && hasPlaced(*environment_, request_.sensors));
     }
 
     void takeLayoutFromStdin() {

@@ -18,6 +18,8 @@ struct SceneRequest {
     /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
     /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
+    /// Keywords of what makes an ENV complete: with one that is placed, no LAYOUT is read.
+    std::vector<std::string> sensors = {"laser", "ranger", "camera", "ultrasound"};
 };
 
 /// What the operands hold.

@@ -60,6 +60,22 @@ bool has(const std::vector<Piece>& pieces, Piece::Kind kind) {
                        [kind](const Piece& piece) { return piece.kind == kind; });
 }
 
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// An id and a frame with nothing between them that ends or begins a number: l1 and 2 are l12, and
+/// so are l and 12.
+bool runsTogether(const std::vector<Piece>& pieces) {
+    // Between any two that are no text stands one that is.
+    for (std::size_t i = 1; i + 2 < pieces.size(); i += 2) {
+        const Piece &a = pieces[i], &text = pieces[i + 1], &b = pieces[i + 2];
+        if (a.kind == b.kind) continue;
+        if (text.text.empty()) return true;
+        if (isDigit(b.kind == Piece::Kind::Frame ? text.text.back() : text.text.front()))
+            return true;
+    }
+    return false;
+}
+
 std::string padded(int number, std::size_t width) {
     std::string text = std::to_string(number);
     if (text.size() < width) text.insert(0, width - text.size(), '0');
@@ -76,31 +92,54 @@ std::string withoutSuffix(const std::string& file) {
 std::optional<OutputSet> OutputSet::of(const std::string& output) {
     OutputSet set;
     std::error_code ignored;
-    if (output != "-" && (output.ends_with('/') || fs::is_directory(output, ignored)))
+    if (output != "-" && (output.ends_with('/') || fs::is_directory(output, ignored))) {
         set.folder_ = output;
-    else if (output.find('%') != std::string::npos)
-        set.pattern_ = output;
-    else
+    } else if (output.find('%') != std::string::npos) {
+        set.pattern_ = withoutSuffix(output);
+        set.suffix_ = fs::path(output).extension().string();
+    } else {
         return std::nullopt;
+    }
     return set;
 }
 
-void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames) const {
+void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames,
+                        const std::vector<std::string>& endings) const {
     if (!folder_.empty()) {
         fs::create_directories(folder_);
     } else {
+        const std::string whole = pattern_ + suffix_;
+        const auto refuse_pattern = [&whole](const std::string& why) {
+            throw UsageError("--output: `" + whole + "` " + why);
+        };
+        if (suffix_.find('%') != std::string::npos)
+            refuse_pattern("has % in its suffix; write the suffix of the format behind it");
         const std::vector<Piece> pieces = piecesOf(pattern_);
         if (several_frames && !has(pieces, Piece::Kind::Frame))
-            throw UsageError("--output: `" + pattern_ +
-                             "` gives all frames one name; write %04d where their number goes");
+            refuse_pattern("gives all frames one name; write %04d where their number goes");
         if (ids.size() > 1 && !has(pieces, Piece::Kind::Id))
-            throw UsageError("--output: `" + pattern_ +
-                             "` gives all sensors one name; write %s where their id goes");
+            refuse_pattern("gives all sensors one name; write %s where their id goes");
+        if (several_frames && ids.size() > 1 && runsTogether(pieces))
+            refuse_pattern(
+                "does not tell ids from frames; write something like - between %s and %d");
     }
     std::set<std::string> names;
     for (const std::string& id : ids)
-        if (!names.insert(stem(id, 0)).second && ids.size() > 1)
-            throw UsageError("--output: two sensors would be written to " + stem(id, 0));
+        for (const std::string& ending : endings) {
+            const bool beside = &ending != endings.data();
+            const std::string file = beside ? fileBeside(id, 0, ending) : fileOf(id, 0, ending);
+            if (!names.insert(file).second)
+                throw UsageError("--output: two files would have the name " + file);
+        }
+}
+
+std::string OutputSet::fileOf(const std::string& id, int frame, const std::string& ending) const {
+    return stem(id, frame) + (suffix_.empty() ? ending : suffix_);
+}
+
+std::string OutputSet::fileBeside(const std::string& id, int frame,
+                                  const std::string& ending) const {
+    return stem(id, frame) + ending;
 }
 
 std::string OutputSet::stem(const std::string& id, int frame) const {
@@ -113,7 +152,7 @@ std::string OutputSet::stem(const std::string& id, int frame) const {
         return (fs::path(folder_) / name).string();
     }
     std::string out;
-    for (const Piece& piece : piecesOf(withoutSuffix(pattern_))) {
+    for (const Piece& piece : piecesOf(pattern_)) {
         if (piece.kind == Piece::Kind::Frame)
             out += padded(frame, piece.width);
         else

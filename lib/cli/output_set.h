@@ -9,7 +9,7 @@ namespace ispace {
 
 /// Names of files that a run writes many of: `-o` names a folder (one that exists, or with / at its
 /// end), or is a pattern with %d or %04d for the frame's number and %s for the sensor's id; %% is a
-/// percent sign. In a folder files are called ID-0000.
+/// percent sign. In a folder files are called ID-0000. A / in an id is written _.
 class OutputSet {
   public:
     /// Nothing if `output` is one file or stdout.
@@ -17,16 +17,24 @@ class OutputSet {
 
     /// Checks that no two files have the same name, and makes the folder.
     /// \param several_frames whether frames must be told apart
-    /// \throws UsageError if the pattern does not tell readings apart, FormatError for ids that
-    /// make
-    ///         no names of files, std::system_error if the folder cannot be made
-    void prepare(const std::vector<std::string>& ids, bool several_frames) const;
-    /// Name without the ending of its format (".png").
-    [[nodiscard]] std::string stem(const std::string& id, int frame) const;
+    /// \param endings of the files of one reading; all but the first stand beside it
+    /// \throws UsageError for a bad pattern, and where files would have one name; std::system_error
+    ///         if the folder cannot be made
+    void prepare(const std::vector<std::string>& ids, bool several_frames,
+                 const std::vector<std::string>& endings) const;
+    /// Name of the file of a reading: the suffix of a pattern stands in place of its format's own.
+    [[nodiscard]] std::string fileOf(const std::string& id, int frame,
+                                     const std::string& ending) const;
+    /// Name of a file that stands beside it.
+    [[nodiscard]] std::string fileBeside(const std::string& id, int frame,
+                                         const std::string& ending) const;
 
   private:
+    [[nodiscard]] std::string stem(const std::string& id, int frame) const;
+
     std::string folder_;   // "" for a pattern
-    std::string pattern_;  // "" for a folder
+    std::string pattern_;  // without its suffix; "" for a folder
+    std::string suffix_;   // of the pattern, with its dot
 };
 
 /// The part of a file's name before its suffix.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "base/number.h"
@@ -18,7 +19,7 @@ using Row = std::array<std::string, 8>;
 
 /// Degrees of people: no more decimals than tell devices apart.
 std::string degreesText(Angle angle) {
-    return formatDouble(std::stod(formatFixed(angle.degrees(), 2)));
+    return formatDouble(std::round(angle.degrees() * 100) / 100);
 }
 
 std::string limitsText(double least, double greatest) {

@@ -74,11 +74,25 @@ void applySweep(Laser& laser, const Record& record, Diagnostics& findings) {
     }
     if (record.has("sweep_span")) laser.sweep_span = record.angle("sweep_span");
     if (record.has("sweep_step")) laser.sweep_step = record.angle("sweep_step");
-    const double scans = scansWithin(laser);
-    if (laser.sweep != SweepAxis::None && scans > kMostScans)
-        findings.add(
-            record.finding("sweep_step", "a sweep of " + formatDouble(scans) + " scans, at most " +
-                                             std::to_string(kMostScans) + " are possible"));
+    const double beams = scansWithin(laser) * laser.beams;
+    if (laser.sweep != SweepAxis::None && beams > kMostSwept)
+        findings.add(record.finding("sweep_step", "a sweep of " + formatDouble(beams) +
+                                                      " beams, at most " +
+                                                      formatDouble(kMostSwept) + " are possible"));
+}
+
+void applyTimes(Laser& laser, const Record& record, Diagnostics& findings) {
+    if (record.has("rate")) {
+        const double rate = record.number("rate");
+        laser.spin *= rate / laser.rate;
+        laser.rate = rate;
+    }
+    if (record.has("spin")) laser.spin = record.number("spin");
+    if (laser.duration() * laser.rate > 1 + kSlack)
+        findings.add(record.finding(record.has("spin") ? "spin" : "rate",
+                                    "a scan takes " + formatDouble(laser.duration()) + " s at " +
+                                        formatDouble(laser.spin) + " turns a second, longer than " +
+                                        formatDouble(laser.rate) + " scans a second leave it"));
 }
 
 }  // namespace
@@ -87,7 +101,13 @@ int Laser::scans() const {
     return sweep == SweepAxis::None ? 1 : static_cast<int>(scansWithin(*this));
 }
 
-double Laser::beamTime() const { return spin > 0 ? step.degrees() / (360 * spin) : 0; }
+double Laser::timeOf(int beam) const {
+    if (spin == 0) return 0;
+    const double steps = spin > 0 ? beam : beams - 1 - beam;
+    return steps * step.degrees() / (360 * std::fabs(spin));
+}
+
+double Laser::duration() const { return timeOf(spin > 0 ? beams - 1 : 0); }
 
 bool Laser::sees(Angle bearing) const {
     double beyond_first = std::fmod((bearing - first).degrees(), 360.0);
@@ -100,13 +120,8 @@ Laser withFigures(Laser base, const Record& record) {
     applyRange(record, base.min_range, base.max_range, findings);
     applyBeams(base, record, findings);
     applySweep(base, record, findings);
-    if (record.has("rate")) base.rate = record.number("rate");
-    if (record.has("spin")) base.spin = record.number("spin");
-    try {
-        base.noise = withNoiseFigures(base.noise, record);
-    } catch (const FormatError& error) {
-        findings.add(error);
-    }
+    applyTimes(base, record, findings);
+    applyNoise(record, base.noise, findings);
     findings.throwIfAny();
     return base;
 }

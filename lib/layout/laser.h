@@ -14,8 +14,8 @@ namespace ispace {
 
 /// More beams than this are refused: no scanner has them, and a slip of the unit may ask for them.
 constexpr int kMostBeams = 1'000'000;
-/// The same for the scans of a sweep.
-constexpr int kMostScans = 100'000;
+/// The same for all beams of a sweep: they are one reading.
+constexpr double kMostSwept = 1e8;
 
 /// Which angle of its pose a laser changes from scan to scan of a sweep.
 enum class SweepAxis {
@@ -33,7 +33,8 @@ struct Laser {
     Angle first = Angle::degrees(-90), step = Angle::degrees(1);
     int beams = 181;
     double rate = 10;  ///< scans a second
-    /// Turns a second of its beam, which give each beam its own time; 0: all beams at once.
+    /// Turns a second of its beam, which give each beam its own time: counter-clockwise the first
+    /// is first, clockwise (below 0) the last. 0: all beams at once.
     double spin = 0;
     /// A sweep is `scans()` scans, scan j with the angle of the axis j * sweep_step more than
     /// written: 0 .. sweep_span, its end left out if that is a full turn.
@@ -48,8 +49,9 @@ struct Laser {
     [[nodiscard]] bool sees(Angle bearing) const;
     /// Scans of a sweep; 1 without.
     [[nodiscard]] int scans() const;
-    /// Seconds from one beam to the next.
-    [[nodiscard]] double beamTime() const;
+    /// Seconds from the first measurement of a scan to that of a beam, and to its last.
+    [[nodiscard]] double timeOf(int beam) const;
+    [[nodiscard]] double duration() const;
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 
@@ -74,8 +76,10 @@ Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor)
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
 /// of them; an explicit `step` alone keeps the model's first beam and span; `first` alone keeps
 /// number and step; `beams` alone keeps first beam and step. One number in `range` is the maximum.
+/// An explicit `rate` alone lets a model's beam spin faster or slower with it.
 /// \throws FormatError with all findings: an unknown model (with the nearest name), min above max,
-///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree
+///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
+///         a scan that takes longer than the next is due
 Laser laserOf(const Record& record, const DeviceCatalogue& devices);
 
 /// `base` with the figures written in a record put in place of its own; the model stays.

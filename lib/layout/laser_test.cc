@@ -155,6 +155,32 @@ TEST(LaserOf, RateIsTheModelsElseTen) {
     EXPECT_NE(laserFindings("rate=100001"), "");
 }
 
+TEST(LaserOf, SpinGoesWithTheRate) {
+    const Laser urg = laser("model=urg-04lx");
+    EXPECT_EQ(urg.spin, 10);
+    EXPECT_NEAR(urg.duration(), 681 * 0.3515625 / 360 / 10, 1e-12);
+    EXPECT_EQ(laser("model=urg-04lx rate=20").spin, 20);
+    EXPECT_EQ(laser("model=urg-04lx spin=0").duration(), 0);
+    EXPECT_EQ(laser("fov=90 rate=10").duration(), 0) << "the bare laser: all beams at once";
+    // Clockwise the last beam is first.
+    const Laser clockwise = laser("fov=90 step=1 rate=10 spin=-10");
+    EXPECT_NEAR(clockwise.timeOf(0), 0.025, 1e-12);
+    EXPECT_EQ(clockwise.timeOf(90), 0);
+    EXPECT_EQ(laser("fov=90 step=1 rate=10 spin=10").timeOf(0), 0);
+    EXPECT_NE(laserFindings("fov=90 rate=10 spin=2"), "") << "it takes 0.125 s";
+    EXPECT_EQ(laserFindings("fov=90 rate=10 spin=2.5"), "");
+    EXPECT_EQ(laserFindings("fov=360 rate=10 spin=10"), "") << "a full turn is just done";
+}
+
+TEST(LaserOf, SweepsAreBounded) {
+    EXPECT_EQ(laser("sweep=heading").scans(), 360);
+    EXPECT_EQ(laser("sweep=tilt sweep_span=90 sweep_step=45").scans(), 3);
+    EXPECT_EQ(laser("sweep_span=90").scans(), 1);
+    EXPECT_NE(laserFindings("step=0.001 sweep=heading sweep_step=0.01"), "");
+    EXPECT_EQ(laserFindings("step=0.001 sweep_step=0.01"), "");
+    EXPECT_NE(laserFindings("incidence=80,70"), "");
+}
+
 TEST(LaserOf, AModelOfAnotherKindIsToldApart) {
     EXPECT_NE(laserFindings("model=pioneer-2dx")
                   .find("line:1:13: error: model `pioneer-2dx` is a robot, not a laser"),

@@ -51,7 +51,7 @@ void addNoiseKeys(std::vector<KeySpec>& keys) {
                     .upper = kMost});
 }
 
-RangeNoise withNoiseFigures(RangeNoise noise, const Record& record) {
+void applyNoise(const Record& record, RangeNoise& noise, Diagnostics& findings) {
     if (record.has("bias")) noise.bias = record.number("bias");
     if (record.has("sigma")) {
         const Tuple& sigma = record.tuple("sigma");
@@ -64,14 +64,13 @@ RangeNoise withNoiseFigures(RangeNoise noise, const Record& record) {
     if (record.has("incidence")) {
         const Tuple& incidence = record.tuple("incidence");
         if (incidence[0] > incidence[1])
-            throw FormatError(record.finding(
+            findings.add(record.finding(
                 "incidence", "`incidence`: " + formatDouble(incidence[0]) +
                                  " degrees, from which on returns get lost, is above " +
                                  formatDouble(incidence[1]) + ", from which on all are"));
         noise.graze_from = Angle::degrees(incidence[0]);
         noise.graze_to = Angle::degrees(incidence[1]);
     }
-    return noise;
 }
 
 }  // namespace ispace

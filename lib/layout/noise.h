@@ -35,8 +35,8 @@ struct RangeNoise {
 /// default.
 void addNoiseKeys(std::vector<KeySpec>& keys);
 
-/// `noise` with the figures written in a record put in place of its own.
-/// \throws FormatError if the first angle of `incidence` is above the second
-RangeNoise withNoiseFigures(RangeNoise noise, const Record& record);
+/// Puts the figures written in a record in place of a device's. Adds what is wrong with them to the
+/// findings: a first angle of `incidence` above the second.
+void applyNoise(const Record& record, RangeNoise& noise, Diagnostics& findings);
 
 }  // namespace ispace

@@ -65,13 +65,14 @@ Ranger withFigures(Ranger base, const Record& record) {
     if (record.has("rate")) base.rate = record.number("rate");
     if (record.has("measures")) base.measures_depth = record.text("measures") == "depth";
     if (record.has("ambiguity")) base.ambiguity = record.number("ambiguity");
+    if (base.ambiguity > 0 && base.min_range >= base.ambiguity)
+        findings.add(record.finding(record.has("range") ? "range" : "ambiguity",
+                                    "the least range " + formatDouble(base.min_range) +
+                                        " m is not below the ambiguity, " +
+                                        formatDouble(base.ambiguity) + " m: nothing is measured"));
     if (base.measures_depth && base.projection == Projection::Spherical)
         findings.add(record.finding("measures", "a spherical ranger measures distances"));
-    try {
-        base.noise = withNoiseFigures(base.noise, record);
-    } catch (const FormatError& error) {
-        findings.add(error);
-    }
+    applyNoise(record, base.noise, findings);
     findings.throwIfAny();
     return base;
 }

@@ -34,7 +34,7 @@ struct Ranger {
     /// the distance along the ray (time of flight; always that of a spherical one).
     bool measures_depth = false;
     /// Distances are known but for multiples of this (phase of modulated light): what stands at
-    /// ambiguity + d reads d, however far it is. 0: unambiguous.
+    /// ambiguity + d reads d, however far it is, if the limits let d pass. 0: unambiguous.
     double ambiguity = 0;
     RangeNoise noise;
 

@@ -13,6 +13,20 @@ namespace ispace {
 
 namespace {
 
+/// Above what any sensor does, times a second.
+constexpr double kMostOften = 1e5;
+
+KeySpec rangeKey(std::string help) {
+    return {.name = "range",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .min_count = 1,
+            .max_count = 2,
+            .lower = 0,
+            .upper = kFarthest};
+}
+
 /// Where a sensor is and how it looks: a pose in space, or one in the frame of its carrier.
 void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
     keys.push_back({.name = "at",
@@ -56,14 +70,7 @@ Schema sensorSchema(std::string keyword, std::string help, std::string heading_h
 
 /// Figures of what sees a picture: rangers and cameras.
 void addPictureFigures(std::vector<KeySpec>& keys, double widest) {
-    keys.push_back({.name = "range",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "least and greatest distance seen, or the greatest alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = kFarthest});
+    keys.push_back(rangeKey("least and greatest distance seen, or the greatest alone"));
     keys.push_back({.name = "fov",
                     .type = KeyType::Tuple,
                     .unit = Unit::Angle,
@@ -81,7 +88,30 @@ void addPictureFigures(std::vector<KeySpec>& keys, double widest) {
                     .lower = 1,
                     .upper = 16384,
                     .whole = true});
-    keys.push_back(positiveKey("rate", Unit::Frequency, "pictures a second", 1e5));
+    keys.push_back(positiveKey("rate", Unit::Frequency, "pictures a second", kMostOften));
+}
+
+void addSweepFigures(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "sweep",
+                    .type = KeyType::Choice,
+                    .help = "which of its angles changes from scan to scan, for a picture of the "
+                            "whole space",
+                    .choices = {"none", "heading", "tilt", "roll"}});
+    keys.push_back({.name = "sweep_span",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "by how much it changes in a sweep, from the angle written on; 360 "
+                            "without it",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
+    keys.push_back({.name = "sweep_step",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "by how much from scan to scan; 1 without it",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
 }
 
 void addCameraFigures(std::vector<KeySpec>& keys) { addPictureFigures(keys, 179); }
@@ -89,14 +119,7 @@ void addCameraFigures(std::vector<KeySpec>& keys) { addPictureFigures(keys, 179)
 }  // namespace
 
 void addLaserFigures(std::vector<KeySpec>& keys) {
-    keys.push_back({.name = "range",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "least and greatest distance measured, or the greatest alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = kFarthest});
+    keys.push_back(rangeKey("least and greatest distance measured, or the greatest alone"));
     keys.push_back({.name = "fov",
                     .type = KeyType::Number,
                     .unit = Unit::Angle,
@@ -121,40 +144,15 @@ void addLaserFigures(std::vector<KeySpec>& keys) {
                     .help = "number of beams",
                     .lower = 1,
                     .upper = kMostBeams});
-    keys.push_back({.name = "rate",
-                    .type = KeyType::Number,
-                    .unit = Unit::Frequency,
-                    .help = "scans a second",
-                    .lower = 0,
-                    .upper = 1e5,
-                    .lower_open = true});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "scans a second", kMostOften));
     keys.push_back({.name = "spin",
                     .type = KeyType::Number,
                     .unit = Unit::Frequency,
-                    .help = "turns a second of its beam, which give each beam its own time; 0: all "
-                            "beams at once",
-                    .lower = 0,
-                    .upper = 1e5});
-    keys.push_back({.name = "sweep",
-                    .type = KeyType::Choice,
-                    .help = "which of its angles changes from scan to scan, for a picture of the "
-                            "whole space",
-                    .choices = {"none", "heading", "tilt", "roll"}});
-    keys.push_back({.name = "sweep_span",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "by how much it changes in a sweep, from the angle written on; 360 "
-                            "without it",
-                    .lower = 0,
-                    .upper = 360,
-                    .lower_open = true});
-    keys.push_back({.name = "sweep_step",
-                    .type = KeyType::Number,
-                    .unit = Unit::Angle,
-                    .help = "by how much from scan to scan; 1 without it",
-                    .lower = 0,
-                    .upper = 360,
-                    .lower_open = true});
+                    .help = "turns a second of its beam, which give each beam its own time; below "
+                            "0 clockwise, 0: all beams at once",
+                    .lower = -kMostOften,
+                    .upper = kMostOften});
+    addSweepFigures(keys);
     addNoiseKeys(keys);
 }
 
@@ -180,22 +178,15 @@ void addRangerFigures(std::vector<KeySpec>& keys) {
 }
 
 void addUltrasoundFigures(std::vector<KeySpec>& keys) {
-    keys.push_back({.name = "range",
-                    .type = KeyType::Tuple,
-                    .unit = Unit::Length,
-                    .help = "least and greatest distance heard, or the greatest alone",
-                    .min_count = 1,
-                    .max_count = 2,
-                    .lower = 0,
-                    .upper = kFarthest});
+    keys.push_back(rangeKey("least and greatest distance heard, or the greatest alone"));
     keys.push_back(
         positiveKey("fov", Unit::Angle, "full angle of the cone in which it hears", 360));
-    keys.push_back(positiveKey("rate", Unit::Frequency, "measurements a second", 1e5));
+    keys.push_back(positiveKey("rate", Unit::Frequency, "measurements a second", kMostOften));
     addNoiseKeys(keys);
 }
 
 void addTagFigures(std::vector<KeySpec>& keys) {
-    keys.push_back(positiveKey("rate", Unit::Frequency, "bursts a second", 1e5));
+    keys.push_back(positiveKey("rate", Unit::Frequency, "bursts a second", kMostOften));
     keys.push_back(
         positiveKey("fov", Unit::Angle, "full angle of the cone into which it emits", 360));
     keys.push_back({.name = "locate",

@@ -12,11 +12,7 @@ Receiver withFigures(Receiver base, const Record& record) {
     applyRange(record, base.min_range, base.max_range, findings);
     if (record.has("fov")) base.fov = record.angle("fov");
     if (record.has("rate")) base.rate = record.number("rate");
-    try {
-        base.noise = withNoiseFigures(base.noise, record);
-    } catch (const FormatError& error) {
-        findings.add(error);
-    }
+    applyNoise(record, base.noise, findings);
     findings.throwIfAny();
     return base;
 }

@@ -37,12 +37,13 @@ std::string carmenHeader() {
            "# a reading of maximum_range is no return\n";
 }
 
-void appendCarmenLine(std::string& out, const PlacedLaser& sensor, const Scan& scan,
-                      const Pose2& robot) {
+void appendCarmenLine(std::string& out, std::size_t number, const PlacedLaser& sensor,
+                      const Scan& scan, const Pose2& robot) {
     const Laser& laser = sensor.laser;
     const Angle fov = laser.last() - laser.first;
     const Angle middle = laser.first + 0.5 * fov;
-    out.append("ROBOTLASER1 ").append(std::to_string(kSimulatedLaser));
+    out.append("ROBOTLASER").append(std::to_string(number)).append(" ");
+    out += std::to_string(kSimulatedLaser);
     appendNumber(out, (-0.5 * fov).radians());
     appendNumber(out, fov.radians());
     appendNumber(out, laser.step.radians());

@@ -26,7 +26,7 @@ TEST(CarmenLog, FieldsInOrder) {
     Scan scan = scanOf({{1, -2, 0.15}, Angle::degrees(180), {}, {}}, {0.1F, kNone, 3.999F});
     scan.time = 0.25;
     std::string out = "before\n";
-    appendCarmenLine(out, sensor, scan, {{0.5, -2}, Angle::degrees(-180)});
+    appendCarmenLine(out, 1, sensor, scan, {{0.5, -2}, Angle::degrees(-180)});
     EXPECT_EQ(out,
               "before\nROBOTLASER1 3 -1.5707963267948966 3.141592653589793 1.5707963267948966 4 "
               "0.01 0 3 0.1 4 3.999 0 1 -2 3.141592653589793 0.5 -2 3.141592653589793 "
@@ -40,7 +40,7 @@ struct Beam {
 };
 Beam beamOf(const PlacedLaser& sensor, const Scan& scan, int beam) {
     std::string line;
-    appendCarmenLine(line, sensor, scan, {});
+    appendCarmenLine(line, 1, sensor, scan, {});
     std::istringstream words(line);
     std::string name;
     int type = 0, mode = 0;

@@ -53,12 +53,12 @@ struct PixelRays {
 
 }  // namespace
 
-PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in) {
+PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, Coordinates in) {
     PointCloud cloud;
     Filler filler(cloud, static_cast<std::size_t>(ranger.columns),
                   static_cast<std::size_t>(ranger.rows));
-    const Frame3 world = in == CloudFrame::World ? Frame3(frame.pose) : Frame3();
-    if (in == CloudFrame::Sensor) cloud.viewpoint = frame.pose;
+    const Frame3 world = in == Coordinates::World ? Frame3(frame.pose) : Frame3();
+    if (in == Coordinates::Sensor) cloud.viewpoint = frame.pose;
     const PixelRays rays(ranger);
     const float* depth = frame.depths.data();
     for (const auto [across, z] : rays.rows) {
@@ -75,7 +75,7 @@ PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in)
     return cloud;
 }
 
-PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame in) {
+PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates in) {
     PointCloud cloud;
     Filler filler(cloud, static_cast<std::size_t>(laser.beams), scans.size());
     if (scans.empty()) return cloud;
@@ -83,12 +83,12 @@ PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame i
     beams.reserve(static_cast<std::size_t>(laser.beams));
     for (int k = 0; k < laser.beams; ++k) beams.push_back(unitVector(laser.bearing(k)));
     const Pose3& first = scans.front().pose;
-    if (in == CloudFrame::Sensor) cloud.viewpoint = first;
-    const Frame3 target = in == CloudFrame::Sensor ? Frame3(first) : Frame3();
+    if (in == Coordinates::Sensor) cloud.viewpoint = first;
+    const Frame3 target = in == Coordinates::Sensor ? Frame3(first) : Frame3();
 
     for (const Scan& scan : scans) {
         const bool at_home =
-            in == CloudFrame::Sensor && scan.beam_poses.empty() && scan.pose == first;
+            in == Coordinates::Sensor && scan.beam_poses.empty() && scan.pose == first;
         Frame3 world(scan.pose);
         for (std::size_t k = 0; k < beams.size(); ++k) {
             const double range = scan.ranges[k];

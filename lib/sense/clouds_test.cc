@@ -34,14 +34,14 @@ Point3 toWorld(const Pose3& pose, Point3 local) {
 TEST(LaserCloud, RightAnglesAreExact) {
     const PlacedLaser sensor = threeBeams();
     const Scan scan = scanOf({{1, 2, 0.5}, Angle::degrees(90), {}, {}}, {1.5F, kNone, 2});
-    const PointCloud world = cloudOf(sensor.laser, std::span(&scan, 1), CloudFrame::World);
+    const PointCloud world = cloudOf(sensor.laser, std::span(&scan, 1), Coordinates::World);
     EXPECT_EQ(world.width, 3U);
     EXPECT_EQ(world.height, 1U);
     EXPECT_EQ(world.viewpoint, Pose3());
     EXPECT_EQ(pointAt(world, 0), (Point3{2.5, 2, 0.5}));
     EXPECT_TRUE(isMissing(world, 1));
     EXPECT_EQ(pointAt(world, 2), (Point3{-1, 2, 0.5}));
-    const PointCloud own = cloudOf(sensor.laser, std::span(&scan, 1), CloudFrame::Sensor);
+    const PointCloud own = cloudOf(sensor.laser, std::span(&scan, 1), Coordinates::Sensor);
     EXPECT_EQ(own.viewpoint, scan.pose);
     EXPECT_EQ(pointAt(own, 0), (Point3{0, -1.5, 0}));
     EXPECT_TRUE(isMissing(own, 1));
@@ -56,7 +56,7 @@ TEST(LaserCloud, AnyPose) {
     laser.beams = 683;
     for (int round = 0; round < 20; ++round) {
         const Scan scan = scanOf(randomPose(random), randomRanges(random, 683));
-        const PointCloud world = cloudOf(laser, std::span(&scan, 1), CloudFrame::World);
+        const PointCloud world = cloudOf(laser, std::span(&scan, 1), Coordinates::World);
         for (std::size_t k = 0; k < 683; ++k) {
             ASSERT_EQ(isMissing(world, k), std::isinf(scan.ranges[k]));
             if (isMissing(world, k)) continue;
@@ -75,8 +75,8 @@ TEST(LaserCloud, ScansOfASweepComeIntoTheFrameOfTheFirst) {
         scans.push_back(scanOf(randomPose(random), randomRanges(random, 3)));
     // One that moves while it scans.
     for (int k = 0; k < 3; ++k) scans[3].beam_poses.push_back(randomPose(random));
-    const PointCloud world = cloudOf(sensor.laser, scans, CloudFrame::World);
-    const PointCloud own = cloudOf(sensor.laser, scans, CloudFrame::Sensor);
+    const PointCloud world = cloudOf(sensor.laser, scans, Coordinates::World);
+    const PointCloud own = cloudOf(sensor.laser, scans, Coordinates::Sensor);
     EXPECT_EQ(own.width, 3U);
     EXPECT_EQ(own.height, 5U);
     EXPECT_EQ(own.viewpoint, scans.front().pose);
@@ -93,7 +93,7 @@ TEST(LaserCloud, ScansOfASweepComeIntoTheFrameOfTheFirst) {
 }
 
 TEST(LaserCloud, NoScans) {
-    const PointCloud cloud = cloudOf(Laser(), std::span<const Scan>(), CloudFrame::Sensor);
+    const PointCloud cloud = cloudOf(Laser(), std::span<const Scan>(), Coordinates::Sensor);
     EXPECT_EQ(cloud.size(), 0U);
     EXPECT_TRUE(cloud.xyz.empty());
 }
@@ -110,8 +110,8 @@ TEST(RangerCloud, IsTheRaysTimesTheDepths) {
             DepthFrame frame;
             frame.pose = randomPose(random);
             frame.depths = randomRanges(random, sensor.ranger.pixels());
-            const PointCloud own = cloudOf(sensor.ranger, frame, CloudFrame::Sensor);
-            const PointCloud world = cloudOf(sensor.ranger, frame, CloudFrame::World);
+            const PointCloud own = cloudOf(sensor.ranger, frame, Coordinates::Sensor);
+            const PointCloud world = cloudOf(sensor.ranger, frame, Coordinates::World);
             EXPECT_EQ(own.width, static_cast<std::size_t>(columns));
             EXPECT_EQ(own.height, static_cast<std::size_t>(rows));
             EXPECT_EQ(own.viewpoint, frame.pose);

@@ -41,21 +41,28 @@ Directions sphereOf(const Ranger& ranger, const Frame3& axes) {
     return directions;
 }
 
-/// Rays of any ranger with an error of bearing each, of unit length.
-Directions strayRays(const Ranger& ranger, const Frame3& axes, std::span<const float> errors) {
+/// Rays of any ranger with an error of bearing each, of unit length, and how far each leads
+/// forward.
+struct StrayRays {
     Directions directions;
-    directions.resize(ranger.pixels());
-    std::size_t pixel = 0;
-    for (int j = 0; j < ranger.rows; ++j)
-        for (int i = 0; i < ranger.columns; ++i) {
-            const Vec3 ray = ranger.ray(i, j);
-            const CosSin turn = cosSin(Angle::radians(static_cast<double>(errors[pixel])));
-            const Vec3 stray{ray.x * turn.cos - ray.y * turn.sin,
-                             ray.x * turn.sin + ray.y * turn.cos, ray.z};
-            directions.set(pixel++, axes * ((1 / length(ray)) * stray));
-        }
-    return directions;
-}
+    std::vector<float> forward;
+
+    StrayRays(const Ranger& ranger, const Frame3& axes, std::span<const float> errors)
+        : forward(ranger.pixels()) {
+        directions.resize(ranger.pixels());
+        std::size_t pixel = 0;
+        for (int j = 0; j < ranger.rows; ++j)
+            for (int i = 0; i < ranger.columns; ++i, ++pixel) {
+                const Vec3 ray = ranger.ray(i, j);
+                const CosSin turn = cosSin(Angle::radians(static_cast<double>(errors[pixel])));
+                const Vec3 stray =
+                    (1 / length(ray)) * Vec3{ray.x * turn.cos - ray.y * turn.sin,
+                                             ray.x * turn.sin + ray.y * turn.cos, ray.z};
+                directions.set(pixel, axes * stray);
+                forward[pixel] = static_cast<float>(stray.x);
+            }
+    }
+};
 
 /// Lengths of the rays of a pinhole, pixel by pixel.
 ISPACE_SIMD_CLONES void rayLengths(double cx, double cy, double fx, double fy, int columns,
@@ -78,20 +85,13 @@ ISPACE_SIMD_CLONES void divide(float* values, const float* by, std::size_t count
     for (std::size_t i = 0; i < count; ++i) values[i] /= by[i];
 }
 
-/// What is outside the limits is no return; ends included, as float32.
-ISPACE_SIMD_CLONES void limit(float* values, std::size_t count, float least, float greatest) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool within = values[i] >= least && values[i] <= greatest;
-        if (!within) values[i] = kNoReturn;
-    }
-}
-
 /// Distances modulo the ambiguity.
 void wrap(std::span<float> distances, double ambiguity) {
     for (float& distance : distances) {
         if (distance == kNoReturn) continue;
         const double full = distance;
         distance = static_cast<float>(full - ambiguity * std::floor(full / ambiguity));
+        if (distance >= static_cast<float>(ambiguity)) distance = 0;
     }
 }
 
@@ -113,61 +113,77 @@ class Exposure {
     void take() {
         frame_.depths.resize(ranger_.pixels());
         if (noisy_ && ranger_.noise.dropsByIncidence()) cosines_.resize(ranger_.pixels());
-        cast();
         const bool by_distance =
             ranger_.projection == Projection::Pinhole && !ranger_.measures_depth;
-        std::vector<float> lengths;
         if (by_distance) {
-            lengths.resize(ranger_.pixels());
+            lengths_.resize(ranger_.pixels());
             rayLengths(ranger_.cx(), ranger_.cy(), ranger_.fx(), ranger_.fy(), ranger_.columns,
-                       ranger_.rows, lengths.data());
-            multiply(frame_.depths.data(), lengths.data(), lengths.size());
+                       ranger_.rows, lengths_.data());
         }
+        if (noisy_ && ranger_.noise.angle_sigma > Angle())
+            castStray();
+        else
+            cast();
         measure();
-        if (by_distance) divide(frame_.depths.data(), lengths.data(), lengths.size());
+        if (by_distance) divide(frame_.depths.data(), lengths_.data(), lengths_.size());
     }
 
   private:
-    /// Multiples of the pixels' rays.
+    /// What there is to measure along the pixels' rays: depths, or distances.
     void cast() {
-        const double most = ranger_.ambiguity > 0 ? kEverything : ranger_.max_range;
+        const double most = reach();
         const Point3 origin = frame_.pose.position;
         const Frame3 axes(frame_.pose);
-        const std::uint32_t own = sensor_.mount ? static_cast<std::uint32_t>(sensor_.mount->robot)
-                                                : MovingBodies::kNobody;
-        const bool pinhole = ranger_.projection == Projection::Pinhole;
-        const bool stray = noisy_ && ranger_.noise.angle_sigma > Angle();
-        if (pinhole && !stray) {
+        if (ranger_.projection == Projection::Pinhole) {
             const RayGrid grid = gridOf(ranger_, axes);
             environment_.cast(origin, grid, most, frame_.depths, cosines_);
-            bodies_.shorten(origin, grid, most, own, frame_.depths, cosines_);
-            return;
+            bodies_.shorten(origin, grid, most, own(), frame_.depths, cosines_);
+            if (!lengths_.empty()) multiply(frame_.depths.data(), lengths_.data(), lengths_.size());
+        } else {
+            const Directions rays = sphereOf(ranger_, axes);
+            environment_.cast(origin, rays, most, frame_.depths, cosines_);
+            bodies_.shorten(origin, rays, most, own(), frame_.depths, cosines_);
         }
-        std::vector<float> errors(stray ? ranger_.pixels() : 0);
-        if (stray) bearingErrors(ranger_.noise, key_, errors);
-        const Directions rays = stray ? strayRays(ranger_, axes, errors) : sphereOf(ranger_, axes);
-        // The rays of a pinhole are at most as long as that of a corner.
-        const double reach = pinhole ? most * length(ranger_.ray(0, 0)) : most;
-        environment_.cast(origin, rays, reach, frame_.depths, cosines_);
-        bodies_.shorten(origin, rays, reach, own, frame_.depths, cosines_);
-        if (!pinhole) return;
-        std::vector<float> lengths(ranger_.pixels());
-        rayLengths(ranger_.cx(), ranger_.cy(), ranger_.fx(), ranger_.fy(), ranger_.columns,
-                   ranger_.rows, lengths.data());
-        divide(frame_.depths.data(), lengths.data(), lengths.size());
     }
 
-    /// From what is to what the device says of it.
+    /// The same along rays that stray.
+    void castStray() {
+        std::vector<float> errors(ranger_.pixels());
+        bearingErrors(ranger_.noise, key_, errors);
+        const StrayRays rays(ranger_, Frame3(frame_.pose), errors);
+        // The rays of a pinhole are at most as long as that of a corner.
+        const double most = reach() * length(ranger_.ray(0, 0));
+        environment_.cast(frame_.pose.position, rays.directions, most, frame_.depths, cosines_);
+        bodies_.shorten(frame_.pose.position, rays.directions, most, own(), frame_.depths,
+                        cosines_);
+        if (ranger_.measures_depth)
+            multiply(frame_.depths.data(), rays.forward.data(), rays.forward.size());
+    }
+
+    /// From what there is to what the device says of it.
     void measure() {
-        const double least = ranger_.min_range;
-        const bool wraps = ranger_.ambiguity > 0;
-        const double greatest = wraps ? kEverything : ranger_.max_range;
+        const double least = ranger_.min_range, greatest = ranger_.max_range;
         const std::span<float> values = frame_.depths;
-        if (noisy_)
-            addNoise(ranger_.noise, wraps ? -kEverything : least, greatest, key_, cosines_, values);
-        if (wraps) wrap(values, ranger_.ambiguity);
-        limit(values.data(), values.size(), static_cast<float>(least),
-              static_cast<float>(greatest));
+        RangeNoise noise = noisy_ ? ranger_.noise : RangeNoise();
+        if (ranger_.ambiguity > 0) {
+            // What is added comes before the phase, whole units behind it.
+            noise.resolution = 0;
+            addNoise(noise, -kEverything, kEverything, key_, cosines_, values);
+            wrap(values, ranger_.ambiguity);
+            noise = RangeNoise();
+            if (noisy_) noise.resolution = ranger_.noise.resolution;
+            addNoise(noise, least, greatest, key_, {}, values);
+        } else {
+            addNoise(noise, least, greatest, key_, cosines_, values);
+        }
+    }
+
+    [[nodiscard]] double reach() const {
+        return ranger_.ambiguity > 0 ? kEverything : ranger_.max_range;
+    }
+    [[nodiscard]] std::uint32_t own() const {
+        return sensor_.mount ? static_cast<std::uint32_t>(sensor_.mount->robot)
+                             : MovingBodies::kNobody;
     }
 
     const RayWorld& environment_;
@@ -177,7 +193,7 @@ class Exposure {
     bool noisy_;
     NoiseKey key_;
     DepthFrame& frame_;
-    std::vector<float> cosines_;
+    std::vector<float> cosines_, lengths_;
 };
 
 }  // namespace

@@ -29,11 +29,11 @@ DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies,
                      const ReadingOptions& options);
 
 /// Which frame the points of a cloud are in.
-enum class CloudFrame { World, Sensor };
+enum class Coordinates { World, Sensor };
 
 /// The picture as an organised cloud, columns wide and rows high.
-PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, CloudFrame in);
+PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, Coordinates in);
 /// Scans of one laser as one cloud: a row a scan. In the sensor's frame that of the first scan.
-PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, CloudFrame in);
+PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates in);
 
 }  // namespace ispace

@@ -113,6 +113,18 @@ TEST(Depth, WhatIsBeyondTheAmbiguityWraps) {
         << "too near, it reads";
 }
 
+TEST(Depth, WholeUnitsAreWhatTheDeviceSays) {
+    const Scene scene = testing::scene(
+        kRoom, "ranger at=5,3,1.25 fov=30,20 pixels=20,15 ambiguity=1.0001 resolution=0.01\n");
+    const Ranger& ranger = scene.rangers.front().ranger;
+    const DepthFrame noisy = frameOf(scene, 0, {.noise_seed = 1});
+    for (std::size_t i = 0; i < noisy.depths.size(); ++i) {
+        const Vec3 ray = ranger.ray(static_cast<double>(i % 20), static_cast<double>(i / 20));
+        const double units = noisy.depths[i] * length(ray) / 0.01;
+        EXPECT_NEAR(units, std::round(units), 1e-3);
+    }
+}
+
 TEST(Depth, SeesRobotsAndPeople) {
     const Scene scene = testing::scene(kRoom,
                                        "ranger at=1,3,0.1 pixels=41,31 range=9\n"
@@ -167,6 +179,15 @@ TEST(Depth, StrayRaysOfAFlatWallSpreadAsTheirBearings) {
     }
     const double mean = sum / static_cast<double>(noisy.depths.size()) * 180 / std::acos(-1);
     EXPECT_NEAR(mean, 3 * std::sqrt(2 / std::acos(-1)), 0.15) << "of a half normal distribution";
+}
+
+TEST(Depth, StrayRaysOfADepthMeterStillMeasureDepth) {
+    // However rays stray across a wall that stands across the axis, its depth is the same.
+    const Scene scene = testing::scene("ispace at=0,0 size=10,100,50\n",
+                                       "ranger at=0,0,20 fov=90,60 pixels=40,30 range=90 "
+                                       "angle_sigma=2 measures=depth\n");
+    for (const float depth : frameOf(scene, 0, {.noise_seed = 1}).depths)
+        EXPECT_NEAR(depth, 5, 1e-4);
 }
 
 }  // namespace

@@ -59,32 +59,35 @@ void appendCsvField(std::string& out, std::string_view text) {
 
 std::string laserCsvHeader() { return "sensor,frame,scan,t,beam,bearing_deg,range,x,y,z\n"; }
 
-void appendLaserRows(std::string& out, const PlacedLaser& sensor, const Scan& scan, CloudFrame in) {
+void appendLaserRows(std::string& out, const PlacedLaser& sensor, std::span<const Scan> scans,
+                     Coordinates in) {
     const Laser& laser = sensor.laser;
-    const PointCloud cloud = cloudOf(laser, std::span(&scan, 1), in);
-    std::string prefix;
-    appendCsvField(prefix, sensor.id);
-    prefix.append(",").append(std::to_string(scan.frame)).append(",");
-    prefix.append(std::to_string(scan.number)).append(",");
-    const double beam_time = laser.beamTime();
-    TextTail tail(out, scan.ranges.size() * (prefix.size() + 8 * kNumberRoom));
-    for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-        tail.put(prefix);
-        tail.putNineDecimals(scan.time + static_cast<double>(k) * beam_time);
-        tail.put(',');
-        tail.put(k);
-        tail.put(',');
-        tail.put(static_cast<float>(laser.bearing(static_cast<int>(k)).degrees()));
-        tail.put(',');
-        if (std::isfinite(scan.ranges[k])) tail.put(scan.ranges[k]);
-        appendPoint(tail, cloud, k);
+    const PointCloud cloud = cloudOf(laser, scans, in);
+    std::size_t point = 0;
+    for (const Scan& scan : scans) {
+        std::string prefix;
+        appendCsvField(prefix, sensor.id);
+        prefix.append(",").append(std::to_string(scan.frame)).append(",");
+        prefix.append(std::to_string(scan.number)).append(",");
+        TextTail tail(out, scan.ranges.size() * (prefix.size() + 8 * kNumberRoom));
+        for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
+            tail.put(prefix);
+            tail.putNineDecimals(scan.time + laser.timeOf(static_cast<int>(k)));
+            tail.put(',');
+            tail.put(k);
+            tail.put(',');
+            tail.put(static_cast<float>(laser.bearing(static_cast<int>(k)).degrees()));
+            tail.put(',');
+            if (std::isfinite(scan.ranges[k])) tail.put(scan.ranges[k]);
+            appendPoint(tail, cloud, point++);
+        }
     }
 }
 
 std::string rangerCsvHeader() { return "sensor,frame,t,column,row,depth,x,y,z\n"; }
 
 void appendRangerRows(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame,
-                      CloudFrame in) {
+                      Coordinates in) {
     const PointCloud cloud = cloudOf(sensor.ranger, frame, in);
     std::string prefix;
     appendCsvField(prefix, sensor.id);

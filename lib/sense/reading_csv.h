@@ -15,12 +15,14 @@ namespace ispace {
 /// sensor,frame,scan,t,beam,bearing_deg,range,x,y,z: a row a beam, polar and orthogonal (thesis
 /// fig. 3.24).
 std::string laserCsvHeader();
-void appendLaserRows(std::string& out, const PlacedLaser& sensor, const Scan& scan, CloudFrame in);
+/// Of all scans of a reading; in the sensor's frame that of the first.
+void appendLaserRows(std::string& out, const PlacedLaser& sensor, std::span<const Scan> scans,
+                     Coordinates in);
 
 /// sensor,frame,t,column,row,depth,x,y,z: a row a pixel.
 std::string rangerCsvHeader();
 void appendRangerRows(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame,
-                      CloudFrame in);
+                      Coordinates in);
 
 /// sensor,frame,t,x,y,z,residual,pdop,hdop,vdop,heard,times: a row a burst; `times` are
 /// RECEIVER=SECONDS separated by blanks. x,y,z is the place computed; of the simple model z is

@@ -34,14 +34,14 @@ TEST(ReadingCsv, LaserRows) {
     scan.number = 1;
     scan.time = 0.1 + 0.2;
     std::string out = "before\n";
-    appendLaserRows(out, sensor, scan, CloudFrame::World);
+    appendLaserRows(out, sensor, std::span(&scan, 1), Coordinates::World);
     EXPECT_EQ(out,
               "before\n"
               "\"a,b\",3,1,0.3,0,-90,0.1,1.1,2,0.15\n"
               "\"a,b\",3,1,0.3,1,0,,,,\n"
               "\"a,b\",3,1,0.3,2,90,2.5,-1.5,2,0.15\n");
     out.clear();
-    appendLaserRows(out, sensor, scan, CloudFrame::Sensor);
+    appendLaserRows(out, sensor, std::span(&scan, 1), Coordinates::Sensor);
     EXPECT_TRUE(out.starts_with("\"a,b\",3,1,0.3,0,-90,0.1,0,-0.1,0\n")) << out;
 }
 
@@ -51,7 +51,7 @@ TEST(ReadingCsv, BeamsOfATurningLaserHaveTheirOwnTimes) {
     Scan scan = scanOf({}, {1, 1, kNone});
     scan.time = 0.3;
     std::string out;
-    appendLaserRows(out, sensor, scan, CloudFrame::Sensor);
+    appendLaserRows(out, sensor, std::span(&scan, 1), Coordinates::Sensor);
     EXPECT_EQ(out, "l1,0,0,0.3,0,-90,1,0,-1,0\nl1,0,0,0.325,1,0,1,1,0,0\nl1,0,0,0.35,2,90,,,,\n");
 }
 
@@ -65,7 +65,7 @@ TEST(ReadingCsv, LongIdsFit) {
     Scan scan = scanOf(randomPose(random), randomRanges(random, 500));
     scan.time = 123456.789;
     std::string out;
-    appendLaserRows(out, sensor, scan, CloudFrame::World);
+    appendLaserRows(out, sensor, std::span(&scan, 1), Coordinates::World);
     EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 500);
     EXPECT_EQ(std::count(out.begin(), out.end(), ','), 500 * 9);
 }
@@ -80,7 +80,7 @@ TEST(ReadingCsv, RangerRows) {
     frame.pose = {{0, 0, 1}, Angle::degrees(180), {}, {}};
     frame.depths = {kNone, 3.25F, 1.5F};
     std::string out;
-    appendRangerRows(out, sensor, frame, CloudFrame::World);
+    appendRangerRows(out, sensor, frame, Coordinates::World);
     EXPECT_EQ(out,
               "r1,2,0.5,0,0,,,,\n"
               "r1,2,0.5,1,0,3.25,-3.25,0,1\n"

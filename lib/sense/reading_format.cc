@@ -5,8 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "sense/carmen_log.h"
 #include "sense/depth_picture.h"
 #include "sense/obstacle_map.h"
@@ -37,6 +39,8 @@ class Base : public ReadingFormat {
         files.push_back({ending_, std::move(bytes)});
         return files;
     }
+
+    [[nodiscard]] std::vector<std::string> endings() const override { return {ending_}; }
 
   protected:
     [[nodiscard]] const PlacedLaser& laser(std::size_t sensor) const {
@@ -97,10 +101,9 @@ class Csv final : public Base {
     }
     void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            for (const Scan& scan : *scans)
-                appendLaserRows(out, laser(sensor), scan, options_.frame);
+            appendLaserRows(out, laser(sensor), *scans, options_.coordinates);
         } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            appendRangerRows(out, ranger(sensor), *frame, options_.frame);
+            appendRangerRows(out, ranger(sensor), *frame, options_.coordinates);
         } else {
             appendBurstRow(out, tag(sensor), std::get<Burst>(reading), sensors_.receivers);
         }
@@ -141,7 +144,7 @@ class Cloud final : public Base {
         accept(is_pcd ? "pcd" : "ply", "points", {Kind::Laser, Kind::Ranger});
     }
     void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
-        const PointCloud cloud = cloudOf(sensors_, sensor, reading, options_.frame);
+        const PointCloud cloud = cloudOf(sensors_, sensor, reading, options_.coordinates);
         out += is_pcd_ ? pcdOf(cloud, options_.encoding) : plyOf(cloud, options_.encoding);
     }
     [[nodiscard]] bool isStream() const override { return false; }
@@ -156,21 +159,40 @@ class Carmen final : public Base {
     Carmen(const Sensors& sensors, FormatOptions options)
         : Base(sensors, std::move(options), ".log") {
         accept("carmen", "scans of level lasers", {Kind::Laser});
+        for (const PlacedLaser& laser : sensors.lasers)
+            if (!laser.pose.isLevel() || laser.laser.sweep == SweepAxis::Tilt ||
+                laser.laser.sweep == SweepAxis::Roll)
+                throw UsageError("carmen holds scans of level lasers, and " + laser.id +
+                                 " is tilted or rolled; choose sensors with --select, or another "
+                                 "format with --to");
     }
     [[nodiscard]] std::string header() const override { return carmenHeader(); }
     void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
-        for (const Scan& scan : std::get<std::vector<Scan>>(reading)) {
-            const PlacedLaser& placed = laser(sensor);
-            if (!scan.pose.isLevel())
-                throw FormatError({"", 0, 0,
-                                   placed.id +
-                                       " is tilted or rolled at t=" + std::to_string(scan.time) +
-                                       ", and a CARMEN log is flat; take jsonl, csv or pcd"});
-            appendCarmenLine(out, placed, scan, carrierOf(placed, scan));
-        }
+        append(out, sensor + 1, laser(sensor), std::get<std::vector<Scan>>(reading));
     }
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+                                                 const Reading& reading) const override {
+        std::string bytes = header();
+        append(bytes, 1, laser(sensor), std::get<std::vector<Scan>>(reading));
+        std::vector<ReadingFile> files;
+        files.push_back({endings().front(), std::move(bytes)});
+        return files;
+    }
+    /// ROBOTLASER1 and ROBOTLASER2: readers know no more.
+    [[nodiscard]] std::size_t mostSensors() const override { return 2; }
 
   private:
+    static void append(std::string& out, std::size_t number, const PlacedLaser& laser,
+                       const std::vector<Scan>& scans) {
+        for (const Scan& scan : scans) {
+            if (!scan.pose.isLevel())
+                throw FormatError({"", 0, 0,
+                                   laser.id +
+                                       " is tilted or rolled at t=" + formatDouble(scan.time) +
+                                       ", and a CARMEN log is flat; take jsonl, csv or pcd"});
+            appendCarmenLine(out, number, laser, scan, carrierOf(laser, scan));
+        }
+    }
     static Pose2 carrierOf(const PlacedLaser& sensor, const Scan& scan) {
         const Pose2 own{scan.pose.position.onFloor(), scan.pose.heading};
         if (!sensor.mount) return own;
@@ -187,12 +209,13 @@ class Png final : public Base {
   public:
     Png(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".png") {
         accept("png", "depths and obstacle maps", {Kind::Laser, Kind::Ranger});
+        for (const PlacedLaser& laser : sensors.lasers)
+            if (laser.laser.scans() > 1)
+                throw UsageError("an obstacle map shows one scan, and " + laser.id +
+                                 " sweeps; take pcd or ply");
     }
     void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            if (scans->size() > 1)
-                throw UsageError("an obstacle map shows one scan, and " + laser(sensor).id +
-                                 " sweeps; take pcd or ply");
             out += obstacleMapPng(laser(sensor), scans->front(), options_.map_pixels);
         } else {
             out += depthPng(ranger(sensor).ranger, std::get<DepthFrame>(reading),
@@ -204,14 +227,25 @@ class Png final : public Base {
         std::vector<ReadingFile> files = Base::files(sensor, reading);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const PlacedRanger& placed = ranger(sensor);
-            if (options_.color) files.push_back({"-color.png", colorDepthPng(placed, *frame)});
+            if (options_.color) files.push_back({kColor, colorDepthPng(placed, *frame)});
             if (placed.ranger.projection == Projection::Pinhole)
-                files.push_back({".yaml", cameraInfoYaml(placed.ranger, placed.id)});
+                files.push_back({kCameraInfo, cameraInfoYaml(placed.ranger, placed.id)});
         }
         return files;
     }
+    [[nodiscard]] std::vector<std::string> endings() const override {
+        std::vector<std::string> endings = Base::endings();
+        if (!sensors_.rangers.empty()) {
+            if (options_.color) endings.emplace_back(kColor);
+            endings.emplace_back(kCameraInfo);
+        }
+        return endings;
+    }
     [[nodiscard]] bool isStream() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
+
+  private:
+    static constexpr const char *kColor = "-color.png", *kCameraInfo = ".yaml";
 };
 
 }  // namespace
@@ -234,7 +268,7 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
 }
 
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
-                   CloudFrame in) {
+                   Coordinates in) {
     const std::size_t index = sensors.order[sensor].index;
     if (const auto* scans = std::get_if<std::vector<Scan>>(&reading))
         return cloudOf(sensors.lasers[index].laser, *scans, in);
@@ -243,27 +277,41 @@ PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& re
     return {};
 }
 
-PointCloud joined(const std::vector<PointCloud>& clouds) {
-    PointCloud all;
-    if (clouds.empty()) return all;
-    const bool organised = std::all_of(clouds.begin(), clouds.end(), [&](const PointCloud& cloud) {
-        return cloud.width == clouds.front().width;
-    });
-    std::size_t points = 0;
-    for (const PointCloud& cloud : clouds) points += cloud.size();
-    all.xyz.reserve(3 * points);
-    for (const PointCloud& cloud : clouds) {
-        if (organised) {
-            all.xyz.insert(all.xyz.end(), cloud.xyz.begin(), cloud.xyz.end());
-            continue;
-        }
-        for (std::size_t i = 0; i < cloud.xyz.size(); i += 3)
-            if (!std::isnan(cloud.xyz[i]))
-                all.xyz.insert(all.xyz.end(), {cloud.xyz[i], cloud.xyz[i + 1], cloud.xyz[i + 2]});
+namespace {
+
+void appendReturns(std::vector<float>& to, const std::vector<float>& xyz) {
+    for (std::size_t i = 0; i < xyz.size(); i += 3)
+        if (!std::isnan(xyz[i])) to.insert(to.end(), {xyz[i], xyz[i + 1], xyz[i + 2]});
+}
+
+}  // namespace
+
+void CloudPile::add(PointCloud cloud) {
+    if (all_.width == 0 && all_.xyz.empty()) {
+        all_ = std::move(cloud);
+        return;
     }
-    all.width = organised ? clouds.front().width : all.xyz.size() / 3;
-    all.height = organised && all.width > 0 ? points / all.width : 1;
-    return all;
+    if (organised_ && cloud.width != all_.width) {
+        organised_ = false;
+        std::vector<float> returns;
+        appendReturns(returns, all_.xyz);
+        all_.xyz = std::move(returns);
+    }
+    if (organised_) {
+        all_.height += cloud.height;
+        all_.xyz.insert(all_.xyz.end(), cloud.xyz.begin(), cloud.xyz.end());
+    } else {
+        appendReturns(all_.xyz, cloud.xyz);
+    }
+}
+
+PointCloud CloudPile::take() {
+    if (!organised_) {
+        all_.width = all_.xyz.size() / 3;
+        all_.height = 1;
+    }
+    organised_ = true;
+    return std::exchange(all_, PointCloud());
 }
 
 }  // namespace ispace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -30,8 +32,14 @@ class ReadingFormat {
     /// A reading as files of its own.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
                                                          const Reading& reading) const = 0;
+    /// What the names of those files may end with, that of the reading itself first.
+    [[nodiscard]] virtual std::vector<std::string> endings() const = 0;
     /// Readings may follow each other in one file; else each needs one of its own.
     [[nodiscard]] virtual bool isStream() const { return true; }
+    /// Sensors that can be told apart in one file.
+    [[nodiscard]] virtual std::size_t mostSensors() const {
+        return std::numeric_limits<std::size_t>::max();
+    }
     /// Bytes, not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };
@@ -39,11 +47,11 @@ class ReadingFormat {
 struct FormatOptions {
     History history;
     std::uint64_t seed = 0;
-    CloudFrame frame = CloudFrame::World;  ///< of points: csv, pcd, ply
-    Encoding encoding = Encoding::Binary;  ///< of pcd and ply
-    double depth_per_metre = 1000;         ///< of png
-    bool color = true;                     ///< of png: a picture for people, too
-    int map_pixels = 800;                  ///< of png: side of an obstacle map
+    Coordinates coordinates = Coordinates::World;  ///< of points: csv, pcd, ply
+    Encoding encoding = Encoding::Binary;          ///< of pcd and ply
+    double depth_per_metre = 1000;                 ///< of png
+    bool color = true;                             ///< of png: a picture for people, too
+    int map_pixels = 800;                          ///< of png: side of an obstacle map
 };
 
 /// Names of the formats: jsonl, csv, raw, pcd, ply, carmen, png.
@@ -55,10 +63,19 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
 
 /// Clouds one below the other: a row of one stays a row if all are equally wide, else points
 /// without return are left out and the rest is one row. \pre clouds are in the world's frame
-PointCloud joined(const std::vector<PointCloud>& clouds);
+class CloudPile {
+  public:
+    void add(PointCloud cloud);
+    /// Everything; nothing is left.
+    PointCloud take();
+
+  private:
+    PointCloud all_;
+    bool organised_ = true;
+};
 
 /// The points of a reading; empty for a burst.
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
-                   CloudFrame in);
+                   Coordinates in);
 
 }  // namespace ispace

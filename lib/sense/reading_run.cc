@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 
 namespace ispace {
@@ -39,19 +40,26 @@ std::size_t jobsOf(const Sensors& sensors) {
 }  // namespace
 
 void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sensors,
-                 const ReadingFormat& format, Deliver deliver, CloudFrame frame, Progress& progress,
-                 const std::function<void(const Readings&)>& write) {
+                 const ReadingFormat& format, Packing packing, Coordinates coordinates,
+                 Progress& progress, const std::function<void(Readings&)>& write) {
     using Batch = std::shared_ptr<Readings>;
     const std::size_t most = jobsOf(sensors);
     // Batches come back: their memory is used again.
     tbb::concurrent_queue<Batch> spare;
+    // What comes before a bad pose is written, for any number of threads.
+    std::exception_ptr failure;
     const auto read = [&](tbb::flow_control& control) -> Batch {
         Batch batch;
         if (!spare.try_pop(batch)) batch = std::make_shared<Readings>();
         batch->text.clear();
         batch->files.clear();
         batch->clouds.clear();
-        source.next(most, batch->jobs);
+        batch->jobs.clear();
+        try {
+            if (!failure) source.next(most, batch->jobs);
+        } catch (...) {
+            failure = std::current_exception();
+        }
         if (batch->jobs.empty()) {
             control.stop();
             return nullptr;
@@ -62,15 +70,15 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
     const auto take = [&](Batch batch) {
         for (const ReadingJob& job : batch->jobs) {
             const Reading reading = taker.take(job);
-            switch (deliver) {
-                case Deliver::Stream:
+            switch (packing) {
+                case Packing::Stream:
                     format.append(batch->text, job.sensor, reading);
                     break;
-                case Deliver::Files:
+                case Packing::Files:
                     batch->files.push_back(format.files(job.sensor, reading));
                     break;
-                case Deliver::Clouds:
-                    batch->clouds.push_back(cloudOf(sensors, job.sensor, reading, frame));
+                case Packing::Clouds:
+                    batch->clouds.push_back(cloudOf(sensors, job.sensor, reading, coordinates));
                     break;
             }
         }
@@ -88,6 +96,7 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order, read) &
             tbb::make_filter<Batch, Batch>(tbb::filter_mode::parallel, take) &
             tbb::make_filter<Batch, void>(tbb::filter_mode::serial_in_order, deliver_batch));
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace ispace

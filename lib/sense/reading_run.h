@@ -20,12 +20,13 @@ struct Readings {
 };
 
 /// What becomes of a reading.
-enum class Deliver { Stream, Files, Clouds };
+enum class Packing { Stream, Files, Clouds };
 
 /// Takes all readings of a source, shared out over all cores by jobs, and hands them to `write` in
 /// order, by one thread at a time. Memory is bounded by the number of cores, not by that of jobs.
+/// Where the source fails, what comes before is written all the same.
 void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sensors,
-                 const ReadingFormat& format, Deliver deliver, CloudFrame frame, Progress& progress,
-                 const std::function<void(const Readings&)>& write);
+                 const ReadingFormat& format, Packing packing, Coordinates coordinates,
+                 Progress& progress, const std::function<void(Readings&)>& write);
 
 }  // namespace ispace

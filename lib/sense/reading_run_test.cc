@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <limits>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "sense/doubts.h"
 #include "sense/test_readings.h"
 
 namespace ispace {
@@ -30,8 +31,8 @@ std::string run(const Scene& scene, const std::string& format, int frames,
     SilentProgress progress;
     const auto writer = makeFormat(format, sensors, {});
     std::string out;
-    runReadings(source, taker, sensors, *writer, Deliver::Stream, CloudFrame::World, progress,
-                [&](const Readings& readings) { out += readings.text; });
+    runReadings(source, taker, sensors, *writer, Packing::Stream, Coordinates::World, progress,
+                [&](Readings& readings) { out += readings.text; });
     return out;
 }
 
@@ -83,10 +84,79 @@ TEST(ReadingRun, FramesDifferByNoiseAlone) {
 
 TEST(ReadingRun, ErrorsComeThrough) {
     const Scene scene = testing::scene(kRoom, "laser at=1,1 tilt=-5\n");
-    EXPECT_THROW(run(scene, "carmen", 1), FormatError);
+    EXPECT_THROW(run(scene, "carmen", 1), UsageError);
     const Scene ranger = testing::scene(kRoom, "ranger at=1,1\nlaser at=2,2\n");
     EXPECT_THROW(run(ranger, "carmen", 1), UsageError);
     EXPECT_THROW(run(ranger, "csv", 1), UsageError);
+}
+
+TEST(ReadingRun, WhatComesBeforeAFailureIsWritten) {
+    /// Fails behind its last job.
+    class Failing final : public ReadingSource {
+      public:
+        void next(std::size_t most, std::vector<ReadingJob>& batch) override {
+            batch.clear();
+            while (batch.size() < most) {
+                if (frame_ == 1000) throw FormatError({"poses", 1001, 0, "bad"});
+                batch.push_back({0, frame_++, 0, {{1, 1, 0.15}, {}, {}, {}}, {}});
+            }
+        }
+
+      private:
+        int frame_ = 0;
+    };
+    const Scene scene = testing::scene(kRoom, "laser at=1,1 step=5\n");
+    const Sensors sensors = sensorsOf(scene, {});
+    for (int i = 0; i < 10; ++i) {
+        Worlds worlds(scene.environment);
+        const MovingBodies nobody;
+        ReadingTaker taker(sensors, worlds, nobody, {});
+        Failing source;
+        SilentProgress progress;
+        const auto raw = makeFormat("raw", sensors, {});
+        std::size_t bytes = 0;
+        EXPECT_THROW(
+            runReadings(source, taker, sensors, *raw, Packing::Stream, Coordinates::World, progress,
+                        [&](Readings& readings) { bytes += readings.text.size(); }),
+            FormatError);
+        EXPECT_EQ(bytes, 1000 * 37 * sizeof(float));
+    }
+}
+
+TEST(CloudPile, KeepsRowsOfOneWidthAndDropsMissingPointsElse) {
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    const PointCloud two{
+        .width = 2, .height = 1, .xyz = {1, 2, 3, none, none, none}, .viewpoint = {}};
+    const PointCloud one{.width = 1, .height = 1, .xyz = {7, 8, 9}, .viewpoint = {}};
+    CloudPile pile;
+    pile.add(two);
+    pile.add(two);
+    const PointCloud rows = pile.take();
+    EXPECT_EQ(rows.width, 2U);
+    EXPECT_EQ(rows.height, 2U);
+    EXPECT_EQ(rows.xyz.size(), 12U);
+    pile.add(two);
+    pile.add(one);
+    pile.add(two);
+    const PointCloud mixed = pile.take();
+    EXPECT_EQ(mixed.width, 3U);
+    EXPECT_EQ(mixed.height, 1U);
+    EXPECT_EQ(mixed.xyz, (std::vector<float>{1, 2, 3, 7, 8, 9, 1, 2, 3}));
+    EXPECT_EQ(pile.take().size(), 0U);
+}
+
+TEST(Doubts, SensorsWithoutPlaceAndInsideSolids) {
+    const Scene scene = testing::scene(kRoom + "cube id=c at=6,1 size=1,1,1\n",
+                                       "laser id=a\nranger id=b\nlaser id=in at=6,1\n"
+                                       "laser id=on at=6,0.5\nlaser id=over at=6,1,1.2\n"
+                                       "tag at=1,1\nultrasound id=u at=6,1,0.9\n");
+    const std::vector<std::string> all = doubtsAbout(scene, sensorsOf(scene, {}), {});
+    ASSERT_EQ(all.size(), 4U);
+    EXPECT_EQ(all[0].substr(0, 15), "a has no place ");
+    EXPECT_EQ(all[1].substr(0, 15), "b has no place ");
+    EXPECT_EQ(all[2], "in stands inside something solid at 6,1,0.15");
+    EXPECT_EQ(all[3], "u stands inside something solid at 6,1,0.9");
+    EXPECT_TRUE(doubtsAbout(scene, sensorsOf(scene, {"o*"}), {"o*"}).empty());
 }
 
 /// A trajectory as a source would read it, in pieces of some bytes.

@@ -87,13 +87,15 @@ void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     }
 }
 
-/// Reads on until the way reaches a time; false if it ends before.
-bool MotionSource::reach(double time) {
+/// Reads on until the way from `begin` on reaches a time; false if it ends before.
+bool MotionSource::reach(double begin, double time) {
     while (window_.empty() || window_.back().time < time) {
         const auto timed = poses_.next();
         if (!timed) return false;
         if (!window_.empty() && timed->time <= window_.back().time)
             throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
+        // What lies before the pose that the sensor comes from is of no use.
+        if (window_.size() > 1 && window_[1].time <= begin) window_.pop_front();
         window_.push_back(*timed);
     }
     return true;
@@ -109,7 +111,7 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     }
     while (batch.size() < most && (batch.empty() || poses_.ready())) {
         const double time = begin_ + frame_ / rate_;
-        if (!reach(time + duration_)) return;
+        if (!reach(time, time + duration_)) return;
         // What lies behind is of no use any more, but for the pose it comes from.
         while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();
         ReadingJob job{.sensor = 0, .frame = frame_, .time = time, .pose = {}, .way = {}};

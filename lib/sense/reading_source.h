@@ -18,7 +18,8 @@ class ReadingSource {
   public:
     virtual ~ReadingSource() = default;
     /// Puts the next jobs into `batch`, about `most` of them at most, as soon as there are some;
-    /// none at the end. Memory does not grow with what was said.
+    /// none at the end. Memory does not grow with what was said. Where it throws, `batch` has what
+    /// comes before.
     virtual void next(std::size_t most, std::vector<ReadingJob>& batch) = 0;
 };
 
@@ -83,7 +84,7 @@ class MotionSource final : public ReadingSource {
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
 
   private:
-    bool reach(double time);
+    bool reach(double begin, double time);
 
     PoseLines poses_;
     double rate_, duration_;

@@ -10,19 +10,6 @@
 
 namespace ispace {
 
-namespace {
-
-/// Surfaces in the blind zone give no return, and hide what lies behind them all the same.
-void applyBlindZone(const Laser& laser, std::span<float> ranges) {
-    // As float32, as max_range is: a surface exactly at min_range is seen.
-    const auto blind = static_cast<float>(laser.min_range);
-    for (float& range : ranges) {
-        if (range < blind) range = std::numeric_limits<float>::infinity();
-    }
-}
-
-}  // namespace
-
 Beams::Beams(const Laser& laser, bool turns)
     : first_(laser.first), step_(laser.step), turns_(turns) {
     const auto count = static_cast<std::size_t>(laser.beams);
@@ -108,10 +95,9 @@ void LaserCaster::cast(Scan& scan) {
         castFrom(scan.pose, scan.ranges);
     else
         castApart(scan);
-    if (noisy)
-        addNoise(laser.noise, laser.min_range, laser.max_range, key, cosines_, scan.ranges);
-    else
-        applyBlindZone(laser, scan.ranges);
+    // Surfaces in the blind zone give no return, and hide what lies behind them all the same.
+    addNoise(noisy ? laser.noise : RangeNoise(), laser.min_range, laser.max_range, key, cosines_,
+             scan.ranges);
 }
 
 void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges) {

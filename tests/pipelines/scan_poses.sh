@@ -102,6 +102,25 @@ printf '#3dm 1\nlaser id=mine fov=2 range=9\n' >one.3dm
 scan "$room" one.3dm --poses few.txt | sed -n 2p | grep -q '"sensor":"mine".*"range_max":9,' ||
     fail "the sensor of the layout does not take the poses"
 
+# It does not see the robot that carries it, is not told its place twice, and -MD names the poses.
+printf '#3dm 1\nrobot id=r at=0,0 size=0.5,0.5,0.5\nlaser on=r fov=2 range=9\n' >on.3dm
+echo '0 0 0 0.15 0 0 0 1' >one.txt
+scan "$room" on.3dm --poses one.txt -o on.jsonl -MD
+grep -q '"ranges":\[2.0003047,2,2.0003047\]' on.jsonl || fail "its own robot: $(cat on.jsonl)"
+grep -q 'one.txt' on.d || fail "rule: $(cat on.d)"
+expect_error 2 scan "$room" --poses one.txt --model laser,tilt=40
+expect_error 2 scan "$room" --poses one.txt --model laser,at=1,1
+# What stands before a bad pose is written, always; inside a desk is worth a word.
+{ cat few.txt; echo bad; } >broken.txt
+for threads in 1 2 3; do
+    expect_status 1 scan "$room" --poses broken.txt --model laser --to raw -j "$threads"
+    [ "$(wc -c <out)" -eq $((1000 * 181 * 4)) ] || fail "$(wc -c <out) bytes before a bad pose"
+done
+{ cat "$room"; echo 'cube at=0,0 size=0.5,0.5,0.5'; } >solid.env
+expect_status 0 scan solid.env --poses one.txt --model laser
+grep -q 'warning: 1 reading was taken inside something solid, the first at t=0, 0,0,0.15' err ||
+    fail "no warning: $(cat err)"
+
 # A reader that goes away, and a signal.
 yes '0 0 0 0.15 0 0 0 1' | scan "$room" --poses - --model laser 2>err | head -n 3 >out ||
     [ "${PIPESTATUS[1]}" -eq 141 ] || fail "status ${PIPESTATUS[1]}, expected 141"

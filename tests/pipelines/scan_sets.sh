@@ -28,7 +28,7 @@ scan "$room" two.3dm --to png --select k >stream.png
 expect_same one.png stream.png "another picture on stdout"
 
 # Patterns.
-expect_status 0 scan "$room" two.3dm --frames 2 --select '[ak]*' -o 'p-%s-%03d-100%%.csv' --to pcd
+expect_status 0 scan "$room" two.3dm --frames 2 --select '[ak]*' -o 'p-%s-%03d-100%%.pcd'
 [ "$(echo p-*)" = "p-a_b-000-100%.pcd p-a_b-001-100%.pcd p-k-000-100%.pcd p-k-001-100%.pcd" ] || fail "$(echo p-*)"
 expect_error 2 scan "$room" two.3dm --to pcd -o 'x-%d.pcd'
 expect_error 2 scan "$room" two.3dm --frames 2 --to pcd -o 'x-%s.pcd'
@@ -36,6 +36,17 @@ for pattern in 'x-%n.pcd' 'x-%x.pcd' 'x-%5d.pcd' 'x-%05s.pcd' 'x-%' 'x-%00000000
     expect_error 2 scan "$room" two.3dm --select l2 -o "$pattern"
 done
 [ -z "$(find . -name 'x-*')" ] || fail "files of refused patterns: $(find . -name 'x-*')"
+# The suffix that was written stays; a number hidden in one, or names that run together, are refused.
+expect_status 0 scan "$room" two.3dm --frames 2 --select l2 --to raw -o 'r%d.f32'
+[ "$(echo r?.*)" = "r0.f32 r1.f32" ] || fail "$(echo r?.*)"
+expect_error 2 scan "$room" two.3dm --frames 3 --select l2 --to csv -o 'q.%d'
+expect_error 2 scan "$room" two.3dm --frames 12 --to raw -o 'q%s%d.raw'
+expect_error 2 scan "$room" two.3dm --select k --to png -o k.yaml
+# Nothing stands beside what is no file.
+mkdir links
+ln -s /dev/null links/nothing
+expect_status 0 scan "$room" two.3dm --select k --to png -o links/nothing
+[ "$(ls -A links)" = nothing ] || fail "beside a device: $(ls -A links)"
 # Where one file cannot hold them all.
 expect_error 2 scan "$room" two.3dm --to png -o all.png
 expect_error 2 scan "$room" two.3dm --to png
@@ -43,6 +54,14 @@ expect_error 2 scan "$room" two.3dm --to pcd --coordinates sensor -o all.pcd
 expect_error 2 scan "$room" two.3dm --to csv
 expect_error 2 scan "$room" two.3dm --to carmen
 expect_error 2 scan "$room" two.3dm --select x
+expect_error 2 scan --list-models "$room"
+printf '#3dm 1\nlaser at=0,0\nlaser at=0,1\nlaser at=1,0\n' >three.3dm
+expect_error 2 scan "$room" three.3dm --to carmen
+expect_status 0 scan "$room" three.3dm --to carmen -o logs/
+[ "$(grep -hc ^ROBOTLASER1 logs/* | tr '\n' ' ')" = "1 1 1 " ] || fail "logs: $(cat logs/*)"
+printf '#3dm 1\nlaser at=0,0 tilt=-5\n' >tilted.3dm
+expect_error 2 scan "$room" tilted.3dm --to carmen
+expect_error 2 scan "$room" three.3dm --to png -o one.png
 expect_status 0 scan "$room" two.3dm --to pcd --encoding ascii -o all.pcd
 [ "$(grep -cv '^[#A-Z]' all.pcd)" -gt 700 ] || fail "not all points in one cloud"
 

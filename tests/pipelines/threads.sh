@@ -15,7 +15,7 @@ run() {
         for format in jsonl raw pcd ply png; do
             scan room.glb more.3dm --noise --frames 3 --to "$format" -j "$1" -o "$format/"
         done
-        scan room.glb best.3dm --noise --frames 30 --to carmen -j "$1" -o scans.log
+        scan room.glb best.3dm --noise --frames 30 --to carmen -j "$1" -o logs/
         coverage room.glb best.3dm -j "$1" -o map.png >report.txt
         coverage room.glb best.3dm -j "$1" --json -o map.svg >report.json
     )

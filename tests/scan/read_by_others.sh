@@ -21,12 +21,12 @@ list() { sed -n "s/.*\"$1\":\[\([^]]*\)\].*/\1/p" "$2" | tr , '\n'; }
 # close_columns WHAT TOLERANCE A B: files of numbers that differ by at most that; nan is nan.
 close_columns() {
     paste "$3" "$4" | awk -v t="$2" '
-        NF % 2 { exit 1 }
+        NF % 2 { bad = 1; exit }
         { for (i = 1; i <= NF / 2; i++) {
             a = $i; b = $(i + NF / 2); d = a - b
-            if ((a == "nan") != (b == "nan") || (a != "nan" && (d > t || d < -t))) exit 1
+            if ((a == "nan") != (b == "nan") || (a != "nan" && (d > t || d < -t))) { bad = 1; exit }
             n++ } }
-        END { exit !n }' ||
+        END { exit bad || !n }' ||
         fail "$1: not the same numbers: $(diff "$3" "$4" | head -n 6)"
 }
 

@@ -14,8 +14,8 @@ class Stream final : public Delivery {
     Stream(const std::string& output, const ReadingFormat& format) : file_(output) {
         file_.write(format.header());
     }
-    [[nodiscard]] Deliver how() const override { return Deliver::Stream; }
-    void write(const Readings& readings) override { file_.write(readings.text); }
+    [[nodiscard]] Packing how() const override { return Packing::Stream; }
+    void write(Readings& readings) override { file_.write(readings.text); }
     void commit() override { file_.commit(); }
 
   private:
@@ -26,13 +26,17 @@ class Stream final : public Delivery {
 class Files final : public Delivery {
   public:
     Files(OutputSet names, const Sensors& sensors) : names_(std::move(names)), sensors_(sensors) {}
-    [[nodiscard]] Deliver how() const override { return Deliver::Files; }
-    void write(const Readings& readings) override {
+    [[nodiscard]] Packing how() const override { return Packing::Files; }
+    void write(Readings& readings) override {
         for (std::size_t i = 0; i < readings.jobs.size(); ++i) {
             const ReadingJob& job = readings.jobs[i];
             const std::string& id = sensors_.id(sensors_.order[job.sensor]);
-            for (const ReadingFile& file : readings.files[i])
-                writeAll(names_.stem(id, job.frame) + file.ending, file.bytes);
+            for (const ReadingFile& file : readings.files[i]) {
+                const bool beside = &file != readings.files[i].data();
+                writeAll(beside ? names_.fileBeside(id, job.frame, file.ending)
+                                : names_.fileOf(id, job.frame, file.ending),
+                         file.bytes);
+            }
         }
     }
     void commit() override {}
@@ -42,17 +46,24 @@ class Files final : public Delivery {
     const Sensors& sensors_;
 };
 
-/// The only reading: its first file has the name given, the others stand beside it.
+/// The only reading: its first file has the name given, the others stand beside it, if that is a
+/// file.
 class OneFile final : public Delivery {
   public:
     explicit OneFile(const std::string& output) : output_(output), file_(output) {}
-    [[nodiscard]] Deliver how() const override { return Deliver::Files; }
-    void write(const Readings& readings) override {
+    [[nodiscard]] Packing how() const override { return Packing::Files; }
+    void write(Readings& readings) override {
         for (const std::vector<ReadingFile>& files : readings.files) {
             file_.write(files.front().bytes);
-            if (output_ == "-") continue;
-            for (std::size_t i = 1; i < files.size(); ++i)
-                writeAll(withoutSuffix(output_) + files[i].ending, files[i].bytes);
+            if (output_ == "-" || isStream(output_)) continue;
+            for (std::size_t i = 1; i < files.size(); ++i) {
+                const std::string beside = withoutSuffix(output_) + files[i].ending;
+                if (beside == output_)
+                    throw UsageError("--output: " + output_ +
+                                     " is the name of a file that stands beside the picture; give "
+                                     "that another suffix");
+                writeAll(beside, files[i].bytes);
+            }
         }
     }
     void commit() override { file_.commit(); }
@@ -63,16 +74,16 @@ class OneFile final : public Delivery {
 };
 
 /// All points in one cloud.
-class JoinedCloud final : public Delivery {
+class OneCloud final : public Delivery {
   public:
-    explicit JoinedCloud(const ScanToolOptions& options)
+    explicit OneCloud(const ScanToolOptions& options)
         : options_(options), file_(options.common.output) {}
-    [[nodiscard]] Deliver how() const override { return Deliver::Clouds; }
-    void write(const Readings& readings) override {
-        clouds_.insert(clouds_.end(), readings.clouds.begin(), readings.clouds.end());
+    [[nodiscard]] Packing how() const override { return Packing::Clouds; }
+    void write(Readings& readings) override {
+        for (PointCloud& cloud : readings.clouds) clouds_.add(std::move(cloud));
     }
     void commit() override {
-        const PointCloud cloud = joined(clouds_);
+        const PointCloud cloud = clouds_.take();
         file_.write(options_.format == "pcd" ? pcdOf(cloud, options_.encoding)
                                              : plyOf(cloud, options_.encoding));
         file_.commit();
@@ -81,7 +92,7 @@ class JoinedCloud final : public Delivery {
   private:
     const ScanToolOptions& options_;
     OutputFile file_;
-    std::vector<PointCloud> clouds_;
+    CloudPile clouds_;
 };
 
 }  // namespace
@@ -93,14 +104,19 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
         std::vector<std::string> ids;
         ids.reserve(sensors.order.size());
         for (const Sensors::Entry& entry : sensors.order) ids.push_back(sensors.id(entry));
-        names->prepare(ids, options.frames > 1 || count < 0);
+        names->prepare(ids, options.frames > 1 || count < 0, format.endings());
         return std::make_unique<Files>(std::move(*names), sensors);
     }
+    if (sensors.order.size() > format.mostSensors())
+        throw UsageError("one file of " + options.format + " tells " +
+                         std::to_string(format.mostSensors()) + " sensors apart, and these are " +
+                         std::to_string(sensors.order.size()) +
+                         ": name a folder (-o DIR/), or choose some with --select");
     if (format.isStream()) return std::make_unique<Stream>(output, format);
     if (count == 1) return std::make_unique<OneFile>(output);
     const bool is_cloud = options.format == "pcd" || options.format == "ply";
-    if (is_cloud && options.coordinates == CloudFrame::World)
-        return std::make_unique<JoinedCloud>(options);
+    if (is_cloud && options.coordinates == Coordinates::World)
+        return std::make_unique<OneCloud>(options);
     const std::string many = count < 0 ? "these readings" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +

@@ -14,8 +14,9 @@ namespace ispace {
 class Delivery {
   public:
     virtual ~Delivery() = default;
-    [[nodiscard]] virtual Deliver how() const = 0;
-    virtual void write(const Readings& readings) = 0;
+    [[nodiscard]] virtual Packing how() const = 0;
+    /// What it keeps of the readings it may take out of them.
+    virtual void write(Readings& readings) = 0;
     /// All is written.
     virtual void commit() = 0;
 };

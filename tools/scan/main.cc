@@ -11,64 +11,51 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "layout/device_table.h"
-#include "layout/schemas.h"
-#include "layout/sensor_spec.h"
 #include "scan/delivery.h"
 #include "scan/options.h"
+#include "scan/pose_sensor.h"
 #include "sense/bodies.h"
+#include "sense/doubts.h"
 
 namespace {
 
 using namespace ispace;
 
 constexpr std::string_view kKinds[] = {"laser", "ranger", "ultrasound", "tag"};
-/// What may follow poses.
-constexpr std::string_view kMovable[] = {"laser", "ranger"};
-
-/// The record of the sensor that takes the poses: that of --model, or the only one of the scene.
-Record recordForPoses(const ScanToolOptions& options, const Scene& scene,
-                      const DeviceCatalogue& devices) {
-    if (!options.model.empty()) {
-        const std::vector<Record> records =
-            readSensorSpec(options.model, kMovable, sceneSchemas(), devices);
-        if (records.size() > 1)
-            throw UsageError("--model: one sensor takes the poses, not several");
-        return records.front();
-    }
-    const std::vector<std::size_t> found = sensorRecords(scene, kMovable, options.select);
-    if (found.size() == 1) {
-        Record record = scene.records[found.front()];
-        if (!record.has("id")) record.set("id", Value(scene.ids[found.front()]));
-        return record;
-    }
-    throw UsageError("--poses: " + std::to_string(found.size()) +
-                     " sensors could take them; say which with --model or --select");
-}
-
-Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene) {
-    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
-    const Record record = recordForPoses(options, scene, devices);
-    const std::string id = record.writtenId().empty() ? record.keyword() + "1" : record.writtenId();
-    Sensors sensors;
-    if (record.keyword() == "laser") {
-        sensors.lasers.push_back({id, laserOf(record, devices), poseOf(record)});
-        sensors.order.push_back({SensorKind::Laser, 0});
-    } else {
-        sensors.rangers.push_back({id, rangerOf(record, devices), poseOf(record)});
-        sensors.order.push_back({SensorKind::Ranger, 0});
-    }
-    if (options.motion && record.keyword() == "laser" && sensors.lasers.front().laser.scans() > 1)
-        throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");
-    return sensors;
-}
-
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     Sensors sensors = sensorsOf(input.scene, options.select);
-    if (sensors.order.empty())
-        throw FormatError({displayName(input.layout_operand), 0, 0,
-                           "no placed sensor: give one `at=x,y`, or let arrange place it"});
-    return sensors;
+    if (!sensors.order.empty()) return sensors;
+    if (!options.select.empty())
+        throw UsageError(
+            "--select chooses nothing that is read: receivers hear tags, and sensors "
+            "need a place");
+    const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
+    throw FormatError(
+        {displayName(file), 0, 0, "no placed sensor: give one `at=x,y`, or let arrange place it"});
 }
+
+/// Counts the poses that are inside something solid.
+class PoseDoubts {
+  public:
+    explicit PoseDoubts(const Environment& environment) : judge_(environment) {}
+    void look(const std::vector<ReadingJob>& jobs) {
+        for (const ReadingJob& job : jobs)
+            if (judge_.isInside(job.pose.position) && count_++ == 0) first_ = job;
+    }
+    [[nodiscard]] std::vector<std::string> phrases() const {
+        if (count_ == 0) return {};
+        const Point3& place = first_.pose.position;
+        return {std::to_string(count_) + (count_ == 1 ? " reading was" : " readings were") +
+                " taken inside something solid, the first at t=" +
+                formatDouble(first_.time) + ", " + formatDouble(place.x) + "," +
+                formatDouble(place.y) + "," + formatDouble(place.z)};
+    }
+
+  private:
+    SolidJudge judge_;
+    std::int64_t count_ = 0;
+    ReadingJob first_;
+};
 
 void warn(const ScanToolOptions& options, const std::vector<std::string>& warnings) {
     if (options.common.quiet) return;
@@ -94,7 +81,7 @@ FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input)
     history.push_back(command.historyLine(input.named));
     return {.history = std::move(history),
             .seed = options.common.seed,
-            .frame = options.coordinates,
+            .coordinates = options.coordinates,
             .encoding = options.encoding,
             .depth_per_metre = options.depth_per_metre,
             .color = options.color,
@@ -109,22 +96,21 @@ SceneRequest requestOf(const ScanToolOptions& options) {
         std::find(options.operands.begin(), options.operands.end(), "-") != options.operands.end();
     if (options.poses == "-" && takes_stdin)
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
-    return {options.operands, options.any_environment, wants_layout};
+    // A receiver alone reads nothing.
+    return {options.operands, options.any_environment, wants_layout, {"laser", "ranger", "tag"}};
 }
 
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    if (options.list_models) {
-        writeAll(options.common.output,
-                 deviceTable(DeviceCatalogue::load(shareFolder() + "/devices"), kKinds));
-        return;
-    }
+    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
+    if (options.list_models) return writeAll(options.common.output, deviceTable(devices, kKinds));
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene(requestOf(options));
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
-    const Sensors sensors = moves ? sensorForPoses(options, scene) : placedSensors(options, input);
-    if (!moves) warn(options, doubtsAbout(scene, sensors));
+    const Sensors sensors =
+        moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
+    if (!moves) warn(options, doubtsAbout(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
 
@@ -138,15 +124,20 @@ void scan(const ScanCommand& command) {
     const auto delivery = makeDelivery(options, sensors, *format, count);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     progress->begin("readings", std::max<std::int64_t>(count, 0));
+    PoseDoubts doubts(scene.environment);
     std::int64_t done = 0;
     runReadings(*source, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
-                [&](const Readings& readings) {
-                    delivery->write(readings);
+                [&](Readings& readings) {
+                    if (moves) doubts.look(readings.jobs);
                     done += static_cast<std::int64_t>(readings.jobs.size());
+                    delivery->write(readings);
                 });
     delivery->commit();
     progress->end();
-    writeDependencies(options.common, filesOf(input));
+    warn(options, doubts.phrases());
+    std::vector<std::string> files = filesOf(input);
+    if (moves) files.push_back(options.poses);
+    writeDependencies(options.common, files);
     talk(options.common, "scan", std::to_string(done) + " readings written");
 }
 

@@ -34,7 +34,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
-    o.coordinates = coordinates_ == "sensor" ? CloudFrame::Sensor : CloudFrame::World;
+    o.coordinates = coordinates_ == "sensor" ? Coordinates::Sensor : Coordinates::World;
     check();
 }
 
@@ -48,8 +48,8 @@ void ScanCommand::declare() {
                 "read only sensors whose ids match (* ? [a-z]); may be given again",
                 Enters::History);
     constexpr int kMostFrames = 1'000'000'000;
-    line_.count("--frames", "N", o.frames, 1, kMostFrames,
-                "readings of each sensor, at its rate (default 1)", Enters::History);
+    line_.count("--frames", "N", o.frames, 1, kMostFrames, "readings of each sensor, at its rate",
+                Enters::History);
     line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
                      Enters::History);
     line_.text("--poses", "FILE", o.poses,
@@ -73,8 +73,8 @@ void ScanCommand::declare() {
         "depth png: units a metre (default 1000: millimetres)", Enters::History);
     line_.switchFlag("--color", "--no-color", color_,
                      "depth png: also NAME-color.png for people (default on)", Enters::History);
-    line_.count("--size", "N", o.map_pixels, 200, 8000,
-                "obstacle map png: pixels a side (default 800)", Enters::History);
+    line_.count("--size", "N", o.map_pixels, 200, 8000, "obstacle map png: pixels a side",
+                Enters::History);
     constexpr double kColdest = -100, kHottest = 100;
     line_.parsed(
         "--temperature", "C",
@@ -90,6 +90,8 @@ void ScanCommand::declare() {
 
 void ScanCommand::check() const {
     const ScanToolOptions& o = options_;
+    if (o.list_models && !o.operands.empty())
+        throw UsageError("--list-models reads no operands, and there is " + o.operands.front());
     if (o.poses.empty()) {
         if (!o.model.empty()) throw UsageError("--model is the sensor of --poses: give both");
         if (o.motion) throw UsageError("--motion goes along --poses: give both");

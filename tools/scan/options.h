@@ -20,7 +20,7 @@ struct ScanToolOptions {
     std::string poses;  ///< "": placed sensors; "-": stdin
     std::string model;  ///< of --poses
     bool motion = false;
-    CloudFrame coordinates = CloudFrame::World;
+    Coordinates coordinates = Coordinates::World;
     Encoding encoding = Encoding::Binary;
     double depth_per_metre = 1000;
     bool color = true;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/output_set.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+const std::vector<std::string> kPng = {".png", "-color.png", ".yaml"};
+
+std::string refusal(const std::string& output, const std::vector<std::string>& ids, bool frames,
+                    const std::vector<std::string>& endings = {".csv"}) {
+    try {
+        OutputSet::of(output)->prepare(ids, frames, endings);
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(OutputSet, OneFileIsNoSet) {
+    EXPECT_FALSE(OutputSet::of("-"));
+    EXPECT_FALSE(OutputSet::of("scan.csv"));
+    EXPECT_TRUE(OutputSet::of("folder/"));
+    EXPECT_TRUE(OutputSet::of("."));
+    EXPECT_TRUE(OutputSet::of("scan-%d.csv"));
+}
+
+TEST(OutputSet, NamesInAFolder) {
+    const OutputSet set = *OutputSet::of("a/b/");
+    EXPECT_EQ(set.fileOf("l1", 7, ".csv"), "a/b/l1-0007.csv");
+    EXPECT_EQ(set.fileOf("l1", 123456, ".csv"), "a/b/l1-123456.csv");
+    EXPECT_EQ(set.fileOf("../x", 0, ".csv"), "a/b/.._x-0000.csv") << "no other folder";
+    EXPECT_EQ(set.fileBeside("k", 0, "-color.png"), "a/b/k-0000-color.png");
+}
+
+TEST(OutputSet, NamesOfAPattern) {
+    EXPECT_EQ(OutputSet::of("x/%s-%03d.pcd")->fileOf("l1", 7, ".pcd"), "x/l1-007.pcd");
+    EXPECT_EQ(OutputSet::of("%d")->fileOf("l1", 7, ".pcd"), "7.pcd");
+    EXPECT_EQ(OutputSet::of("100%%-%d.f32")->fileOf("l1", 7, ".raw"), "100%-7.f32")
+        << "the suffix that was written";
+    EXPECT_EQ(OutputSet::of("%s.x/%d.png")->fileBeside("k", 1, ".yaml"), "k.x/1.yaml");
+}
+
+TEST(OutputSet, RefusesWhatDoesNotTellReadingsApart) {
+    EXPECT_NE(refusal("x-%d.csv", {"a", "b"}, false), "");
+    EXPECT_NE(refusal("x-%s.csv", {"a"}, true), "");
+    EXPECT_NE(refusal("x.%d", {"a"}, true), "") << "its suffix would hide the number";
+    EXPECT_EQ(refusal("x-%d.csv", {"a"}, true), "");
+    // l1 and frame 0 of l1: l10; l and frame 10.
+    EXPECT_NE(refusal("%s%d.csv", {"l", "l1"}, true), "");
+    EXPECT_NE(refusal("%s-1%d.csv", {"l", "l1"}, true), "");
+    EXPECT_NE(refusal("%d2%s.csv", {"l", "l1"}, true), "");
+    EXPECT_EQ(refusal("%d-%s.csv", {"l", "l1"}, true), "");
+    EXPECT_EQ(refusal("%s%d.csv", {"l"}, true), "");
+    EXPECT_EQ(refusal("%s.csv", {"l", "l1"}, false), "");
+    EXPECT_NE(refusal("%s.csv", {"a/b", "a_b"}, false), "");
+    EXPECT_NE(refusal("%s.png", {"r1", "r1-color"}, false, kPng), "");
+    EXPECT_NE(refusal("%s.yaml", {"r1"}, false, kPng), "") << "the picture and its camera_info";
+    EXPECT_EQ(refusal("%s.png", {"r1", "r2"}, false, kPng), "");
+}
+
+TEST(OutputSet, RefusesBadPatterns) {
+    for (const char* pattern : {"%x.csv", "%n.csv", "%5d.csv", "%05s.csv", "a%", "%0d.csv",
+                                "%-3d.csv", "%0000000012d.csv"})
+        EXPECT_NE(refusal(pattern, {"a"}, false), "") << pattern;
+    EXPECT_EQ(refusal("%%.csv", {"a"}, false), "");
+}
+
+}  // namespace
+
+}  // namespace ispace

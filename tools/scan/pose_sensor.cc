@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/pose_sensor.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "layout/schemas.h"
+#include "layout/sensor_spec.h"
+
+namespace ispace {
+
+namespace {
+
+/// What may follow poses.
+constexpr std::string_view kMovable[] = {"laser", "ranger"};
+
+Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
+    const std::vector<Record> records = readSensorSpec(model, kMovable, sceneSchemas(), devices);
+    if (records.size() > 1) throw UsageError("--model: one sensor takes the poses, not several");
+    for (const char* key : {"at", "heading", "tilt", "roll", "on"})
+        if (records.front().has(key))
+            throw UsageError(std::string("--model: `") + key +
+                             "` is told by the poses; leave it out");
+    return records.front();
+}
+
+std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs) {
+    const std::vector<std::size_t> found = sensorRecords(scene, kMovable, globs);
+    if (found.size() == 1) return found.front();
+    throw UsageError("--poses: " + std::to_string(found.size()) +
+                     " sensors could take them; say which with --model or --select");
+}
+
+/// The mount of a sensor that the scene has placed.
+template <typename Placed>
+std::optional<Mount> mountOf(const std::vector<Placed>& placed, const std::string& id) {
+    const auto found = std::find_if(placed.begin(), placed.end(),
+                                    [&id](const Placed& sensor) { return sensor.id == id; });
+    return found == placed.end() ? std::nullopt : found->mount;
+}
+
+}  // namespace
+
+Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
+                       const DeviceCatalogue& devices) {
+    std::optional<Record> of_model;
+    std::string id;
+    if (!options.model.empty()) {
+        of_model = recordOfModel(options.model, devices);
+        id = of_model->writtenId().empty() ? of_model->keyword() + "1" : of_model->writtenId();
+    }
+    const std::size_t only = of_model ? 0 : onlySensor(scene, options.select);
+    const Record& record = of_model ? *of_model : scene.records[only];
+    if (!of_model) id = scene.ids[only];
+
+    Sensors sensors;
+    if (record.keyword() == "ranger") {
+        const auto mount = of_model ? std::nullopt : mountOf(scene.rangers, id);
+        sensors.rangers.push_back({id, rangerOf(record, devices), {}, mount});
+        sensors.order.push_back({SensorKind::Ranger, 0});
+        return sensors;
+    }
+    const auto mount = of_model ? std::nullopt : mountOf(scene.lasers, id);
+    sensors.lasers.push_back({id, laserOf(record, devices), {}, mount});
+    sensors.order.push_back({SensorKind::Laser, 0});
+    if (options.motion && sensors.lasers.front().laser.sweep != SweepAxis::None)
+        throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");
+    return sensors;
+}
+
+}  // namespace ispace
