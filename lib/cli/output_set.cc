@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "base/error.h"
 
@@ -106,7 +107,11 @@ std::optional<OutputSet> OutputSet::of(const std::string& output) {
 void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames,
                         const std::vector<std::string>& endings) const {
     if (!folder_.empty()) {
-        fs::create_directories(folder_);
+        std::error_code error;
+        fs::create_directories(folder_, error);
+        if (!error && !fs::is_directory(folder_, error) && !error)
+            error = std::make_error_code(std::errc::not_a_directory);
+        if (error) throw std::system_error(error, folder_);
     } else {
         const std::string whole = pattern_ + suffix_;
         const auto refuse_pattern = [&whole](const std::string& why) {

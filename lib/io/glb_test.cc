@@ -12,6 +12,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "env/material.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -129,7 +130,7 @@ TEST(Glb, SheetsAreSeenFromBothSides) {
     for (const Json& material : json["materials"]) {
         const std::string name = material["name"];
         EXPECT_EQ(material.value("doubleSided", false),
-                  name == "wall" || name == "floor" || name == "view")
+                  name == "wall" || name == "floor" || name == kViewMaterial)
             << name;
     }
 }

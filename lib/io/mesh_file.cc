@@ -25,6 +25,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "env/material.h"
 #include "io/import_records.h"
 #include "record/digest.h"
 
@@ -124,9 +125,18 @@ class Gatherer {
     }
 
   private:
+    /// What a sensor looks at, in a model of ours.
+    [[nodiscard]] bool isView(const aiMesh& part) const {
+        aiString name;
+        return part.mMaterialIndex < scene_.mNumMaterials &&
+               scene_.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name) ==
+                   aiReturn_SUCCESS &&
+               std::string_view(name.C_Str()) == kViewMaterial;
+    }
     void add(unsigned index, const aiMatrix4x4& world_from_mesh) {
         if (index >= scene_.mNumMeshes) fail(path_, "bad mesh file: a part that it does not hold");
         const aiMesh& part = *scene_.mMeshes[index];
+        if (isView(part)) return;
         if (mesh_.triangles.size() + part.mNumFaces > kMaxMeshTriangles ||
             mesh_.vertices.size() + part.mNumVertices > 3 * kMaxMeshTriangles)
             fail(path_, "more than " + std::to_string(kMaxMeshTriangles) + " triangles");

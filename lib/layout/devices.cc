@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "base/file.h"
 #include "base/suggest.h"
@@ -55,7 +56,10 @@ std::string unknownModel(const std::string& model, const std::string& keyword,
 
 std::vector<std::string> deviceFiles(const std::string& folder) {
     std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::error_code error;
+    const std::filesystem::directory_iterator entries(folder, error);
+    if (error) throw std::system_error(error, "the device catalogue " + folder);
+    for (const auto& entry : entries) {
         if (entry.path().extension() == ".3dm") files.push_back(entry.path().string());
     }
     std::sort(files.begin(), files.end());

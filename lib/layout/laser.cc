@@ -29,6 +29,9 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
     const double old_span = (laser.last() - laser.first).degrees();
     double count = laser.beams;
     if (step) laser.step = record.angle("step");
+    // Beams spread over a field of view.
+    if (fov && beams && !step && record.number("beams") > 1)
+        laser.step = (1 / (record.number("beams") - 1)) * record.angle("fov");
     if (fov) {
         laser.first = -0.5 * record.angle("fov");
         count = beamsWithin(record.number("fov"), laser.step.degrees());
@@ -142,6 +145,24 @@ Pose3 poseOf(const Record& record) {
             record.angle("heading"),
             record.angle("tilt"),
             record.angle("roll")};
+}
+
+Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans) {
+    const Angle by = scans * laser.sweep_step;
+    switch (laser.sweep) {
+        case SweepAxis::Heading:
+            pose.heading = pose.heading + by;
+            break;
+        case SweepAxis::Tilt:
+            pose.tilt = pose.tilt + by;
+            break;
+        case SweepAxis::Roll:
+            pose.roll = pose.roll + by;
+            break;
+        case SweepAxis::None:
+            break;
+    }
+    return pose;
 }
 
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {

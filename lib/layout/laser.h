@@ -69,15 +69,19 @@ struct PlacedLaser {
     std::optional<Mount> mount = {};
 };
 
+/// A pose of a laser when it is `scans` scans (whole or not) into its sweep.
+Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
+
 /// World pose of a sensor on a robot, its heading within (-180, 180].
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor);
 
 /// Figures of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
-/// of them; an explicit `step` alone keeps the model's first beam and span; `first` alone keeps
-/// number and step; `beams` alone keeps first beam and step. One number in `range` is the maximum.
-/// An explicit `rate` alone lets a model's beam spin faster or slower with it.
-/// \throws FormatError with all findings: an unknown model (with the nearest name), min above max,
+/// of them, or explicit `beams` spread over it; an explicit `step` alone keeps the model's first
+/// beam and span; `first` alone keeps number and step; `beams` alone keeps first beam and step. One
+/// number in `range` is the maximum. An explicit `rate` alone lets a model's beam spin faster or
+/// slower with it. \throws FormatError with all findings: an unknown model (with the nearest name),
+/// min above max,
 ///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
 ///         a scan that takes longer than the next is due
 Laser laserOf(const Record& record, const DeviceCatalogue& devices);

@@ -114,7 +114,12 @@ TEST(LaserOf, FirstAndBeams) {
 }
 
 TEST(LaserOf, BeamErrors) {
-    EXPECT_NE(laserFindings("fov=180 beams=361").find("fov and step give 181"), std::string::npos);
+    EXPECT_NE(laserFindings("fov=180 step=1 beams=361").find("fov and step give 181"),
+              std::string::npos);
+    // Without step they are spread over the field of view.
+    EXPECT_EQ(laser("fov=180 beams=361").step, Angle::degrees(0.5));
+    EXPECT_EQ(laser("model=urg-04lx fov=90 beams=91").beams, 91);
+    EXPECT_EQ(laser("fov=180 beams=361").last(), Angle::degrees(90));
     EXPECT_NE(laserFindings("beams=2.5").find("not a whole number"), std::string::npos);
     EXPECT_NE(laserFindings("beams=0"), "");
     EXPECT_NE(laserFindings("beams=1e7"), "");

@@ -55,6 +55,10 @@ void applyNoise(const Record& record, RangeNoise& noise, Diagnostics& findings) 
     if (record.has("bias")) noise.bias = record.number("bias");
     if (record.has("sigma")) {
         const Tuple& sigma = record.tuple("sigma");
+        if (sigma.front() < 0)
+            findings.add(record.finding("sigma",
+                                        "`sigma`: its first number, the standard deviation "
+                                        "close by, is below 0"));
         noise.sigma = {};
         std::copy(sigma.begin(), sigma.end(), noise.sigma.begin());
     }

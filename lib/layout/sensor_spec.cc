@@ -55,6 +55,13 @@ bool contains(Kinds kinds, std::string_view keyword) {
 }
 
 UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCatalogue& devices) {
+    if (const Record* const other = devices.find(model)) {
+        std::string wanted;
+        for (const std::string_view kind : kinds)
+            wanted.append(wanted.empty() ? "" : " or ").append(kind);
+        return UsageError("`" + model + "` is a device of kind " + other->keyword() + ", and " +
+                          wanted + " is wanted");
+    }
     const std::vector<std::string> known = knownSensors(kinds, devices);
     std::string list;
     for (const std::string_view kind : kinds) list.append(list.empty() ? "" : ", ").append(kind);

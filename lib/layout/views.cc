@@ -60,11 +60,8 @@ Mesh sweptOf(const PlacedLaser& sensor, Limits limits) {
     const Angle span = laser.last() - laser.first;
     const Frame3 frame(sensor.pose);
     addSheet(mesh, piecesOf(span), piecesOf(laser.sweep_span), [&](double u, double v) {
-        Pose3 pose = sensor.pose;
-        const Angle turn = v * laser.sweep_span;
-        if (laser.sweep == SweepAxis::Heading) pose.heading = pose.heading + turn;
-        if (laser.sweep == SweepAxis::Tilt) pose.tilt = pose.tilt + turn;
-        if (laser.sweep == SweepAxis::Roll) pose.roll = pose.roll + turn;
+        const double scans = v * (laser.sweep_span.degrees() / laser.sweep_step.degrees());
+        const Pose3 pose = sweptPose(laser, sensor.pose, scans);
         return limits.far * frame.toLocal(frame.origin + pose.beam(laser.first + u * span));
     });
     return mesh;

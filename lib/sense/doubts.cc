@@ -68,9 +68,17 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
     }
     SolidJudge judge(scene.environment);
     const auto check = [&](const std::string& id, const Point3& place) {
-        if (judge.isInside(place))
-            doubts.push_back(id + " stands inside something solid at " + formatDouble(place.x) +
-                             "," + formatDouble(place.y) + "," + formatDouble(place.z));
+        const bool inside = judge.isInside(place);
+        if (!inside && place.z >= 0 &&
+            scene.environment.indoor().locate(place.onFloor()) != Side::Outside)
+            return;
+        std::string phrase = id;
+        phrase.append(inside ? " stands inside something solid at "
+                             : " stands outside the room at ");
+        for (const double part : {place.x, place.y, place.z})
+            phrase.append(formatDouble(part)).append(",");
+        phrase.pop_back();
+        doubts.push_back(std::move(phrase));
     };
     for (const Sensors::Entry& entry : sensors.order)
         check(sensors.id(entry), sensors.pose(entry).position);

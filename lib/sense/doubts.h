@@ -25,7 +25,7 @@ class SolidJudge {
 };
 
 /// What a user may not have meant, a phrase each: sensors without a place, which are left out, and
-/// sensors that stand inside something solid.
+/// sensors that stand inside something solid or outside the room.
 std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
                                      const std::vector<std::string>& globs);
 

@@ -169,7 +169,12 @@ std::optional<Fix> locate(std::span<const Point3> receivers, std::span<const dou
     const auto count = static_cast<double>(receivers.size());
     // The best place on each side of the receivers' plane, that of `towards` first.
     const Vector3d normal = layout.axes.col(0);
-    const bool is_up = vectorOf(towards).dot(normal) >= 0;
+    const double out = vectorOf(towards).dot(normal);
+    const bool is_flat = layout.spread[0] <= kPlane * kPlane * layout.spread[2];
+    // Which of two mirror images it is nothing tells then.
+    constexpr double kAlong = 1e-3;
+    if (is_flat && std::fabs(out) <= kAlong * vectorOf(towards).norm()) return std::nullopt;
+    const bool is_up = out >= 0;
     std::array<Vector3d, 2> places;
     std::array<double, 2> errors{std::numeric_limits<double>::infinity(),
                                  std::numeric_limits<double>::infinity()};

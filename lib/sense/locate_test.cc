@@ -285,5 +285,16 @@ TEST(Locate, NoiseBeyondThePlaneStaysFinite) {
     }
 }
 
+TEST(Locate, AxesAlongTheReceiversPlaneTellNoSide) {
+    const std::vector<Point3> receivers = {{0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
+    const Point3 tag{0.5, 0.7, 0.4};
+    std::vector<double> distances;
+    for (const Point3& receiver : receivers) distances.push_back(length(tag - receiver));
+    EXPECT_FALSE(locate(receivers, distances, {1, 0, 0}));
+    EXPECT_FALSE(locate(receivers, distances, {}));
+    EXPECT_NEAR(locate(receivers, distances, {0, 0, -1})->position.z, 0.4, 1e-9);
+    EXPECT_NEAR(locate(receivers, distances, {0, 0, 1})->position.z, 1.6, 1e-9);
+}
+
 }  // namespace
 }  // namespace ispace

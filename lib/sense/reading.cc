@@ -9,23 +9,6 @@ namespace ispace {
 
 namespace {
 
-Pose3 swept(Pose3 pose, SweepAxis axis, Angle by) {
-    switch (axis) {
-        case SweepAxis::Heading:
-            pose.heading = pose.heading + by;
-            break;
-        case SweepAxis::Tilt:
-            pose.tilt = pose.tilt + by;
-            break;
-        case SweepAxis::Roll:
-            pose.roll = pose.roll + by;
-            break;
-        case SweepAxis::None:
-            break;
-    }
-    return pose;
-}
-
 bool staysLevelAt(const Pose3& pose, double height) {
     return pose.isLevel() && pose.position.z == height;
 }
@@ -37,14 +20,14 @@ std::vector<Scan> scansOf(const Laser& laser, const ReadingJob& job) {
     std::vector<Scan> scans(static_cast<std::size_t>(count));
     for (int j = 0; j < count; ++j) {
         Scan& scan = scans[static_cast<std::size_t>(j)];
-        scan.time = job.time + j / laser.rate;
+        scan.time = j == 0 ? job.time : wholeNanoseconds(job.time + j / laser.rate);
         scan.frame = job.frame;
         scan.number = j;
         // Where it is some seconds later; a sweep goes on meanwhile.
         const auto pose_at = [&](double later) {
             const Pose3 carried =
                 job.way.empty() ? job.pose : poseAlong(job.way, scan.time + later);
-            return swept(carried, laser.sweep, (j + later * laser.rate) * laser.sweep_step);
+            return sweptPose(laser, carried, j + later * laser.rate);
         };
         scan.pose = pose_at(0);
         if (laser.spin == 0 || (!sweeps && job.way.empty())) continue;

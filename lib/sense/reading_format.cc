@@ -91,13 +91,20 @@ class Jsonl final : public Base {
 class Csv final : public Base {
   public:
     Csv(const Sensors& sensors, FormatOptions options)
-        : Base(sensors, std::move(options), ".csv"), kind_(sensors.order.front().kind) {
-        accept("csv", "sensors of one kind", {kind_});
-    }
+        : Base(sensors, std::move(options), ".csv") {}
     [[nodiscard]] std::string header() const override {
-        return kind_ == Kind::Laser    ? laserCsvHeader()
-               : kind_ == Kind::Ranger ? rangerCsvHeader()
-                                       : ultrasoundCsvHeader();
+        return headerOf(sensors_.order.front().kind);
+    }
+    void checkStream() const override {
+        accept("csv", "sensors of one kind", {sensors_.order.front().kind});
+    }
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+                                                 const Reading& reading) const override {
+        std::string bytes = headerOf(sensors_.order[sensor].kind);
+        append(bytes, sensor, reading);
+        std::vector<ReadingFile> files;
+        files.push_back({endings().front(), std::move(bytes)});
+        return files;
     }
     void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
@@ -110,7 +117,11 @@ class Csv final : public Base {
     }
 
   private:
-    Kind kind_;
+    static std::string headerOf(Kind kind) {
+        return kind == Kind::Laser    ? laserCsvHeader()
+               : kind == Kind::Ranger ? rangerCsvHeader()
+                                      : ultrasoundCsvHeader();
+    }
 };
 
 /// Ranges and depths, float32, little-endian, nothing else; no return is +infinity.
@@ -178,8 +189,14 @@ class Carmen final : public Base {
         files.push_back({endings().front(), std::move(bytes)});
         return files;
     }
-    /// ROBOTLASER1 and ROBOTLASER2: readers know no more.
-    [[nodiscard]] std::size_t mostSensors() const override { return 2; }
+    void checkStream() const override {
+        // ROBOTLASER1 and ROBOTLASER2: readers know no more.
+        constexpr std::size_t kMost = 2;
+        if (sensors_.lasers.size() > kMost)
+            throw UsageError("a CARMEN log tells two lasers apart, and these are " +
+                             std::to_string(sensors_.lasers.size()) +
+                             ": name a folder (-o DIR/), or choose some with --select");
+    }
 
   private:
     static void append(std::string& out, std::size_t number, const PlacedLaser& laser,
@@ -233,6 +250,20 @@ class Png final : public Base {
         }
         return files;
     }
+    [[nodiscard]] std::vector<std::string> doubts() const override {
+        std::vector<std::string> doubts;
+        const double farthest = kMostDepth / options_.depth_per_metre;
+        for (const PlacedRanger& placed : sensors_.rangers) {
+            const Ranger& ranger = placed.ranger;
+            const double most = ranger.ambiguity > 0 ? std::min(ranger.ambiguity, ranger.max_range)
+                                                     : ranger.max_range;
+            if (most > farthest)
+                doubts.push_back(placed.id + " sees as far as " + formatDouble(most) +
+                                 " m, and 16 bits end at " + formatDouble(farthest) +
+                                 " m, beyond which depths are 0; lower --depth-scale");
+        }
+        return doubts;
+    }
     [[nodiscard]] std::vector<std::string> endings() const override {
         std::vector<std::string> endings = Base::endings();
         if (!sensors_.rangers.empty()) {
@@ -245,6 +276,7 @@ class Png final : public Base {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
+    static constexpr double kMostDepth = 65535;
     static constexpr const char *kColor = "-color.png", *kCameraInfo = ".yaml";
 };
 

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -36,10 +35,10 @@ class ReadingFormat {
     [[nodiscard]] virtual std::vector<std::string> endings() const = 0;
     /// Readings may follow each other in one file; else each needs one of its own.
     [[nodiscard]] virtual bool isStream() const { return true; }
-    /// Sensors that can be told apart in one file.
-    [[nodiscard]] virtual std::size_t mostSensors() const {
-        return std::numeric_limits<std::size_t>::max();
-    }
+    /// \throws UsageError if one file cannot hold the readings of all these sensors
+    virtual void checkStream() const {}
+    /// What of the readings it may lose, a phrase each.
+    [[nodiscard]] virtual std::vector<std::string> doubts() const { return {}; }
     /// Bytes, not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };

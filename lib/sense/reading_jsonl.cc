@@ -96,8 +96,10 @@ void appendDepthLine(std::string& out, const PlacedRanger& sensor, const DepthFr
         json.value("spherical").key("fov").beginArray();
         json.value(ranger.fov_x.radians()).value(ranger.fov_y.radians()).endArray();
     }
+    json.key("measures").value(ranger.measures_depth ? "depth" : "distance");
     json.key("range_min").value(ranger.min_range);
     json.key("range_max").value(ranger.max_range);
+    if (ranger.ambiguity > 0) json.key("ambiguity").value(ranger.ambiguity);
     appendWithRanges(out, json, "depths", frame.depths);
 }
 

@@ -20,7 +20,8 @@ std::string scanHeaderLine(const History& history, std::uint64_t seed);
 void appendScanLine(std::string& out, const PlacedLaser& sensor, const Scan& scan);
 
 /// Appends one picture as a line of JSON: "width", "height", "projection", of a pinhole "fx", "fy",
-/// "cx", "cy", of a spherical one "fov" (radians), then range limits and "depths".
+/// "cx", "cy", of a spherical one "fov" (radians), then what it "measures" (its limits are about
+/// that), "range_min", "range_max", "ambiguity" if there is one, and "depths".
 void appendDepthLine(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame);
 
 /// Appends one burst as a line of JSON: the tag as "sensor", its true pose, "heard" with

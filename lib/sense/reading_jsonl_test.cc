@@ -64,7 +64,8 @@ TEST(DepthJsonl, Pinhole) {
     EXPECT_EQ(out,
               "before\n{\"sensor\":\"r1\",\"t\":0.04,\"frame\":1,\"pose\":[0,0,0,0,0,0],"
               "\"width\":2,\"height\":1,\"projection\":\"pinhole\",\"fx\":1,\"fy\":0.5,"
-              "\"cx\":0.5,\"cy\":0,\"range_min\":0.5,\"range_max\":5,\"depths\":[1.25,null]}\n");
+              "\"cx\":0.5,\"cy\":0,\"measures\":\"distance\",\"range_min\":0.5,\"range_max\":5,"
+              "\"depths\":[1.25,null]}\n");
 }
 
 TEST(DepthJsonl, Spherical) {
@@ -76,7 +77,8 @@ TEST(DepthJsonl, Spherical) {
     std::string out;
     appendDepthLine(out, sensor, frame);
     EXPECT_NE(out.find("\"projection\":\"spherical\",\"fov\":[6.283185307179586,"
-                       "1.5707963267948966],\"range_min\":0,\"range_max\":5,\"depths\":[2]}"),
+                       "1.5707963267948966],\"measures\":\"distance\",\"range_min\":0,\"range_"
+                       "max\":5,\"depths\":[2]}"),
               std::string::npos)
         << out;
 }

@@ -26,7 +26,7 @@ void StillSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
         const Sensors::Entry& entry = sensors_->order[sensor_];
         batch.push_back({.sensor = sensor_,
                          .frame = frame_,
-                         .time = frame_ / sensors_->rate(entry),
+                         .time = wholeNanoseconds(frame_ / sensors_->rate(entry)),
                          .pose = sensors_->pose(entry),
                          .way = {}});
         if (++sensor_ == sensors_->order.size()) {
@@ -58,9 +58,10 @@ std::optional<std::string_view> PoseLines::nextLine() {
         if (begin_ == buffer_.size()) return std::nullopt;
         end = buffer_.size();  // the last line, without newline
     }
-    const std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
+    std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
     begin_ = std::min(end + 1, buffer_.size());
-    ++line_;
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (line_++ == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     return line;
 }
 
@@ -69,7 +70,10 @@ std::optional<TimedPose> PoseLines::next() {
         try {
             if (auto pose = parseTumLine(*line)) return pose;
         } catch (const FormatError& bad) {
-            throw error(bad.diagnostics().front().message);
+            Diagnostic finding = bad.diagnostics().front();
+            finding.file = name_;
+            finding.line = line_;
+            throw FormatError(finding);
         }
     }
     return std::nullopt;
@@ -110,7 +114,7 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
         begin_ = first->time;
     }
     while (batch.size() < most && (batch.empty() || poses_.ready())) {
-        const double time = begin_ + frame_ / rate_;
+        const double time = wholeNanoseconds(begin_ + frame_ / rate_);
         if (!reach(time, time + duration_)) return;
         // What lies behind is of no use any more, but for the pose it comes from.
         while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();

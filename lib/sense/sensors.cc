@@ -4,6 +4,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -118,6 +119,11 @@ std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::
             isSelected(scene.ids[i], globs))
             found.push_back(i);
     return found;
+}
+
+double wholeNanoseconds(double seconds) {
+    constexpr double kNano = 1e9, kMost = 9e6;  // whole numbers of doubles end at 9e15
+    return std::fabs(seconds) < kMost ? std::round(seconds * kNano) / kNano : seconds;
 }
 
 double durationOf(const Sensors& sensors, const Sensors::Entry& entry) {

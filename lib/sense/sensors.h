@@ -48,6 +48,9 @@ bool isSelected(const std::string& id, const std::vector<std::string>& globs);
 /// True for the keywords of what is read or heard: laser, ranger, tag, ultrasound.
 bool isReadable(std::string_view keyword);
 
+/// A time in seconds as the nearest whole nanosecond, which prints as short as it should.
+double wholeNanoseconds(double seconds);
+
 /// How long a sensor takes for one reading, in seconds; 0 for all at once.
 double durationOf(const Sensors& sensors, const Sensors::Entry& entry);
 

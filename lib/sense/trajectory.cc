@@ -37,7 +37,9 @@ std::string_view nextWord(std::string_view& line) {
     return word;
 }
 
-[[noreturn]] void fail(const std::string& message) { throw FormatError({"", 0, 0, message}); }
+[[noreturn]] void fail(int column, const std::string& message) {
+    throw FormatError({"", 0, column, message});
+}
 
 /// Plans lie within this of the origin, in metres.
 constexpr double kFarthest = 1e6;
@@ -78,22 +80,31 @@ std::optional<TimedPose> parseTumLine(std::string_view line) {
     constexpr std::array kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
     std::array<double, kNames.size()> values{};
     std::size_t count = 0;
+    std::array<int, kNames.size()> columns{};
+    const char* const begin = line.data();
     for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
+        const int column = static_cast<int>(word.data() - begin) + 1;
         if (count == 0 && word.front() == '#') return std::nullopt;
-        if (count == values.size()) fail("more than 8 columns; a pose is `t x y z qx qy qz qw`");
+        if (count == values.size())
+            fail(column, "more than 8 columns; a pose is `t x y z qx qy qz qw`");
         const std::optional<double> value = parseDouble(word);
         if (!value || !std::isfinite(*value))
-            fail(std::string(kNames[count]) + " `" + std::string(word) + "` is not a number");
+            fail(column,
+                 std::string(kNames[count]) + " `" + std::string(word) + "` is not a number");
+        columns[count] = column;
         values[count++] = *value;
     }
     if (count == 0) return std::nullopt;
     if (count < values.size())
-        fail(std::to_string(count) + " columns; a pose is `t x y z qx qy qz qw`");
+        fail(0, std::to_string(count) + " columns; a pose is `t x y z qx qy qz qw`");
     const auto [t, x, y, z, qx, qy, qz, qw] = values;
     if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > kFarthest)
-        fail("the place is more than 1000 km away");
+        fail(columns[1], "the place is more than 1000 km away");
+    // What nanoseconds in 64 bits can count.
+    constexpr double kLongest = 9e9;
+    if (std::fabs(t) > kLongest) fail(columns[0], "t is more than 285 years away");
     const double size = std::max({std::fabs(qx), std::fabs(qy), std::fabs(qz), std::fabs(qw)});
-    if (size == 0) fail("the quaternion is 0, which is no rotation");
+    if (size == 0) fail(columns[4], "the quaternion is 0, which is no rotation");
     const Quaternion rotation{qx / size, qy / size, qz / size, qw / size};
     return TimedPose{t, poseOf({x, y, z}, rotation)};
 }

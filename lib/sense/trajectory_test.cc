@@ -89,6 +89,7 @@ TEST(Trajectory, RefusesWhatIsNoPose) {
     EXPECT_EQ(messageOf("1 inf 3 4 0 0 0 1"), "x `inf` is not a number");
     EXPECT_EQ(messageOf("1 2 3 4 0 0 0 1e999"), "qw `1e999` is not a number");
     EXPECT_EQ(messageOf("1 2e7 3 4 0 0 0 1"), "the place is more than 1000 km away");
+    EXPECT_EQ(messageOf("1e17 2 3 4 0 0 0 1"), "t is more than 285 years away");
 }
 
 TEST(Trajectory, BetweenIsStraightAndEven) {

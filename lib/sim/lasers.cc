@@ -58,12 +58,14 @@ LaserReader::LaserReader(const Scene& scene)
         periods_.emplace_back(laser.laser.rate);
         readings_.push_back({.sensor = laser, .scan = {}});
         worlds_.prepare(laser.pose);
+        if (laser.laser.sweep != SweepAxis::None) worlds_.prepareMesh();
     }
     for (const SensorReading& reading : readings_)
         casters_.emplace_back(worlds_, bodies_, reading.sensor, reading.sensor.mount.has_value(),
                               ReadingOptions());
     latest_.reserve(scene.lasers.size());
-    places_.resize(scene.robots.size());
+    // Robots first, as they move; people behind them.
+    places_ = bodiesOf(scene);
 }
 
 void LaserReader::read(SimTime time, std::span<const Motion> robots) {
@@ -79,7 +81,8 @@ void LaserReader::read(SimTime time, std::span<const Motion> robots) {
         casters_[latest_[k]].cast(reading.scan);
         reading.scan.time = seconds(time);
         constexpr std::int64_t kLast = std::numeric_limits<int>::max();
-        reading.scan.frame = static_cast<int>(std::min(reading.seq, kLast));
+        const std::int64_t sweep = reading.seq / reading.sensor.laser.scans();
+        reading.scan.frame = static_cast<int>(std::min(sweep, kLast));
     });
 }
 
@@ -92,9 +95,15 @@ void LaserReader::update(SimTime time, std::span<const Motion> robots) {
         due_[i] = periods_[i].begin(reading.seq + 1);
         if (const auto& mount = reading.sensor.mount)
             reading.sensor.pose = mountedPose(robots[mount->robot].pose, mount->robot_from_sensor);
+        const Laser& laser = reading.sensor.laser;
+        if (laser.sweep == SweepAxis::None) continue;
+        const std::int64_t number = reading.seq % laser.scans();
+        reading.scan.number = static_cast<int>(number);
+        if (!reading.sensor.mount) reading.sensor.pose = scene_->lasers[i].pose;
+        reading.sensor.pose = sweptPose(laser, reading.sensor.pose, static_cast<double>(number));
     }
     if (!std::exchange(moved_, false)) return;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
+    for (std::size_t i = 0; i < robots.size(); ++i) {
         places_[i] =
             robotBody(scene_->robots[i].model, robots[i].pose, static_cast<std::uint32_t>(i));
     }

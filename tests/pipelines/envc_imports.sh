@@ -118,3 +118,11 @@ if [ -n "$data_dir" ] && command -v gdal_translate >/dev/null; then
     done_parts+=" png"
 fi
 echo "imported: aria$done_parts"
+
+# A model of ours is what stands there, not what its sensors look at.
+printf '#env 1\nispace size=4,4\n' >inner.env
+printf '#3dm 1\nranger at=-1,0.3,1 range=3\nlaser at=0,0 range=3\n' >inner.3dm
+envc inner.env inner.3dm -o inner.glb
+printf '#env 1\nispace size=20,20\nmesh file=inner.glb\n' >outer.env
+printf '#3dm 1\nlaser at=1,0.3,2.4 tilt=-90 fov=0\n' | scan outer.env | grep -q '"ranges":\[2.4\]' ||
+    fail "a view of a sensor stops a beam"

@@ -78,10 +78,10 @@ bad() {
     [ "$(wc -l <err)" -eq 1 ] || fail "not one line: $(cat err)"
 }
 bad '0 0 0 0.15 0 0 0 1\n1 2 3\n' 'bad.txt:2: error: 3 columns; a pose is `t x y z qx qy qz qw`'
-bad '# t\n0 0 nan 0.15 0 0 0 1' 'bad.txt:2: error: y `nan` is not a number'
-bad '0 0 1e999 0.15 0 0 0 1\n' 'bad.txt:1: error: y `1e999` is not a number'
-bad '0 0 0 0.15 0 0 0 0\n' 'bad.txt:1: error: the quaternion is 0, which is no rotation'
-bad '0 0 0 1e9 0 0 0 1\n' 'bad.txt:1: error: the place is more than 1000 km away'
+bad '# t\n0 0 nan 0.15 0 0 0 1' 'bad.txt:2:5: error: y `nan` is not a number'
+bad '0 0 1e999 0.15 0 0 0 1\n' 'bad.txt:1:5: error: y `1e999` is not a number'
+bad '0 0 0 0.15 0 0 0 0\n' 'bad.txt:1:12: error: the quaternion is 0, which is no rotation'
+bad '0 0 0 1e9 0 0 0 1\n' 'bad.txt:1:3: error: the place is more than 1000 km away'
 head -c 100000 /dev/urandom | tr -d '\n#' >random.txt
 expect_status 1 scan "$room" --poses random.txt --model laser
 expect_status 0 scan "$room" --poses /dev/null --model laser
@@ -91,6 +91,11 @@ expect_error 1 scan "$room" --poses . --model laser
 expect_error 2 scan - --poses - --model laser
 expect_error 2 scan "$room" --model laser
 expect_error 2 scan "$room" --poses way.txt --model laser:2
+for wrong in step=0 range=5,3 range=0 beams=1000001 step=1e-9 sweep=heading,sweep_step=1e-9 incidence=60,30; do
+    expect_error 2 scan "$room" --poses way.txt --model "laser,$wrong"
+    grep -q "^scan: error: --model: " err || fail "$wrong: $(cat err)"
+done
+bad '1e17 0 0 0.15 0 0 0 1\n' 'bad.txt:1:1: error: t is more than 285 years away'
 expect_error 2 scan "$room" --poses way.txt --model zps-3d
 expect_error 2 scan "$room" --poses way.txt --frames 2 --model laser
 printf '#3dm 1\nlaser\nlaser\n' >two.3dm

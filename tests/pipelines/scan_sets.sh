@@ -69,9 +69,19 @@ expect_status 0 scan "$room" two.3dm --to pcd --encoding ascii -o all.pcd
 echo old >file
 expect_error 1 scan "$room" two.3dm -o file/
 [ "$(cat file)" = old ] || fail "the file is gone"
-# A dependency rule names the set.
-expect_status 0 scan "$room" two.3dm --to png -o rule/ -MD -MF rule.d
-grep -q "^rule/:" rule.d && grep -q "square.env" rule.d || fail "rule: $(cat rule.d)"
+# make knows no rule for a set; a folder that cannot be, and depths that 16 bits do not hold.
+expect_error 2 scan "$room" two.3dm --to png -o rule/ -MD
+expect_error 1 scan "$room" two.3dm -o file/
+grep -q '^scan: file/: error: ' err || fail "file/: $(cat err)"
+printf '#3dm 1\nranger range=100 at=0,0 pixels=4,3\n' >far.3dm
+expect_status 0 scan "$room" far.3dm --to png -o far.png
+grep -q 'warning: ranger1 sees as far as 100 m, and 16 bits end at 65.535 m' err || fail "$(cat err)"
+expect_status 0 scan "$room" far.3dm --to png --depth-scale 500 -o far.png
+[ ! -s err ] || fail "a warning for nothing: $(cat err)"
+# Each reading in a table of its own may be of any kind.
+expect_status 0 scan "$room" two.3dm --to csv -o tables/
+head -qn 1 tables/k-0000.csv | grep -q '^sensor,frame,t,column,row,' || fail "$(head -n 1 tables/*)"
+head -qn 1 tables/l2-0000.csv | grep -q '^sensor,frame,scan,t,beam,' || fail "$(head -n 1 tables/*)"
 
 # A full disk: an error, and no half of a file.
 mkdir disk

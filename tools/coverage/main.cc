@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // coverage: measures and draws what the sensors of a scene see.
+#include <iostream>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "base/history.h"
@@ -20,9 +22,19 @@ void checkRequired(const CoverageToolOptions& options, const CoverageReport& rep
                      options.require_text);
 }
 
+/// Figures are of lasers alone in this version.
+void warnOfOthers(const Scene& scene, bool quiet) {
+    const std::size_t others = scene.rangers.size() + scene.receivers.size();
+    if (others == 0 || quiet) return;
+    std::cerr << "coverage: warning: " << others
+              << (others == 1 ? " sensor that is no laser is" : " sensors that are no lasers are")
+              << " not measured\n";
+}
+
 void coverage(CoverageToolOptions options) {
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene({options.operands, options.any_environment, true});
+    warnOfOthers(input.scene, options.common.quiet);
     Worlds worlds(input.scene.environment);
     const Coverage measured =
         measureCoverage(input.scene, worlds, options.columns, options.rows, options.height);

@@ -104,23 +104,21 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
         std::vector<std::string> ids;
         ids.reserve(sensors.order.size());
         for (const Sensors::Entry& entry : sensors.order) ids.push_back(sensors.id(entry));
+        if (options.common.dependencies.wanted)
+            throw UsageError("-MD writes a rule for one product, and a set is many files");
         names->prepare(ids, options.frames > 1 || count < 0, format.endings());
         return std::make_unique<Files>(std::move(*names), sensors);
     }
-    if (sensors.order.size() > format.mostSensors())
-        throw UsageError("one file of " + options.format + " tells " +
-                         std::to_string(format.mostSensors()) + " sensors apart, and these are " +
-                         std::to_string(sensors.order.size()) +
-                         ": name a folder (-o DIR/), or choose some with --select");
+    format.checkStream();
     if (format.isStream()) return std::make_unique<Stream>(output, format);
     if (count == 1) return std::make_unique<OneFile>(output);
     const bool is_cloud = options.format == "pcd" || options.format == "ply";
     if (is_cloud && options.coordinates == Coordinates::World)
         return std::make_unique<OneCloud>(options);
-    const std::string many = count < 0 ? "these readings" : std::to_string(count) + " readings";
+    const std::string many = count < 0 ? "poses" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +
-                     "'), or choose one sensor with --select");
+                     "')" + (count < 0 ? "" : ", or choose one sensor with --select"));
 }
 
 }  // namespace ispace

@@ -46,9 +46,9 @@ class PoseDoubts {
         if (count_ == 0) return {};
         const Point3& place = first_.pose.position;
         return {std::to_string(count_) + (count_ == 1 ? " reading was" : " readings were") +
-                " taken inside something solid, the first at t=" +
-                formatDouble(first_.time) + ", " + formatDouble(place.x) + "," +
-                formatDouble(place.y) + "," + formatDouble(place.z)};
+                " taken inside something solid, the first at t=" + formatDouble(first_.time) +
+                ", " + formatDouble(place.x) + "," + formatDouble(place.y) + "," +
+                formatDouble(place.z)};
     }
 
   private:
@@ -58,8 +58,12 @@ class PoseDoubts {
 };
 
 void warn(const ScanToolOptions& options, const std::vector<std::string>& warnings) {
+    constexpr std::size_t kMost = 20;
     if (options.common.quiet) return;
-    for (const std::string& warning : warnings) std::cerr << "scan: warning: " << warning << '\n';
+    for (std::size_t i = 0; i < std::min(kMost, warnings.size()); ++i)
+        std::cerr << "scan: warning: " << warnings[i] << '\n';
+    if (warnings.size() > kMost)
+        std::cerr << "scan: warning: and " << warnings.size() - kMost << " more\n";
 }
 
 std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors) {
@@ -112,6 +116,7 @@ void scan(const ScanCommand& command) {
         moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
     if (!moves) warn(options, doubtsAbout(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
+    warn(options, format->doubts());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
 
     Worlds worlds(scene.environment);
@@ -138,7 +143,8 @@ void scan(const ScanCommand& command) {
     std::vector<std::string> files = filesOf(input);
     if (moves) files.push_back(options.poses);
     writeDependencies(options.common, files);
-    talk(options.common, "scan", std::to_string(done) + " readings written");
+    talk(options.common, "scan",
+         std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
 }
 
 }  // namespace

@@ -16,11 +16,19 @@ constexpr std::string_view kMovable[] = {"laser", "ranger"};
 
 Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
     const std::vector<Record> records = readSensorSpec(model, kMovable, sceneSchemas(), devices);
-    if (records.size() > 1) throw UsageError("--model: one sensor takes the poses, not several");
+    // What is wrong with its figures is wrong on the command line.
+    try {
+        if (records.front().keyword() == "laser")
+            static_cast<void>(laserOf(records.front(), devices));
+        else
+            static_cast<void>(rangerOf(records.front(), devices));
+    } catch (const FormatError& error) {
+        throw UsageError(error.diagnostics().front().message);
+    }
+    if (records.size() > 1) throw UsageError("one sensor takes the poses, not several");
     for (const char* key : {"at", "heading", "tilt", "roll", "on"})
         if (records.front().has(key))
-            throw UsageError(std::string("--model: `") + key +
-                             "` is told by the poses; leave it out");
+            throw UsageError(std::string("`") + key + "` is told by the poses; leave it out");
     return records.front();
 }
 
@@ -46,7 +54,11 @@ Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
     std::optional<Record> of_model;
     std::string id;
     if (!options.model.empty()) {
-        of_model = recordOfModel(options.model, devices);
+        try {
+            of_model = recordOfModel(options.model, devices);
+        } catch (const UsageError& error) {
+            throw UsageError(std::string("--model: ") + error.what());
+        }
         id = of_model->writtenId().empty() ? of_model->keyword() + "1" : of_model->writtenId();
     }
     const std::size_t only = of_model ? 0 : onlySensor(scene, options.select);
