@@ -38,12 +38,13 @@ std::vector<MovingBody> bodiesOf(const Scene& scene) {
     for (const PlacedRobot& robot : scene.robots)
         bodies.push_back(
             robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
-    auto owner = static_cast<std::uint32_t>(bodies.size());
+    // Nobody's: no sensor rides on a person.
+    const auto owner = static_cast<std::uint32_t>(bodies.size());
     for (const Placed& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         if (record.keyword() != "human") continue;
         const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
-        const std::vector<MovingBody> parts = humanBodies(record.number("height"), pose, owner++);
+        const std::vector<MovingBody> parts = humanBodies(record.number("height"), pose, owner);
         bodies.insert(bodies.end(), parts.begin(), parts.end());
     }
     return bodies;

@@ -95,15 +95,18 @@ TEST(ReadingRun, WhatComesBeforeAFailureIsWritten) {
     class Failing final : public ReadingSource {
       public:
         void next(std::size_t most, std::vector<ReadingJob>& batch) override {
+            EXPECT_FALSE(failed_) << "asked again";
             batch.clear();
             while (batch.size() < most) {
-                if (frame_ == 1000) throw FormatError({"poses", 1001, 0, "bad"});
+                failed_ = frame_ == 1000;
+                if (failed_) throw FormatError({"poses", 1001, 0, "bad"});
                 batch.push_back({0, frame_++, 0, {{1, 1, 0.15}, {}, {}, {}}, {}});
             }
         }
 
       private:
         int frame_ = 0;
+        bool failed_ = false;
     };
     const Scene scene = testing::scene(kRoom, "laser at=1,1 step=5\n");
     const Sensors sensors = sensorsOf(scene, {});
@@ -121,6 +124,19 @@ TEST(ReadingRun, WhatComesBeforeAFailureIsWritten) {
             FormatError);
         EXPECT_EQ(bytes, 1000 * 37 * sizeof(float));
     }
+}
+
+TEST(Sensors, AChoiceOfTagsIsNoChoiceOfReceivers) {
+    const Scene scene = testing::scene(kRoom,
+                                       "ultrasound id=u1 at=1,1,2\nultrasound id=u2 at=2,1,2\ntag "
+                                       "id=t1 at=1,2\ntag id=t2 at=2,2\n");
+    const Sensors tag = sensorsOf(scene, {"t2"});
+    EXPECT_EQ(tag.order.size(), 1U);
+    EXPECT_EQ(tag.id(tag.order[0]), "t2");
+    EXPECT_EQ(tag.receivers.size(), 2U);
+    EXPECT_EQ(sensorsOf(scene, {"t1", "u2"}).receivers.size(), 1U);
+    EXPECT_TRUE(sensorsOf(scene, {"u*"}).order.empty());
+    EXPECT_THROW(sensorsOf(scene, {"x*"}), UsageError);
 }
 
 TEST(CloudPile, KeepsRowsOfOneWidthAndDropsMissingPointsElse) {
@@ -148,7 +164,8 @@ TEST(CloudPile, KeepsRowsOfOneWidthAndDropsMissingPointsElse) {
 TEST(Doubts, SensorsWithoutPlaceAndInsideSolids) {
     const Scene scene = testing::scene(kRoom + "cube id=c at=6,1 size=1,1,1\n",
                                        "laser id=a\nranger id=b\nlaser id=in at=6,1\n"
-                                       "laser id=on at=6,0.5\nlaser id=over at=6,1,1.2\n"
+                                       "laser id=on at=6,0.5\nlaser id=touching at=6,0.50005\n"
+                                       "laser id=over at=6,1,1.2\n"
                                        "tag at=1,1\nultrasound id=u at=6,1,0.9\n");
     const std::vector<std::string> all = doubtsAbout(scene, sensorsOf(scene, {}), {});
     ASSERT_EQ(all.size(), 4U);

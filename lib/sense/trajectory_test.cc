@@ -109,6 +109,11 @@ TEST(Trajectory, BetweenIsStraightAndEven) {
     };
     EXPECT_NEAR(apart(c, between(c, d, 1.0 / 3)), apart(c, d) / 3, 1e-9);
     EXPECT_NEAR(apart(between(c, d, 1.0 / 3), d), 2 * apart(c, d) / 3, 1e-9);
+    // The short way round where quaternions have opposite signs.
+    expectNear(between(pose(170, 10, 0), pose(190, 10, 0), 0.5).beam({}), pose(180, 10, 0).beam({}),
+               0.01);
+    expectNear(between(pose(-170, 10, 5), pose(170, 10, 5), 0.5).beam({}),
+               pose(180, 10, 5).beam({}), 0.01);
     expectNear(between(c, d, 0).beam({}), c.beam({}), 1e-12);
     expectNear(between(c, d, 1).beam({}), d.beam({}), 1e-12);
 }
