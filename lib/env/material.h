@@ -40,8 +40,8 @@ struct Look {
 
 const Look& lookOf(Material material);
 
-/// Name of what sensors look at in models: nothing that stands there, so it is left out where a model
-/// is read as a mesh.
+/// Name of what sensors look at in models: nothing that stands there, so it is left out where a
+/// model is read as a mesh.
 inline constexpr const char* kViewMaterial = "sensor-view";
 
 }  // namespace ispace

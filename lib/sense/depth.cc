@@ -2,16 +2,14 @@
 #include "sense/depth.h"
 
 #include <cmath>
-#include <limits>
 
 #include "base/simd.h"
 #include "sense/noise.h"
+#include "trace/ray_limits.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
 /// Beyond everything there is, in metres.
 constexpr double kEverything = 1e7;

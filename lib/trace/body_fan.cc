@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trace/body_fan.h"
 
+#include "trace/ray_limits.h"
+
 namespace ispace {
 
 namespace {
@@ -8,9 +10,6 @@ namespace {
 /// Degrees added to each side of a body as a sensor sees it. The arc sine of a body that is almost
 /// touched is worth half the digits of a double, about 1e-6 degrees.
 constexpr double kAngularSlack = 1e-5;
-
-/// Slack, relative to what it is added to, for bodies that just touch.
-constexpr double kFarSlack = 1e-6;
 
 }  // namespace
 

@@ -3,12 +3,11 @@
 
 #include <array>
 
+#include "trace/ray_limits.h"
+
 namespace ispace {
 
 namespace {
-
-/// Slack, relative to what it is added to, for bodies that just touch.
-constexpr double kFarSlack = 1e-6;
 
 /// The smallest range of pixels about some places, for one axis.
 struct PixelRange {

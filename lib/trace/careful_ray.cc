@@ -29,12 +29,14 @@ bool collect(RTCPointQueryFunctionArguments* args) {
     return false;
 }
 
-std::vector<unsigned> candidatesNear(RTCScene scene, Point3 p, double radius) {
+/// The scene is rounded, and so is the point: all that may be so near, and more.
+std::vector<unsigned> candidatesNear(RTCScene scene, const TriangleSet& set, Point3 p,
+                                     double radius) {
     RTCPointQuery query{};
     query.x = static_cast<float>(p.x);
     query.y = static_cast<float>(p.y);
     query.z = static_cast<float>(p.z);
-    query.radius = static_cast<float>(radius);
+    query.radius = static_cast<float>(radius + set.slack());
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     std::vector<unsigned> near;
@@ -71,19 +73,24 @@ class CarefulRay : private EmbreeQuery {
     /// \return where Embree says the hit is that it accepts
     double trace(double reach) {
         const double size = length(ray_.direction);
+        // Surfaces right before the origin lie behind it once it is rounded.
+        const double back = passed_.is_crowded ? 2 * set_.slack() / size : 0;
+        const double ahead = set_.ball().ahead(ray_.origin, ray_.direction) - back;
+        const Point3 begin = ray_.origin + ahead * ray_.direction;
+        const double far = reach - ahead + 8 * set_.slack() / size;
         RTCRayHit ray{};
-        ray.ray.org_x = static_cast<float>(ray_.origin.x);
-        ray.ray.org_y = static_cast<float>(ray_.origin.y);
-        ray.ray.org_z = static_cast<float>(ray_.origin.z);
+        ray.ray.org_x = static_cast<float>(begin.x);
+        ray.ray.org_y = static_cast<float>(begin.y);
+        ray.ray.org_z = static_cast<float>(begin.z);
         ray.ray.dir_x = static_cast<float>(ray_.direction.x);
         ray.ray.dir_y = static_cast<float>(ray_.direction.y);
         ray.ray.dir_z = static_cast<float>(ray_.direction.z);
-        ray.ray.tfar = static_cast<float>(std::min(reach + 8 * set_.slack() / size, 1e30));
+        ray.ray.tfar = static_cast<float>(far < kFarthest ? far : kFarthest);
         ray.ray.mask = ~0U;
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         EmbreeQuery::trace(scene_, &ray);
-        return static_cast<double>(ray.ray.tfar);
+        return ahead + static_cast<double>(ray.ray.tfar);
     }
 
     /// Accepts what the ray meets in doubles; while it collects it keeps the nearest and goes on.
@@ -116,14 +123,19 @@ bool Passed::contain(const Plane& plane, Point3 origin) const {
 
 Passed passedFrom(RTCScene scene, const TriangleSet& set, Point3 origin, double contact) {
     Passed passed{contact, {}};
-    for (const unsigned triangle : candidatesNear(scene, origin, 2 * contact))
-        if (set.distance(triangle, origin) <= contact)
+    const double near = std::max(contact, set.slack());
+    for (const unsigned triangle : candidatesNear(scene, set, origin, near)) {
+        const double distance = set.distance(triangle, origin);
+        if (distance <= contact)
             passed.touched.push_back(set.planes()[triangle].normal);
+        else if (distance <= near)
+            passed.is_crowded = true;
+    }
     return passed;
 }
 
 bool isNear(RTCScene scene, const TriangleSet& set, Point3 p, double radius) {
-    const std::vector<unsigned> near = candidatesNear(scene, p, radius);
+    const std::vector<unsigned> near = candidatesNear(scene, set, p, radius);
     return std::any_of(near.begin(), near.end(),
                        [&](unsigned triangle) { return set.distance(triangle, p) <= radius; });
 }
@@ -136,8 +148,9 @@ PassingQuery::PassingQuery(const TriangleSet& triangles, const Passed& surfaces,
 
 Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& passed, const Ray& ray,
                       const RTCRayHit16& hits, std::size_t lane) {
-    const std::size_t triangle = hits.hit.primID[lane];
     CarefulRay careful(scene, set, passed, ray);
+    if (passed.is_crowded) return careful.first();
+    const std::size_t triangle = hits.hit.primID[lane];
     const Plane& plane = set.planes()[triangle];
     if (passed.contain(plane, ray.origin)) return careful.first();
 
@@ -150,7 +163,10 @@ Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& pass
     std::size_t count = 0;
     for (std::size_t i = 0; i < 3; ++i)
         if (!(static_cast<double>(weights[i]) * cosine > margin)) sides[count++] = i;
-    if (count == 0) return careful.meet(triangle);
+    if (count == 0) {
+        const Meeting met = careful.meet(triangle);
+        return met < kNone ? met : careful.first();
+    }
     if (count == 3) return careful.first();
 
     Meeting best = kNone;
@@ -163,8 +179,12 @@ Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& pass
         set.forEachAtSide(triangle, (sides[0] + 1) % 3, (sides[0] + 2) % 3, consider);
     else
         set.forEachAtCorner(triangle, 3 - sides[0] - sides[1], consider);
-    // At the rim of a surface, or beside it, all that is near counts.
-    return candidates > 1 && best < kNone ? best : careful.first();
+    // At the rim of a surface, or beside it, all that is near counts; as does, where the neighbours
+    // lie farther along the ray than Embree's hit, what may stand before them.
+    const double hit =
+        set.ball().ahead(ray.origin, ray.direction) + static_cast<double>(hits.ray.tfar[lane]);
+    const double aside = std::fabs(best.multiple - hit) * length(ray.direction);
+    return candidates > 1 && aside <= 8 * set.slack() ? best : careful.first();
 }
 
 }  // namespace ispace

@@ -17,6 +17,8 @@ constexpr double kEdgeOn = 5e-6;
 struct Passed {
     double contact = 0;
     std::vector<Vec3> touched = {};  ///< unit normals of the surfaces in contact
+    /// Other surfaces are so near that float32 does not tell on which side of them rays begin.
+    bool is_crowded = false;
 
     /// Surfaces farther away than this stop rays.
     [[nodiscard]] double clear() const { return touched.empty() ? kEdgeOn : contact; }
@@ -26,7 +28,7 @@ struct Passed {
 /// Those of an origin.
 Passed passedFrom(RTCScene scene, const TriangleSet& set, Point3 origin, double contact);
 
-/// True if a triangle may come within `radius` of the point.
+/// True if a triangle comes within `radius` of the point.
 bool isNear(RTCScene scene, const TriangleSet& set, Point3 p, double radius);
 
 /// Filter for packets of rays from one origin: skips what is passed.
@@ -51,7 +53,8 @@ struct Meeting {
 };
 
 /// Decides in doubles what a ray meets first, given a hit of Embree's whose triangle, or whether
-/// it is one, is not certain. The result does not depend on the hit.
+/// it is one, is not certain; of a crowded origin any hit, or none. Which of the triangles about
+/// one place Embree hit changes nothing.
 Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& passed, const Ray& ray,
                       const RTCRayHit16& hits, std::size_t lane);
 

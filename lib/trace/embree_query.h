@@ -55,6 +55,9 @@ struct EmbreeQuery {
 };
 #endif
 
+/// As far as Embree traces.
+constexpr double kFarthest = 1e30;
+
 /// Packets are made and read in this many lanes, however many Embree traces together.
 constexpr std::size_t kLanes = 16;
 

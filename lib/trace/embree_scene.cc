@@ -15,16 +15,12 @@
 
 #include "trace/careful_ray.h"
 #include "trace/embree_query.h"
+#include "trace/ray_limits.h"
 #include "trace/ray_packet.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
-
-/// Slack for rounding at the far end of a ray, relative to its length.
-constexpr double kFarSlack = 1e-6;
 
 void throwOnError(RTCDevice device) {
     const RTCError code = rtcGetDeviceError(device);
@@ -67,6 +63,14 @@ void copyLanes(const Directions& directions, std::size_t first, std::size_t lane
     copy(directions.z, packet.z);
 }
 
+/// About places that come one after the other.
+Ball ballAbout(std::span<const Point3> places) {
+    Ball ball{places[places.size() / 2]};
+    for (const Point3& place : places)
+        ball.radius = std::max(ball.radius, length(place - ball.middle));
+    return ball;
+}
+
 }  // namespace
 
 /// Traces packet after packet of one thread.
@@ -76,18 +80,21 @@ struct EmbreeScene::Caster {
     PassingQuery query;
     double tail;  ///< see roundRays()
     float most;
+    bool is_far;  ///< rays may begin outside the scene's ball
     alignas(64) RTCRayHit16 hits{};
     alignas(64) std::array<int, kLanes> valid{};
     RayPacket packet;
 
-    Caster(const EmbreeScene& traced, const Passed& surfaces, Point3 origin, double farthest)
+    Caster(const EmbreeScene& traced, const Passed& surfaces, const Ball& origins, double farthest)
         : scene(traced),
           passed(surfaces),
-          query(traced.set_, surfaces, origin),
+          query(traced.set_, surfaces, origins.middle),
           tail(8 * traced.set_.slack()),
-          most(static_cast<float>(farthest)) {
-        packet.setOrigin(origin);
-        packet.reach.fill(farthest * (1 + kFarSlack));
+          most(static_cast<float>(farthest)),
+          is_far(!traced.set_.ball().contains(origins)) {
+        // A limit that is no number, like a negative one, is never reached.
+        packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
+        setOrigins({&origins.middle, 1});
         valid.fill(-1);
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             hits.ray.mask[lane] = ~0U;
@@ -95,6 +102,7 @@ struct EmbreeScene::Caster {
         }
     }
 
+    /// The last one for all further lanes.
     void setOrigins(std::span<const Point3> origins) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Point3 origin = origins[std::min(lane, origins.size() - 1)];
@@ -102,6 +110,7 @@ struct EmbreeScene::Caster {
             packet.origin_y[lane] = origin.y;
             packet.origin_z[lane] = origin.z;
         }
+        if (!is_far) roundOrigins(packet, hits);
     }
 
     /// Only the first lanes count.
@@ -112,9 +121,12 @@ struct EmbreeScene::Caster {
     void trace() {
         const TriangleSet& set = scene.set_;
         roundRays(packet, tail, hits);
+        if (is_far) moveAhead(packet, set.ball(), tail, hits);
         tracePacket(query, scene.scene_.get(), scene.width_, valid.data(), hits);
-        std::uint32_t care = meetPlanes(hits, set.planes().data(), set.margins().data(),
-                                        passed.clear(), most, packet);
+        const double clear = std::max(passed.clear(), set.slack());
+        std::uint32_t care =
+            meetPlanes(hits, set.planes().data(), set.margins().data(), clear, most, packet);
+        if (passed.is_crowded) care = (1U << kLanes) - 1;
         for (; care != 0; care &= care - 1)
             lookCloser(static_cast<std::size_t>(std::countr_zero(care)));
     }
@@ -193,11 +205,9 @@ EmbreeScene::EmbreeScene(TriangleSoup soup, double contact, int packet_width)
     width_ = packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidth(device_.get());
 }
 
-bool EmbreeScene::touches(std::span<const Point3> origins) const {
-    const Point3 middle = origins[origins.size() / 2];
-    double swept = 0;
-    for (const Point3& origin : origins) swept = std::max(swept, length(origin - middle));
-    return isNear(scene_.get(), set_, middle, swept + 2 * contact_);
+bool EmbreeScene::mayTouch(const Ball& origins) const {
+    const double near = std::max(2 * contact_, set_.slack());
+    return isNear(scene_.get(), set_, origins.middle, origins.radius + near);
 }
 
 void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
@@ -208,7 +218,7 @@ void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
         return;
     }
     const Passed passed = passedFrom(scene_.get(), set_, origin, contact_);
-    Caster caster(*this, passed, origin, most);
+    Caster caster(*this, passed, {origin}, most);
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (lanes < kLanes) caster.keep(lanes);
@@ -222,14 +232,15 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
                        const Results& results) const {
     if (set_.size() == 0 || origins.empty()) return cast(Point3{}, directions, most, results);
     const Passed nothing{contact_, {}};
-    const bool may_touch = touches(origins);
-    Caster caster(*this, nothing, origins.front(), most);
+    const Ball swept = ballAbout(origins);
+    const bool may_touch = mayTouch(swept);
+    Caster caster(*this, nothing, swept, most);
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         caster.keep(lanes);
         copyLanes(directions, first, lanes, caster.packet);
         caster.setOrigins(origins.subspan(first, lanes));
-        if (may_touch && touches(origins.subspan(first, lanes))) {
+        if (may_touch && mayTouch(ballAbout(origins.subspan(first, lanes)))) {
             // Each ray has its own surfaces in contact.
             for (std::size_t i = first; i < first + lanes; ++i) {
                 const Directions one{{directions.x[i]}, {directions.y[i]}, {directions.z[i]}};
@@ -266,7 +277,7 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
     const int tile_rows = (grid.rows + kTile - 1) / kTile;
     tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 8),
                       [&](const tbb::blocked_range<int>& rows) {
-                          Caster caster(*this, passed, origin, most);
+                          Caster caster(*this, passed, {origin}, most);
                           caster.tail = shortest > 0 ? caster.tail / shortest : 1e30;
                           for (int i = rows.begin(); i != rows.end(); ++i)
                               cast_row(caster, i * kTile);
@@ -277,7 +288,7 @@ void EmbreeScene::look(Point3 origin, const Directions& directions, std::span<co
                        std::span<std::uint8_t> seen) const {
     if (set_.size() == 0) return std::fill(seen.begin(), seen.end(), std::uint8_t{1});
     const Passed passed = passedFrom(scene_.get(), set_, origin, contact_);
-    Caster caster(*this, passed, origin, 0);
+    Caster caster(*this, passed, {origin}, 0);
     caster.most = kNoReturn;
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);

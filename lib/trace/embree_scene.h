@@ -21,8 +21,10 @@ namespace ispace {
 /// Embree finds the triangle that a ray meets, in float32. Near an edge, where rounding may choose
 /// another, the choice is made again in doubles, and the range is computed in doubles from the
 /// triangle's plane: results do not depend on which rays are traced together. (Where surfaces
-/// without a common edge cross or touch, one ray in some ten millions passes the line so near that
-/// float32 alone decides; its range then may differ by some 10 micrometres.)
+/// without a common edge cross or touch, float32 alone decides which of them is met by a ray that
+/// passes that line within the rounding of the scene, one in some ten millions. Other packets, or
+/// another processor, then may give the cosine of the other surface, and a range that differs by
+/// some millionths of the scene's extent: 10 micrometres in a room.)
 ///
 /// Surfaces within `contact` of a ray's origin do not stop it, nor do those that continue them, nor
 /// those seen exactly from their edge. Each scene has a device of its own: one costs some 50
@@ -57,8 +59,9 @@ class EmbreeScene {
         void operator()(RTCDeviceTy* device) const;
         void operator()(RTCSceneTy* scene) const;
     };
-    /// False if no ray from these places starts in contact with a surface.
-    [[nodiscard]] bool touches(std::span<const Point3> origins) const;
+    /// If not, no ray from the ball starts in contact with a surface, or so near to one that it
+    /// crowds the origin; otherwise one may.
+    [[nodiscard]] bool mayTouch(const Ball& origins) const;
 
     TriangleSet set_;
     double contact_;

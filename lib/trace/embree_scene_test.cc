@@ -6,36 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "trace/test_triangles.h"
+
 namespace ispace {
 
+using namespace testing;
+
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
-constexpr double kContact = 1e-4;
-constexpr int kWidths[] = {16, 8, 4, 1};
-
-/// A box of twelve triangles, turned about the vertical.
-void addBox(TriangleSoup& soup, Point3 middle, Vec3 half, double turn) {
-    std::uint32_t corners[8];
-    const double c = std::cos(turn), s = std::sin(turn);
-    for (unsigned i = 0; i < 8; ++i) {
-        const double x = (i & 1U ? 1 : -1) * half.x, y = (i & 2U ? 1 : -1) * half.y;
-        corners[i] = soup.add({middle.x + c * x - s * y, middle.y + s * x + c * y,
-                               middle.z + (i & 4U ? 1 : -1) * half.z});
-    }
-    const unsigned faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                  {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
-    for (const auto& [i, j, k, l] : faces) {
-        soup.triangles.push_back({corners[i], corners[j], corners[k]});
-        soup.triangles.push_back({corners[i], corners[k], corners[l]});
-    }
-}
 
 /// A globe with bumps, whose triangles share no vertices but places.
 void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt19937_64& random) {
@@ -73,24 +54,6 @@ TriangleSoup furnished() {
     return soup;
 }
 
-struct Beams {
-    Directions directions;
-    std::vector<float> ranges, cosines;
-
-    explicit Beams(std::size_t count) : ranges(count), cosines(count) { directions.resize(count); }
-    void aim(std::size_t i, Vec3 way) { directions.set(i, (1 / length(way)) * way); }
-    void cast(const EmbreeScene& scene, Point3 origin, double most = 60) {
-        scene.cast(origin, directions, most, {ranges, cosines});
-    }
-};
-
-/// Over all triangles, in doubles.
-double bruteForce(const TriangleSet& set, const Ray& ray) {
-    double nearest = kInfinity;
-    for (std::size_t i = 0; i < set.size(); ++i) nearest = std::min(nearest, set.meet(i, ray));
-    return nearest;
-}
-
 /// Beams of all kinds: any directions, neighbours, through edges, through corners.
 void aimAll(Beams& beams, const TriangleSoup& soup, Point3 origin, int kind,
             std::mt19937_64& random) {
@@ -114,7 +77,7 @@ TEST(EmbreeScene, EveryWidthFindsTheSameAsAllTrianglesInDoubles) {
     const TriangleSoup soup = furnished();
     const TriangleSet set(soup);
     std::vector<EmbreeScene> scenes;
-    for (const int width : kWidths) scenes.emplace_back(soup, kContact, width);
+    for (const int width : kWidths) scenes.emplace_back(soup, kTouching, width);
     std::mt19937_64 random(31);
     std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), z(0.1, 2.4);
     int beside = 0;
@@ -142,7 +105,7 @@ TEST(EmbreeScene, EveryWidthFindsTheSameAsAllTrianglesInDoubles) {
 
 TEST(EmbreeScene, ARayDoesNotDependOnItsPacket) {
     const TriangleSoup soup = furnished();
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     std::mt19937_64 random(32);
     for (int kind = 0; kind < 4; ++kind) {
         const Point3 origin{0.3, -0.2, 1.1};
@@ -162,7 +125,7 @@ TEST(EmbreeScene, ARayDoesNotDependOnItsPacket) {
 TEST(EmbreeScene, PlanesAreMetToTheLastBit) {
     TriangleSoup soup;
     addBox(soup, {0, 0, 0}, {4, 3, 2}, 0);
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     std::mt19937_64 random(33);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int i = 0; i < 200; ++i) {
@@ -187,7 +150,7 @@ TEST(EmbreeScene, PlanesAreMetToTheLastBit) {
 TEST(EmbreeScene, FarAndNearEndsOfRays) {
     TriangleSoup soup;
     addBox(soup, {0, 0, 0}, {1, 1, 1}, 0);
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     Beams one(1);
     one.aim(0, {1, 0, 0});
     one.cast(scene, {}, 1);
@@ -214,7 +177,7 @@ TEST(EmbreeScene, FarAndNearEndsOfRays) {
 
 TEST(EmbreeScene, OriginsOfEachRay) {
     const TriangleSoup soup = furnished();
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     std::mt19937_64 random(34);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int i = 0; i < 30; ++i) {
@@ -239,7 +202,7 @@ TEST(EmbreeScene, OriginsOfEachRay) {
 
 TEST(EmbreeScene, PicturesOfAnySizeAreTheirRays) {
     const TriangleSoup soup = furnished();
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     const std::pair<int, int> sizes[] = {{1, 1}, {17, 3}, {3, 17}, {4, 4}, {64, 50}, {1, 100}};
     for (const auto& [columns, rows] : sizes) {
         for (const Point3 origin : {Point3{0, 0, 1}, Point3{-4, 0.3, 1.2}}) {
@@ -274,7 +237,7 @@ TEST(EmbreeScene, PicturesOfAnySizeAreTheirRays) {
 TEST(EmbreeScene, SightEndsWhereItIsTold) {
     TriangleSoup soup;
     addBox(soup, {0, 0, 0}, {1, 1, 1}, 0);
-    const EmbreeScene scene(soup, kContact, 0);
+    const EmbreeScene scene(soup, kTouching, 0);
     Directions directions;
     directions.resize(20);
     std::vector<double> reach;
@@ -292,7 +255,7 @@ TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {
     for (int i = 0; i < 3; ++i) points.add({1, 0, 0});
     points.triangles.push_back({0, 1, 2});
     for (const TriangleSoup& soup : {TriangleSoup(), points}) {
-        const EmbreeScene scene(soup, kContact, 0);
+        const EmbreeScene scene(soup, kTouching, 0);
         Beams one(3);
         for (std::size_t k = 0; k < 3; ++k) one.aim(k, {1, 0, 0});
         one.cast(scene, {});
@@ -304,38 +267,6 @@ TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {
         std::vector<float> picture(6);
         scene.cast({}, RayGrid{{1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}, 3, 2}, 5, {picture, {}});
         EXPECT_EQ(picture, std::vector<float>(6, kNoReturn));
-    }
-}
-
-TEST(TriangleSet, EnlargedTrianglesHoldTheirSlack) {
-    std::mt19937_64 random(35);
-    std::uniform_real_distribution<double> any(-5, 5);
-    TriangleSoup soup;
-    for (int i = 0; i < 200; ++i) {
-        const auto a = soup.add({any(random), any(random), any(random)});
-        const auto b = soup.add({any(random), any(random), any(random)});
-        const auto c = soup.add({any(random), any(random), any(random)});
-        soup.triangles.push_back({a, b, c});
-    }
-    const TriangleSet set(soup);
-    ASSERT_EQ(set.size(), 200U);
-    for (std::size_t i = 0; i < set.size(); ++i) {
-        // Rounding turns the sides of splinters.
-        if (set.margins()[i] > 2.5 * set.slack()) continue;
-        const auto corners = set.enlarged(i);
-        for (std::size_t k = 0; k < 3; ++k) {
-            // Each side lies farther from the corner opposite by the slack.
-            const auto at = [&](std::size_t m) {
-                const auto& [x, y, z] = corners[m % 3];
-                return Point3{x, y, z};
-            };
-            const Vec3 side = at(k + 1) - at(k), inner = set.corner(i, (k + 2) % 3) - at(k);
-            const Vec3 own = set.corner(i, (k + 1) % 3) - set.corner(i, k);
-            const Vec3 opposite = set.corner(i, (k + 2) % 3) - set.corner(i, k);
-            const double height = length(cross(own, opposite)) / length(own);
-            const double now = length(cross(side, inner)) / length(side);
-            EXPECT_NEAR(now - height, set.slack(), 0.5 * set.slack()) << i;
-        }
     }
 }
 

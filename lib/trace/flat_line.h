@@ -21,7 +21,9 @@ namespace ispace {
 /// A line whose straight continuation passes this near to the origin is seen from its edge; a ray
 /// that passes an end of a line this near meets it. More than coordinates of a town round by.
 constexpr double kFlatEdge = 1e-9;
-/// No ray meets more than this of the turn beyond an end, however near that is, in radians.
+/// No ray meets an end farther aside than this times the distance of the line's straight
+/// continuation: of a line seen almost from its edge it would meet that far before or behind the
+/// end. So it is never more of the turn, in radians.
 constexpr double kFlatEdgeAngle = 1e-6;
 /// Least |cosine| between lines of one direction.
 constexpr double kFlatParallel = 1 - 1e-6;
@@ -73,9 +75,7 @@ ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, do
     line.nearest =
         1 / distanceOf(flatLess(px, qx), flatMore(px, qx), flatLess(py, qy), flatMore(py, qy));
     line.height = size / leaf.length[i];
-    const double to_p = flatMore(std::fabs(px), std::fabs(py));
-    const double to_q = flatMore(std::fabs(qx), std::fabs(qy));
-    line.edge = flatLess(kFlatEdge, kFlatEdgeAngle * flatLess(to_p, to_q));
+    line.edge = flatLess(kFlatEdge, kFlatEdgeAngle * line.height);
     line.stops = size > kFlatEdge * leaf.length[i];
     return line;
 }

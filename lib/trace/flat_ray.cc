@@ -2,7 +2,6 @@
 #include "trace/flat_ray.h"
 
 #include <cmath>
-#include <cstdint>
 
 #include "base/simd.h"
 #include "trace/flat_contact.h"
@@ -18,29 +17,14 @@ struct Ray {
     double x, y;
 };
 
-struct Waiting {
-    double distance;
-    std::int32_t child;
-};
-
-struct Stack {
-    Waiting entries[FlatTree::kStack];
-    int count = 0;
-};
-
 /// More than kFlatEdge and what cross products with unit vectors round by.
 ISPACE_INLINE double slackOf(double x, double y) {
     return 2 * kFlatEdge + 1e-12 * (std::fabs(x) + std::fabs(y));
 }
 
-/// False if nothing at this distance or beyond is as near as what was met, whatever the rounding.
-bool mayBeNearer(double distance, const FlatHit& hit) {
-    return distance * hit.nearness <= 1 + 1e-12;
-}
-
 /// Puts those children on the stack that the ray may meet, the nearest on top.
 ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const Ray& ray,
-                         const FlatHit& hit, Stack& stack) {
+                         const FlatHit& hit, FlatStack& stack) {
     alignas(64) double distance[kWidth];
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const double left = node.left[i] - view.x, right = node.right[i] - view.x;
@@ -53,33 +37,34 @@ ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const
             flatMore(ray.x * left, ray.x * right) + flatMore(ray.y * low, ray.y * high);
         const double slack = slackOf(flatMore(std::fabs(left), std::fabs(right)),
                                      flatMore(std::fabs(low), std::fabs(high)));
-        const bool meets = (right_side <= slack) & (left_side >= -slack) & (ahead >= -slack);
-        distance[i] = flatChoice(meets, distanceOf(left, right, low, high), -1.0);
+        const double near = distanceOf(left, right, low, high);
+        const bool meets = (right_side <= slack) & (left_side >= -slack) & (ahead >= -slack) &
+                           mayBeNearer(near, hit.nearness);
+        distance[i] = flatChoice(meets, near, -1.0);
     }
-    const int bottom = stack.count;
-    for (int i = 0; i < node.count; ++i) {
-        if (distance[i] < 0 || !mayBeNearer(distance[i], hit)) continue;
-        int place = stack.count++;
-        for (; place > bottom && stack.entries[place - 1].distance < distance[i]; --place)
-            stack.entries[place] = stack.entries[place - 1];
-        stack.entries[place] = {distance[i], node.child[i]};
-    }
+    stack.push(node, distance);
 }
 
 ISPACE_INLINE void meetLeaf(const FlatTree& tree, const FlatView& view, const FlatTree::Leaf& leaf,
                             const Ray& ray, FlatHit& hit) {
-    alignas(64) double slack[kWidth];
+    alignas(64) double meets[kWidth];
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const double px = leaf.ax[i] - view.x, py = leaf.ay[i] - view.y;
         const double qx = leaf.bx[i] - view.x, qy = leaf.by[i] - view.y;
         const double p = ray.x * py - ray.y * px, q = ray.x * qy - ray.y * qx;
         const double most =
             slackOf(flatMore(std::fabs(px), std::fabs(qx)), flatMore(std::fabs(py), std::fabs(qy)));
-        // Not negative if ends lie on both sides of the ray's line.
-        slack[i] = flatLess(most - flatLess(p, q), most + flatMore(p, q));
+        const double ahead = flatMore(ray.x * px + ray.y * py, ray.x * qx + ray.y * qy);
+        const double near =
+            distanceOf(flatLess(px, qx), flatMore(px, qx), flatLess(py, qy), flatMore(py, qy));
+        const double least = flatLess(p, q), greatest = flatMore(p, q);
+        // Ends lie on both sides of the ray's line, and not both behind.
+        const bool is_met = (least <= most) & (greatest >= -most) & (ahead >= -most) &
+                            mayBeNearer(near, hit.nearness);
+        meets[i] = is_met ? 1.0 : 0.0;
     }
     for (int i = 0; i < leaf.count; ++i) {
-        if (slack[i] < 0) continue;
+        if (meets[i] == 0) continue;
         const FlatLine line = lineFrom(leaf, i, view.x, view.y);
         const double nearness = nearnessAlong(line, ray.x, ray.y);
         if (!line.stops || nearness < hit.nearness || nearness <= 0) continue;
@@ -100,11 +85,11 @@ FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y
     FlatHit hit{least_nearness};
     if (tree.nodes.empty()) return hit;
     const Ray ray{x, y};
-    Stack stack;
+    FlatStack stack;
     visit(tree.nodes.front(), view, ray, hit, stack);
-    while (stack.count > 0) {
-        const Waiting box = stack.entries[--stack.count];
-        if (!mayBeNearer(box.distance, hit)) continue;
+    while (!stack.empty()) {
+        const FlatStack::Entry box = stack.pop();
+        if (!mayBeNearer(box.distance, hit.nearness)) continue;
         if (box.child >= 0)
             visit(tree.node(box.child), view, ray, hit, stack);
         else

@@ -7,14 +7,14 @@
 #include <limits>
 
 #include "trace/flat_fan.h"
+#include "trace/flat_packet.h"
 #include "trace/flat_ray.h"
 #include "trace/flat_tree.h"
+#include "trace/ray_limits.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
 /// Ranges end at max_range as float32, so that what rounds to it is met. \pre max_range >= 0
 struct Limit {
@@ -34,6 +34,19 @@ struct Limit {
     }
 };
 
+/// Rays, and where their readings go.
+struct Cast {
+    const Point2* origins;
+    bool is_one_origin;
+    const Directions& directions;
+    double contact;
+    Limit limit;
+    float* ranges;
+    float* cosines;  ///< or null
+
+    [[nodiscard]] Point2 origin(std::size_t i) const { return origins[is_one_origin ? 0 : i]; }
+};
+
 bool isFan(const Directions& directions) {
     if (!directions.arc || directions.size() < FlatFan::kLeast) return false;
     const double step = std::fabs(directions.arc->step.radians());
@@ -45,11 +58,68 @@ bool isFan(const Directions& directions) {
 struct FlatWorld::Data {
     FlatTree tree;
 
-    void castRay(const FlatView& view, double x, double y, const Limit& limit, float& range,
-                 float* cosine) const {
-        const FlatHit hit = firstLine(tree, view, x, y, limit.nearness);
-        range = limit.rangeOf(hit.nearness);
-        if (cosine != nullptr) *cosine = limit.cosineOf(range, hit.cosine);
+    double widest_packet;
+
+    explicit Data(std::span<const Segment2> lines)
+        : tree(lines), widest_packet(widestPacket(tree)) {}
+
+    void castRay(const Cast& cast, std::size_t i) const {
+        const Point2 origin = cast.origin(i);
+        const FlatHit hit =
+            firstLine(tree, {origin.x, origin.y, cast.contact}, cast.directions.x[i],
+                      cast.directions.y[i], cast.limit.nearness);
+        cast.ranges[i] = cast.limit.rangeOf(hit.nearness);
+        if (cast.cosines != nullptr)
+            cast.cosines[i] = cast.limit.cosineOf(cast.ranges[i], hit.cosine);
+    }
+
+    /// Rays begin .. begin + count - 1; false, and nothing done, if they are better cast singly.
+    [[nodiscard]] bool castPacket(const Cast& cast, std::size_t begin, std::size_t count) const {
+        if (count < FlatPacket::kLeast) return false;
+        constexpr std::size_t kBlock = FlatPacket::kBlock;
+        const std::size_t lanes = (count + kBlock - 1) / kBlock * kBlock;
+        FlatPacket packet;
+        packet.count = static_cast<int>(lanes);
+        const auto set = [&](std::size_t lane, std::size_t i) {
+            packet.x[lane] = cast.directions.x[i];
+            packet.y[lane] = cast.directions.y[i];
+            const Point2 origin = cast.origin(i);
+            packet.origin_x[lane] = origin.x;
+            packet.origin_y[lane] = origin.y;
+        };
+        for (std::size_t i = 0; i < count; ++i) set(i, begin + i);
+        for (std::size_t i = count; i < lanes; ++i) set(i, begin + count / 2);
+        const FlatPacketLimits limits{cast.contact, cast.limit.nearness, widest_packet};
+        if (!(cast.cosines == nullptr ? drawLines(tree, limits, packet)
+                                      : drawLinesAndCosines(tree, limits, packet)))
+            return false;
+        float* const ranges = cast.ranges + begin;
+        for (std::size_t i = 0; i < count; ++i) ranges[i] = cast.limit.rangeOf(packet.nearness[i]);
+        if (cast.cosines != nullptr)
+            for (std::size_t i = 0; i < count; ++i)
+                cast.cosines[begin + i] = cast.limit.cosineOf(ranges[i], packet.cosine[i]);
+        return true;
+    }
+
+    /// In packets as large as rays are near to one another.
+    void castRays(const Cast& cast) const {
+        const std::size_t size = cast.directions.size();
+        std::size_t most = FlatPacket::kMost;
+        int before_more = 0;
+        for (std::size_t begin = 0; begin < size;) {
+            const std::size_t count = std::min(most, size - begin);
+            if (castPacket(cast, begin, count)) {
+                begin += count;
+                if (--before_more > 0 || most == FlatPacket::kMost) continue;
+                most *= 2;
+            } else if (count > FlatPacket::kBlock) {
+                while (most >= count) most /= 2;
+                before_more = 8;
+            } else {
+                for (const std::size_t end = begin + count; begin < end; ++begin)
+                    castRay(cast, begin);
+            }
+        }
     }
 
     /// Beams begin .. begin + count - 1 of a fan.
@@ -79,7 +149,7 @@ struct FlatWorld::Data {
     }
 };
 
-FlatWorld::FlatWorld(std::span<const Segment2> lines) : data_(new Data{FlatTree(lines)}) {}
+FlatWorld::FlatWorld(std::span<const Segment2> lines) : data_(new Data(lines)) {}
 FlatWorld::FlatWorld(FlatWorld&&) noexcept = default;
 FlatWorld& FlatWorld::operator=(FlatWorld&&) noexcept = default;
 FlatWorld::~FlatWorld() = default;
@@ -106,9 +176,8 @@ void FlatWorld::cast(Point2 origin, const Directions& directions, double max_ran
         }
         return;
     }
-    for (std::size_t i = 0; i < size; ++i)
-        data_->castRay(view, directions.x[i], directions.y[i], limit, ranges[i],
-                       cosines.empty() ? nullptr : &cosines[i]);
+    data_->castRays({&origin, true, directions, contact, limit, ranges.data(),
+                     cosines.empty() ? nullptr : cosines.data()});
 }
 
 void FlatWorld::cast(std::span<const Point2> origins, const Directions& directions,
@@ -121,10 +190,8 @@ void FlatWorld::cast(std::span<const Point2> origins, const Directions& directio
         std::fill(cosines.begin(), cosines.end(), 1.0F);
         return;
     }
-    const Limit limit(max_range);
-    for (std::size_t i = 0; i < directions.size(); ++i)
-        data_->castRay({origins[i].x, origins[i].y, contact}, directions.x[i], directions.y[i],
-                       limit, ranges[i], cosines.empty() ? nullptr : &cosines[i]);
+    data_->castRays({origins.data(), false, directions, contact, Limit(max_range), ranges.data(),
+                     cosines.empty() ? nullptr : cosines.data()});
 }
 
 }  // namespace ispace

@@ -135,7 +135,7 @@ TEST(FlatWorld, CosineOfTheNearestOrTheLarger) {
         const Seen corner = cast(FlatWorld(turned), {0, 0}, beams);
         EXPECT_EQ(corner.ranges[0], 4);
         EXPECT_EQ(corner.cosines[0], 1);
-        EXPECT_EQ(castSingly(FlatWorld(turned), {0, 0}, beams), corner);
+        EXPECT_EQ(castApart(FlatWorld(turned), {0, 0}, beams), corner);
     }
 }
 
@@ -166,7 +166,7 @@ TEST(FlatWorld, NothingStopsNothing) {
         const Seen seen = cast(world, {0, 0}, beams);
         EXPECT_EQ(seen.ranges, std::vector<float>(720, std::numeric_limits<float>::infinity()));
         EXPECT_EQ(seen.cosines, std::vector<float>(720, 1.0F));
-        EXPECT_EQ(castSingly(world, {0, 0}, beams), seen);
+        EXPECT_EQ(castApart(world, {0, 0}, beams), seen);
         cast(world, {0, 0}, Directions{});
         cast(world, {0, 0}, fan({}, Angle::degrees(1), 0));
     }

@@ -206,7 +206,7 @@ TEST(FlatWorld, ARayIsTheSameInAnyCompany) {
             const Directions beams = fan(first, Angle::degrees(0.5), 721);
             const Seen seen = cast(world, origin, beams, 12);
             EXPECT_EQ(cast(other, origin, beams, 12), seen);
-            EXPECT_EQ(castSingly(world, origin, beams, 12), seen);
+            EXPECT_EQ(castApart(world, origin, beams, 12), seen);
             Directions free = beams;
             free.arc.reset();
             EXPECT_EQ(cast(world, origin, free, 12), seen);

@@ -9,6 +9,7 @@
 #include "trace/body_fan.h"
 #include "trace/body_picture.h"
 #include "trace/body_ray.h"
+#include "trace/ray_limits.h"
 
 namespace ispace {
 
@@ -94,8 +95,7 @@ void MovingBodies::shorten(std::span<const Point3> origins, const Directions& di
                            std::span<float> cosines) const {
     assert(directions.size() == ranges.size() && origins.size() == ranges.size());
     if (ranges.empty() || grid_.empty()) return;
-    // A hair more, so that rounding loses nothing that just touches.
-    const double far = max_range * (1 + 1e-6);
+    const double far = max_range * (1 + kFarSlack);
     Box2 box;
     for (const Point3& origin : origins) {
         box.add(origin.onFloor() - Vec2{far, far});

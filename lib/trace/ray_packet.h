@@ -26,19 +26,18 @@ struct alignas(64) RayPacket {
                 {x[lane], y[lane], z[lane]},
                 reach[lane]};
     }
-    void setOrigin(Point3 origin) {
-        origin_x.fill(origin.x);
-        origin_y.fill(origin.y);
-        origin_z.fill(origin.z);
-    }
 };
 
 /// The rays of a square tile of a picture; beyond its edges those at the edge.
 constexpr int kTile = 4;
 void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet);
 
-/// For Embree, in float32. `tail` is added to the reach, which decides once the hits are known.
+/// For Embree, in float32: where the rays begin.
+void roundOrigins(const RayPacket& packet, RTCRayHit16& rays);
+/// The rest of the rays. `tail` is added to the reach, which decides once the hits are known.
 void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays);
+/// Has rounded rays that come from outside the ball begin by it.
+void moveAhead(const RayPacket& packet, const Ball& ball, double tail, RTCRayHit16& rays);
 
 /// Where the rays meet the planes of the triangles hit; multiples are at most `most`.
 /// Planes nearer than `clear` to the origin need a closer look, as do hits near an edge.

@@ -14,15 +14,11 @@
 #include "geom/box.h"
 #include "trace/embree_scene.h"
 #include "trace/flat_world.h"
+#include "trace/ray_limits.h"
 
 namespace ispace {
 
 namespace {
-
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
-
-/// Slack for rounding at the far end of a ray, relative to its length.
-constexpr double kFarSlack = 1e-6;
 
 /// The middle of what is built from; coordinates are kept relative to it.
 Point3 middleOf(const Box2& plan) {

@@ -32,7 +32,7 @@ class RayWorld {
     /// What a level sensor at `slice.height` meets: rays must start at that height and be level (z
     /// does not count).
     /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for what the processor
-    ///        does best; it changes no result
+    ///        does best; it changes no result but as cast() says
     /// \throws std::runtime_error if Embree fails (no memory)
     static RayWorld ofSlice(const Slice& slice, int packet_width = 0);
     /// All bodies and the floor, for rays of any direction.
@@ -44,8 +44,9 @@ class RayWorld {
     /// Distance to the first surface along each direction, up to max_range inclusive; +infinity if
     /// there is none. Fastest for neighbouring directions (coherent packets), and in a slice for
     /// directions with an arc. The same for any packet width and however rays are put together, but
-    /// for rays of the mesh that pass within 1e-7 m of where surfaces without a common edge meet:
-    /// either may decide, and the ranges differ by some 10 micrometres.
+    /// for rays of the mesh that pass the line where surfaces without a common edge meet within the
+    /// rounding of float32 (1e-7 m in a room, more in a larger scene): either surface may decide
+    /// the cosine, and the range, which differs by some millionths of the scene's extent.
     /// `cosines`, if not empty: |cosine| of the angle between ray and surface normal, 1 without
     /// return. \pre ranges.size() == directions.size(), cosines.size() as well or 0
     void cast(Point3 origin, const Directions& directions, double max_range,

@@ -5,20 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "geom/pose.h"
+#include "trace/test_triangles.h"
 
 namespace ispace {
 
-namespace {
+using namespace testing;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kWidths[] = {4, 8, 16};
+namespace {
 
 /// Lines where `pose` puts them.
 Slice moved(std::vector<Segment2> sheets, const Pose2& pose) {
@@ -39,40 +38,61 @@ Directions alike(Vec3 direction, std::size_t count) {
     return directions;
 }
 
-/// One ray in the frame of `pose`, asked alone and in a full packet of its like.
-double range(const RayWorld& world, const Pose2& pose, Point2 from, Angle heading,
-             double max_range = 100) {
-    const Point2 origin = pose * from;
-    const Vec2 direction = unitVector(pose.heading + heading);
-    const Vec3 level{direction.x, direction.y, 0};
-    std::vector<float> ranges(17);
-    world.cast({origin.x, origin.y, 0.15}, alike(level, 17), max_range, ranges);
-    for (const float other : ranges) EXPECT_EQ(other, ranges.front());
-    float alone = 0;
-    world.cast({origin.x, origin.y, 0.15}, alike(level, 1), max_range, {&alone, 1});
-    EXPECT_EQ(alone, ranges.front());
-    return alone;
-}
+/// Rays of a slice, and the same against its lines as walls in a mesh, whose rays are traced
+/// `width` together, as are those of sight.
+class World {
+  public:
+    World(const std::vector<Segment2>& lines, int width, const Pose2& pose)
+        : pose_(pose),
+          slice_(RayWorld::ofSlice(moved(lines, pose), width)),
+          mesh_(standing(moved(lines, Pose2{{}, pose.heading}).sheets), kContact, width) {}
 
-bool sees(const RayWorld& world, const Pose2& pose, Point2 from, Point2 to) {
-    const Point2 origin = pose * from, target = pose * to;
-    std::uint8_t seen = 7;
-    const Point3 at{target.x, target.y, 0.15};
-    world.look({origin.x, origin.y, 0.15}, {&at, 1}, {&seen, 1});
-    EXPECT_LE(seen, 1);
-    return seen == 1;
-}
+    /// One ray in the frame of the pose, asked alone and in a full packet of its like.
+    [[nodiscard]] double range(Point2 from, Angle heading, double max_range = 100) const {
+        const Point2 origin = pose_ * from, near = Pose2{{}, pose_.heading} * from;
+        const Vec2 direction = unitVector(pose_.heading + heading);
+        const Directions rays = alike({direction.x, direction.y, 0}, 17);
+        std::vector<float> ranges(17), walls(17);
+        slice_.cast({origin.x, origin.y, 0.15}, rays, max_range, ranges);
+        for (const float other : ranges) EXPECT_EQ(other, ranges.front());
+        mesh_.cast({near.x, near.y, 0}, rays, max_range, {walls, {}});
+        for (const float other : walls) EXPECT_EQ(other, walls.front());
+        if (std::isinf(ranges.front())) {
+            EXPECT_EQ(walls.front(), ranges.front());
+        } else {
+            EXPECT_NEAR(walls.front(), ranges.front(), 1e-5);
+        }
+        float alone = 0;
+        slice_.cast({origin.x, origin.y, 0.15}, alike(rays[0], 1), max_range, {&alone, 1});
+        EXPECT_EQ(alone, ranges.front());
+        return alone;
+    }
+    [[nodiscard]] bool sees(Point2 from, Point2 to) const {
+        const Point2 origin = pose_ * from, target = pose_ * to;
+        std::uint8_t seen = 7;
+        const Point3 at{target.x, target.y, 0.15};
+        slice_.look({origin.x, origin.y, 0.15}, {&at, 1}, {&seen, 1});
+        EXPECT_LE(seen, 1);
+        return seen == 1;
+    }
+    [[nodiscard]] const RayWorld& slice() const { return slice_; }
+
+  private:
+    Pose2 pose_;
+    RayWorld slice_;
+    EmbreeScene mesh_;
+};
 
 /// The same degenerate cases square to the axes, turned, and far from the origin.
 class RayWorldCases : public ::testing::TestWithParam<std::pair<int, Pose2>> {
   protected:
-    [[nodiscard]] RayWorld world(std::vector<Segment2> lines) const {
-        return RayWorld::ofSlice(moved(std::move(lines), pose()), GetParam().first);
+    [[nodiscard]] World world(const std::vector<Segment2>& lines) const {
+        return {lines, GetParam().first, pose()};
     }
     [[nodiscard]] Pose2 pose() const { return GetParam().second; }
-    void expectRange(const RayWorld& world, Point2 from, double heading, double expected,
+    void expectRange(const World& world, Point2 from, double heading, double expected,
                      double max_range = 100) const {
-        const double found = range(world, pose(), from, Angle::degrees(heading), max_range);
+        const double found = world.range(from, Angle::degrees(heading), max_range);
         if (std::isinf(expected)) {
             EXPECT_TRUE(std::isinf(found)) << heading << " degrees, found " << found;
         } else {
@@ -95,7 +115,7 @@ std::vector<std::pair<int, Pose2>> cases() {
 INSTANTIATE_TEST_SUITE_P(Places, RayWorldCases, ::testing::ValuesIn(cases()));
 
 TEST_P(RayWorldCases, Room) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
     expectRange(room, {3, 2}, 0, 5);
     expectRange(room, {3, 2}, 90, 4);
     expectRange(room, {3, 2}, 180, 3);
@@ -107,7 +127,7 @@ TEST_P(RayWorldCases, Room) {
 }
 
 TEST_P(RayWorldCases, CornersLetNoRayThrough) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), off(-1e-7, 1e-7);
     for (int i = 0; i < 400; ++i) {
@@ -116,7 +136,7 @@ TEST_P(RayWorldCases, CornersLetNoRayThrough) {
             const Vec2 way = corner - from;
             const double exact = i % 2 == 0 ? 0 : off(random);
             const Angle heading = directionOf(way.x, way.y) + Angle::radians(exact);
-            EXPECT_NEAR(range(room, pose(), from, heading), length(way), 1e-4);
+            EXPECT_NEAR(room.range(from, heading), length(way), 1e-4);
         }
     }
 }
@@ -141,7 +161,7 @@ std::vector<Segment2> raggedWall(int corners) {
 
 TEST_P(RayWorldCases, BendsLetNoRayThrough) {
     const std::vector<Segment2> lines = raggedWall(2000);
-    const RayWorld room = world(lines);
+    const World room = world(lines);
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> place(-15, 15);
     Directions directions;
@@ -153,13 +173,13 @@ TEST_P(RayWorldCases, BendsLetNoRayThrough) {
             const Vec2 way = pose() * lines[k].a - from;
             directions.set(k, {way.x / length(way), way.y / length(way), 0});
         }
-        room.cast({from.x, from.y, 0.15}, directions, 200, ranges);
+        room.slice().cast({from.x, from.y, 0.15}, directions, 200, ranges);
         for (const float range : ranges) EXPECT_LT(range, 15 * std::sqrt(2.0) + 28) << i;
     }
 }
 
 TEST_P(RayWorldCases, FromAWallItLooksOutOnBothSidesAndAlong) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
     expectRange(room, {2, 0}, 0, 6);
     expectRange(room, {2, 0}, 180, 2);
     expectRange(room, {2, 0}, 90, 6);
@@ -181,7 +201,7 @@ TEST_P(RayWorldCases, FromAWallItLooksOutOnBothSidesAndAlong) {
 }
 
 TEST_P(RayWorldCases, FromACorner) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
     expectRange(room, {0, 0}, 0, 8);
     expectRange(room, {0, 0}, 90, 6);
     expectRange(room, {0, 0}, 45, 6 * std::sqrt(2.0));
@@ -193,17 +213,17 @@ TEST_P(RayWorldCases, WallInPiecesIsNoneForASensorOnIt) {
     lines[0] = {{0, 0}, {3, 0}};
     lines.push_back({{3, 0}, {5, 0}});
     lines.push_back({{5, 0}, {8, 0}});
-    const RayWorld room = world(lines);
+    const World room = world(lines);
     expectRange(room, {2, 0}, 0, 6);
     expectRange(room, {7, 0}, 180, 7);
-    EXPECT_TRUE(sees(room, pose(), {2, 0}, {7.5, 0}));
-    EXPECT_TRUE(sees(room, pose(), {2, 0}, {7.5, 3}));
+    EXPECT_TRUE(room.sees({2, 0}, {7.5, 0}));
+    EXPECT_TRUE(room.sees({2, 0}, {7.5, 3}));
 }
 
 TEST_P(RayWorldCases, SheetSeenFromItsEdgeStopsNothing) {
     std::vector<Segment2> lines = rectangleLines({0, 0}, {8, 6});
     lines.push_back({{3, 2}, {5, 2}});
-    const RayWorld room = world(lines);
+    const World room = world(lines);
     expectRange(room, {1, 2}, 0, 7);
     expectRange(room, {1, 2}, 0.001, 7);
     expectRange(room, {3, 1}, 90, 1);  // its end, seen from the side
@@ -216,18 +236,18 @@ TEST_P(RayWorldCases, SheetSeenFromItsEdgeStopsNothing) {
 TEST_P(RayWorldCases, SolidIsClosed) {
     std::vector<Segment2> lines = rectangleLines({0, 0}, {8, 6});
     for (const Segment2& line : rectangleLines({3, 2}, {4, 3})) lines.push_back(line);
-    const RayWorld room = world(lines);
+    const World room = world(lines);
     expectRange(room, {1, 2.5}, 0, 2);
     expectRange(room, {1, 2}, 0, 2);  // along a face
     expectRange(room, {1, 3}, 0, 2);
     expectRange(room, {1, 3.001}, 0, 7);
     expectRange(room, {2, 4}, -45, std::sqrt(2.0));  // touches the corner (3, 3)
-    EXPECT_FALSE(sees(room, pose(), {2, 4}, {4.5, 1.5}));
-    EXPECT_TRUE(sees(room, pose(), {2, 4.01}, {4, 3.01}));
+    EXPECT_FALSE(room.sees({2, 4}, {4.5, 1.5}));
+    EXPECT_TRUE(room.sees({2, 4.01}, {4, 3.01}));
 }
 
 TEST_P(RayWorldCases, MaximumRangeIsInclusive) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
     expectRange(room, {3, 2}, 0, 5, 5);
     expectRange(room, {3, 2}, 0, kInfinity, 4.9999);
     expectRange(room, {3, 2}, 0, 5, kInfinity);
@@ -236,36 +256,37 @@ TEST_P(RayWorldCases, MaximumRangeIsInclusive) {
 }
 
 TEST_P(RayWorldCases, ThinGap) {
-    const RayWorld gap = world({{{2, -3}, {2, -0.0005}}, {{2, 0.0005}, {2, 3}}, {{6, -9}, {6, 9}}});
+    const World gap = world({{{2, -3}, {2, -0.0005}}, {{2, 0.0005}, {2, 3}}, {{6, -9}, {6, 9}}});
     expectRange(gap, {0, 0}, 0, 6);
     expectRange(gap, {0, 0}, 0.012, 6);
     expectRange(gap, {0, 0}, 0.017, 2);
     expectRange(gap, {0, 0}, -0.017, 2);
-    EXPECT_TRUE(sees(gap, pose(), {0, 0}, {6, 0}));
-    EXPECT_FALSE(sees(gap, pose(), {0, 0}, {6, 0.003}));
+    EXPECT_TRUE(gap.sees({0, 0}, {6, 0}));
+    EXPECT_FALSE(gap.sees({0, 0}, {6, 0.003}));
 }
 
 TEST_P(RayWorldCases, EndOfAGazeIsOpen) {
-    const RayWorld room = world(rectangleLines({0, 0}, {8, 6}));
-    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8, 2}));
-    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8 + 9e-5, 2}));
-    EXPECT_FALSE(sees(room, pose(), {3, 2}, {8 + 2e-4, 2}));
-    EXPECT_TRUE(sees(room, pose(), {3, 2}, {8, 6}));
-    EXPECT_TRUE(sees(room, pose(), {3, 2}, {3, 2}));
-    EXPECT_TRUE(sees(room, pose(), {8, 2}, {9, 2}));
-    EXPECT_TRUE(sees(room, pose(), {8, 2}, {7, 2}));
+    const World room = world(rectangleLines({0, 0}, {8, 6}));
+    EXPECT_TRUE(room.sees({3, 2}, {8, 2}));
+    EXPECT_TRUE(room.sees({3, 2}, {8 + 9e-5, 2}));
+    EXPECT_FALSE(room.sees({3, 2}, {8 + 2e-4, 2}));
+    EXPECT_TRUE(room.sees({3, 2}, {8, 6}));
+    EXPECT_TRUE(room.sees({3, 2}, {3, 2}));
+    EXPECT_TRUE(room.sees({8, 2}, {9, 2}));
+    EXPECT_TRUE(room.sees({8, 2}, {7, 2}));
 }
 
 TEST(RayWorld, EmptyWorldStopsNothing) {
     for (const int width : kWidths) {
-        const RayWorld nothing = RayWorld::ofSlice({}, width);
-        EXPECT_TRUE(std::isinf(range(nothing, {}, {1, 2}, {})));
-        EXPECT_TRUE(sees(nothing, {}, {1, 2}, {1e3, 2}));
+        const World nothing({}, width, {});
+        EXPECT_TRUE(std::isinf(nothing.range({1, 2}, {})));
+        EXPECT_TRUE(nothing.sees({1, 2}, {1e3, 2}));
         // A line without length is none.
-        const RayWorld point = RayWorld::ofSlice({0.15, {{{1, 1}, {1, 1}}}, {}}, width);
-        EXPECT_TRUE(std::isinf(range(point, {}, {0, 0}, Angle::degrees(45))));
-        nothing.cast(Point3(), Directions(), 5, {});
-        nothing.look({}, {}, {});
+        const World point({{{1, 1}, {1, 1}}}, width, {});
+        EXPECT_TRUE(std::isinf(point.range({0, 0}, Angle::degrees(45))));
+        EXPECT_TRUE(point.sees({0, 0}, {2, 2}));
+        nothing.slice().cast(Point3(), Directions(), 5, {});
+        nothing.slice().look({}, {}, {});
     }
 }
 

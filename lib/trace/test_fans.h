@@ -53,9 +53,9 @@ inline Seen cast(const FlatWorld& world, Point2 origin, const Directions& direct
     return seen;
 }
 
-/// The same beams one by one.
-inline Seen castSingly(const FlatWorld& world, Point2 origin, const Directions& directions,
-                       double max_range = kInfinity) {
+/// The same beams with an origin each.
+inline Seen castApart(const FlatWorld& world, Point2 origin, const Directions& directions,
+                      double max_range = kInfinity) {
     Seen seen{std::vector<float>(directions.size(), -1), std::vector<float>(directions.size(), -1)};
     const std::vector<Point2> origins(directions.size(), origin);
     world.cast(origins, directions, max_range, kTouching, seen.ranges, seen.cosines);

@@ -20,6 +20,10 @@ constexpr double kTouch = 1e-9;
 /// and directions, and of its products.
 constexpr double kFloatError = 0x1p-21;
 
+/// A splinter is thinner than this many times the slack, so that no hit is certain to lie in it,
+/// and than its length over this.
+constexpr double kSplinter = 8;
+
 /// Indices of distinct places, by open addressing.
 class PlaceIndex {
   public:
@@ -59,6 +63,7 @@ Vec3 unit(Vec3 v) { return (1 / length(v)) * v; }
 
 TriangleSet::TriangleSet(TriangleSoup soup) : triangles_(std::move(soup.triangles)) {
     merge(std::move(soup.vertices));
+    enclose();
     measure();
     listCorners();
 }
@@ -73,29 +78,51 @@ void TriangleSet::merge(std::vector<Point3> vertices) {
         for (std::uint32_t& vertex : triangle) vertex = merged[vertex];
 }
 
-void TriangleSet::measure() {
-    Point3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+void TriangleSet::enclose() {
+    if (vertices_.empty()) return;
+    Point3 low = vertices_.front(), high = low;
     for (const Point3& p : vertices_) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    slack_ = vertices_.empty() ? 0 : kFloatError * length(high - low);
+    const double size = length(high - low);
+    slack_ = kFloatError * size;
+    ball_ = {low + 0.5 * (high - low), 0.75 * size};
+}
 
-    planes_.reserve(triangles_.size());
-    margins_.reserve(triangles_.size());
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        const Point3 a = corner(i, 0), b = corner(i, 1), c = corner(i, 2);
+void TriangleSet::measure() {
+    const std::vector<Corners> all = std::exchange(triangles_, {});
+    triangles_.reserve(all.size());
+    planes_.reserve(all.size());
+    margins_.reserve(all.size());
+    std::vector<std::pair<Corners, Plane>> splinters;
+    for (const Corners& corners : all) {
+        const Point3 a = vertices_[corners[0]], b = vertices_[corners[1]],
+                     c = vertices_[corners[2]];
+        const double sides[] = {length(b - a), length(c - b), length(a - c)};
+        const double* const longest = std::max_element(sides, sides + 3);
         const Vec3 across = cross(b - a, c - a);
-        const double twice = length(across);
-        const double thin = twice / std::max({length(b - a), length(c - b), length(a - c)});
+        const double twice = length(across), thin = twice / *longest;
         if (!(thin > kTouch)) continue;
         const Vec3 normal = (1 / twice) * across;
-        planes_.push_back({normal, normal.x * a.x + normal.y * a.y + normal.z * a.z});
-        margins_.push_back(2.5 * slack_ / thin);
-        triangles_[kept++] = triangles_[i];
+        const Plane plane{normal, normal.x * a.x + normal.y * a.y + normal.z * a.z};
+        if (thin < kSplinter * slack_ && thin * kSplinter < *longest) {
+            const auto first = static_cast<std::size_t>(longest - sides);
+            splinters.push_back(
+                {{corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]}, plane});
+        } else {
+            add(corners, plane, 2.5 * slack_ / thin);
+        }
     }
-    triangles_.resize(kept);
+    splinters_ = triangles_.size();
+    for (const auto& [corners, plane] : splinters)
+        for (int half = 0; half < 2; ++half) add(corners, plane, kInfinity);
+}
+
+void TriangleSet::add(const Corners& corners, const Plane& plane, double margin) {
+    triangles_.push_back(corners);
+    planes_.push_back(plane);
+    margins_.push_back(margin);
 }
 
 void TriangleSet::listCorners() {
@@ -112,27 +139,45 @@ void TriangleSet::listCorners() {
 }
 
 std::array<std::array<float, 3>, 3> TriangleSet::enlarged(std::size_t triangle) const {
-    // The tips of splinters move by no more than this many times the slack.
-    constexpr double kFarthest = 1000;
-    std::array<std::array<float, 3>, 3> corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Point3 p = corner(triangle, i);
-        const Vec3 left = unit(corner(triangle, (i + 1) % 3) - p);
-        const Vec3 right = unit(corner(triangle, (i + 2) % 3) - p);
-        const Vec3 inwards = {left.x + right.x, left.y + right.y, left.z + right.z};
-        const double size = length(inwards);
-        const double sine = length({left.x - right.x, left.y - right.y, left.z - right.z}) / 2;
-        const double way = slack_ * (sine * kFarthest > 1 ? 1 / sine : kFarthest);
-        const Point3 q = size > 0 ? p + (-way / size) * inwards : p;
-        corners[i] = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+    std::array<Point3, 3> moved;
+    if (triangle >= splinters_) {
+        moved = halfRectangle(triangle);
+    } else {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Point3 p = corner(triangle, i);
+            const Vec3 left = unit(corner(triangle, (i + 1) % 3) - p);
+            const Vec3 right = unit(corner(triangle, (i + 2) % 3) - p);
+            // The slack over the sine of half the angle, along the line that halves it.
+            const double sine = length({left.x - right.x, left.y - right.y, left.z - right.z}) / 2;
+            moved[i] =
+                p + (-slack_ / sine) * unit({left.x + right.x, left.y + right.y, left.z + right.z});
+        }
     }
+    std::array<std::array<float, 3>, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = {static_cast<float>(moved[i].x), static_cast<float>(moved[i].y),
+                      static_cast<float>(moved[i].z)};
     return corners;
+}
+
+/// Their longest side is the first.
+std::array<Point3, 3> TriangleSet::halfRectangle(std::size_t splinter) const {
+    const Point3 a = corner(splinter, 0), b = corner(splinter, 1), c = corner(splinter, 2);
+    const Vec3 along = unit(b - a), up = cross(planes_[splinter].normal, along);
+    const Point3 begin = a + -slack_ * along, end = b + slack_ * along;
+    const double height = dot(c - a, up) + slack_;
+    const Point3 low = begin + -slack_ * up, high = end + height * up;
+    if ((splinter - splinters_) % 2 == 0) return {low, end + -slack_ * up, high};
+    return {low, high, begin + height * up};
 }
 
 double TriangleSet::meet(std::size_t triangle, const Ray& ray) const {
     const Vec3 d = ray.direction;
-    const Vec3 ways[] = {corner(triangle, 0) - ray.origin, corner(triangle, 1) - ray.origin,
-                         corner(triangle, 2) - ray.origin};
+    // Products of what is far away round too much.
+    const double ahead = ball_.ahead(ray.origin, d);
+    const Point3 begin = ray.origin + ahead * d;
+    const Vec3 ways[] = {corner(triangle, 0) - begin, corner(triangle, 1) - begin,
+                         corner(triangle, 2) - begin};
     const double squared = dot(d, d), size = std::sqrt(squared);
     bool left = true, right = true;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -150,8 +195,8 @@ double TriangleSet::meet(std::size_t triangle, const Ray& ray) const {
     // Where the ray grazes the plane it meets it within the triangle's extent all the same.
     double near = kInfinity, far = -kInfinity;
     for (const Vec3& way : ways) {
-        near = std::min(near, dot(way, d) / squared);
-        far = std::max(far, dot(way, d) / squared);
+        near = std::min(near, ahead + dot(way, d) / squared);
+        far = std::max(far, ahead + dot(way, d) / squared);
     }
     const double multiple =
         std::clamp(plane.heightOver(ray.origin) / slope, near - kTouch / size, far + kTouch / size);

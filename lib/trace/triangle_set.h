@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/simd.h"
 #include "geom/point.h"
 
 namespace ispace {
@@ -41,15 +43,36 @@ struct alignas(32) Plane {
     }
 };
 
+/// A ball that holds a scene, with room to spare, or the origins of rays.
+struct Ball {
+    Point3 middle;
+    double radius = 0;
+
+    [[nodiscard]] bool contains(const Ball& other) const {
+        return length(other.middle - middle) + other.radius <= radius;
+    }
+    /// How many times its direction a ray may be moved ahead, so that it begins by the ball and
+    /// misses nothing in it; 0 from inside.
+    [[nodiscard]] ISPACE_INLINE double ahead(Point3 origin, Vec3 direction) const {
+        const Vec3 way = middle - origin;
+        const double squared = dot(direction, direction);
+        const double multiple = (dot(way, direction) - radius * std::sqrt(squared)) / squared;
+        return multiple > 0 ? multiple : 0;
+    }
+};
+
 /// Triangles in doubles, and all that decides exactly which of them a ray meets.
 ///
 /// A ray tracer that works in float32 finds the candidates. It is given triangles that are larger
-/// by slack() on each side, which is more than its errors: no triangle that a ray meets is lost to
-/// it, unless the ray grazes its rim. A hit whose least barycentric coordinate times the cosine of
-/// ray and normal is over margin() lies in the triangle for certain; others are decided here.
+/// by slack() on each side, and rays that begin within ball(), moved there if need be; the slack
+/// then is more than its errors: no triangle that a ray meets is lost to it, unless the ray grazes
+/// its rim. A hit whose least barycentric coordinate times the cosine of ray and normal is over
+/// margin() lies in the triangle for certain; others are decided here.
 class TriangleSet {
   public:
-    /// Triangles thinner than a nanometre are left out; vertices at one place become one.
+    /// Triangles thinner than a nanometre are left out; vertices at one place become one. Splinters
+    /// come twice, behind all others: an enlarged one takes two triangles, as its tips would reach
+    /// far.
     explicit TriangleSet(TriangleSoup soup);
 
     [[nodiscard]] std::size_t size() const { return triangles_.size(); }
@@ -59,7 +82,8 @@ class TriangleSet {
     [[nodiscard]] std::span<const Plane> planes() const { return planes_; }
     [[nodiscard]] std::span<const double> margins() const { return margins_; }
     [[nodiscard]] double slack() const { return slack_; }
-    /// The triangle's corners moved outwards, in float32.
+    [[nodiscard]] const Ball& ball() const { return ball_; }
+    /// The triangle's corners moved outwards, in float32; half of a rectangle about a splinter.
     [[nodiscard]] std::array<std::array<float, 3>, 3> enlarged(std::size_t triangle) const;
 
     /// How many times its direction the ray goes to where it meets the closed triangle, within a
@@ -86,15 +110,21 @@ class TriangleSet {
     }
 
   private:
+    using Corners = std::array<std::uint32_t, 3>;
     void merge(std::vector<Point3> vertices);
+    void enclose();
     void measure();
+    void add(const Corners& corners, const Plane& plane, double margin);
+    [[nodiscard]] std::array<Point3, 3> halfRectangle(std::size_t splinter) const;
     void listCorners();
 
     std::vector<Point3> vertices_;
-    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::vector<Corners> triangles_;
     std::vector<Plane> planes_;
     std::vector<double> margins_;
+    std::size_t splinters_ = 0;                  // the first of them
     std::vector<std::uint32_t> first_, around_;  // triangles about each vertex
+    Ball ball_;
     double slack_ = 0;
 };
 

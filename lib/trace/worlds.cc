@@ -28,12 +28,10 @@ void Worlds::prepareMesh() {
 }
 
 const RayWorld& Worlds::at(const Pose3& pose) const {
-    if (!pose.isLevel()) return mesh();
-    {
+    if (pose.isLevel()) {
         const std::shared_lock lock(mutex_);
         const auto slice = slices_.find(pose.position.z);
         if (slice != slices_.end()) return slice->second;
-        assert(slices_.size() >= kMostSlices);
     }
     return mesh();
 }

@@ -13,7 +13,7 @@ namespace ispace {
 /// The ray worlds of one environment: one slice per height for level sensors, the mesh for all
 /// others.
 ///
-/// One thread prepares, for every pose that is to come; any thread asks at() for poses that were
+/// One thread prepares, for the poses that are to come; any thread asks at() for poses that were
 /// prepared, also while others are. A world stays where it is until the end.
 class Worlds {
   public:
@@ -25,9 +25,11 @@ class Worlds {
     void prepare(const Pose3& pose);
     /// For sensors that look in all directions.
     void prepareMesh();
-    /// \pre prepare() was called for a pose of this height and levelness
+    /// The slice of a level pose's height if one is kept, else the mesh.
+    /// \pre one of them was prepared: the slice by prepare() for a pose of this height, the mesh by
+    ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMostSlices
     [[nodiscard]] const RayWorld& at(const Pose3& pose) const;
-    /// \pre prepareMesh() was called, or prepare() for a pose that is not level
+    /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh() const;
 
   private:

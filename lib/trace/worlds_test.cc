@@ -65,7 +65,6 @@ TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     };
     const std::size_t count = Worlds::kMostSlices + 20;
     for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
-    worlds.prepareMesh();
     for (std::size_t i = 0; i < count; ++i) {
         EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= Worlds::kMostSlices) << i;
         // The cube is met up to its top.
@@ -75,6 +74,25 @@ TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
     EXPECT_NE(&worlds.at(pose(0)), &worlds.mesh());
     EXPECT_EQ(&worlds.at(pose(count - 1)), &worlds.mesh());
+}
+
+TEST(Worlds, LevelPosesAtHeightsThatNobodyPreparedAreTracedInTheMesh) {
+    const Scene scene = furnishedRoom();
+    Worlds worlds(scene.environment);
+    const Pose3 low = at(7.5, 3, 0.15, 180), between = at(7.5, 3, 0.3, 180);
+    const Pose3 high = at(7.5, 3, 0.8, 180);
+    worlds.prepare(low);
+    worlds.prepareMesh();
+    EXPECT_NE(&worlds.at(low), &worlds.mesh());
+    EXPECT_EQ(&worlds.at(between), &worlds.mesh());
+    EXPECT_EQ(&worlds.at(high), &worlds.mesh());
+    EXPECT_EQ(ahead(worlds, low), 1);
+    EXPECT_NEAR(ahead(worlds, between), 1, 1e-6);
+    EXPECT_NEAR(ahead(worlds, high), 7.5, 1e-6);
+    // Once it is prepared it is the slice.
+    worlds.prepare(between);
+    EXPECT_NE(&worlds.at(between), &worlds.mesh());
+    EXPECT_EQ(ahead(worlds, between), 1);
 }
 
 TEST(Worlds, LevelRaysMeetInTheMeshWhatTheyMeetInTheSlice) {

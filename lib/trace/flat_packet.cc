@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace/flat_packet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "base/simd.h"
+#include "trace/flat_contact.h"
+#include "trace/flat_line.h"
+#include "trace/flat_ray.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr int kWidth = FlatTree::kWidth;
+constexpr int kBlock = FlatPacket::kBlock;
+/// Least cosine between a ray and the middle of its packet, of one block and of more: wide packets
+/// are quick if they are small. Not less than cos 45 degrees.
+constexpr double kLeastAlongOfBlock = 0.72, kLeastAlong = 0.975;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+ISPACE_INLINE double leastOf(const double* eight) {
+    double four[4];
+    for (int i = 0; i < 4; ++i) four[i] = flatLess(eight[i], eight[i + 4]);
+    return flatLess(flatLess(four[0], four[2]), flatLess(four[1], four[3]));
+}
+
+ISPACE_INLINE double sumOf(const double* eight) {
+    double four[4];
+    for (int i = 0; i < 4; ++i) four[i] = eight[i] + eight[i + 4];
+    return (four[0] + four[2]) + (four[1] + four[3]);
+}
+
+/// More than what a ray meets beyond an end, seen along the sides of a cone, and what cross
+/// products with those round by.
+ISPACE_INLINE double slackOf(double x, double y) {
+    return 4 * kFlatEdge + 1e-12 * (std::fabs(x) + std::fabs(y));
+}
+
+/// What holds the rays of a packet: a box around the origins, and a cone around the directions.
+struct Cone {
+    double left, right, low, high;
+    double x, y, half_width, half_height;  ///< of that box
+    double right_x, right_y, left_x, left_y, ahead_x, ahead_y;
+    /// How much moving the origin within its box changes products with these.
+    double right_reach, left_reach, ahead_reach;
+
+    ISPACE_INLINE void setOrigins(const FlatPacket& packet);
+    /// \return least cosine between a ray and the middle of the cone, infinite if there is none
+    ISPACE_INLINE double setDirections(const FlatPacket& packet);
+};
+
+void Cone::setOrigins(const FlatPacket& packet) {
+    double least_x[kBlock], least_y[kBlock], less_x[kBlock], less_y[kBlock];
+    ISPACE_LANES for (int i = 0; i < kBlock; ++i) least_x[i] = least_y[i] = less_x[i] = less_y[i] =
+        kInfinity;
+    for (int begin = 0; begin < packet.count; begin += kBlock) {
+        const double* const ox = packet.origin_x + begin;
+        const double* const oy = packet.origin_y + begin;
+        ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
+            least_x[i] = flatLess(ox[i], least_x[i]);
+            least_y[i] = flatLess(oy[i], least_y[i]);
+            less_x[i] = flatLess(-ox[i], less_x[i]);
+            less_y[i] = flatLess(-oy[i], less_y[i]);
+        }
+    }
+    left = leastOf(least_x);
+    low = leastOf(least_y);
+    right = -leastOf(less_x);
+    high = -leastOf(less_y);
+    x = 0.5 * (left + right);
+    y = 0.5 * (low + high);
+    half_width = flatMore(right - x, x - left);
+    half_height = flatMore(high - y, y - low);
+}
+
+double Cone::setDirections(const FlatPacket& packet) {
+    double x_sum[kBlock], y_sum[kBlock], along[kBlock], least[kBlock], less[kBlock];
+    ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
+        x_sum[i] = y_sum[i] = 0;
+        along[i] = least[i] = less[i] = kInfinity;
+    }
+    for (int begin = 0; begin < packet.count; begin += kBlock) {
+        const double* const dx = packet.x + begin;
+        const double* const dy = packet.y + begin;
+        ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
+            x_sum[i] += dx[i];
+            y_sum[i] += dy[i];
+        }
+    }
+    ahead_x = sumOf(x_sum);
+    ahead_y = sumOf(y_sum);
+    const double over = 1 / std::sqrt(ahead_x * ahead_x + ahead_y * ahead_y);
+    ahead_x *= over;
+    ahead_y *= over;
+    for (int begin = 0; begin < packet.count; begin += kBlock) {
+        const double* const dx = packet.x + begin;
+        const double* const dy = packet.y + begin;
+        ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
+            const double here = ahead_x * dx[i] + ahead_y * dy[i];
+            const double aside = (ahead_x * dy[i] - ahead_y * dx[i]) / here;
+            along[i] = flatLess(here, along[i]);
+            least[i] = flatLess(aside, least[i]);
+            less[i] = flatLess(-aside, less[i]);
+        }
+    }
+    const double to_right = leastOf(least), to_left = -leastOf(less);
+    right_x = ahead_x - to_right * ahead_y;
+    right_y = ahead_y + to_right * ahead_x;
+    left_x = ahead_x - to_left * ahead_y;
+    left_y = ahead_y + to_left * ahead_x;
+    right_reach = std::fabs(right_x) * half_height + std::fabs(right_y) * half_width;
+    left_reach = std::fabs(left_x) * half_height + std::fabs(left_y) * half_width;
+    ahead_reach = std::fabs(ahead_x) * half_width + std::fabs(ahead_y) * half_height;
+    return leastOf(along);
+}
+
+template <bool kCosines>
+class Walk {
+  public:
+    ISPACE_INLINE Walk(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet)
+        : tree_(tree), limits_(limits), packet_(packet) {}
+
+    /// False if the packet is too wide for it.
+    ISPACE_INLINE bool run();
+
+  private:
+    ISPACE_INLINE bool enclose();
+    ISPACE_INLINE void visit(const FlatTree::Node& node);
+    ISPACE_INLINE void meetLeaf(const FlatTree::Leaf& leaf);
+    template <bool kContact>
+    ISPACE_INLINE void draw(const FlatTree::Leaf& leaf, int i);
+    template <bool kContact>
+    ISPACE_INLINE double drawBlock(const FlatTree::Leaf& leaf, int i, int begin);
+    bool isInContact();
+
+    const FlatTree& tree_;
+    const FlatPacketLimits& limits_;
+    FlatPacket& packet_;
+    Cone cone_;
+    double least_;  ///< nearness of the ray that sees farthest
+    FlatStack stack_;
+    /// Whether a line may be in contact with an origin, once somebody wanted to know.
+    enum class Contact : std::uint8_t { Unknown, None, Some } contact_ = Contact::Unknown;
+};
+
+template <bool kCosines>
+bool Walk<kCosines>::enclose() {
+    cone_.setOrigins(packet_);
+    const double along = cone_.setDirections(packet_);
+    return along < 2 && along > (packet_.count > kBlock ? kLeastAlong : kLeastAlongOfBlock) &&
+           cone_.right - cone_.left < limits_.widest && cone_.high - cone_.low < limits_.widest;
+}
+
+/// Puts those children on the stack that rays may meet, the nearest on top.
+template <bool kCosines>
+void Walk<kCosines>::visit(const FlatTree::Node& node) {
+    const Cone cone = cone_;
+    const double least = least_;
+    alignas(64) double distance[kWidth];
+    ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
+        // As seen from all origins at once.
+        const double left = node.left[i] - cone.right, right = node.right[i] - cone.left;
+        const double low = node.low[i] - cone.high, high = node.high[i] - cone.low;
+        const double right_side = flatMore(cone.right_x * low, cone.right_x * high) -
+                                  flatLess(cone.right_y * left, cone.right_y * right);
+        const double left_side = flatLess(cone.left_x * low, cone.left_x * high) -
+                                 flatMore(cone.left_y * left, cone.left_y * right);
+        const double ahead = flatMore(cone.ahead_x * left, cone.ahead_x * right) +
+                             flatMore(cone.ahead_y * low, cone.ahead_y * high);
+        const double slack = slackOf(flatMore(std::fabs(left), std::fabs(right)),
+                                     flatMore(std::fabs(low), std::fabs(high)));
+        const double far = distanceOf(left, right, low, high);
+        const bool meets = (right_side >= -slack) & (left_side <= slack) & (ahead >= -slack) &
+                           mayBeNearer(far, least);
+        distance[i] = flatChoice(meets, far, -1.0);
+    }
+    stack_.push(node, distance);
+}
+
+/// Of all origins at once: exact enough, as it is only whether to ask for each.
+template <bool kCosines>
+bool Walk<kCosines>::isInContact() {
+    if (contact_ != Contact::Unknown) return contact_ == Contact::Some;
+    contact_ = Contact::None;
+    const double contact = limits_.contact * (1 + 1e-6);
+    const auto is_near = [&](double left, double right, double low, double high) {
+        return left - cone_.right <= contact && cone_.left - right <= contact &&
+               low - cone_.high <= contact && cone_.low - high <= contact;
+    };
+    std::int32_t waiting[FlatTree::kStack];
+    int count = 0;
+    waiting[count++] = 0;
+    while (count > 0 && contact_ == Contact::None) {
+        const FlatTree::Node& node = tree_.node(waiting[--count]);
+        for (int k = 0; k < node.count; ++k) {
+            if (!is_near(node.left[k], node.right[k], node.low[k], node.high[k])) continue;
+            if (node.child[k] >= 0) {
+                waiting[count++] = node.child[k];
+                continue;
+            }
+            const FlatTree::Leaf& leaf = tree_.leaf(node.child[k]);
+            for (int j = 0; j < leaf.count; ++j)
+                if (is_near(leaf.ax[j], leaf.bx[j], std::min(leaf.ay[j], leaf.by[j]),
+                            std::max(leaf.ay[j], leaf.by[j])))
+                    contact_ = Contact::Some;
+        }
+    }
+    return contact_ == Contact::Some;
+}
+
+/// Draws a line into a block; returns the least nearness of it.
+template <bool kCosines>
+template <bool kContact>
+double Walk<kCosines>::drawBlock(const FlatTree::Leaf& leaf, int i, int begin) {
+    const double* const x = packet_.x + begin;
+    const double* const y = packet_.y + begin;
+    const double* const ox = packet_.origin_x + begin;
+    const double* const oy = packet_.origin_y + begin;
+    double* const nearness = packet_.nearness + begin;
+    double* const cosine = packet_.cosine + begin;
+    alignas(64) double least[kBlock];
+    const auto meet = [=, &least](int k, double here, [[maybe_unused]] double height) {
+        const double old = nearness[k];
+        if constexpr (kCosines) {
+            const double incidence = here * height;
+            const double tied = flatChoice(here == old, flatMore(incidence, cosine[k]), cosine[k]);
+            cosine[k] = flatChoice(here > old, incidence, tied);
+        }
+        least[k] = flatMore(here, old);
+        nearness[k] = least[k];
+    };
+    alignas(64) double all_here[kBlock], heights[kBlock];
+    ISPACE_LANES for (int k = 0; k < kBlock; ++k) {
+        const FlatLine line = lineFrom(leaf, i, ox[k], oy[k]);
+        const double here = flatChoice(line.stops, nearnessAlong(line, x[k], y[k]), 0.0);
+        if constexpr (kContact) {
+            all_here[k] = here;
+            heights[k] = line.height;
+        } else {
+            meet(k, here, line.height);
+        }
+    }
+    if constexpr (kContact)
+        for (int k = 0; k < kBlock; ++k) {
+            const bool is_new = all_here[k] > 0 && all_here[k] >= nearness[k];
+            const bool is_contact = is_new && mayContinueContact(heights[k], limits_.contact) &&
+                                    continuesContact(tree_, leaf, i, ox[k], oy[k], limits_.contact);
+            meet(k, is_contact ? 0 : all_here[k], heights[k]);
+        }
+    return leastOf(least);
+}
+
+template <bool kCosines>
+template <bool kContact>
+void Walk<kCosines>::draw(const FlatTree::Leaf& leaf, int i) {
+    double least = kInfinity;
+    for (int begin = 0; begin < packet_.count; begin += kBlock)
+        least = flatLess(least, drawBlock<kContact>(leaf, i, begin));
+    least_ = least;
+}
+
+template <bool kCosines>
+void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
+    const Cone cone = cone_;
+    const double least = least_;
+    const double contact = limits_.contact * (1 + 1e-6);
+    alignas(64) double far[kWidth], clear[kWidth];
+    ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
+        const double px = leaf.ax[i] - cone.x, py = leaf.ay[i] - cone.y;
+        const double qx = leaf.bx[i] - cone.x, qy = leaf.by[i] - cone.y;
+        const double right_side =
+            flatMore(cone.right_x * py - cone.right_y * px, cone.right_x * qy - cone.right_y * qx);
+        const double left_side =
+            flatLess(cone.left_x * py - cone.left_y * px, cone.left_x * qy - cone.left_y * qx);
+        const double ahead =
+            flatMore(cone.ahead_x * px + cone.ahead_y * py, cone.ahead_x * qx + cone.ahead_y * qy);
+        const double width = flatMore(std::fabs(px), std::fabs(qx)) + cone.half_width;
+        const double height = flatMore(std::fabs(py), std::fabs(qy)) + cone.half_height;
+        const double slack = slackOf(width, height);
+        const double distance = distanceOf(flatLess(leaf.ax[i], leaf.bx[i]) - cone.right,
+                                           flatMore(leaf.ax[i], leaf.bx[i]) - cone.left,
+                                           flatLess(leaf.ay[i], leaf.by[i]) - cone.high,
+                                           flatMore(leaf.ay[i], leaf.by[i]) - cone.low);
+        const bool meets = (right_side + cone.right_reach >= -slack) &
+                           (left_side - cone.left_reach <= slack) &
+                           (ahead + cone.ahead_reach >= -slack) & mayBeNearer(distance, least);
+        far[i] = flatChoice(meets, distance, -1.0);
+        // How far its continuation is from any origin and contact, times its length.
+        const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
+        const double reach = cone.half_width * std::fabs(ey) + cone.half_height * std::fabs(ex);
+        const double rounding = 1e-12 * (width * std::fabs(ey) + height * std::fabs(ex));
+        clear[i] = std::fabs(px * ey - py * ex) - reach - rounding - contact * leaf.length[i];
+    }
+    for (int i = 0; i < leaf.count; ++i) {
+        if (far[i] < 0 || !mayBeNearer(far[i], least_)) continue;
+        if (clear[i] > 0 || !isInContact())
+            draw<false>(leaf, i);
+        else
+            draw<true>(leaf, i);
+    }
+}
+
+template <bool kCosines>
+bool Walk<kCosines>::run() {
+    if (!enclose()) return false;
+    std::fill_n(packet_.nearness, packet_.count, limits_.least_nearness);
+    if constexpr (kCosines) std::fill_n(packet_.cosine, packet_.count, 0.0);
+    least_ = limits_.least_nearness;
+    if (tree_.nodes.empty()) return true;
+    visit(tree_.nodes.front());
+    while (!stack_.empty()) {
+        const FlatStack::Entry box = stack_.pop();
+        if (!mayBeNearer(box.distance, least_)) continue;
+        if (box.child >= 0)
+            visit(tree_.node(box.child));
+        else
+            meetLeaf(tree_.leaf(box.child));
+    }
+    return true;
+}
+
+}  // namespace
+
+double widestPacket(const FlatTree& tree) {
+    if (tree.nodes.empty()) return 0;
+    const FlatTree::Node& root = tree.nodes.front();
+    double left = root.left[0], right = root.right[0], low = root.low[0], high = root.high[0];
+    for (int i = 1; i < root.count; ++i) {
+        left = std::min(left, root.left[i]);
+        right = std::max(right, root.right[i]);
+        low = std::min(low, root.low[i]);
+        high = std::max(high, root.high[i]);
+    }
+    // How far leaves are apart, by and large.
+    const auto leaves = static_cast<double>(tree.leaves.size());
+    return 0.35 * (right - left + high - low) / std::sqrt(leaves);
+}
+
+ISPACE_SIMD_CLONES
+bool drawLines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet) {
+    return Walk<false>(tree, limits, packet).run();
+}
+
+ISPACE_SIMD_CLONES
+bool drawLinesAndCosines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet) {
+    return Walk<true>(tree, limits, packet).run();
+}
+
+}  // namespace ispace
