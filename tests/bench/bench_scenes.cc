@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "io/input.h"
 #include "layout/schemas.h"
+#include "layout/sensor_spec.h"
 #include "place/candidates.h"
 #include "record/digest.h"
 #include "record/text.h"
@@ -71,7 +72,7 @@ Scene loadScene(const std::string& file) {
     return makeScene(document, nullptr, devices());
 }
 
-Scene officeScene(int columns, int rows) {
+std::string officeText(int columns, int rows) {
     const double width = columns * kRoomWidth;
     const double pitch = kRoomDepth + kCorridor;
     std::string text = "#env 1\nfence path=0,0;" + tuple(width, 0) + ';' +
@@ -84,8 +85,35 @@ Scene officeScene(int columns, int rows) {
             text += room(column * kRoomWidth, row * pitch, column + 1 == columns);
         }
     }
-    const Document document = readRecordText(text, "office", sceneSchemas());
-    return makeScene(document, nullptr, DeviceCatalogue());
+    return text;
+}
+
+Scene officeScene(int columns, int rows) { return sceneOfText(officeText(columns, rows)); }
+
+Scene sceneOfText(const std::string& text) {
+    return makeScene(readRecordText(text, "plan", sceneSchemas()), nullptr, DeviceCatalogue());
+}
+
+std::size_t linesOf(const Scene& scene) {
+    std::size_t lines = 0;
+    scene.environment.slice(kScanHeight).forEachLine([&lines](const Segment2&) { ++lines; });
+    return lines;
+}
+
+namespace {
+
+Record recordOfModel(std::string_view keyword, const std::string& model) {
+    return readSensorSpec(model, {&keyword, 1}, sceneSchemas(), devices()).front();
+}
+
+}  // namespace
+
+Laser laserOfModel(const std::string& model) {
+    return laserOf(recordOfModel("laser", model), devices());
+}
+
+Ranger rangerOfModel(const std::string& model) {
+    return rangerOf(recordOfModel("ranger", model), devices());
 }
 
 Building building(std::size_t walls) {
@@ -147,7 +175,8 @@ std::string willowMap() {
 }
 
 std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level) {
-    constexpr double kHigh = 1.5;
+    // No furniture ends there: a beam along its top is a matter of the last bit.
+    constexpr double kHigh = 1.55;
     const double height = level ? kScanHeight : kHigh;
     const Slice slice = scene.environment.slice(height);
     const Box2& limits = scene.environment.limits();

@@ -17,8 +17,17 @@ std::string sceneFile(const std::string& name);
 DeviceCatalogue devices();
 
 /// An office floor as big as real ones: columns x rows rooms of 4 m x 5 m along corridors, each
-/// with a door gap, a desk, a chair and a round table. Some 20 surfaces of a slice a room.
+/// with a door gap, a desk, a chair and a round table. Some 108 lines of a slice a room, and 2 000
+/// triangles, most of them the chair's.
+std::string officeText(int columns, int rows);
 Scene officeScene(int columns, int rows);
+/// The scene that a text of records describes.
+Scene sceneOfText(const std::string& text);
+/// Lines of the slice that level fans meet.
+std::size_t linesOf(const Scene& scene);
+/// A device of share/.
+Laser laserOfModel(const std::string& model);
+Ranger rangerOfModel(const std::string& model);
 
 /// Text of a building with this many walls or some more, on one floor as deep as wide: corridors
 /// with rooms of 4 m x 5 m on their upper side, walls that meet at T junctions, a door in each room
@@ -40,7 +49,7 @@ std::shared_ptr<const TriangleMesh> bumpyGlobe(std::uint32_t rings, std::uint32_
 std::string willowMap();
 
 /// Places in the free floor, drawn from a fixed seed: `count` lasers with 1081 beams over 270
-/// degrees and 30 m, level at 0.15 m, or at 1.5 m and tilted down by 20 degrees.
+/// degrees and 30 m, level at 0.15 m, or at 1.55 m and tilted down by 20 degrees.
 std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level);
 
 }  // namespace ispace::bench

@@ -19,6 +19,7 @@ namespace ispace::bench {
 namespace {
 
 constexpr std::size_t kWidth = 16;
+constexpr int kTile = 4;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Vertex {
@@ -28,6 +29,14 @@ struct Vertex {
 Vertex vertex(double x, double y, double z) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
 }
+
+/// Rays of one packet as compact as they get, and what they meet. Whole RTCRayHit16s that are kept
+/// from call to call would stream a kilobyte each through the memory.
+struct alignas(64) Packet {
+    float x[kWidth], y[kWidth], z[kWidth], range[kWidth];
+    Vertex origin;
+    float reach;
+};
 
 /// What stops rays.
 std::vector<Mesh> meshesThatStop(const Environment& environment) {
@@ -42,9 +51,9 @@ std::vector<Mesh> meshesThatStop(const Environment& environment) {
 struct RawEmbree::Data {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = rtcNewScene(device);
-    std::vector<RTCRayHit16> packets;
-    std::vector<float> reach;  // per packet
-    std::size_t beams = 0;     // of one sensor
+    std::vector<Packet> packets;
+    std::vector<std::array<std::uint32_t, kWidth>> lanes;  // their beams; none at the end
+    std::size_t beams = 0;                                 // of one sensor
 
     Data() = default;
     Data(const Data&) = delete;
@@ -52,6 +61,16 @@ struct RawEmbree::Data {
     ~Data() {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
+    }
+
+    void set(std::size_t packet, Point3 origin, double most) {
+        packets[packet].origin = vertex(origin.x, origin.y, origin.z);
+        packets[packet].reach = static_cast<float>(most);
+    }
+    void point(std::size_t packet, std::size_t lane, Vec3 direction) {
+        packets[packet].x[lane] = static_cast<float>(direction.x);
+        packets[packet].y[lane] = static_cast<float>(direction.y);
+        packets[packet].z[lane] = static_cast<float>(direction.z);
     }
 
     /// Surfaces of `corners` vertices each.
@@ -111,29 +130,50 @@ RawEmbree RawEmbree::ofEnvironment(const Environment& environment) {
     return RawEmbree(std::move(data));
 }
 
+void RawEmbree::reserve(std::size_t sensors, std::size_t beams) {
+    Data& d = *data_;
+    d.beams = beams;
+    const std::size_t packets = sensors * packetsPerSensor();
+    d.packets.assign(packets, {});
+    d.lanes.resize(packets);
+}
+
 void RawEmbree::prepare(std::span<const PlacedLaser> sensors) {
-    data_->packets.clear();
-    data_->reach.clear();
+    reserve(sensors.size(), static_cast<std::size_t>(sensors.front().laser.beams));
+    std::size_t packet = 0;
     for (const PlacedLaser& sensor : sensors) {
-        data_->beams = static_cast<std::size_t>(sensor.laser.beams);
-        const Point3 origin = sensor.pose.position;
-        for (std::size_t begin = 0; begin < data_->beams; begin += kWidth) {
-            RTCRayHit16 packet{};
+        for (std::size_t begin = 0; begin < data_->beams; begin += kWidth, ++packet) {
+            data_->set(packet, sensor.pose.position, sensor.laser.max_range);
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
                 // The last packet is filled up with its last beam.
                 const auto beam = static_cast<int>(std::min(begin + lane, data_->beams - 1));
-                const Vec3 direction = sensor.pose.beam(sensor.laser.bearing(beam));
-                packet.ray.org_x[lane] = static_cast<float>(origin.x);
-                packet.ray.org_y[lane] = static_cast<float>(origin.y);
-                packet.ray.org_z[lane] = static_cast<float>(origin.z);
-                packet.ray.dir_x[lane] = static_cast<float>(direction.x);
-                packet.ray.dir_y[lane] = static_cast<float>(direction.y);
-                packet.ray.dir_z[lane] = static_cast<float>(direction.z);
-                packet.ray.mask[lane] = ~0U;
-                packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+                data_->point(packet, lane, sensor.pose.beam(sensor.laser.bearing(beam)));
+                data_->lanes[packet][lane] = static_cast<std::uint32_t>(begin + lane);
             }
-            data_->packets.push_back(packet);
-            data_->reach.push_back(static_cast<float>(sensor.laser.max_range));
+        }
+    }
+    trace(0, packets());
+}
+
+void RawEmbree::prepare(std::span<const Point3> origins, std::span<const RayGrid> grids,
+                        double most) {
+    const RayGrid& size = grids.front();
+    if (size.columns % kTile != 0 || size.rows % kTile != 0)
+        throw std::invalid_argument("pictures are of whole tiles");
+    reserve(grids.size(), size.size());
+    std::size_t packet = 0;
+    for (std::size_t picture = 0; picture < grids.size(); ++picture) {
+        const RayGrid& grid = grids[picture];
+        for (int row = 0; row < grid.rows; row += kTile) {
+            for (int column = 0; column < grid.columns; column += kTile, ++packet) {
+                data_->set(packet, origins[picture], most);
+                for (std::size_t lane = 0; lane < kWidth; ++lane) {
+                    const int i = column + static_cast<int>(lane) % kTile;
+                    const int j = row + static_cast<int>(lane) / kTile;
+                    data_->point(packet, lane, grid.ray(i, j));
+                    data_->lanes[packet][lane] = static_cast<std::uint32_t>(j * grid.columns + i);
+                }
+            }
         }
     }
     trace(0, packets());
@@ -151,17 +191,31 @@ void RawEmbree::trace(std::size_t first, std::size_t last) {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #endif
+    RTCRayHit16 rays{};
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+        rays.ray.mask[lane] = ~0U;
+        rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
     for (std::size_t i = first; i < last; ++i) {
-        RTCRayHit16& packet = data_->packets[i];
+        Packet& packet = data_->packets[i];
+        std::memcpy(rays.ray.dir_x, packet.x, sizeof packet.x);
+        std::memcpy(rays.ray.dir_y, packet.y, sizeof packet.y);
+        std::memcpy(rays.ray.dir_z, packet.z, sizeof packet.z);
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            packet.ray.tfar[lane] = data_->reach[i];
-            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            rays.ray.org_x[lane] = packet.origin.x;
+            rays.ray.org_y[lane] = packet.origin.y;
+            rays.ray.org_z[lane] = packet.origin.z;
+            rays.ray.tfar[lane] = packet.reach;
+            rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
         }
 #if RTC_VERSION_MAJOR >= 4
-        rtcIntersect16(kAll, data_->scene, &packet, &arguments);
+        rtcIntersect16(kAll, data_->scene, &rays, &arguments);
 #else
-        rtcIntersect16(kAll, data_->scene, &context, &packet);
+        rtcIntersect16(kAll, data_->scene, &context, &rays);
 #endif
+        for (std::size_t lane = 0; lane < kWidth; ++lane)
+            packet.range[lane] =
+                rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? rays.ray.tfar[lane] : kInfinity;
     }
 }
 
@@ -170,14 +224,12 @@ std::size_t RawEmbree::packets() const { return data_->packets.size(); }
 std::size_t RawEmbree::packetsPerSensor() const { return (data_->beams + kWidth - 1) / kWidth; }
 
 std::vector<float> RawEmbree::ranges() const {
-    std::vector<float> ranges;
+    std::vector<float> ranges(packets() / packetsPerSensor() * data_->beams);
     for (std::size_t i = 0; i < packets(); ++i) {
-        const std::size_t begin = i % packetsPerSensor() * kWidth;
-        const RTCRayHit16& packet = data_->packets[i];
-        for (std::size_t lane = 0; lane < kWidth && begin + lane < data_->beams; ++lane) {
-            const bool hit = packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
-            ranges.push_back(hit ? packet.ray.tfar[lane] : kInfinity);
-        }
+        const std::size_t begin = i / packetsPerSensor() * data_->beams;
+        for (std::size_t lane = 0; lane < kWidth; ++lane)
+            if (data_->lanes[i][lane] < data_->beams)
+                ranges[begin + data_->lanes[i][lane]] = data_->packets[i].range[lane];
     }
     return ranges;
 }

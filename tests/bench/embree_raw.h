@@ -12,11 +12,13 @@
 #include "env/environment.h"
 #include "env/slice.h"
 #include "layout/laser.h"
+#include "trace/ray_grid.h"
 
 namespace ispace::bench {
 
 /// What Embree alone does with the surfaces that a RayWorld holds: the same ROBUST scene, rays in
-/// 16-wide coherent packets that are all prepared beforehand, no contact rule, no exact distance.
+/// 16-wide coherent packets whose directions are all prepared beforehand, no contact rule, no exact
+/// distance.
 class RawEmbree {
   public:
     static RawEmbree ofSlice(const Slice& slice);
@@ -26,16 +28,21 @@ class RawEmbree {
 
     /// Packs every beam of these sensors, each sensor in packets of its own.
     void prepare(std::span<const PlacedLaser> sensors);
-    /// The tight loop: resets and traces packets first .. last-1 of all.
+    /// Packs pictures of one size in tiles of 4 x 4; a picture counts as a sensor.
+    /// \pre columns and rows are multiples of 4
+    void prepare(std::span<const Point3> origins, std::span<const RayGrid> grids, double most);
+    /// The tight loop: fills in and traces packets first .. last-1 of all.
     void trace(std::size_t first, std::size_t last);
     [[nodiscard]] std::size_t packets() const;
     /// Packets of one sensor. \pre prepare() was called
     [[nodiscard]] std::size_t packetsPerSensor() const;
-    /// Ranges of the last trace, sensor after sensor; +infinity for no return.
+    /// Ranges of the last trace, sensor after sensor, a picture row by row; +infinity for no
+    /// return.
     [[nodiscard]] std::vector<float> ranges() const;
 
   private:
     struct Data;
+    void reserve(std::size_t sensors, std::size_t beams);
     explicit RawEmbree(std::unique_ptr<Data> data);
     std::unique_ptr<Data> data_;
 };

@@ -11,7 +11,7 @@
 #include "bench_scenes.h"
 #include "layout/schemas.h"
 #include "place/arrangement.h"
-#include "place/sensor_spec.h"
+#include "layout/sensor_spec.h"
 
 namespace {
 
@@ -20,7 +20,7 @@ using namespace ispace;
 struct GridJob {
     Scene scene = bench::loadScene(bench::sceneFile("facilities.env"));
     std::vector<PendingLaser> sensors = sensorsToPlace(
-        scene, readSensorSpec("laser,range=4,fov=180:3", sceneSchemas(), bench::devices()),
+        scene, readSensorSpec("laser,range=4,fov=180:3", kArrangedKinds, sceneSchemas(), bench::devices()),
         bench::devices());
     ArrangeOptions options;
 

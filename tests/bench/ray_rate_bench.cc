@@ -1,42 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How near the scan comes to what the ray tracer alone can do: the same fans through Embree's
-// coherent 16-wide call, through castScan, and through to lines of JSON, in one run.
-#include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
+// How near our loops come to what the ray tracer alone can do: the same fans through Embree's
+// coherent 16-wide call, through RayWorld::cast, and through the whole of a scan in memory.
+#include <tbb/enumerable_thread_specific.h>
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <memory>
 
 #include "bench_scenes.h"
+#include "bench_table.h"
 #include "embree_raw.h"
-#include "sense/scan_jsonl.h"
+#include "sense/scan.h"
 
 namespace {
 
 using namespace ispace;
 
 constexpr std::size_t kSensors = 200;
+constexpr int kRounds = 50;
 
-/// One scene with its fans, ready for both sides.
+/// One scene with its fans, ready for all ways.
 struct Case {
     std::string name;
+    bool level;
     Scene scene;
+    std::size_t primitives = 0;
     std::vector<PlacedLaser> sensors;
     bench::RawEmbree raw;
     Worlds worlds;
+    MovingBodies nobody;
+    std::vector<Directions> directions;
 
-    Case(std::string title, Scene loaded, bool level)
+    Case(std::string title, Scene loaded, bool is_level)
         : name(std::move(title)),
+          level(is_level),
           scene(std::move(loaded)),
           sensors(bench::fans(scene, kSensors, level)),
           raw(level ? bench::RawEmbree::ofSlice(scene.environment.slice(kScanHeight))
                     : bench::RawEmbree::ofEnvironment(scene.environment)),
           worlds(scene.environment) {
+        const RangeNoise noise = bench::laserOfModel("utm-30lx").noise;
         raw.prepare(sensors);
-        for (const PlacedLaser& sensor : sensors) worlds.prepare(sensor.pose);
+        directions.reserve(sensors.size());
+        for (PlacedLaser& sensor : sensors) {
+            worlds.prepare(sensor.pose);
+            directions.push_back(Beams(sensor.laser, true).at(sensor.pose));
+            sensor.laser.noise = noise;
+        }
+        primitives = level ? bench::linesOf(scene) : bench::RawTriangles(scene.environment).size();
     }
     Case(const Case&) = delete;
     Case& operator=(const Case&) = delete;
@@ -46,111 +55,93 @@ struct Case {
     }
 };
 
-/// Both sides must see the same: no more than one beam in ten thousand may differ by over a
-/// millimetre (grazing hits, where float32 alone goes astray).
-void verify(const Case& test) {
-    const std::vector<float> raw = test.raw.ranges();
-    std::size_t beam = 0;
-    std::size_t wrong = 0;
-    for (const PlacedLaser& sensor : test.sensors) {
-        for (const float range : castBeams(test.worlds.at(sensor.pose), sensor)) {
-            const float other = raw[beam++];
-            if (range != other && !(std::abs(range - other) <= 1e-3F)) ++wrong;
-        }
-    }
-    if (beam == raw.size() && wrong * 10000 <= beam) return;
-    std::fprintf(stderr, "%s: %zu of %zu beams differ from Embree's own\n", test.name.c_str(),
-                 wrong, beam);
-    std::exit(1);
-}
-
-void count(benchmark::State& state, const Case& test) {
-    state.counters["beams/s"] = benchmark::Counter(
-        test.beams(), benchmark::Counter::kIsIterationInvariantRate, benchmark::Counter::kIs1000);
-}
-
-void embree(benchmark::State& state, Case& test) {
-    for (auto _ : state) test.raw.trace(0, test.raw.packets());
-    count(state, test);
-}
-
-void scan(benchmark::State& state, const Case& test) {
-    for (auto _ : state) {
-        for (const PlacedLaser& sensor : test.sensors) {
-            benchmark::DoNotOptimize(castScan(test.worlds.at(sensor.pose), sensor));
-        }
-    }
-    count(state, test);
-}
-
-void embreeAllCores(benchmark::State& state, Case& test) {
-    const std::size_t each = test.raw.packetsPerSensor();
-    for (auto _ : state) {
-        tbb::parallel_for(std::size_t{0}, test.sensors.size(),
-                          [&](std::size_t i) { test.raw.trace(i * each, (i + 1) * each); });
-    }
-    count(state, test);
-}
-
-void scanAllCores(benchmark::State& state, Case& test) {
-    for (auto _ : state) benchmark::DoNotOptimize(castScans(test.worlds, test.sensors));
-    count(state, test);
-}
-
-void scanToJsonl(benchmark::State& state, Case& test) {
-    for (auto _ : state) {
-        const std::vector<Scan> scans = castScans(test.worlds, test.sensors);
-        std::string text = scanHeaderLine({}, 0);
-        for (std::size_t i = 0; i < scans.size(); ++i) {
-            appendScanLine(text, test.sensors[i], scans[i]);
-        }
-        benchmark::DoNotOptimize(text.data());
-    }
-    count(state, test);
-}
-
-/// The console's table, and under it what the scan reaches of Embree's own rate.
-class RatioReporter : public benchmark::ConsoleReporter {
+/// The ways, each for one fan at a time; memory is kept from fan to fan.
+class Ways {
   public:
-    RatioReporter() : ConsoleReporter(OO_Tabular) {}
+    explicit Ways(Case& test)
+        : test_(test),
+          ranges_([&test] { return std::vector<float>(test.directions.front().size()); }),
+          plain_([&test] { return makeCaster(test, {}); }),
+          noisy_([&test] { return makeCaster(test, {.noise_seed = 1}); }) {}
 
-    void ReportRuns(const std::vector<Run>& runs) override {
-        for (const Run& run : runs) {
-            const auto rate = run.counters.find("beams/s");
-            if (rate == run.counters.end() || run.run_type == Run::RT_Aggregate) continue;
-            const std::string name = run.benchmark_name();
-            double& best = best_[name.substr(0, name.find("/real_time"))];
-            best = std::max(best, rate->second.value);
-        }
-        ConsoleReporter::ReportRuns(runs);
+    void embree(std::size_t i) {
+        const std::size_t each = test_.raw.packetsPerSensor();
+        test_.raw.trace(i * each, (i + 1) * each);
     }
-
-    void Finalize() override {
-        ConsoleReporter::Finalize();
-        for (const auto& [name, raw] : best_) {
-            const std::size_t slash = name.find('/');
-            const std::string side = name.substr(0, slash);
-            if (side != "embree" && side != "embree_all_cores") continue;
-            const std::string ours = side == "embree" ? "scan" : "scan_all_cores";
-            const auto other = best_.find(ours + name.substr(slash));
-            if (other == best_.end()) continue;
-            std::printf("%-16s %-20s %6.1f M beams/s of Embree's own %6.1f M: %.2f\n", ours.c_str(),
-                        name.substr(slash + 1).c_str(), other->second / 1e6, raw / 1e6,
-                        other->second / raw);
-        }
+    std::span<const float> cast(std::size_t i) {
+        std::vector<float>& ranges = ranges_.local();
+        const PlacedLaser& sensor = test_.sensors[i];
+        test_.worlds.at(sensor.pose)
+            .cast(sensor.pose.position, test_.directions[i], sensor.laser.max_range, ranges);
+        return ranges;
     }
+    std::span<const float> scan(std::size_t i) { return read(plain_.local(), i); }
+    std::span<const float> noisyScan(std::size_t i) { return read(noisy_.local(), i); }
 
   private:
-    std::map<std::string, double> best_;
+    struct Reader {
+        std::unique_ptr<LaserCaster> caster;
+        Scan scan;
+    };
+
+    static Reader makeCaster(const Case& test, const ReadingOptions& options) {
+        return {std::make_unique<LaserCaster>(test.worlds, test.nobody, test.sensors.front(), true,
+                                              options),
+                {}};
+    }
+    std::span<const float> read(Reader& reader, std::size_t i) {
+        reader.scan.pose = test_.sensors[i].pose;
+        reader.scan.frame = static_cast<int>(i);
+        reader.caster->cast(reader.scan);
+        return reader.scan.ranges;
+    }
+
+    Case& test_;
+    tbb::enumerable_thread_specific<std::vector<float>> ranges_;
+    tbb::enumerable_thread_specific<Reader> plain_, noisy_;
 };
 
-/// Rates of one thread are by its CPU time, those of all cores by the clock on the wall.
-void add(const std::string& side, Case& test, void (*run)(benchmark::State&, Case&)) {
-    auto* const added =
-        benchmark::RegisterBenchmark((side + '/' + test.name).c_str(),
-                                     [run, &test](benchmark::State& state) { run(state, test); });
-    added->Unit(benchmark::kMillisecond);
-    if (side != "embree" && side != "scan") added->UseRealTime();
+void verify(Case& test) {
+    Ways ways(test);
+    std::vector<float> cast, scanned;
+    for (std::size_t i = 0; i < test.sensors.size(); ++i) {
+        for (const float range : ways.cast(i)) cast.push_back(range);
+        for (const float range : ways.scan(i)) scanned.push_back(range);
+    }
+    bench::mustAgree(test.name, cast, test.raw.ranges());
+    bench::mustAgree(test.name, scanned, cast);
+}
+
+void measure(benchmark::State& state, Case& test, int threads) {
+    Ways ways(test);
+    bench::Contest contest;
+    const auto add = [&](auto way) {
+        contest.add([&test, threads, way] { bench::shareOut(threads, test.sensors.size(), way); });
+    };
+    add([&ways](std::size_t i) { ways.embree(i); });
+    add([&ways](std::size_t i) { ways.cast(i); });
+    add([&ways](std::size_t i) { ways.scan(i); });
+    add([&ways](std::size_t i) { ways.noisyScan(i); });
+    const bench::Others others;
+    for (auto _ : state) {
+        contest.round();
+        state.SetIterationTime(contest.last(3));
+    }
+    const auto rate = [&](std::size_t way) { return test.beams() / contest.quickest(way); };
+    const double embree = rate(0);
+    state.counters["embree"] = embree;
+    state.counters["cast"] = rate(1);
+    state.counters["scan"] = rate(2);
+    state.counters["noisy"] = rate(3);
+    state.counters["primitives"] = static_cast<double>(test.primitives);
+    std::string row = bench::leftCell(test.name, 12) +
+                      bench::cell(static_cast<double>(test.primitives), 0, 8) +
+                      bench::cell(threads, 0, 4) + bench::cell(embree / 1e6, 1, 9);
+    for (std::size_t way = 1; way <= 3; ++way)
+        row.append(bench::cell(rate(way) / 1e6, 1, 9))
+            .append(bench::cell(rate(way) / embree, 2, 7));
+    state.counters["others"] = others.cores();
+    state.SetLabel(row + bench::cell(others.cores(), 1, 8));
 }
 
 }  // namespace
@@ -159,21 +150,41 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     std::vector<std::unique_ptr<Case>> cases;
-    const auto make = [&cases](const std::string& name, auto load) {
-        cases.push_back(std::make_unique<Case>(name + "/level", load(), true));
-        cases.push_back(std::make_unique<Case>(name + "/tilted", load(), false));
+    const auto make = [&cases](const std::string& name, Scene scene, bool level) {
+        cases.push_back(std::make_unique<Case>(name, std::move(scene), level));
     };
-    make("facilities", [] { return bench::loadScene(bench::sceneFile("facilities.env")); });
-    make("office_300", [] { return bench::officeScene(20, 15); });
+    const auto shipped = [](const std::string& name) {
+        return bench::loadScene(bench::sceneFile(name + ".env"));
+    };
+    make("hall", shipped("hall"), true);
+    make("facilities", shipped("facilities"), true);
+    make("office-48", bench::officeScene(8, 6), true);
+    make("office-1840", bench::officeScene(46, 40), true);
+    make("walls-7", bench::sceneOfText(bench::building(6).text), false);
+    make("facilities", shipped("facilities"), false);
+    make("office-100", bench::officeScene(10, 10), false);
     for (const auto& test : cases) {
         verify(*test);
-        add("embree", *test, embree);
-        add("scan", *test, [](benchmark::State& state, Case& c) { scan(state, c); });
-        add("embree_all_cores", *test, embreeAllCores);
-        add("scan_all_cores", *test, scanAllCores);
-        add("scan_to_jsonl", *test, scanToJsonl);
+        for (const int threads : {1, 2}) {
+            const std::string name = std::string(test->level ? "level/" : "tilted/") + test->name +
+                                     '/' + std::to_string(threads);
+            benchmark::RegisterBenchmark(
+                name.c_str(),
+                [&test, threads](benchmark::State& state) { measure(state, *test, threads); })
+                ->UseManualTime()
+                ->Iterations(kRounds)
+                ->Unit(benchmark::kMillisecond);
+        }
     }
-    RatioReporter reporter;
+    const auto heading = [](const std::string& what, const std::string& primitives) {
+        return what + ", million beams a second and that of Embree's own rate\n" +
+               bench::leftCell("scene", 12) + bench::cell(primitives, 8) + bench::cell("-j", 4) +
+               bench::cell("Embree", 9) + bench::cell("cast", 9) + bench::cell("ratio", 7) +
+               bench::cell("scan", 9) + bench::cell("ratio", 7) + bench::cell("noisy", 9) +
+               bench::cell("ratio", 7) + bench::cell("others", 8);
+    };
+    bench::TableReporter reporter(
+        {{"level", heading("Level fans", "lines")}, {"tilted", heading("Tilted fans", "triang.")}});
     benchmark::RunSpecifiedBenchmarks(&reporter);
     return 0;
 }

@@ -4,7 +4,10 @@
 set -euo pipefail
 build=$1
 mkdir -p "$build/bench"
-for program in plan load grid_job ray_rate sim_rate; do
+# For the scenes and poses that benchmarks make, and remove.
+TMPDIR=$(cd "$build/bench" && pwd)
+export TMPDIR
+for program in plan load grid_job ray_rate depth_rate scan_rate sim_rate; do
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
         --benchmark_out_format=json
 done
