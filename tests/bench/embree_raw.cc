@@ -213,9 +213,10 @@ void RawEmbree::trace(std::size_t first, std::size_t last) {
 #else
         rtcIntersect16(kAll, data_->scene, &context, &rays);
 #endif
-        for (std::size_t lane = 0; lane < kWidth; ++lane)
-            packet.range[lane] =
-                rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? rays.ray.tfar[lane] : kInfinity;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            const bool hit = rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+            packet.range[lane] = hit ? rays.ray.tfar[lane] : kInfinity;
+        }
     }
 }
 

@@ -85,7 +85,7 @@ class Case {
 
     /// A file of so many poses, drawn from a fixed seed; made when first asked for.
     [[nodiscard]] std::string poses(std::size_t count, bool level) const {
-        const std::string file_name =
+        std::string file_name =
             prefix_ + (level ? "-level-" : "-tilted-") + std::to_string(count) + ".tum";
         if (std::filesystem::exists(file_name)) return file_name;
         const std::vector<PlacedLaser>& places = level ? level_ : tilted_;

@@ -44,8 +44,7 @@ void ScanCommand::declare() {
     line_.choice("--to", to_, readingFormats(),
                  "format of the readings (default: by the suffix of -o, else jsonl)",
                  Enters::History);
-    line_.texts("--select", "GLOB", o.select,
-                "read only sensors whose ids match (* ? [a-z]); may be given again",
+    line_.texts("--select", "GLOB", o.select, "read only sensors whose ids match (* ? [a-z])",
                 Enters::History);
     constexpr int kMostFrames = 1'000'000'000;
     line_.count("--frames", "N", o.frames, 1, kMostFrames, "readings of each sensor, at its rate",
