@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "record/record.h"
@@ -35,5 +36,17 @@ class DeviceCatalogue {
 /// \throws FormatError for an unknown model (with the nearest name of the record's kind) and for
 ///         one of another kind
 const Record* deviceOf(const Record& record, const DeviceCatalogue& devices);
+
+/// Figures of a record: its explicit keys, else its model's, else those of a bare one, put together
+/// by withFigures(Figures, const Record&). \throws FormatError as that and deviceOf
+template <typename Figures>
+Figures modelled(const Record& record, const DeviceCatalogue& devices) {
+    Figures base;
+    if (const Record* device = deviceOf(record, devices)) {
+        base = withFigures(Figures(), *device);
+        base.model = record.text("model");
+    }
+    return withFigures(std::move(base), record);
+}
 
 }  // namespace ispace

@@ -2,7 +2,6 @@
 #include "layout/laser.h"
 
 #include <cmath>
-#include <utility>
 
 #include "base/number.h"
 #include "env/environment.h"
@@ -130,12 +129,7 @@ Laser withFigures(Laser base, const Record& record) {
 }
 
 Laser laserOf(const Record& record, const DeviceCatalogue& devices) {
-    Laser base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(Laser(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
+    return modelled<Laser>(record, devices);
 }
 
 Pose3 poseOf(const Record& record) {

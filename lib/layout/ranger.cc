@@ -2,7 +2,6 @@
 #include "layout/ranger.h"
 
 #include <cmath>
-#include <utility>
 
 #include "base/number.h"
 #include "layout/limits.h"
@@ -78,12 +77,7 @@ Ranger withFigures(Ranger base, const Record& record) {
 }
 
 Ranger rangerOf(const Record& record, const DeviceCatalogue& devices) {
-    Ranger base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(Ranger(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
+    return modelled<Ranger>(record, devices);
 }
 
 }  // namespace ispace

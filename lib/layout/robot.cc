@@ -61,12 +61,7 @@ RobotModel withFigures(RobotModel base, const Record& record) {
 }
 
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices) {
-    RobotModel base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(RobotModel(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
+    return modelled<RobotModel>(record, devices);
 }
 
 Pose2 floorPoseOf(const Record& record) {

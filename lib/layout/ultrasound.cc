@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/ultrasound.h"
 
-#include <utility>
-
 #include "layout/limits.h"
 
 namespace ispace {
@@ -18,12 +16,7 @@ Receiver withFigures(Receiver base, const Record& record) {
 }
 
 Receiver receiverOf(const Record& record, const DeviceCatalogue& devices) {
-    Receiver base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(Receiver(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
+    return modelled<Receiver>(record, devices);
 }
 
 Tag withFigures(Tag base, const Record& record) {
@@ -35,12 +28,7 @@ Tag withFigures(Tag base, const Record& record) {
 }
 
 Tag tagOf(const Record& record, const DeviceCatalogue& devices) {
-    Tag base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(Tag(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
+    return modelled<Tag>(record, devices);
 }
 
 }  // namespace ispace
