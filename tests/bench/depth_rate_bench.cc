@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     std::vector<std::unique_ptr<Case>> cases;
-    cases.push_back(std::make_unique<Case>("walls-7", bench::sceneOfText(bench::building(6).text)));
+    cases.push_back(std::make_unique<Case>("walls-6", bench::sceneOfText(bench::building(6).text)));
     cases.push_back(
         std::make_unique<Case>("facilities", bench::loadScene(bench::sceneFile("facilities.env"))));
     cases.push_back(std::make_unique<Case>("office-100", bench::officeScene(10, 10)));

@@ -214,8 +214,8 @@ void RawEmbree::trace(std::size_t first, std::size_t last) {
         rtcIntersect16(kAll, data_->scene, &context, &rays);
 #endif
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            const bool hit = rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
-            packet.range[lane] = hit ? rays.ray.tfar[lane] : kInfinity;
+            packet.range[lane] = rays.ray.tfar[lane];
+            if (rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) packet.range[lane] = kInfinity;
         }
     }
 }

@@ -10,8 +10,8 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "layout/schemas.h"
-#include "place/arrangement.h"
 #include "layout/sensor_spec.h"
+#include "place/arrangement.h"
 
 namespace {
 
@@ -20,7 +20,8 @@ using namespace ispace;
 struct GridJob {
     Scene scene = bench::loadScene(bench::sceneFile("facilities.env"));
     std::vector<PendingLaser> sensors = sensorsToPlace(
-        scene, readSensorSpec("laser,range=4,fov=180:3", kArrangedKinds, sceneSchemas(), bench::devices()),
+        scene,
+        readSensorSpec("laser,range=4,fov=180:3", kArrangedKinds, sceneSchemas(), bench::devices()),
         bench::devices());
     ArrangeOptions options;
 

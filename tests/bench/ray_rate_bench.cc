@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
     make("facilities", shipped("facilities"), true);
     make("office-48", bench::officeScene(8, 6), true);
     make("office-1840", bench::officeScene(46, 40), true);
-    make("walls-7", bench::sceneOfText(bench::building(6).text), false);
+    make("walls-6", bench::sceneOfText(bench::building(6).text), false);
     make("facilities", shipped("facilities"), false);
     make("office-100", bench::officeScene(10, 10), false);
     for (const auto& test : cases) {
