@@ -141,10 +141,16 @@ std::vector<Record> joinRecords(const std::vector<Record>& environment,
     for (const Record& record : layout) {
         const std::string id = record.writtenId();
         const auto place = id.empty() ? places.end() : places.find(id);
-        if (place == places.end())
+        if (place == places.end()) {
             joined.push_back(record);
-        else
-            joined[place->second] = record;
+            continue;
+        }
+        Record& replaced = joined[place->second];
+        if (replaced.keyword() != record.keyword())
+            throw FormatError(record.finding(
+                "id", "`" + id + "` is the id of the environment's " + replaced.keyword() +
+                          ", and a record takes the place of one of its kind; give it another"));
+        replaced = record;
     }
     return joined;
 }

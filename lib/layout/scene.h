@@ -49,7 +49,7 @@ struct Scene {
 };
 
 /// The records of LAYOUT put in the places of those of ENV with the same written id, the others
-/// behind them.
+/// behind them. \throws FormatError for one of another keyword in the place
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 

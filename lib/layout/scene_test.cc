@@ -300,6 +300,13 @@ TEST(SceneSchemas, CanonicalFormOfTheDesignsExample) {
               "#3dm 1\nrobot radius=0.25\n");
 }
 
+TEST(JoinRecords, ARecordTakesThePlaceOfOneOfItsKindOnly) {
+    EXPECT_EQ(scene("ispace id=b\ndesk id=d at=1,1\n", "desk id=d at=2,1\n").records.size(), 2U);
+    EXPECT_EQ(testing::findings([] { return scene("ispace id=b\n", "ranger id=b at=0,0\n"); }),
+              "room.3dm:2:11: error: `b` is the id of the environment's ispace, and a record takes "
+              "the place of one of its kind; give it another\n");
+}
+
 TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
     std::vector<std::string> sensors;
     for (const Schema& schema : sceneSchemas().all())
