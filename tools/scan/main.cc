@@ -22,6 +22,7 @@ namespace {
 using namespace ispace;
 
 constexpr std::string_view kKinds[] = {"laser", "ranger", "ultrasound", "tag"};
+
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     Sensors sensors = sensorsOf(input.scene, options.select);
     if (!sensors.order.empty()) return sensors;
