@@ -216,6 +216,26 @@ TEST(PoseSource, GivesWhatIsThereBeforeItWaits) {
     EXPECT_EQ(reads, 1);
 }
 
+TEST(PoseSource, ACommentBehindAPoseDoesNotHoldItBack) {
+    for (const std::string tail : {"# wait\n", "\n\n", "2 1", ""}) {
+        int reads = 0;
+        const auto read = [&](std::string& buffer) {
+            buffer += "0 1 2 0.15 0 0 0 1\n1 1 2 0.15 0 0 0 1\n" + tail;
+            return ++reads < 2;
+        };
+        std::vector<ReadingJob> batch;
+        PoseSource source(PoseLines(read, "poses"));
+        source.next(50, batch);
+        EXPECT_EQ(batch.size(), 2U) << tail;
+        EXPECT_EQ(reads, 1) << tail;
+        reads = 0;
+        MotionSource motion(PoseLines(read, "poses"), 1, 0);
+        motion.next(50, batch);
+        EXPECT_EQ(batch.size(), 2U) << tail;
+        EXPECT_EQ(reads, 1) << tail;
+    }
+}
+
 TEST(PoseSource, BadLinesAreNamedByNumber) {
     PoseSource source(linesOf("# t\n0 1 2 0.15 0 0 0 1\n1 1 2 0.15 0 0 nan 1\n"));
     std::vector<ReadingJob> batch;

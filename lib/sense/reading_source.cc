@@ -40,9 +40,10 @@ FormatError PoseLines::error(const std::string& message) const {
     return FormatError({name_, line_, 0, message});
 }
 
-std::optional<std::string_view> PoseLines::nextLine() {
+std::optional<std::string_view> PoseLines::nextLine(Wait wait) {
     std::size_t end = buffer_.find('\n', begin_);
     while (end == std::string::npos && !done_) {
+        if (wait == Wait::No) return std::nullopt;
         buffer_.erase(0, begin_);
         begin_ = 0;
         if (buffer_.size() > kLongestLine) {
@@ -65,8 +66,8 @@ std::optional<std::string_view> PoseLines::nextLine() {
     return line;
 }
 
-std::optional<TimedPose> PoseLines::next() {
-    while (const auto line = nextLine()) {
+std::optional<TimedPose> PoseLines::next(Wait wait) {
+    while (const auto line = nextLine(wait)) {
         try {
             if (auto pose = parseTumLine(*line)) return pose;
         } catch (const FormatError& bad) {
@@ -82,8 +83,9 @@ std::optional<TimedPose> PoseLines::next() {
 void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     batch.clear();
     // Whoever writes a pose and waits for its scan gets it.
-    while (batch.size() < most && (batch.empty() || poses_.ready())) {
-        const auto timed = poses_.next();
+    using Wait = PoseLines::Wait;
+    while (batch.size() < most) {
+        const auto timed = poses_.next(batch.empty() ? Wait::Yes : Wait::No);
         if (!timed) return;
         batch.push_back(
             {.sensor = 0, .frame = frame_, .time = timed->time, .pose = timed->pose, .way = {}});
@@ -91,10 +93,11 @@ void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     }
 }
 
-/// Reads on until the way from `begin` on reaches a time; false if it ends before.
-bool MotionSource::reach(double begin, double time) {
+/// Reads on until the way from `begin` on reaches a time; false if it ends before, or has not come
+/// so far.
+bool MotionSource::reach(double begin, double time, PoseLines::Wait wait) {
     while (window_.empty() || window_.back().time < time) {
-        const auto timed = poses_.next();
+        const auto timed = poses_.next(wait);
         if (!timed) return false;
         if (!window_.empty() && timed->time <= window_.back().time)
             throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
@@ -113,9 +116,10 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
         window_.push_back(*first);
         begin_ = first->time;
     }
-    while (batch.size() < most && (batch.empty() || poses_.ready())) {
+    using Wait = PoseLines::Wait;
+    while (batch.size() < most) {
         const double time = wholeNanoseconds(begin_ + frame_ / rate_);
-        if (!reach(time, time + duration_)) return;
+        if (!reach(time, time + duration_, batch.empty() ? Wait::Yes : Wait::No)) return;
         // What lies behind is of no use any more, but for the pose it comes from.
         while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();
         ReadingJob job{.sensor = 0, .frame = frame_, .time = time, .pose = {}, .way = {}};

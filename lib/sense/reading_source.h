@@ -46,15 +46,15 @@ class PoseLines {
   public:
     /// `name` is that of the file, for messages.
     PoseLines(ByteReader read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
-    /// The next pose; nothing at the end. \throws FormatError with file and line
-    std::optional<TimedPose> next();
-    /// True if next() has a line without reading.
-    [[nodiscard]] bool ready() const { return buffer_.find('\n', begin_) != std::string::npos; }
+    enum class Wait { Yes, No };
+    /// The next pose; nothing at the end, or, where it must not wait, if none has come yet.
+    /// \throws FormatError with file and line
+    std::optional<TimedPose> next(Wait wait = Wait::Yes);
     [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] FormatError error(const std::string& message) const;
 
   private:
-    std::optional<std::string_view> nextLine();
+    std::optional<std::string_view> nextLine(Wait wait);
 
     ByteReader read_;
     std::string name_;
@@ -84,7 +84,7 @@ class MotionSource final : public ReadingSource {
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
 
   private:
-    bool reach(double begin, double time);
+    bool reach(double begin, double time, PoseLines::Wait wait);
 
     PoseLines poses_;
     double rate_, duration_;
