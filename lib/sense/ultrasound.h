@@ -39,7 +39,8 @@ constexpr std::size_t kLeastReceivers = 4;
 /// linear solution; of the two mirror images of receivers in one plane (a ceiling) the one on the
 /// side that `towards` points to, on average the axes of the receivers. So it is for receivers
 /// nearly in one plane, unless the other side fits clearly better. Nothing with fewer than
-/// kLeastReceivers, or where they do not fix a place (in one line). A place in the plane of the
+/// kLeastReceivers, where they do not fix a place (in one line), or where `towards` runs along the
+/// one plane they are in, which leaves both images. A place in the plane of the
 /// receivers has a dilution of precision beyond all bounds across that plane, which may be
 /// +infinity. \pre as many distances as receivers, all finite
 std::optional<Fix> locate(std::span<const Point3> receivers, std::span<const double> distances,
