@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,6 +20,13 @@ namespace {
 /// Scenes of more records or numbers are left out, and all but one in this many of the others.
 constexpr std::size_t kMostRecords = 12, kMostNumbers = 200, kEvery = 16;
 
+/// The largest number of a value that is one, or a tuple of them (pixels), else 0.
+double largest(const Value& value) {
+    if (const auto* const number = std::get_if<double>(&value)) return *number;
+    const auto* const tuple = std::get_if<Tuple>(&value);
+    return tuple == nullptr || tuple->empty() ? 0 : *std::max_element(tuple->begin(), tuple->end());
+}
+
 /// Numbers of all lists: what makes vertices and repetitions.
 std::size_t numbersOf(const Record& record) {
     std::size_t count = 0;
@@ -27,7 +35,7 @@ std::size_t numbersOf(const Record& record) {
         const Value* const value = record.find(key.name);
         if (const auto* list = std::get_if<TupleList>(value)) count += list->size();
         // Counts and sizes up to a hundred: ten thousand boxes show nothing that fifty do not.
-        if (key.whole && record.number(key.name) > 100) count += kMostNumbers + 1;
+        if (key.whole && largest(*value) > 100) count += kMostNumbers + 1;
     }
     return count;
 }
