@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/json_writer.h"
+#include "draw/feature_writer.h"
 #include "geom/boolean.h"
 #include "io/element_lines.h"
 #include "io/footprint.h"
@@ -24,83 +25,6 @@ std::string_view typeName(RecordType type) {
                                                      "other", "placement", "meta"};
     return kNames[static_cast<std::size_t>(type)];
 }
-
-/// Writes features one behind another: begin, properties, a geometry, and the next.
-class FeatureWriter {
-  public:
-    FeatureWriter() {
-        json_.beginObject().key("type").value("FeatureCollection");
-        json_.key("coordinate_system").value("local-metres");
-    }
-    JsonWriter& json() { return json_; }
-
-    void beginFeatures() { json_.key("features").beginArray(); }
-
-    JsonWriter& begin(std::string_view id, std::string_view keyword, std::string_view type) {
-        json_.beginObject().key("type").value("Feature").key("properties").beginObject();
-        json_.key("id").value(id).key("keyword").value(keyword);
-        return json_.key("type").value(type);
-    }
-
-    void endAsPoint(Point2 p) {
-        beginGeometry("Point");
-        add(p);
-        end();
-    }
-
-    /// One chain, or several.
-    void endAsLines(const std::vector<std::vector<Point2>>& chains) {
-        beginGeometry(chains.size() == 1 ? "LineString" : "MultiLineString");
-        if (chains.size() != 1) json_.beginArray();
-        for (const std::vector<Point2>& chain : chains) {
-            json_.beginArray();
-            for (const Point2 p : chain) add(p);
-            json_.endArray();
-        }
-        if (chains.size() != 1) json_.endArray();
-        end();
-    }
-
-    /// One piece, or several.
-    void endAsArea(const std::vector<Region>& pieces) {
-        beginGeometry(pieces.size() == 1 ? "Polygon" : "MultiPolygon");
-        if (pieces.size() != 1) json_.beginArray();
-        for (const Region& piece : pieces) {
-            json_.beginArray();
-            addRing(piece.outline, true);
-            for (const Polygon& hole : piece.holes) addRing(hole, false);
-            json_.endArray();
-        }
-        if (pieces.size() != 1) json_.endArray();
-        end();
-    }
-
-    void endAsNothing() { json_.endObject().key("geometry").null().endObject(); }
-
-    std::string finish() {
-        json_.endArray().endObject();
-        return json_.take() + '\n';
-    }
-
-  private:
-    void beginGeometry(std::string_view type) {
-        json_.endObject().key("geometry").beginObject();
-        json_.key("type").value(type).key("coordinates");
-    }
-    void end() { json_.endObject().endObject(); }
-    void add(Point2 p) { json_.beginArray().value(p.x).value(p.y).endArray(); }
-
-    /// The first place comes again at the end.
-    void addRing(const Polygon& ring, bool counter_clockwise) {
-        const bool turn = (signedArea(ring) > 0) != counter_clockwise;
-        json_.beginArray();
-        for (std::size_t i = 0; i <= ring.size(); ++i)
-            add(ring[turn ? (ring.size() - i) % ring.size() : i % ring.size()]);
-        json_.endArray();
-    }
-
-    JsonWriter json_;
-};
 
 /// The values of a record besides its id, its place, and what is told otherwise: written ones and
 /// defaults, in the units of files (metres, degrees).

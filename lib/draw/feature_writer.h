@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/json_writer.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// Writes a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
+/// `"coordinate_system": "local-metres"` says. Features come one behind another: begin, more
+/// properties through json(), a geometry, and the next. Outlines counter-clockwise, holes
+/// clockwise.
+class FeatureWriter {
+  public:
+    FeatureWriter();
+    /// For foreign members before beginFeatures(), and for properties after begin().
+    JsonWriter& json() { return json_; }
+    void beginFeatures() { json_.key("features").beginArray(); }
+
+    /// Properties id, keyword and type.
+    JsonWriter& begin(std::string_view id, std::string_view keyword, std::string_view type);
+    void endAsPoint(Point2 p);
+    /// One chain, or several.
+    void endAsLines(const std::vector<std::vector<Point2>>& chains);
+    /// One piece, or several.
+    void endAsArea(const std::vector<Region>& pieces);
+    void endAsNothing();
+
+    /// The file's text.
+    std::string finish();
+
+  private:
+    void beginGeometry(std::string_view type);
+    void end() { json_.endObject().endObject(); }
+    void add(Point2 p) { json_.beginArray().value(p.x).value(p.y).endArray(); }
+    void addRing(const Polygon& ring, bool counter_clockwise);
+
+    JsonWriter json_;
+};
+
+}  // namespace ispace
