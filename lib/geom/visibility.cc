@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kWholeTurn = 2 * std::numbers::pi;
+
+bool isArc(const SightEnd& end) { return end.line == SightEnd::kArc; }
+
+/// From direction a counter-clockwise to b, in [0, 2 pi).
+double angleBetween(Vec2 a, Vec2 b) {
+    const double angle = std::atan2(cross(a, b), dot(a, b));
+    return angle < 0 ? angle + kWholeTurn : angle;
+}
+
+/// Where sight in a direction ends.
+Point2 endIn(const VisibleRegion& region, const SightEnd& end, Vec2 direction) {
+    if (isArc(end)) return region.viewpoint + region.max_range * direction;
+    const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
+    const double right = -cross(direction, a), left = cross(direction, b);
+    // Written so that 0 / 0 gives 0.
+    const double share = std::min(1.0, std::max(0.0, right / (right + left)));
+    return end.from + share * (end.to - end.from);
+}
+
+void addEnd(VisibleRegion& region, const SightEnd& end) {
+    if (cross(end.from - region.viewpoint, end.to - region.viewpoint) > 0)
+        region.ends.push_back(end);
+}
+
+}  // namespace
+
+double area(const VisibleRegion& region) {
+    double twice = 0;
+    for (const SightEnd& end : region.ends) {
+        const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
+        twice += isArc(end) ? region.max_range * region.max_range * angleBetween(from, to)
+                            : cross(from, to);
+    }
+    return twice / 2;
+}
+
+Curve outlineOf(const VisibleRegion& region) {
+    Curve curve;
+    if (region.ends.empty()) return curve;
+    curve.reserve(2 * region.ends.size() + 2);
+    const auto go_to = [&curve](Point2 from, Point2 to) {
+        if (from != to) curve.push_back({from, to});
+    };
+    if (!region.is_whole) go_to(region.viewpoint, region.ends.front().from);
+    for (std::size_t i = 0; i < region.ends.size(); ++i) {
+        const SightEnd& end = region.ends[i];
+        if (i > 0) go_to(region.ends[i - 1].to, end.from);
+        curve.push_back({end.from, end.to});
+        if (isArc(end)) {
+            curve.back().radius = region.max_range;
+            curve.back().center = region.viewpoint;
+        }
+    }
+    const Point2 last = region.ends.back().to;
+    if (region.is_whole) {
+        go_to(last, region.ends.front().from);
+    } else {
+        go_to(last, region.viewpoint);
+    }
+    return curve;
+}
+
+VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
+    if (span >= Angle::degrees(360)) return region;
+    VisibleRegion sector{region.viewpoint, region.max_range, false, {}};
+    if (region.ends.empty() || !(span > Angle())) return sector;
+    const Vec2 begin = unitVector(first), stop = unitVector(first + span);
+    // The end in which the sector begins is the first one to stop after that.
+    std::vector<double> stops;
+    stops.reserve(region.ends.size());
+    for (const SightEnd& end : region.ends)
+        stops.push_back(angleBetween(begin, end.to - region.viewpoint));
+    const auto start =
+        static_cast<std::size_t>(std::min_element(stops.begin(), stops.end()) - stops.begin());
+    const std::size_t count = region.ends.size();
+    sector.ends.reserve(count + 1);
+    for (std::size_t i = 0; i <= count; ++i) {
+        SightEnd end = region.ends[(start + i) % count];
+        const bool comes_back = i == count;
+        const double from = angleBetween(begin, end.from - region.viewpoint);
+        // Whether the first one begins before the sector: then it does so almost a turn later too.
+        const bool is_split = (i == 0 || comes_back) && from > stops[start];
+        if (comes_back && !is_split) break;
+        if (i == 0 && is_split)
+            end.from = endIn(region, end, begin);
+        else if (from >= span.radians())
+            break;
+        const bool is_last = comes_back || stops[(start + i) % count] >= span.radians();
+        if (is_last) end.to = endIn(region, end, stop);
+        addEnd(sector, end);
+        if (is_last) break;
+    }
+    return sector;
+}
+
+bool holds(const VisibleRegion& region, Point2 p) {
+    const Vec2 way = p - region.viewpoint;
+    if (way == Vec2()) return !region.ends.empty();
+    return std::any_of(region.ends.begin(), region.ends.end(), [&](const SightEnd& end) {
+        const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
+        if (cross(from, way) < 0 || cross(way, to) < 0) return false;
+        if (isArc(end)) return dot(way, way) <= region.max_range * region.max_range;
+        return cross(to - from, way - from) >= 0;
+    });
+}
+
+}  // namespace ispace

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/visibility_mesh.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "geom/segment_grid.h"
+#include "geom/visibility_pieces.h"
+
+namespace ispace {
+
+namespace {
+
+using Index = std::uint32_t;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Tds = CGAL::Triangulation_data_structure_2<
+    CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>,
+    CGAL::Constrained_triangulation_face_base_2<
+        Kernel, CGAL::Triangulation_face_base_with_info_2<Index, Kernel>>>;
+// Pieces of lines may still cross by a rounding error: that must not throw.
+using Delaunay =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Tds, CGAL::Exact_predicates_tag>;
+
+Point2 pointOf(const Delaunay::Vertex_handle& v) { return {v->point().x(), v->point().y()}; }
+
+/// A box with room around that of the lines, wherever that is.
+Box2 boxAround(const Box2& box) {
+    if (box.empty()) return {{-1, -1}, {1, 1}};
+    const double farthest = std::max(
+        {std::abs(box.low.x), std::abs(box.low.y), std::abs(box.high.x), std::abs(box.high.y)});
+    const double room = std::max({box.width(), box.depth(), 1.0, farthest / 1024});
+    const Vec2 margin{room, room};
+    return {box.low - margin, box.high + margin};
+}
+
+std::array<Point2, 4> cornersOf(const Box2& box) {
+    return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+}
+
+Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
+    std::vector<Point2> points;
+    points.reserve(2 * lines.size());
+    for (const auto& [a, b] : lines) {
+        points.push_back(a);
+        points.push_back(b);
+    }
+    const auto less = [](Point2 a, Point2 b) { return lexLess(a, b); };
+    std::sort(points.begin(), points.end(), less);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    std::vector<std::pair<Kernel::Point_2, Index>> sites;
+    sites.reserve(points.size() + 4);
+    for (const Point2 p : points)
+        sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
+    for (const Point2 p : cornersOf(box))
+        sites.push_back({Kernel::Point_2(p.x, p.y), static_cast<Index>(sites.size())});
+
+    Delaunay net;
+    net.insert(sites.begin(), sites.end());
+    std::vector<Delaunay::Vertex_handle> handles(sites.size());
+    for (auto v = net.finite_vertices_begin(); v != net.finite_vertices_end(); ++v)
+        handles[v->info()] = v;
+    const auto handle_of = [&](Point2 p) {
+        return handles[static_cast<std::size_t>(
+            std::lower_bound(points.begin(), points.end(), p, less) - points.begin())];
+    };
+    for (const auto& [a, b] : lines) net.insert_constraint(handle_of(a), handle_of(b));
+    return net;
+}
+
+/// Bits of x spread out to every second place.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 16) & 0x0000FFFF0000FFFF;
+    x = (x | x << 8) & 0x00FF00FF00FF00FF;
+    x = (x | x << 4) & 0x0F0F0F0F0F0F0F0F;
+    x = (x | x << 2) & 0x3333333333333333;
+    return (x | x << 1) & 0x5555555555555555;
+}
+
+/// Triangles along a curve that fills the plane (Morton), so that neighbours lie near each other in
+/// memory; numbered in that order.
+std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2& box) {
+    std::vector<std::pair<std::uint64_t, Delaunay::Face_handle>> order;
+    order.reserve(net.number_of_faces());
+    const auto step = [](double offset, double extent) {
+        const double share = offset / extent;  // of the extent, within [0, 1]
+        return spread(share > 0 ? static_cast<std::uint64_t>(std::min(share, 1.0) * 0x7FFFFFFF)
+                                : 0);
+    };
+    for (auto f = net.finite_faces_begin(); f != net.finite_faces_end(); ++f) {
+        const Vec2 a = pointOf(f->vertex(0)) - box.low, b = pointOf(f->vertex(1)) - box.low;
+        const Vec2 c = pointOf(f->vertex(2)) - box.low;
+        order.push_back({step((a.x + b.x + c.x) / 3, box.width()) |
+                             step((a.y + b.y + c.y) / 3, box.depth()) << 1,
+                         f});
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Delaunay::Face_handle> faces;
+    faces.reserve(order.size());
+    for (const auto& [place, face] : order) {
+        face->info() = static_cast<Index>(faces.size());
+        faces.push_back(face);
+    }
+    return faces;
+}
+
+/// Finds the piece of a line that an edge is.
+class LineFinder {
+  public:
+    LineFinder(const std::vector<Segment2>& lines, const std::vector<Index>& names)
+        : lines_(lines), names_(names), grid_(lines, 0) {}
+
+    /// The line of the piece nearest to both end points: mostly they are its own.
+    [[nodiscard]] Index find(Point2 a, Point2 b) const {
+        const Point2 middle{a.x / 2 + b.x / 2, a.y / 2 + b.y / 2};
+        double least = std::numeric_limits<double>::infinity();
+        Index found = 0;
+        for (const Index i : grid_.near(middle)) {
+            const double gap = gapTo(lines_[i], a, b);
+            if (gap < least) least = gap, found = i;
+        }
+        if (!std::isfinite(least)) {
+            for (Index i = 0; i < lines_.size(); ++i) {
+                const double gap = gapTo(lines_[i], a, b);
+                if (gap < least) least = gap, found = i;
+            }
+        }
+        return names_[found];
+    }
+
+  private:
+    static double gapTo(const Segment2& line, Point2 a, Point2 b) {
+        if ((line.a == a && line.b == b) || (line.a == b && line.b == a)) return 0;
+        return std::max(distance(a, line), distance(b, line));
+    }
+
+    const std::vector<Segment2>& lines_;
+    const std::vector<Index>& names_;
+    SegmentGrid grid_;
+};
+
+}  // namespace
+
+SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
+    std::vector<Segment2> lines(all_lines.begin(), all_lines.end());
+    for (auto& [a, b] : lines) a = withinSight(a), b = withinSight(b);
+    const std::vector<LinePiece> pieces = piecesOf(lines);
+    std::vector<Index> names;
+    lines.clear();
+    names.reserve(pieces.size());
+    for (const LinePiece& piece : pieces) {
+        lines.push_back(piece.segment);
+        names.push_back(piece.line);
+        cells_box.add(piece.segment.a);
+        cells_box.add(piece.segment.b);
+    }
+    box = boxAround(cells_box);
+    const Delaunay net = triangulate(lines, box);
+    const std::vector<Delaunay::Face_handle> faces = numberedFaces(net, box);
+    const LineFinder finder(lines, names);
+    doors.resize(3 * faces.size());
+    const auto door_of = [](const Delaunay::Face_handle& face, int i) {
+        return 3 * face->info() + static_cast<Index>(i);
+    };
+    for (const auto& face : faces) {
+        for (int i = 0; i < 3; ++i) {
+            const Index edge = door_of(face, i);
+            const auto next = face->neighbor(i);
+            const Point2 from = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::ccw(i)));
+            const Point2 to = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::cw(i)));
+            Index target = Door::kFree;
+            if (net.is_infinite(next)) {
+                // Counter-clockwise: along the lower side in x, along the right one in y.
+                const bool level = from.y == to.y;
+                in[level ? (to.x > from.x ? 0U : 2U) : (to.y > from.y ? 1U : 3U)] = edge;
+            } else {
+                target = door_of(next, next->index(face));
+            }
+            doors[edge].corner = pointOf(face->vertex(i));
+            doors[edge].behind = target;
+            if (face->is_constrained(i)) {
+                // Once for both sides.
+                target = target < edge ? targetOf(target) : Door::kBlocked | finder.find(from, to);
+            }
+            doors[beforeOf(edge)].right = target;
+            doors[nextOf(edge)].left = target;
+        }
+    }
+    makeCells(faces.size());
+}
+
+std::size_t SightMesh::cellOf(Point2 p) const {
+    const auto step = [](double offset, double per_metre, Index count) -> std::size_t {
+        const double cell = offset * per_metre;
+        if (!(cell > 0)) return 0;
+        return cell < count ? static_cast<std::size_t>(cell) : count - 1;
+    };
+    return step(p.y - cells_box.low.y, rows_per_metre, rows) * columns +
+           step(p.x - cells_box.low.x, columns_per_metre, columns);
+}
+
+void SightMesh::makeCells(std::size_t count) {
+    if (cells_box.empty()) cells_box = {{0, 0}, {0, 0}};
+    const double width = cells_box.width(), depth = cells_box.depth();
+    const auto most = static_cast<double>(count);
+    const auto share = [most](double extent, double other) {
+        const double cells = std::sqrt(most) * std::sqrt(extent / other);
+        return static_cast<Index>(std::clamp(std::isnan(cells) ? 1 : cells, 1.0, most));
+    };
+    columns = share(width, depth);
+    rows = share(depth, width);
+    if (width > 0) columns_per_metre = columns / width;
+    if (depth > 0) rows_per_metre = rows / depth;
+    cells.resize(std::size_t{columns} * rows);
+    // To and fro, so that the next cell is near.
+    Index triangle = 0;
+    for (Index row = 0; row < rows; ++row) {
+        for (Index i = 0; i < columns; ++i) {
+            const Index column = row % 2 == 0 ? i : columns - 1 - i;
+            const Point2 center{cells_box.low.x + (column + 0.5) / columns * width,
+                                cells_box.low.y + (row + 0.5) / rows * depth};
+            triangle = locateFrom(center, triangle);
+            cells[std::size_t{row} * columns + column] = triangle;
+        }
+    }
+}
+
+Index SightMesh::locateFrom(Point2 p, Index triangle) const {
+    // A walk towards p may go in circles where lines keep triangles from being Delaunay: after some
+    // steps it takes edges in random order, and at last every triangle has its turn.
+    constexpr int kStraightSteps = 200, kMostSteps = 100'000;
+    const auto is_right = [&](Index edge) {
+        const Point2 a = doors[nextOf(edge)].corner, b = doors[beforeOf(edge)].corner;
+        const double turn = surelyTurns(a - p, b - p);
+        if (turn != 0) return turn < 0;
+        return orientation(p, a, b) == Turn::Right;
+    };
+    std::uint32_t random = 1, came = Door::kFree;
+    for (int step = 0; step < kMostSteps; ++step) {
+        if (step > kStraightSteps) random = random * 1664525U + 1013904223U;
+        Index next = Door::kFree;
+        for (Index k = 0; k < 3 && next == Door::kFree; ++k) {
+            const Index edge = 3 * triangle + (k + (random >> 16)) % 3;
+            if (edge != came && is_right(edge)) next = doors[edge].behind;
+        }
+        if (next == Door::kFree) return triangle;
+        came = next;
+        triangle = next / 3;
+    }
+    for (triangle = 0; 3 * triangle < doors.size(); ++triangle)
+        if (!is_right(3 * triangle) && !is_right(3 * triangle + 1) && !is_right(3 * triangle + 2))
+            return triangle;
+    return 0;
+}
+
+}  // namespace ispace

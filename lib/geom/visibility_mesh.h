@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The triangulation that VisibilityMap looks through; private to it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geom/box.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+
+/// Corner and edge i of triangle t, at index 3 t + i: the edge lies opposite to the corner, corners
+/// are counter-clockwise. Also the door by which sight enters the triangle through that edge: from
+/// there the corner lies straight ahead, corner i + 2 on the right and corner i + 1 on the left.
+///
+/// 32 bytes and aligned: all that one step of sight needs is one half of a cache line.
+struct alignas(32) Door {
+    Point2 corner;
+    /// Where sight gets through the edges right (i + 1) and left (i + 2) of the corner: a door, or
+    /// a line with kBlocked set, or kFree.
+    std::uint32_t right = 0, left = 0;
+    /// The door on the other side of edge i, be it a line or not, or kFree.
+    std::uint32_t behind = 0;
+
+    static constexpr std::uint32_t kBlocked = 1U << 31;
+    static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+};
+
+/// Lines, viewpoints and ranges are cut off there, in metres, so that products of four lengths are
+/// finite.
+constexpr double kFarthestSight = 1e75;
+
+inline Point2 withinSight(Point2 p) {
+    return {std::clamp(p.x, -kFarthestSight, kFarthestSight),
+            std::clamp(p.y, -kFarthestSight, kFarthestSight)};
+}
+
+/// The next and the one before of the same triangle, counter-clockwise.
+inline std::uint32_t nextOf(std::uint32_t door) { return door % 3 == 2 ? door - 2 : door + 1; }
+inline std::uint32_t beforeOf(std::uint32_t door) { return door % 3 == 0 ? door + 2 : door - 1; }
+
+/// Lines, and a box around them that is none, triangulated: sight beyond the box is free.
+struct SightMesh {
+    std::vector<Door> doors;
+    Box2 box;                         ///< of all triangles; lines lie strictly inside
+    std::array<std::uint32_t, 4> in;  ///< doors through its lower, right, upper and left side
+
+    // A triangle near each of these cells over the lines.
+    Box2 cells_box;
+    std::uint32_t columns = 1, rows = 1;
+    double columns_per_metre = 0, rows_per_metre = 0;
+    std::vector<std::uint32_t> cells;
+
+    /// \throws FormatError (without a place) for lines that cross by the million
+    explicit SightMesh(std::span<const Segment2> lines);
+
+    /// What stops sight from inside at an edge, or the door behind it.
+    [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {
+        return doors[beforeOf(edge)].right;
+    }
+    [[nodiscard]] bool isLine(std::uint32_t edge) const {
+        const std::uint32_t target = targetOf(edge);
+        return target >= Door::kBlocked && target != Door::kFree;
+    }
+    /// A triangle with p inside or on its boundary. \pre p strictly inside the box
+    [[nodiscard]] std::uint32_t locate(Point2 p) const { return locateFrom(p, cells[cellOf(p)]); }
+    [[nodiscard]] std::uint32_t locateFrom(Point2 p, std::uint32_t triangle) const;
+
+  private:
+    [[nodiscard]] std::size_t cellOf(Point2 p) const;
+    void makeCells(std::size_t count);
+};
+
+/// What cross(a, b), for vectors a = A - o, b = B - o that were rounded, may differ from the true
+/// value, over the sum of the magnitudes of its two products; and in case of underflow (Shewchuk,
+/// 1997).
+constexpr double kTurnError =
+    (3 + 8 * std::numeric_limits<double>::epsilon()) * (std::numeric_limits<double>::epsilon() / 2);
+constexpr double kTurnUnderflow = 1e-300;
+
+/// cross(a, b) if its sign is surely that of the turn o, A, B, else 0.
+inline double surelyTurns(Vec2 a, Vec2 b) {
+    const double left = a.x * b.y, right = a.y * b.x;
+    const double turn = left - right;
+    const double error = kTurnError * (std::abs(left) + std::abs(right)) + kTurnUnderflow;
+    return std::abs(turn) > error ? turn : 0;
+}
+
+/// The same error for all vectors that are not longer.
+inline double errorOfTurns(double length) {
+    return 2 * kTurnError * (length * length) + kTurnUnderflow;
+}
+
+}  // namespace ispace

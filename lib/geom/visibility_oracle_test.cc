@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/visibility_oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "geom/predicates.h"
+#include "geom/test_curves.h"
+#include "geom/visibility.h"
+#include "geom/visibility_test_plans.h"
+
+namespace ispace {
+namespace {
+
+using test::VisibilityOracle;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The lines and the box of the oracle, so that sight is free nowhere.
+std::vector<Segment2> boxed(std::vector<Segment2> lines) {
+    const Box2 box = test::boxOf(lines);
+    for (const Segment2& side :
+         test::edgesOf(test::box(box.low.x - 10, box.low.y - 10, box.high.x + 10, box.high.y + 10)))
+        lines.push_back(side);
+    return lines;
+}
+
+struct Case {
+    std::uint64_t seed;
+    test::PlanSize size;
+    int looks;
+};
+
+const Case kCases[] = {{1, {1, 1, 4, 4, 4}, 100},    {2, {2, 2, 9, 12, 40}, 100},
+                       {3, {3, 1, 6, 5, 60}, 100},   {4, {1, 1, 0, 0, 80}, 100},
+                       {5, {2, 3, 54, 8, 100}, 100}, {6, {5, 5, 82, 14, 200}, 60}};
+
+TEST(VisibilityOracle, FromRandomPlaces) {
+    for (const Case& c : kCases) {
+        const std::vector<Segment2> lines = test::linesOf(test::makePlan(c.seed, c.size));
+        const VisibilityOracle oracle(lines);
+        const VisibilityMap map(boxed(lines));
+        std::mt19937_64 random(c.seed);
+        const Box2 box = test::boxOf(lines);
+        for (int i = 0; i < c.looks; ++i) {
+            const Point2 p = test::randomIn(random, box);
+            const double wanted = oracle.area(VisibilityOracle::exact(p));
+            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted)
+                << "plan " << c.seed << " from " << p.x << ", " << p.y;
+        }
+    }
+}
+
+TEST(VisibilityOracle, FromVertices) {
+    for (const Case& c : kCases) {
+        const std::vector<Segment2> lines = test::linesOf(test::makePlan(c.seed, c.size));
+        const VisibilityOracle oracle(lines);
+        const VisibilityMap map(boxed(lines));
+        const std::size_t step = 1 + lines.size() / 40;
+        for (std::size_t i = 0; i < lines.size(); i += step) {
+            const Point2 p = lines[i].a;
+            const double wanted = oracle.area(VisibilityOracle::exact(p));
+            const VisibleRegion region = map.look(p, kInfinity);
+            EXPECT_EQ(region.viewpoint, p);
+            EXPECT_NEAR(area(region), wanted, 1e-9 * wanted)
+                << "plan " << c.seed << " from vertex " << i;
+        }
+    }
+}
+
+TEST(VisibilityOracle, FromWalls) {
+    for (const Case& c : kCases) {
+        const std::vector<Segment2> lines = test::linesOf(test::makePlan(c.seed, c.size));
+        const VisibilityOracle oracle(lines);
+        const VisibilityMap map(boxed(lines));
+        const std::size_t step = 1 + lines.size() / 40;
+        for (std::size_t i = 0; i < lines.size(); i += step) {
+            const auto on_wall = VisibilityOracle::middleOf(lines[i], 1 + static_cast<int>(i) % 7);
+            const Point2 p{CGAL::to_double(on_wall.x()), CGAL::to_double(on_wall.y())};
+            const double wanted = oracle.area(on_wall);
+            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted)
+                << "plan " << c.seed << " from wall " << i;
+        }
+    }
+}
+
+TEST(VisibilityOracle, CrossingLines) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> place(0, 10), way(-3, 3);
+    for (int round = 0; round < 5; ++round) {
+        std::vector<Segment2> lines;
+        for (int i = 0; i < 30; ++i) {
+            const Point2 from{place(random), place(random)};
+            lines.push_back({from, from + Vec2{way(random), way(random)}});
+        }
+        const VisibilityOracle oracle(lines);
+        const VisibilityMap map(boxed(lines));
+        for (int i = 0; i < 60; ++i) {
+            const Point2 p{place(random), place(random)};
+            const auto touches = [p](const Segment2& line) {
+                return distance(p, line) <= kSightContact;
+            };
+            if (std::any_of(lines.begin(), lines.end(), touches)) continue;
+            const double wanted = oracle.area(VisibilityOracle::exact(p));
+            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted) << "round " << round;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ispace

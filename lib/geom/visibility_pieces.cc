@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/visibility_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "geom/predicates.h"
+#include "geom/segment_grid.h"
+
+namespace ispace {
+
+namespace {
+
+using Index = std::uint32_t;
+
+constexpr std::size_t kMostCrossings = 500'000;
+/// Pairs of lines looked at, per line and besides.
+constexpr std::size_t kLooksPerLine = 4096, kLooksAnyway = 1U << 26;
+constexpr int kMostRounds = 12;
+
+[[noreturn]] void refuse() {
+    throw FormatError(
+        Diagnostic{"", 0, 0, "too many lines cross each other; end them where they meet"});
+}
+
+/// Points of which none are nearer to each other than `reach`.
+class DistinctPoints {
+  public:
+    explicit DistinctPoints(double reach) : reach_(reach) {}
+
+    /// The point that stands for p: one that came before, or p itself.
+    Point2 standing(Point2 p) {
+        if (!(reach_ > 0)) return p;
+        // Cells twice as wide as the reach: four at most come into it.
+        const double size = 2 * reach_;
+        const double left = std::floor((p.x - reach_) / size);
+        const double right = std::floor((p.x + reach_) / size);
+        const double bottom = std::floor((p.y - reach_) / size);
+        const double top = std::floor((p.y + reach_) / size);
+        for (double x = left; x <= right; ++x) {
+            for (double y = bottom; y <= top; ++y) {
+                const auto [first, last] = points_.equal_range({x, y});
+                for (auto it = first; it != last; ++it)
+                    if (distance(it->second, p) <= reach_) return it->second;
+            }
+        }
+        points_.emplace(Point2{std::floor(p.x / size), std::floor(p.y / size)}, p);
+        return p;
+    }
+
+  private:
+    struct Hash {
+        std::size_t operator()(Point2 cell) const {
+            const std::hash<double> hash;
+            return hash(cell.x) * 0x9E3779B97F4A7C15U ^ hash(cell.y);
+        }
+    };
+    double reach_;
+    std::unordered_multimap<Point2, Point2, Hash> points_;  // by cell
+};
+
+/// One round of cutting; what it moves by rounding may have to be cut again.
+class Cutter {
+  public:
+    Cutter(std::vector<LinePiece>& pieces, DistinctPoints& points, double reach)
+        : pieces_(pieces), points_(points), reach_(reach) {
+        segments_.reserve(pieces.size());
+        for (const LinePiece& piece : pieces) segments_.push_back(piece.segment);
+    }
+
+    /// \return whether there was anything to cut
+    bool cut() {
+        const SegmentGrid grid(segments_, reach_);
+        grid.forEachCell([this](std::span<const Index> cell) {
+            looks_ += cell.size() * cell.size() / 2;
+            if (looks_ > kLooksAnyway + kLooksPerLine * segments_.size()) refuse();
+            for (std::size_t i = 0; i < cell.size(); ++i)
+                for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
+            if (cuts_.size() > 2 * kMostCrossings + 8 * segments_.size()) refuse();
+        });
+        if (cuts_.empty()) return false;
+        apply();
+        return true;
+    }
+
+  private:
+    struct Cut {
+        Index piece;
+        double along;
+        Point2 at;
+        friend bool operator<(const Cut& a, const Cut& b) {
+            if (a.piece != b.piece) return a.piece < b.piece;
+            return a.along < b.along || (a.along == b.along && lexLess(a.at, b.at));
+        }
+    };
+
+    [[nodiscard]] static bool isNear(const Segment2& s, const Segment2& t, double reach) {
+        const auto apart = [reach](double a, double b, double c, double d) {
+            return std::max(a, b) + reach < std::min(c, d) ||
+                   std::max(c, d) + reach < std::min(a, b);
+        };
+        return !apart(s.a.x, s.b.x, t.a.x, t.b.x) && !apart(s.a.y, s.b.y, t.a.y, t.b.y);
+    }
+
+    void meet(Index i, Index k) {
+        const Segment2 &s = segments_[i], &t = segments_[k];
+        if (!isNear(s, t, reach_)) return;
+        bool touches = s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b;
+        for (const Point2 end : {t.a, t.b}) touches |= cutAtEnd(i, end);
+        for (const Point2 end : {s.a, s.b}) touches |= cutAtEnd(k, end);
+        // Else they cross, or not at all.
+        if (touches || !intersects(s, t)) return;
+        const double right = std::abs(cross(s.b - s.a, t.a - s.a));
+        const double left = std::abs(cross(s.b - s.a, t.b - s.a));
+        const Point2 at = points_.standing(t.a + right / (right + left) * (t.b - t.a));
+        add(i, at);
+        add(k, at);
+    }
+
+    bool cutAtEnd(Index i, Point2 end) {
+        const Segment2& s = segments_[i];
+        if (end == s.a || end == s.b || !(distance(end, s) <= reach_)) return false;
+        add(i, end);
+        return true;
+    }
+
+    void add(Index i, Point2 at) {
+        const Segment2& s = segments_[i];
+        if (at != s.a && at != s.b) cuts_.push_back({i, dot(at - s.a, s.b - s.a), at});
+    }
+
+    void apply() {
+        std::sort(cuts_.begin(), cuts_.end());
+        std::vector<LinePiece> parts;
+        parts.reserve(pieces_.size() + cuts_.size());
+        auto cut = cuts_.begin();
+        for (Index i = 0; i < pieces_.size(); ++i) {
+            LinePiece rest = pieces_[i];
+            for (; cut != cuts_.end() && cut->piece == i; ++cut) {
+                if (cut->at == rest.segment.a) continue;
+                parts.push_back({{rest.segment.a, cut->at}, rest.line});
+                rest.segment.a = cut->at;
+            }
+            parts.push_back(rest);
+        }
+        pieces_ = std::move(parts);
+    }
+
+    std::vector<LinePiece>& pieces_;
+    DistinctPoints& points_;
+    double reach_;
+    std::vector<Segment2> segments_;
+    std::vector<Cut> cuts_;
+    std::size_t looks_ = 0;
+};
+
+/// Each piece once, whichever way it runs, in the order of their lines.
+void dropDoubles(std::vector<LinePiece>& pieces) {
+    std::erase_if(pieces, [](const LinePiece& p) { return p.segment.a == p.segment.b; });
+    const auto ordered = [](const LinePiece& p) {
+        const auto& [a, b] = p.segment;
+        return lexLess(b, a) ? Segment2{b, a} : Segment2{a, b};
+    };
+    const auto less = [&](const LinePiece& p, const LinePiece& q) {
+        const Segment2 s = ordered(p), t = ordered(q);
+        if (s.a != t.a) return lexLess(s.a, t.a);
+        if (s.b != t.b) return lexLess(s.b, t.b);
+        return p.line < q.line;
+    };
+    std::sort(pieces.begin(), pieces.end(), less);
+    const auto same = [&](const LinePiece& p, const LinePiece& q) {
+        return ordered(p) == ordered(q);
+    };
+    pieces.erase(std::unique(pieces.begin(), pieces.end(), same), pieces.end());
+}
+
+}  // namespace
+
+std::vector<LinePiece> piecesOf(std::span<const Segment2> lines) {
+    double farthest = 0;
+    for (const auto& [a, b] : lines)
+        for (const double x : {a.x, a.y, b.x, b.y}) farthest = std::max(farthest, std::abs(x));
+    const double reach = std::ldexp(farthest, -46);
+    DistinctPoints points(reach);
+    std::vector<LinePiece> pieces;
+    pieces.reserve(lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        pieces.push_back(
+            {{points.standing(lines[i].a), points.standing(lines[i].b)}, static_cast<Index>(i)});
+    dropDoubles(pieces);
+    const std::size_t most = pieces.size() + 2 * kMostCrossings;
+    for (int round = 0; round < kMostRounds; ++round) {
+        if (!Cutter(pieces, points, reach).cut()) break;
+        dropDoubles(pieces);
+        if (pieces.size() > most) refuse();
+    }
+    return pieces;
+}
+
+}  // namespace ispace
