@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "geom/layers_label.h"
+#include "geom/layers_snap.h"
+
+namespace ispace {
+
+namespace {
+
+using lattice::Index;
+using lattice::kNone;
+
+/// Of arcs; the same for all arcs of one circle.
+struct Circle {
+    Point2 center;
+    double radius;
+};
+
+/// Curves with chords for arcs: each vertex and the edge that leaves it.
+struct ChordCurves {
+    struct Vertex {
+        Point2 at;
+        Index layer;
+        Index circle;
+    };
+    std::vector<Vertex> vertices;
+    std::vector<std::size_t> ends;  // of the curves
+    std::vector<Circle> circles;
+    Box2 box;
+
+    explicit ChordCurves(std::span<const Layer> layers) {
+        std::size_t count = 0;
+        for (const Layer& layer : layers)
+            for (const Curve& curve : layer.curves) count += curve.size();
+        vertices.reserve(count);
+        for (Index i = 0; i < layers.size(); ++i) {
+            for (const Curve& curve : layers[i].curves) {
+                for (const CurveEdge& edge : curve) {
+                    if (edge.isArc())
+                        addArc(edge, i);
+                    else
+                        vertices.push_back({edge.from, i, kNone});
+                }
+                ends.push_back(vertices.size());
+            }
+        }
+        for (const Vertex& vertex : vertices) box.add(vertex.at);
+    }
+
+  private:
+    /// Inner vertices lie at the same directions for all arcs of a circle, so that those of
+    /// sensors that stand at one place become the same chords.
+    void addArc(const CurveEdge& edge, Index layer) {
+        using std::numbers::pi;
+        const double radius = std::abs(edge.radius);
+        const Index circle = circleOf({edge.center, radius});
+        vertices.push_back({edge.from, layer, circle});
+        // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
+        constexpr double kFewest = 16, kMost = 1 << 16;
+        const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
+        const double chords = std::clamp(std::ceil(pi / half), kFewest, kMost);
+        const double step = 2 * pi / chords;
+        const Vec2 a = edge.from - edge.center, b = edge.to - edge.center;
+        const double first = std::atan2(a.y, a.x);
+        const double turn = edge.radius > 0 ? 1 : -1;
+        double span = turn * (std::atan2(b.y, b.x) - first);
+        if (span < 0) span += 2 * pi;
+        if (span > 1.5 * pi) return;  // backwards, by rounding: it has no length
+        // Steps from `first` to the next direction, if that is not next to the end.
+        constexpr double kNear = 1.0 / 64;
+        const double last = turn * first / step + span / step - kNear;
+        for (double k = std::floor(turn * first / step + kNear) + 1; k < last; ++k) {
+            const double angle = turn * k * step;
+            vertices.push_back(
+                {edge.center + radius * Vec2{std::cos(angle), std::sin(angle)}, layer, circle});
+        }
+    }
+
+    Index circleOf(const Circle& circle) {
+        const auto [place, is_new] = known_.try_emplace(
+            {circle.center.x, circle.center.y, circle.radius}, static_cast<Index>(circles.size()));
+        if (is_new) circles.push_back(circle);
+        return place->second;
+    }
+
+    std::map<std::tuple<double, double, double>, Index> known_;
+};
+
+/// Integer coordinates for the places in a box.
+class Lattice {
+  public:
+    explicit Lattice(const Box2& box) {
+        // Halves first: the whole extent may be more than a double holds.
+        const double half =
+            std::max(box.high.x / 2 - box.low.x / 2, box.high.y / 2 - box.low.y / 2);
+        if (!(half > 0)) return;
+        int exponent;
+        std::frexp(half, &exponent);  // half < 2^exponent
+        unit_ = std::ldexp(1.0, std::max(exponent - lattice::kBits, -1000));
+        middle_ = {middle(box.low.x, box.high.x), middle(box.low.y, box.high.y)};
+    }
+
+    [[nodiscard]] double unit() const { return unit_; }
+    [[nodiscard]] Point2 middle() const { return middle_; }
+    [[nodiscard]] lattice::Point pointOf(Point2 p) const {
+        return {rounded(p.x - middle_.x), rounded(p.y - middle_.y)};
+    }
+
+  private:
+    /// A multiple of the step where doubles tell them apart, so that the same places are rounded
+    /// the same way wherever the middle is.
+    [[nodiscard]] double middle(double low, double high) const {
+        const double v = low / 2 + high / 2, steps = v / unit_;
+        return std::abs(steps) < 0x1p52 ? std::nearbyint(steps) * unit_ : v;
+    }
+    [[nodiscard]] std::int32_t rounded(double offset) const {
+        constexpr double kMost = 1 << lattice::kBits;
+        return static_cast<std::int32_t>(
+            std::clamp(std::floor(offset / unit_ + 0.5), -kMost, kMost));
+    }
+
+    double unit_ = 0;
+    Point2 middle_;
+};
+
+/// The part of a segment in a box (Liang and Barsky, 1984); its ends round.
+std::optional<Segment2> clipped(const Segment2& s, const Box2& box) {
+    double from = 0, to = 1;
+    const auto clip = [&](double a, double d, double low, double high) {
+        if (d == 0) return low <= a && a <= high;
+        const double t0 = (low - a) / d, t1 = (high - a) / d;
+        from = std::max(from, std::min(t0, t1));
+        to = std::min(to, std::max(t0, t1));
+        return true;
+    };
+    const Vec2 d = s.b - s.a;
+    if (!clip(s.a.x, d.x, box.low.x, box.high.x) || !clip(s.a.y, d.y, box.low.y, box.high.y))
+        return std::nullopt;
+    if (!(from < to)) return std::nullopt;
+    return Segment2{from > 0 ? s.a + from * d : s.a, to < 1 ? s.a + to * d : s.b};
+}
+
+/// Area between the chord p -> q and the arc: positive if the arc lies to the right. By radial
+/// projection, so that pieces of arcs add up.
+double bulgeOf(const Circle& circle, Point2 p, Point2 q) {
+    const Vec2 a = p - circle.center, b = q - circle.center;
+    const double along = dot(a, b), across = cross(a, b);
+    double angle;
+    constexpr double kSmall = 0.02;
+    if (const double t = across / along; along > 0 && std::abs(t) < kSmall) {
+        const double u = t * t;  // the next term is below 2^-53
+        angle = t * (1 - u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9)))));
+    } else {
+        angle = std::atan2(across, along);
+    }
+    return (circle.radius * circle.radius * angle - across) / 2;
+}
+
+std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t layers,
+                                        std::span<const Segment2> walls, const Lattice& lattice,
+                                        lattice::PointTable& table) {
+    std::vector<lattice::Edge> edges;
+    edges.reserve(curves.vertices.size() + walls.size());
+    table.reserve(4 * curves.vertices.size() + 2 * walls.size());
+    std::size_t begin = 0;
+    for (const std::size_t end : curves.ends) {
+        if (begin == end) continue;
+        const Index first = table.add(lattice.pointOf(curves.vertices[begin].at));
+        Index from = first;
+        for (std::size_t i = begin; i < end; ++i) {
+            // Closed whatever the curve says.
+            const Index to =
+                i + 1 == end ? first : table.add(lattice.pointOf(curves.vertices[i + 1].at));
+            edges.push_back({from, to, curves.vertices[i].layer, curves.vertices[i].circle, false});
+            from = to;
+        }
+        begin = end;
+    }
+    for (const Segment2& wall : walls) {
+        const auto part = clipped(wall, curves.box);
+        if (!part) continue;
+        edges.push_back({table.add(lattice.pointOf(part->a)), table.add(lattice.pointOf(part->b)),
+                         static_cast<Index>(layers), kNone, true});
+    }
+    return edges;
+}
+
+}  // namespace
+
+LayerOverlay::LayerOverlay(std::span<const Layer> layers, std::span<const Segment2> walls) {
+    const ChordCurves curves(layers);
+    const Lattice lattice(curves.box);
+    unit_ = lattice.unit();
+    if (unit_ == 0) return;
+    middle_ = lattice.middle();
+    lattice::PointTable table;
+    lattice::SetStore sets(layers.size());
+    std::vector<lattice::Edge> edges = latticeEdges(curves, layers.size(), walls, lattice, table);
+    edges = snapRounded(merged(std::move(edges), table.points(), sets), table, sets);
+    const auto labels = labelsOf(layers, table.points(), edges, sets);
+
+    points_.reserve(table.points().size());
+    for (const auto& [x, y] : table.points()) points_.push_back({x, y});
+    edges_.reserve(edges.size());
+    ends_.reserve(edges.size());
+    std::vector<Ends> ends_of_walls;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto& [left, right] = labels[i];
+        const lattice::Edge& edge = edges[i];
+        const Ends ends{edge.from, edge.to, edge.is_wall};
+        if (left != right) {
+            const Point2 from = place(edge.from), to = place(edge.to);
+            const double bulge =
+                edge.circle == kNone ? 0 : bulgeOf(curves.circles[edge.circle], from, to);
+            edges_.push_back({from, to, left, right, bulge});
+            ends_.push_back(ends);
+        } else if (edge.is_wall && left != LayerLabel{}) {
+            walls_.push_back(left);
+            ends_of_walls.push_back(ends);
+        }
+    }
+    ends_.insert(ends_.end(), ends_of_walls.begin(), ends_of_walls.end());
+}
+
+}  // namespace ispace

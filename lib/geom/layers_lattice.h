@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/geom only: the lattice on which layers are laid over each other, and edges between its
+// points.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace ispace::lattice {
+
+using Index = std::uint32_t;
+constexpr Index kNone = std::numeric_limits<Index>::max();
+
+/// Coordinates are at most 2^kBits from 0, so that all predicates are exact in 64 bits: a cross
+/// product of differences is at most 2^(2 * kBits + 3), twice of that is still less than 2^63.
+constexpr int kBits = 29;
+
+struct Point {
+    std::int32_t x = 0, y = 0;
+    friend bool operator==(const Point&, const Point&) = default;
+};
+
+/// By x, then by y.
+inline bool lexLess(Point a, Point b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+/// Cross product of b - a and c - a: positive if c lies to the left of a -> b.
+inline std::int64_t cross(Point a, Point b, Point c) {
+    return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
+           (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
+}
+
+/// Dot product of b - a and c - a.
+inline std::int64_t dot(Point a, Point b, Point c) {
+    return (std::int64_t{b.x} - a.x) * (std::int64_t{c.x} - a.x) +
+           (std::int64_t{b.y} - a.y) * (std::int64_t{c.y} - a.y);
+}
+
+/// Both corners belong to it; empty until a point is added.
+struct Box {
+    Point low{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()};
+    Point high{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()};
+
+    void add(Point p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    [[nodiscard]] bool holds(Point p) const {
+        return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
+    }
+};
+
+/// Points, each once, numbered as they came.
+class PointTable {
+  public:
+    void reserve(std::size_t count);
+    /// Its number; a new one if it is not there yet. Amortised O(1)
+    Index add(Point p);
+    [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+
+  private:
+    void grow(std::size_t slots);
+    [[nodiscard]] std::size_t slotOf(Point p) const;
+
+    std::vector<Point> points_;
+    std::vector<Index> slots_;  // open addressing; a power of two, at most half full
+    int shift_ = 64;            // of the hash
+};
+
+/// Sets of layers, by number.
+class SetStore {
+  public:
+    /// Sets 0 ... layers - 1 hold that layer alone, set `layers` is empty.
+    explicit SetStore(std::size_t layers);
+    [[nodiscard]] Index emptySet() const { return empty_; }
+    [[nodiscard]] std::span<const Index> operator[](Index set) const {
+        return std::span(items_).subspan(first_[set], first_[set + 1] - first_[set]);
+    }
+    /// Of the layers in an odd number of sets. \param layers of all sets one after another; is
+    /// sorted
+    Index addOdd(std::vector<Index>& layers);
+
+  private:
+    Index empty_;
+    std::vector<std::size_t> first_;
+    std::vector<Index> items_;  // by set, ascending
+};
+
+/// A straight line between two points of the table.
+struct Edge {
+    Index from = 0, to = 0;
+    Index set = 0;         ///< layers that have it in their boundary, an odd number of times
+    Index circle = kNone;  ///< of the arc for which it stands
+    bool is_wall = false;
+};
+
+/// Each edge once, from its lower end (lexLess); what lies an even number of times in the boundary
+/// of each layer, or has no length, is left out unless it is a wall. O(n)
+std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
+
+}  // namespace ispace::lattice

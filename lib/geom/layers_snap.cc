@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/layers_snap.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <string>
+
+#include "base/error.h"
+#include "geom/layers_cells.h"
+
+namespace ispace::lattice {
+
+namespace {
+
+/// An edge passes a point.
+struct Pass {
+    Index edge, point;
+    std::int64_t at;  // grows along the edge
+};
+
+/// The same edges, each cut in pieces from point to point.
+std::vector<Edge> routed(const std::vector<Edge>& edges, const std::vector<Pass>& passes) {
+    std::vector<std::size_t> next(edges.size() + 1, 0);
+    for (const Pass& pass : passes) ++next[pass.edge + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Pass> ordered(passes.size());
+    for (const Pass& pass : passes) ordered[next[pass.edge]++] = pass;
+    std::vector<Edge> pieces;
+    pieces.reserve(edges.size() + passes.size());
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < edges.size(); from = next[i++]) {
+        const auto first = ordered.begin() + static_cast<std::ptrdiff_t>(from);
+        const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(next[i]);
+        std::sort(first, last, [](const Pass& p, const Pass& q) {
+            return p.at != q.at ? p.at < q.at : p.point < q.point;
+        });
+        Edge piece = edges[i];
+        for (auto pass = first; pass != last; ++pass) {
+            piece.to = pass->point;
+            pieces.push_back(piece);
+            piece.from = piece.to;
+        }
+        piece.to = edges[i].to;
+        pieces.push_back(piece);
+    }
+    return pieces;
+}
+
+/// An edge with what is asked of it again and again.
+struct Span {
+    Index edge;
+    Point a, b;
+    std::int64_t dx, dy;
+    std::int64_t reach;  // |dx| + |dy|
+    std::int32_t low_y, high_y;
+
+    Span(Index i, const Edge& e, const std::vector<Point>& points)
+        : edge(i),
+          a(points[e.from]),
+          b(points[e.to]),
+          dx(std::int64_t{b.x} - a.x),
+          dy(std::int64_t{b.y} - a.y),
+          reach(std::abs(dx) + std::abs(dy)),
+          low_y(std::min(a.y, b.y)),
+          high_y(std::max(a.y, b.y)) {}
+
+    /// True if it meets the pixel about p: the square of half-width 1/2 with its lower and left
+    /// sides and the corner between them.
+    [[nodiscard]] bool meetsPixel(Point p) const {
+        // The pixels that the line meets outside of the box of its ends lie outside of that too.
+        if (p.x < a.x || p.x > b.x || p.y < low_y || p.y > high_y) return false;
+        const std::int64_t twice = 2 * cross(a, b, p);
+        if (std::abs(twice) != reach) return std::abs(twice) < reach;
+        return twice == dx - dy;  // it touches at a corner: this is the lower left one
+    }
+
+    /// Grows from pixel to pixel that it meets.
+    [[nodiscard]] std::int64_t at(Point p) const {
+        return std::int64_t{p.x} - a.x +
+               (dy < 0 ? std::int64_t{a.y} - p.y : std::int64_t{p.y} - a.y);
+    }
+};
+
+std::vector<Span> spansOf(const Cell& cell, const std::vector<Edge>& edges,
+                          const std::vector<Point>& points) {
+    std::vector<Span> spans;
+    spans.reserve(cell.edges.size());
+    for (const Index i : cell.edges) spans.emplace_back(i, edges[i], points);
+    return spans;
+}
+
+/// Ends of edges that lay along another before rounding: both were moved by at most half a step in
+/// x and in y.
+std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
+    std::vector<Pass> passes;
+    passes.reserve(edges.size());
+    forEachCell(points, edges, [&](const Cell& cell) {
+        for (const Span& s : spansOf(cell, edges, points)) {
+            for (const Index i : cell.points) {
+                const Point p = points[i];
+                if (std::abs(cross(s.a, s.b, p)) > s.reach) continue;
+                const std::int64_t at = dot(s.a, s.b, p);
+                if (at > 0 && at < s.dx * s.dx + s.dy * s.dy && p != s.a && p != s.b)
+                    passes.push_back({s.edge, i, at});
+            }
+        }
+    });
+    return passes;
+}
+
+/// start + length * num / den rounded to the nearest, halves up. \pre 0 < num < den
+std::int32_t along(std::int32_t start, std::int64_t length, std::int64_t num, std::int64_t den) {
+    // Doubles err by less than 2^-20 here.
+    constexpr double kSure = 1e-5;
+    const double v =
+        static_cast<double>(length) * (static_cast<double>(num) / static_cast<double>(den)) + 0.5;
+    const double floor = std::floor(v);
+    if (v - floor > kSure && v - floor < 1 - kSure) return start + static_cast<std::int32_t>(floor);
+    const __int128 top = 2 * static_cast<__int128>(length) * num + den;
+    const __int128 bottom = 2 * static_cast<__int128>(den);
+    const __int128 quotient = top / bottom - (top % bottom < 0 ? 1 : 0);
+    return start + static_cast<std::int32_t>(quotient);
+}
+
+/// Finds the pixel in which two edges cross, if they do so at a point that is no end.
+bool crossingOf(const Span& s, const Span& t, Point& pixel) {
+    if (s.b.x < t.a.x || t.b.x < s.a.x || s.high_y < t.low_y || t.high_y < s.low_y) return false;
+    const std::int64_t from = cross(s.a, s.b, t.a), to = cross(s.a, s.b, t.b);
+    if (from == 0 || to == 0 || (from > 0) == (to > 0)) return false;
+    const std::int64_t left = cross(t.a, t.b, s.a), right = cross(t.a, t.b, s.b);
+    if (left == 0 || right == 0 || (left > 0) == (right > 0)) return false;
+    const std::int64_t num = std::abs(from), den = std::abs(from) + std::abs(to);
+    pixel = {along(t.a.x, t.dx, num, den), along(t.a.y, t.dy, num, den)};
+    return true;
+}
+
+/// More than this is no plan: some gigabytes.
+constexpr std::size_t kMostPasses = 16'000'000;
+
+/// All edges that meet the pixels of ends and crossings.
+std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table) {
+    std::vector<Pass> passes;
+    passes.reserve(4 * edges.size());
+    std::vector<Index> pixels;
+    forEachCell(table.points(), edges, [&](const Cell& cell) {
+        pixels.assign(cell.points.begin(), cell.points.end());
+        const std::vector<Span> spans = spansOf(cell, edges, table.points());
+        for (std::size_t i = 0; i < spans.size(); ++i) {
+            for (std::size_t k = i + 1; k < spans.size(); ++k) {
+                Point p;
+                // Each pixel belongs to one cell, which knows all edges that meet it.
+                if (!crossingOf(spans[i], spans[k], p) || !cell.box.holds(p)) continue;
+                const std::size_t before = table.points().size();
+                if (const Index id = table.add(p); id == before) pixels.push_back(id);
+            }
+        }
+        for (const Index id : pixels) {
+            const Point p = table.points()[id];
+            for (const Span& s : spans) {
+                if (s.meetsPixel(p) && p != s.a && p != s.b)
+                    passes.push_back({s.edge, id, s.at(p)});
+            }
+        }
+        if (passes.size() > kMostPasses)
+            throw FormatError(
+                {"", 0, 0, "outlines cross more than " + std::to_string(kMostPasses) + " times"});
+    });
+    return passes;
+}
+
+}  // namespace
+
+std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets) {
+    const std::vector<Pass> of_ends = passesOfEnds(edges, table.points());
+    edges = merged(routed(edges, of_ends), table.points(), sets);
+    const std::vector<Pass> of_pixels = passesOfPixels(edges, table);
+    return merged(routed(edges, of_pixels), table.points(), sets);
+}
+
+}  // namespace ispace::lattice
