@@ -211,6 +211,19 @@ void writeAll(const std::string& target, std::string_view bytes) {
     file.commit();
 }
 
+void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
+               std::string_view second_bytes) {
+    OutputFile one(first), two(second);
+    one.write(first_bytes);
+    two.write(second_bytes);
+    one.commit();
+    two.commit();
+}
+
+std::string withSuffix(const std::string& file, const char* suffix) {
+    return std::filesystem::path(file).replace_extension(suffix).string();
+}
+
 bool isTerminalInput() { return ::isatty(STDIN_FILENO) != 0; }
 
 bool isTerminalOutput(const std::string& target) {

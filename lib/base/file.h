@@ -54,6 +54,13 @@ class OutputFile {
 /// OutputFile for a product that is whole in memory.
 void writeAll(const std::string& target, std::string_view bytes);
 
+/// Two files that belong together: both are put in their places, or none if one cannot be written.
+void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
+               std::string_view second_bytes);
+
+/// `file` with this suffix (".pgm") in place of its own.
+std::string withSuffix(const std::string& file, const char* suffix);
+
 /// True if "-" and standard output is a terminal: binary data does not go there.
 bool isTerminalOutput(const std::string& target);
 /// True if standard input is a terminal.

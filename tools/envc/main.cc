@@ -54,10 +54,6 @@ Document readModel(const EnvcOptions& options) {
     return document;
 }
 
-std::string withSuffix(const std::string& file, const char* suffix) {
-    return fs::path(file).replace_extension(suffix).string();
-}
-
 std::string drawing(const EnvcOptions& options, const Scene& scene) {
     PlanOptions plan;
     plan.format = options.format == "svg" ? PictureFormat::Svg : PictureFormat::Png;
@@ -65,16 +61,6 @@ std::string drawing(const EnvcOptions& options, const Scene& scene) {
     plan.width = options.width;
     if (!isStream(options.inputs.front())) plan.title = baseName(options.inputs.front());
     return drawPlan(scene, plan);
-}
-
-/// Two files that belong together: both are there, or none.
-void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
-               std::string_view second_bytes) {
-    OutputFile one(first), two(second);
-    one.write(first_bytes);
-    two.write(second_bytes);
-    one.commit();
-    two.commit();
 }
 
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
