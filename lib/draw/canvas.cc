@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +16,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "draw/svg_text.h"
 
 namespace ispace {
 
@@ -36,24 +35,6 @@ void check(cairo_status_t status) {
     if (status == CAIRO_STATUS_SUCCESS) return;
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));
-}
-
-/// Cairo names SVG surfaces by a counter of the process; numbered anew, equal pictures are equal.
-std::string renumberSurfaces(const std::string& svg) {
-    constexpr std::string_view kName = "surface";
-    std::string result;
-    std::map<std::string, std::size_t> numbers;
-    std::size_t done = 0;
-    for (std::size_t at; (at = svg.find(kName, done)) != std::string::npos;) {
-        std::size_t end = at + kName.size();
-        while (end < svg.size() && std::isdigit(static_cast<unsigned char>(svg[end])) != 0) ++end;
-        result.append(svg, done, at + kName.size() - done);
-        const std::string old = svg.substr(at + kName.size(), end - at - kName.size());
-        if (!old.empty())
-            result += std::to_string(numbers.emplace(old, numbers.size()).first->second);
-        done = end;
-    }
-    return result.append(svg, done);
 }
 
 /// Sets the font, independent of what the machine's settings prefer.
@@ -89,6 +70,7 @@ struct Canvas::Data {
     cairo_surface_t* surface = nullptr;
     cairo_t* context = nullptr;
     std::vector<std::optional<PageView>> views = {std::nullopt};  // the innermost last; none: page
+    std::string svg_texts;  // elements that Cairo, which writes glyphs, does not know
     bool finished = false;
 
     Data(PictureFormat wanted, double w, double h) : format(wanted), width(w), height(h) {
@@ -172,6 +154,27 @@ struct Canvas::Data {
                            stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
         cairo_stroke(context);
     }
+    /// Lines across all that the clip lets through.
+    void hatchClip(const Hatch& hatch) const {
+        double left = 0, top = 0, right = 0, bottom = 0;
+        cairo_clip_extents(context, &left, &top, &right, &bottom);
+        if (left >= right || top >= bottom) return;
+        const Vec2 seen = unitVector(hatch.direction);
+        const Vec2 along{seen.x, -seen.y}, left_of{-seen.y, -seen.x};
+        const Point2 middle{(left + right) / 2, (top + bottom) / 2};
+        const double reach = std::hypot(right - left, bottom - top) / 2 + hatch.width;
+        const double spacing = std::max(hatch.spacing, 0.5);
+        const double at = dot(left_of, middle - Point2{}), begin = dot(along, middle - Point2{});
+        const auto number = [&](double place) { return (place - hatch.offset) / spacing; };
+        const double last = std::floor(number(at + reach));
+        for (double k = std::ceil(number(at - reach)); k <= last; ++k) {
+            const Point2 foot = Point2{} + (k * spacing + hatch.offset) * left_of;
+            const Point2 from = foot + (begin - reach) * along, to = foot + (begin + reach) * along;
+            cairo_move_to(context, from.x, from.y);
+            cairo_line_to(context, to.x, to.y);
+        }
+        strokePath({hatch.color, hatch.width});
+    }
     void push(std::optional<PageView> view) {
         cairo_save(context);
         views.push_back(view);
@@ -207,6 +210,12 @@ void Canvas::pushClip(const Region& inside) {
     cairo_clip(data_->context);
 }
 
+void Canvas::pushClip(std::span<const Polygon> inside) {
+    data_->push(data_->views.back());
+    for (const Polygon& curve : inside) data_->addCurve(curve);
+    cairo_clip(data_->context);
+}
+
 void Canvas::pop() {
     assert(data_->views.size() > 1);
     data_->views.pop_back();
@@ -227,8 +236,18 @@ void Canvas::fill(std::span<const Polygon> curves, Color color) {
     data_->fillPath(color);
 }
 
+void Canvas::hatch(std::span<const Polygon> curves, const Hatch& hatch) {
+    pushClip(curves);
+    data_->hatchClip(hatch);
+    pop();
+}
+
 void Canvas::stroke(const Polygon& polygon, const Stroke& stroke) {
-    data_->addCurve(polygon);
+    this->stroke(std::span(&polygon, 1), stroke);
+}
+
+void Canvas::stroke(std::span<const Polygon> curves, const Stroke& stroke) {
+    for (const Polygon& curve : curves) data_->addCurve(curve);
     data_->strokePath(stroke);
 }
 
@@ -314,6 +333,12 @@ void Canvas::text(Point2 anchor, std::string_view text, const TextStyle& style) 
                         : style.align == Align::Center ? length / 2
                                                        : length;
     const Point2 page = data_->toPage(anchor);
+    if (data_->format == PictureFormat::Svg) {
+        const Point2 begin{page.x - back, page.y};
+        if (style.halo) appendSvgText(data_->svg_texts, begin, length, clean, style, true);
+        appendSvgText(data_->svg_texts, begin, length, clean, style, false);
+        return;
+    }
     cairo_t* context = data_->context;
     selectFont(context, style);
     if (style.halo) {
@@ -336,7 +361,8 @@ std::string Canvas::encode() {
             check(cairo_surface_write_to_png_stream(data.surface, append, &data.bytes));
         cairo_surface_finish(data.surface);
         check(cairo_surface_status(data.surface));
-        if (data.format == PictureFormat::Svg) data.bytes = renumberSurfaces(data.bytes);
+        if (data.format == PictureFormat::Svg)
+            data.bytes = withTexts(renumberSurfaces(data.bytes), data.svg_texts);
     }
     return data.bytes;
 }

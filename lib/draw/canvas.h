@@ -24,6 +24,17 @@ struct Stroke {
     std::vector<double> dashes = {};  ///< lengths on, off, on, …; empty: solid
 };
 
+/// Parallel lines across an area; lengths are in page units, whatever the view. Those of one
+/// spacing and direction go through the page's origin (shifted by `offset`), so that areas fit
+/// together.
+struct Hatch {
+    Color color;
+    double spacing = 8;  ///< from the middle of a line to that of the next, at least 0.5
+    double width = 1;    ///< of a line
+    double offset = 0;   ///< to the left of the direction
+    Angle direction = Angle::degrees(45);
+};
+
 /// Takes metres with y up to page units with y down: `world_anchor` comes to lie on `page_anchor`.
 struct PageView {
     double scale = 1;  ///< page units per metre
@@ -59,6 +70,8 @@ class Canvas {
     void pushView(const PageView& view);
     void pushClip(const Polygon& inside);
     void pushClip(const Region& inside);
+    /// By the even-odd rule.
+    void pushClip(std::span<const Polygon> inside);
     /// \pre a push is open
     void pop();
     /// From the units of the innermost view to the page's.
@@ -69,8 +82,11 @@ class Canvas {
     void fill(const Region& region, Color color);
     /// All curves at once by the even-odd rule: curves that meet leave no seam.
     void fill(std::span<const Polygon> curves, Color color);
+    /// Lines across what fill() would fill.
+    void hatch(std::span<const Polygon> curves, const Hatch& hatch);
     /// The closed curve, or all closed curves.
     void stroke(const Polygon& polygon, const Stroke& stroke);
+    void stroke(std::span<const Polygon> curves, const Stroke& stroke);
     void stroke(const Region& region, const Stroke& stroke);
 
     void line(Point2 a, Point2 b, const Stroke& stroke);
@@ -89,6 +105,8 @@ class Canvas {
     void image(Point2 corner, const Image& picture, double pixel_width, double pixel_height);
 
     /// One line of text; `anchor` lies on its base line, at the side or middle that align names.
+    /// In SVG and PDF it can be searched and copied; in SVG all text lies above everything else and
+    /// knows no clips.
     void text(Point2 anchor, std::string_view text, const TextStyle& style);
 
     /// The file's bytes; the page is finished, nothing can be drawn afterwards.

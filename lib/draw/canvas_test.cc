@@ -257,6 +257,61 @@ TEST(Canvas, FormatsAreWhatTheySay) {
     EXPECT_NE(svg.find("</svg>"), std::string::npos);
 }
 
+TEST(Canvas, SvgHoldsItsText) {
+    const std::string svg = sample(PictureFormat::Svg);
+    EXPECT_NE(svg.find(">7.5 m² &lt;&amp;&gt; ?"
+                       "?</text>"),
+              std::string::npos);
+    EXPECT_NE(svg.find("fill=\"#ff0000\""), std::string::npos);
+    EXPECT_NE(svg.find("stroke=\"#ffffff\""), std::string::npos);  // halo
+    EXPECT_LT(svg.rfind("</text>"), svg.find("</svg>"));
+    EXPECT_EQ(svg.find("glyph"), std::string::npos);
+}
+
+TEST(Canvas, HatchFillsItsShareOfTheCurvesAlone) {
+    Canvas canvas(PictureFormat::Png, 200, 200);
+    const std::array<Polygon, 2> curves = {Polygon{{20, 20}, {180, 20}, {180, 180}, {20, 180}},
+                                           Polygon{{80, 80}, {120, 80}, {120, 120}, {80, 120}}};
+    canvas.hatch(curves, {kRed, 10, 4, 0, Angle::degrees(0)});
+    const Pixels pixels(canvas.encode());
+    EXPECT_EQ(pixels.countOf(0xFF0000), (160 * 160 - 40 * 40) * 4 / 10);
+    EXPECT_EQ(pixels.at(50, 30), 0xFF0000U);  // a line through the origin, and each 10 px
+    EXPECT_EQ(pixels.at(50, 35), 0xFFFFFFU);
+    EXPECT_EQ(pixels.at(100, 100), 0xFFFFFFU);
+    EXPECT_EQ(pixels.at(10, 30), 0xFFFFFFU);
+}
+
+TEST(Canvas, HatchesFitTogetherByTheirOffset) {
+    Canvas canvas(PictureFormat::Png, 100, 100);
+    canvas.pushView({10, {0, 0}, {50, 50}});  // lengths of a hatch are the page's in any view
+    const Polygon all = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}};
+    canvas.hatch(std::span(&all, 1), {kRed, 12, 6, 0});
+    canvas.hatch(std::span(&all, 1), {kBlue, 12, 6, 6});
+    const Pixels pixels(canvas.encode());
+    // 45 degrees as seen: the same colour along a way up and right, the other one beside.
+    EXPECT_EQ(pixels.at(31, 28), 0x0000FFU);
+    EXPECT_EQ(pixels.at(51, 8), 0x0000FFU);
+    EXPECT_EQ(pixels.at(35, 32), 0xFF0000U);
+    EXPECT_EQ(pixels.at(55, 12), 0xFF0000U);
+    EXPECT_NEAR(pixels.countOf(0xFF0000), pixels.countOf(0x0000FF), 500);
+    EXPECT_GT(pixels.countOf(0xFF0000), 3000);
+    EXPECT_LT(pixels.countOf(0xFFFFFF), 20);
+}
+
+TEST(Canvas, ClipsAndStrokesTakeManyCurves) {
+    Canvas canvas(PictureFormat::Png, 20, 10);
+    const std::array<Polygon, 2> curves = {kSquare, kHole};
+    canvas.pushClip(std::span(curves));
+    canvas.fill(Polygon{{0, 0}, {20, 0}, {20, 10}, {0, 10}}, kRed);
+    canvas.pop();
+    EXPECT_EQ(Pixels(canvas.encode()).countOf(0xFF0000), 36 - 4);
+    Canvas lines(PictureFormat::Png, 10, 10);
+    lines.stroke(std::span(curves), {kRed, 2});
+    const Pixels pixels(lines.encode());
+    EXPECT_EQ(pixels.at(1, 5), 0xFF0000U);
+    EXPECT_EQ(pixels.at(4, 5), 0xFF0000U);
+}
+
 TEST(Canvas, EncodesOnceAndKeepsTheBytes) {
     Canvas canvas(PictureFormat::Svg, 10, 10);
     const std::string first = canvas.encode();
@@ -278,16 +333,41 @@ TEST(Color, PaletteRepeatsAndItsColoursDiffer) {
     }
 }
 
+/// What people without one kind of cones see (Viénot, Brettel, Mollon 1999), linear parts.
+std::array<double, 3> seenWithout(bool red_cones, Color color) {
+    const auto linear = [](double part) { return std::pow(part, 2.2); };
+    const double r = linear(color.red), g = linear(color.green), b = linear(color.blue);
+    if (red_cones) return {0.11238 * r + 0.88762 * g, 0.11238 * r + 0.88762 * g, b};
+    return {0.29275 * r + 0.70725 * g, 0.29275 * r + 0.70725 * g, b};
+}
+
+TEST(Color, SeriesIsToldApartByTheColourBlindAndOnWhite) {
+    for (std::size_t i = 0; i < kSeriesColors; ++i) {
+        EXPECT_LT(lightness(seriesColor(i)), 0.72) << i;
+        for (std::size_t j = 0; j < i; ++j) {
+            for (const bool red_cones : {false, true}) {
+                const auto a = seenWithout(red_cones, seriesColor(i));
+                const auto b = seenWithout(red_cones, seriesColor(j));
+                EXPECT_GT(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 0.1) << i << " " << j;
+            }
+        }
+    }
+}
+
+TEST(Color, TintsMixWithWhite) {
+    EXPECT_EQ(tint(kRed, 1), kRed);
+    EXPECT_EQ(tint(kRed, 0), Color::rgb(0xFFFFFF));
+    EXPECT_NEAR(tint(kRed, 0.25).green, 0.75, 1e-12);
+}
+
 TEST(Color, SequentialSchemeDarkensWithEachLevel) {
-    const auto lightness = [](Color c) {
-        return 0.2126 * c.red + 0.7152 * c.green + 0.0722 * c.blue;
-    };
     for (int levels = 1; levels <= 9; ++levels) {
         for (int level = 2; level <= levels; ++level)
             EXPECT_LT(lightness(sequentialColor(level, levels)),
                       lightness(sequentialColor(level - 1, levels)) - 0.03)
                 << level << " of " << levels;
         EXPECT_EQ(sequentialColor(levels + 3, levels), sequentialColor(levels, levels));
+        EXPECT_LT(lightness(sequentialColor(1, levels)), 0.85);  // in grey as well
     }
 }
 

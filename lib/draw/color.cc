@@ -25,14 +25,19 @@ Color seriesColor(std::size_t index) {
         0xE69F00,  // orange
         0x000000,  // black
         0x56B4E9,  // sky blue
-        0xF0E442,  // yellow
     };
     return Color::rgb(kOkabeIto[index % kSeriesColors]);
 }
 
+Color tint(Color color, double share) { return mixed(Color::rgb(0xFFFFFF), color, share); }
+
+double lightness(Color color) {
+    return 0.2126 * color.red + 0.7152 * color.green + 0.0722 * color.blue;
+}
+
 Color sequentialColor(int level, int levels) {
-    constexpr std::array<std::uint32_t, 5> kStops = {0xD3E4F3, 0xA8CDE4, 0x6DAED5, 0x3A87C0,
-                                                     0x1A5A9C};
+    constexpr std::array<std::uint32_t, 5> kStops = {0xBFD8EC, 0x94C1DF, 0x62A3CF, 0x347FBA,
+                                                     0x174F8C};
     // Few levels keep to the light half, where lines and labels on top stay readable.
     const double top = std::min(1.0, 0.25 * levels);
     const double share =

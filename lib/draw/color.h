@@ -25,14 +25,20 @@ struct Color {
 };
 
 /// Number of distinct colours of seriesColor().
-constexpr std::size_t kSeriesColors = 8;
+constexpr std::size_t kSeriesColors = 7;
 
 /// Colour of the i-th thing of a kind: the palette of Okabe and Ito, which people with any colour
-/// vision tell apart, strongest on white first; it repeats after kSeriesColors.
+/// vision tell apart, without its yellow, too pale on white; it repeats after kSeriesColors.
 Color seriesColor(std::size_t index);
 
+/// `share` of the colour on white.
+Color tint(Color color, double share);
+
+/// How light a colour looks, 0..1: what is left of it in grey (luma of BT.709).
+double lightness(Color color);
+
 /// Step `level` (1..levels) of a scheme from light to dark blue: lightness falls with each level,
-/// so that it reads in grey as well.
+/// so that it reads in grey as well; the first is well below white.
 Color sequentialColor(int level, int levels);
 
 }  // namespace ispace
