@@ -133,6 +133,23 @@ std::string readStdin() {
 
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
+OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
+                            bool any_environment) {
+    std::vector<std::string> operands = input.named;
+    operands.push_back(operand);
+    checkStreams(operands);
+    const Document layout = read(operand);
+    if (layout.kind != DocumentKind::Layout)
+        throw FormatError(
+            {displayName(operand), 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
+    if (!any_environment) checkDigest(layout, input.environment.records, input.environment_operand);
+    std::vector<std::string> files = {operand};
+    files.insert(files.end(), layout.sources.begin(), layout.sources.end());
+    return {
+        makeScene(input.environment, &layout, DeviceCatalogue::load(shareFolder() + "/devices")),
+        std::move(files)};
+}
+
 std::vector<std::string> filesOf(const SceneInput& input) {
     std::vector<std::string> files{input.environment_operand};
     if (input.layout) files.push_back(input.layout_operand);

@@ -41,6 +41,16 @@ std::vector<std::string> filesOf(const SceneInput& input);
 ///         FormatError, std::system_error as the readers do, and for a digest that differs
 SceneInput readScene(const SceneRequest& request);
 
+/// The scene of another layout in the same environment.
+struct OtherLayout {
+    Scene scene;
+    std::vector<std::string> files;  ///< that it was read from, for -MD
+};
+/// Reads it from `operand`, which may be - where stdin is not read yet. \throws as readScene, and
+/// FormatError if it is no layout
+OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
+                            bool any_environment);
+
 /// \throws FormatError if `layout` names another digest than that of `environment`'s records
 void checkDigest(const Document& layout, std::span<const Record> environment,
                  const std::string& environment_operand);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cover/coverage.h"
 
-#include <tbb/parallel_for.h>
+#include <algorithm>
 
 #include "base/error.h"
-#include "cover/visible.h"
+#include "cover/figures.h"
+#include "cover/sensor_views.h"
 #include "geom/boolean.h"
 #include "sense/scan.h"
 
@@ -12,90 +13,129 @@ namespace ispace {
 
 namespace {
 
-std::vector<double> redundancyOf(const std::vector<std::uint32_t>& times, const CellSet& indoor,
-                                 std::size_t sensors) {
-    std::vector<std::size_t> counts(sensors + 1);
-    indoor.forEach([&](std::size_t cell) { ++counts[times[cell]]; });
-    std::vector<double> shares(counts.size());
-    if (const std::size_t all = indoor.count(); all > 0)
-        for (std::size_t k = 0; k < counts.size(); ++k)
-            shares[k] = static_cast<double>(counts[k]) / static_cast<double>(all);
-    return shares;
+SensorFigures figuresOf(const Scene& scene, const SensorView& view) {
+    SensorFigures figures{.id = view.id, .model = view.model, .kind = view.kind};
+    if (view.kind == ViewKind::Laser)
+        figures.slice_area = sliceArea(scene.lasers[view.index].laser, view.beams);
+    if (view.region) figures.area.exact = std::max(0.0, signedArea(*view.region));
+    return figures;
 }
 
-std::size_t countSeenOnce(const CellSet& cells, const std::vector<std::uint32_t>& times) {
-    std::size_t count = 0;
-    cells.forEach([&](std::size_t cell) { count += times[cell] == 1 ? 1 : 0; });
-    return count;
-}
-
-void addSensorFigures(Coverage& coverage, const std::vector<PlacedLaser>& lasers,
-                      const std::vector<std::uint32_t>& times) {
-    const double cell_area = coverage.target.grid.cellArea();
-    for (std::size_t i = 0; i < lasers.size(); ++i) {
-        SensorFigures figures;
-        figures.id = lasers[i].id;
-        figures.model = lasers[i].laser.model;
-        figures.slice_area = sliceArea(lasers[i].laser, coverage.beams[i]);
-        figures.marginal_area =
-            static_cast<double>(countSeenOnce(coverage.seen[i], times)) * cell_area;
-        coverage.report.sensors.push_back(figures);
+/// Exact figures, or the reason why there are none.
+void tryExactFigures(Coverage& coverage, const Environment& environment,
+                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
+    std::string& missing = coverage.report.exact_missing;
+    for (const SensorView& view : coverage.sensors)
+        if (!view.region) missing = "what " + view.id + " sees is known by cells only";
+    if (!missing.empty()) return;
+    try {
+        addExactFigures(coverage, environment, free_floor, zones);
+    } catch (const FormatError& error) {
+        missing = error.what();
     }
+}
+
+/// Layers of both, told apart by their numbers.
+constexpr std::int64_t kThisNumber = 1, kOtherNumber = std::int64_t{1} << 32;
+
+void addLayers(const Coverage& coverage, std::int64_t number, std::vector<Layer>& layers) {
+    for (const SeenSet& set : coverage.sets)
+        layers.push_back({.curves = *set.region, .number = number});
+}
+
+void compareExactly(const Coverage& coverage, const Coverage& other, const Region& indoor,
+                    Comparison& comparison) {
+    std::vector<Layer> layers;
+    layers.reserve(coverage.sets.size() + other.sets.size() + 1);
+    addLayers(coverage, kThisNumber, layers);
+    addLayers(other, kOtherNumber, layers);
+    layers.push_back({.curves = curvesWithArcs(indoor), .counts = false, .marks = kIndoorMark});
+    double gained = 0, lost = 0;
+    try {
+        LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+            if (label.count == 0 || (label.marks & kIndoorMark) == 0) return;
+            if (label.numbers < kOtherNumber) gained += area;
+            if (label.numbers % kOtherNumber == 0) lost += area;
+        });
+    } catch (const FormatError&) {
+        return;  // each for itself could be laid out, but not both together
+    }
+    comparison.gained.exact = std::max(0.0, gained);
+    comparison.lost.exact = std::max(0.0, lost);
 }
 
 }  // namespace
 
-Target makeTarget(const Environment& environment, int columns, int rows, double height) {
-    if (columns < 1 || rows < 1 || columns > kMostCells / rows)
-        throw UsageError("a grid of " + std::to_string(columns) + " x " + std::to_string(rows) +
-                         " cells cannot be made, wanted at least 1 each way and at most " +
-                         std::to_string(kMostCells) + " in all");
-    Target target;
-    target.grid = {environment.limits(), columns, rows};
-    target.height = height;
-    target.indoor = cellsIn(target.grid, environment.indoor());
-    target.free = target.indoor;
-    target.free -= cellsBlocked(target.grid, environment.slice(height));
-    return target;
+std::string_view nameOf(ViewKind kind) {
+    switch (kind) {
+        case ViewKind::Ranger:
+            return "ranger";
+        case ViewKind::Receiver:
+            return "ultrasound";
+        case ViewKind::Laser:
+            break;
+    }
+    return "laser";
 }
 
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, int columns, int rows, double height) {
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
+    const Environment& environment = scene.environment;
     Coverage coverage;
-    coverage.target = makeTarget(scene.environment, columns, rows, height);
+    coverage.target = options.cell
+                          ? makeTarget(environment, *options.cell, options.height)
+                          : makeTarget(environment, options.columns, options.rows, options.height);
     const Grid& grid = coverage.target.grid;
-    const std::vector<PlacedLaser>& lasers = scene.lasers;
-    for (const PlacedLaser& sensor : lasers) worlds.prepare(sensor.pose);
-    coverage.seen.resize(lasers.size());
-    coverage.beams.resize(lasers.size());
-    tbb::parallel_for(std::size_t{0}, lasers.size(), [&](std::size_t i) {
-        const RayWorld& world = worlds.at(lasers[i].pose);
-        coverage.seen[i] = cellsSeen(grid, world, lasers[i]);
-        coverage.beams[i] = castBeams(world, lasers[i]);
-    });
+    coverage.sensors = viewsOf(scene, worlds, grid, options);
+    coverage.sets = setsOf(coverage.sensors, grid);
 
-    CellSet covered(grid.size());
-    for (const CellSet& seen : coverage.seen) covered |= seen;
-    const std::vector<std::uint32_t> times = timesSeen(grid, coverage.seen);
     CoverageReport& report = coverage.report;
     report.digest = scene.digest;
-    report.limits = grid.limits;
-    report.columns = columns;
-    report.rows = rows;
-    report.height = height;
-    report.indoor_area = scene.environment.indoor().area();
-    report.free_area = totalArea(scene.environment.freeFloor(height));
-    addSensorFigures(coverage, lasers, times);
-    report.total_effective_area.grid = static_cast<double>(covered.count()) * grid.cellArea();
-    report.coverage.grid = coveredShare(covered, coverage.target.indoor);
-    report.free_coverage.grid = coveredShare(covered, coverage.target.free);
-    report.redundancy = redundancyOf(times, coverage.target.indoor, lasers.size());
+    report.limits = environment.limits();
+    report.columns = grid.columns;
+    report.rows = grid.rows;
+    report.height = options.height;
+    report.plane = options.plane;
+    report.indoor_area = environment.indoor().area();
+    const std::vector<Region> free_floor = environment.freeFloor(options.height);
+    report.free_area = totalArea(free_floor);
+    report.sensors.reserve(coverage.sensors.size());
+    for (const SensorView& view : coverage.sensors)
+        report.sensors.push_back(figuresOf(scene, view));
+    const std::vector<Zone> zones = zonesOf(environment);
+    report.zones.reserve(zones.size());
+    for (const Zone& zone : zones) report.zones.push_back({.id = zone.id});
+    if (options.exact) tryExactFigures(coverage, environment, free_floor, zones);
+    addCellFigures(coverage, zones);
     return coverage;
 }
 
-std::vector<std::uint32_t> timesSeen(const Grid& grid, const std::vector<CellSet>& seen) {
-    std::vector<std::uint32_t> times(grid.size());
-    for (const CellSet& cells : seen) cells.forEach([&times](std::size_t cell) { ++times[cell]; });
+void compare(Coverage& coverage, const Coverage& other, const Region& indoor,
+             const std::string& name) {
+    Comparison comparison{.name = name, .coverage = other.report.coverage};
+    const double cell_area = coverage.target.grid.cellArea();
+    const CellSet& inside = coverage.target.indoor;
+    const auto area_without = [&](CellSet cells, const CellSet& without) {
+        cells -= without;
+        return static_cast<double>(countCommon(cells, inside)) * cell_area;
+    };
+    const CellSet mine = coveredCells(coverage), theirs = coveredCells(other);
+    comparison.gained.grid = area_without(mine, theirs);
+    comparison.lost.grid = area_without(theirs, mine);
+    if (coverage.overlay && other.overlay) compareExactly(coverage, other, indoor, comparison);
+    coverage.report.comparison = comparison;
+}
+
+std::vector<std::uint32_t> timesSeen(const Coverage& coverage) {
+    std::vector<std::uint32_t> times(coverage.target.grid.size());
+    for (const SeenSet& set : coverage.sets)
+        set.cells.forEach([&times](std::size_t cell) { ++times[cell]; });
     return times;
+}
+
+CellSet coveredCells(const Coverage& coverage) {
+    CellSet covered(coverage.target.grid.size());
+    for (const SeenSet& set : coverage.sets) covered |= set.cells;
+    return covered;
 }
 
 double coveredShare(const CellSet& covered, const CellSet& target) {

@@ -4,74 +4,156 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cover/grid.h"
+#include "cover/target.h"
+#include "geom/layers.h"
 #include "layout/scene.h"
 #include "trace/worlds.h"
 
 namespace ispace {
 
-/// What is to be covered: the cells of a grid over the limits.
-struct Target {
-    Grid grid;
-    double height = kScanHeight;  ///< at which free floor is judged
-    CellSet indoor;               ///< centre strictly inside the indoor region
-    CellSet free;                 ///< indoor and not in a solid at `height`
+/// How a cell is judged to be seen by a laser.
+enum class CellRule {
+    Region,  ///< its centre lies in what the laser sees, as exactly as doubles are
+    Beams,   ///< in the polygon through the ends of its beams (thesis, section 4.5.2)
 };
-/// Most cells of a grid.
-constexpr int kMostCells = 10'000'000;
-/// \throws UsageError unless columns and rows are at least 1 and make at most kMostCells
-Target makeTarget(const Environment& environment, int columns, int rows, double height);
+
+struct CoverageOptions {
+    int columns = 100, rows = 100;    ///< over the limits; or:
+    std::optional<double> cell = {};  ///< edge of square cells, metres
+    double height = kScanHeight;      ///< at which free floor is judged
+    double plane = 0;                 ///< height of what rangers and ultrasound cover
+    CellRule cells_by = CellRule::Region;
+    bool exact = true;  ///< closed forms beside the cells
+};
 
 /// A figure by cells and in closed form; one that is not computed is empty (null in JSON).
 struct Figure {
     std::optional<double> grid, exact;
 };
 
+/// What sees.
+enum class ViewKind { Laser, Ranger, Receiver };
+std::string_view nameOf(ViewKind kind);  ///< the keyword of its record
+
 struct SensorFigures {
-    std::string id, model;             ///< model "" for a bare sensor
-    double slice_area = 0;             ///< eq. (4.4), m2
-    std::optional<double> exact_area;  ///< m2
-    double marginal_area = 0;          ///< lost if this sensor is removed, by cells, m2
+    std::string id, model;  ///< model "" for a bare sensor
+    ViewKind kind = ViewKind::Laser;
+    std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
+    Figure area = {};                       ///< of its region, m2; what a receiver hears
+    Figure marginal = {};                   ///< lost if this sensor is removed, m2
+    Figure overlap = {};                    ///< that others see, too, m2; not of receivers
 };
 
-/// The figures of DESIGN's `coverage --json`.
+struct ZoneFigures {
+    std::string id;
+    double area = 0;       ///< of its indoor part, exact, m2
+    Figure coverage = {};  ///< of that part; 0 where there is none
+};
+
+/// A connected piece of floor that no sensor sees.
+struct UnseenSpot {
+    Point2 place;  ///< inside, well away from the rim where it can be
+    double area = 0;
+};
+
+/// Pieces of this many m2 and less are left out: what rounding cuts off.
+constexpr double kLeastPiece = 1e-4;
+
+/// What another layout of the same room sees, beside this one.
+struct Comparison {
+    std::string name;
+    Figure coverage;  ///< of the other one
+    Figure gained = {},
+           lost = {};  ///< indoor area seen by this layout alone, by the other alone, m2
+};
+
+/// The figures of DESIGN's `coverage --json`, and more.
 struct CoverageReport {
     std::string digest;
     Box2 limits;
     int columns = 0, rows = 0;
-    double height = 0;
+    double height = 0, plane = 0;
     double indoor_area = 0, free_area = 0;  ///< exact, m2
-    std::vector<SensorFigures> sensors;
-    Figure total_effective_area;     ///< eq. (4.6), m2; all cells, indoor or not
-    Figure coverage;                 ///< eq. (4.7), fraction of the indoor cells
-    Figure free_coverage;            ///< fraction of the free cells
-    std::vector<double> redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors;
-                                     ///< all 0 where no cell is indoor
+    std::vector<SensorFigures> sensors;     ///< lasers, rangers, receivers
+    Figure total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
+    Figure overlap;                         ///< seen by two and more, m2; indoor or not
+    Figure coverage;                        ///< eq. (4.7), fraction of the indoor region
+    Figure free_coverage;                   ///< fraction of the free floor
+    std::vector<double> redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors (all
+                                     ///< ultrasonic receivers count as one); all 0 where no cell
+                                     ///< is indoor
+    std::optional<std::vector<double>> redundancy_exact;
+    std::vector<ZoneFigures> zones;  ///< in the order of their records
+    /// Connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the largest in
+    /// it, 0 without any; walls part them. Exact where that is known, else by cells.
+    std::size_t pieces = 0;
+    double largest_piece = 0;
+    /// Pieces of the free floor that no sensor sees, the largest first. Likewise.
+    std::vector<UnseenSpot> unseen;
+    std::optional<Comparison> comparison;
+    /// Why exact figures of all together are missing; "" where they are there or nobody asked.
+    std::string exact_missing;
 };
 
-/// Report and the cells behind it, for the map.
+/// What one sensor sees.
+struct SensorView {
+    ViewKind kind = ViewKind::Laser;
+    std::size_t index = 0;  ///< in Scene::lasers, rangers or receivers
+    std::string id, model;
+    Pose3 pose;
+    double max_range = 0;
+    CellSet cells = CellSet();
+    /// Its exact region: disjoint curves, what is seen on their left; nothing if not known.
+    std::optional<std::vector<Curve>> region = {};
+    std::vector<float> beams = {};  ///< of a laser, as of castBeams
+};
+
+/// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four
+/// ultrasonic receivers hear.
+struct SeenSet {
+    CellSet cells = CellSet();
+    std::optional<std::vector<Curve>> region = {};
+};
+
+/// Bits of LayerLabel::marks in Coverage::overlay.
+constexpr std::uint64_t kIndoorMark = 1, kFreeMark = 2;
+
+/// Report and what is behind it, for maps.
 struct Coverage {
     CoverageReport report;
     Target target;
-    std::vector<CellSet> seen;              ///< per sensor
-    std::vector<std::vector<float>> beams;  ///< per sensor, as of castBeams
+    std::vector<SensorView> sensors;  ///< as report.sensors
+    /// One for each laser and ranger, in order, then one for all receivers if there are any.
+    std::vector<SeenSet> sets;
+    /// The regions of all sets (count, number i + 1 of set i) over indoor region and free floor
+    /// (marks). Nothing where a region is not known or nobody asked.
+    std::optional<LayerOverlay> overlay;
 };
 
-/// Measures the placed lasers of a scene. Deterministic for any number of threads.
-/// \throws UsageError as makeTarget
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, int columns, int rows, double height);
+/// Measures all placed lasers, rangers and ultrasonic receivers of a scene. Deterministic for any
+/// number of threads. \throws UsageError as makeTarget
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options);
 
-/// By how many of the sets each cell of the grid is held: the redundancy of a cell.
-std::vector<std::uint32_t> timesSeen(const Grid& grid, const std::vector<CellSet>& seen);
+/// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room
+/// that has this indoor region
+void compare(Coverage& coverage, const Coverage& other, const Region& indoor,
+             const std::string& name);
+
+/// By how many sets each cell of the grid is seen: the redundancy of a cell.
+std::vector<std::uint32_t> timesSeen(const Coverage& coverage);
+/// Cells seen by any.
+CellSet coveredCells(const Coverage& coverage);
 
 /// Share of target cells that a union covers: eq. (4.7) on cells; 0 where the target is empty.
 double coveredShare(const CellSet& covered, const CellSet& target);
 
 /// One JSON object and a newline, schema ispace-coverage/1.
 std::string coverageJson(const CoverageReport& report);
-/// The same for people, a few aligned lines.
+/// The same for people, aligned lines.
 std::string coverageText(const CoverageReport& report);
 
 }  // namespace ispace

@@ -52,9 +52,6 @@ TEST(Coverage, AreasAreExact) {
     EXPECT_EQ(report.height, kScanHeight);
     EXPECT_EQ(report.limits, (Box2{{-3, -2}, {3, 2}}));
     EXPECT_EQ(report.columns, 100);
-    EXPECT_FALSE(report.coverage.exact);
-    EXPECT_FALSE(report.free_coverage.exact);
-    EXPECT_FALSE(report.total_effective_area.exact);
 }
 
 const char* const kOffice =
@@ -73,7 +70,7 @@ TEST(Coverage, FiguresFitTogether) {
     EXPECT_GT(*report.free_coverage.grid, *report.coverage.grid);  // no laser sees into solids
 
     CellSet all(coverage.target.grid.size());
-    for (const CellSet& seen : coverage.seen) all |= seen;
+    for (const SeenSet& set : coverage.sets) all |= set.cells;
     const double cell_area = coverage.target.grid.cellArea();
     EXPECT_DOUBLE_EQ(*report.total_effective_area.grid,
                      static_cast<double>(all.count()) * cell_area);
@@ -81,10 +78,10 @@ TEST(Coverage, FiguresFitTogether) {
     for (std::size_t i = 0; i < 4; ++i) {
         CellSet others(coverage.target.grid.size());
         for (std::size_t j = 0; j < 4; ++j)
-            if (j != i) others |= coverage.seen[j];
-        EXPECT_NEAR(report.sensors[i].marginal_area,
+            if (j != i) others |= coverage.sets[j].cells;
+        EXPECT_NEAR(*report.sensors[i].marginal.grid,
                     static_cast<double>(all.count() - others.count()) * cell_area, 1e-9);
-        marginal_sum += report.sensors[i].marginal_area;
+        marginal_sum += *report.sensors[i].marginal.grid;
     }
     EXPECT_LE(marginal_sum, *report.total_effective_area.grid);
     EXPECT_EQ(report.sensors[1].id, "b");
@@ -93,8 +90,8 @@ TEST(Coverage, FiguresFitTogether) {
 TEST(Coverage, TwoEqualSensorsHaveNoMarginalArea) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=6,4\nlaser at=1,1 range=3\nlaser at=1,1 range=3\n")).report;
-    EXPECT_EQ(report.sensors[0].marginal_area, 0);
-    EXPECT_EQ(report.sensors[1].marginal_area, 0);
+    EXPECT_EQ(report.sensors[0].marginal.grid, 0.0);
+    EXPECT_EQ(report.sensors[1].marginal.grid, 0.0);
     EXPECT_EQ(report.redundancy[1], 0);
     EXPECT_EQ(report.redundancy[2], *report.coverage.grid);
 }
@@ -102,10 +99,10 @@ TEST(Coverage, TwoEqualSensorsHaveNoMarginalArea) {
 TEST(Coverage, LoneSensorIsWorthAllItSees) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=12,12\nlaser at=0,0 range=4 fov=180\n")).report;
-    EXPECT_EQ(report.sensors[0].marginal_area, *report.total_effective_area.grid);
+    EXPECT_EQ(report.sensors[0].marginal.grid, *report.total_effective_area.grid);
     EXPECT_NEAR(*report.total_effective_area.grid, std::acos(-1.0) * 8, 0.4);
     // 181 beams, each worth a sector of one degree.
-    EXPECT_NEAR(report.sensors[0].slice_area, std::acos(-1.0) * 16 * 181 / 360, 1e-9);
+    EXPECT_NEAR(*report.sensors[0].slice_area, std::acos(-1.0) * 16 * 181 / 360, 1e-9);
 }
 
 TEST(Coverage, SameForAnyNumberOfThreads) {
@@ -149,61 +146,6 @@ TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     EXPECT_EQ(low.indoor.count(), 2400U);
     EXPECT_EQ(low.free.count(), 1800U);
     EXPECT_EQ(makeTarget(scene.environment, 60, 40, 1.01).free.count(), 2400U);
-}
-
-CoverageReport sampleReport() {
-    CoverageReport report;
-    report.digest = "sha256:0a";
-    report.limits = {{-1, 0}, {3, 2.5}};
-    report.columns = 4;
-    report.rows = 5;
-    report.height = 0.15;
-    report.indoor_area = 10;
-    report.free_area = 9.25;
-    report.sensors = {{"l1", "urg-04lx", 3.5, {}, 1.25}, {"l2", "", 12, {}, 0}};
-    report.total_effective_area.grid = 8;
-    report.coverage.grid = 0.8;
-    report.free_coverage.grid = 0.875;
-    report.redundancy = {0.2, 0.8, 0};
-    return report;
-}
-
-TEST(CoverageJson, HasTheKeysInTheirOrder) {
-    EXPECT_EQ(coverageJson(sampleReport()),
-              R"({"schema":"ispace-coverage/1","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
-              R"("grid":[4,5],"height":0.15,"indoor_area":10,"free_area":9.25,"sensors":[)"
-              R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":null,)"
-              R"("marginal_area":1.25},{"id":"l2","model":null,"slice_area":12,)"
-              R"("exact_area":null,"marginal_area":0}],)"
-              R"("total_effective_area":{"grid":8,"exact":null},)"
-              R"("coverage":{"grid":0.8,"exact":null},)"
-              R"("free_coverage":{"grid":0.875,"exact":null},"redundancy":[0.2,0.8,0]})"
-              "\n");
-}
-
-TEST(CoverageText, IsAlignedWithUnitsAndPerCentSigns) {
-    EXPECT_EQ(coverageText(sampleReport()),
-              "environment           sha256:0a\n"
-              "limits                x -1.00 to 3.00 m, y 0.00 to 2.50 m\n"
-              "grid                  4 x 5 cells\n"
-              "indoor area           10.00 m2\n"
-              "free floor            9.25 m2 at 0.15 m\n"
-              "total effective area  8.00 m2\n"
-              "coverage              80.00% of the indoor cells\n"
-              "free coverage         87.50% of the free cells\n"
-              "seen by               0: 20.00%, 1: 80.00%\n"
-              "\n"
-              "sensor  model     slice area  marginal\n"
-              "l1      urg-04lx     3.50 m2   1.25 m2\n"
-              "l2      -           12.00 m2   0.00 m2\n"
-              "\n"
-              "figures by cells, areas of floor exact; exact coverage is not computed\n");
-}
-
-TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
-    CoverageReport report = sampleReport();
-    report.sensors.clear();
-    EXPECT_NE(coverageText(report).find("\nno sensor is placed\n"), std::string::npos);
 }
 
 }  // namespace

@@ -9,44 +9,130 @@ namespace ispace {
 
 namespace {
 
+constexpr std::size_t kSpotsListed = 5;
+
+using Row = std::vector<std::string>;
+
 std::string metres(double value) { return formatFixed(value, 2); }
 std::string area(double value) { return formatFixed(value, 2) + " m2"; }
 std::string percent(double share) { return formatFixed(100 * share, 2) + "%"; }
-std::string percent(const std::optional<double>& share) { return share ? percent(*share) : "-"; }
 
-/// Columns as wide as their longest cell, two blanks apart; `right` names those of numbers.
-std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::string& right) {
-    std::vector<std::size_t> widths(right.size());
-    for (const auto& row : rows)
+/// Columns as wide as their longest cell, two blanks apart; `sides` has an r for those of numbers,
+/// whose last letter counts on.
+std::string aligned(const std::vector<Row>& rows, const std::string& sides) {
+    std::vector<std::size_t> widths;
+    const auto side = [&sides](std::size_t i) {
+        return i < sides.size() ? sides[i] : sides.back();
+    };
+    for (const Row& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
     std::string text;
-    for (const auto& row : rows) {
+    for (const Row& row : rows) {
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i) {
             const std::string blanks(widths[i] - row[i].size(), ' ');
             if (i > 0) line += "  ";
-            line += right[i] == 'r' ? blanks + row[i] : row[i] + blanks;
+            line += side(i) == 'r' ? blanks + row[i] : row[i] + blanks;
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
     return text;
 }
 
-std::string redundancyText(const std::vector<double>& redundancy) {
-    std::size_t end = redundancy.size();
-    while (end > 1 && redundancy[end - 1] == 0) --end;
-    std::string text;
-    for (std::size_t k = 0; k < end; ++k)
-        text += (k == 0 ? "" : ", ") + std::to_string(k) + ": " + percent(redundancy[k]);
-    return text;
+/// A figure three ways: by cells, exact, and by how much cells are off.
+template <typename Format>
+Row row(std::string name, const Figure& figure, Format format) {
+    Row row = {std::move(name), figure.grid ? format(*figure.grid) : "-",
+               figure.exact ? format(*figure.exact) : "-"};
+    if (!figure.grid || !figure.exact) {
+        row.emplace_back("-");
+        return row;
+    }
+    const std::string difference = format(*figure.grid - *figure.exact);
+    row.push_back(difference.front() == '-' ? difference : "+" + difference);
+    return row;
+}
+
+std::string seenBy(std::size_t k) {
+    if (k == 0) return "seen by no sensor";
+    return "seen by " + std::to_string(k) + (k == 1 ? " sensor" : " sensors");
+}
+
+std::string figureTable(const CoverageReport& report) {
+    std::vector<Row> rows = {{"", "by cells", "exact", "difference"},
+                             row("total effective area", report.total_effective_area, area),
+                             row("seen by several", report.overlap, area),
+                             row("coverage", report.coverage, percent),
+                             row("free coverage", report.free_coverage, percent)};
+    std::size_t end = report.redundancy.size();
+    while (end > 1 && report.redundancy[end - 1] == 0) --end;
+    for (std::size_t k = 0; k < end; ++k) {
+        Figure share{.grid = report.redundancy[k], .exact = {}};
+        if (report.redundancy_exact) share.exact = (*report.redundancy_exact)[k];
+        rows.push_back(row(seenBy(k), share, percent));
+    }
+    for (const ZoneFigures& zone : report.zones) {
+        if (zone.area > 0 || !zone.coverage.exact)
+            rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));
+        else
+            rows.push_back({"zone " + printable(zone.id), "outside the room"});
+    }
+    return aligned(rows, "lr");
 }
 
 std::string sensorTable(const std::vector<SensorFigures>& sensors) {
-    std::vector<std::vector<std::string>> rows = {{"sensor", "model", "slice area", "marginal"}};
-    for (const SensorFigures& sensor : sensors)
-        rows.push_back({printable(sensor.id), sensor.model.empty() ? "-" : printable(sensor.model),
-                        area(sensor.slice_area), area(sensor.marginal_area)});
-    return aligned(rows, "llrr");
+    const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
+    std::vector<Row> rows = {{"sensor", "model", "slice area", "by cells", "exact", "difference",
+                              "marginal", "exact", "overlap"}};
+    for (const SensorFigures& sensor : sensors) {
+        const Row region = row("", sensor.area, area);
+        rows.push_back(
+            {printable(sensor.id),
+             sensor.model.empty() ? std::string(nameOf(sensor.kind)) : printable(sensor.model),
+             cell(sensor.slice_area), region[1], region[2], region[3], cell(sensor.marginal.grid),
+             cell(sensor.marginal.exact),
+             cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
+    }
+    return aligned(rows, "llr");
+}
+
+std::string piecesText(const CoverageReport& report) {
+    std::string text;
+    if (report.pieces == 1) {
+        text += "covered floor is in one piece\n";
+    } else if (report.pieces > 1) {
+        text += "covered floor is in " + std::to_string(report.pieces) +
+                " pieces, the largest has " + percent(report.largest_piece) + " of it\n";
+    }
+    if (report.unseen.empty()) return text;
+    text += "largest spots of free floor that no sensor sees:\n";
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < std::min(kSpotsListed, report.unseen.size()); ++i) {
+        const UnseenSpot& spot = report.unseen[i];
+        rows.push_back({" ", area(spot.area), "around",
+                        "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
+    }
+    text += aligned(rows, "lrl");
+    if (report.unseen.size() > kSpotsListed)
+        text += "   and " + std::to_string(report.unseen.size() - kSpotsListed) + " smaller\n";
+    return text;
+}
+
+std::string comparisonText(const CoverageReport& report) {
+    const Comparison& other = *report.comparison;
+    const auto gain = [](const std::optional<double>& now, const std::optional<double>& then) {
+        return now && then ? std::optional(*now - *then) : std::nullopt;
+    };
+    const Figure change{.grid = gain(report.coverage.grid, other.coverage.grid),
+                        .exact = gain(report.coverage.exact, other.coverage.exact)};
+    return "\n" + aligned({{"beside " + printable(other.name), "by cells", "exact", "difference"},
+                           row("its coverage", other.coverage, percent),
+                           row("change of coverage", change, percent),
+                           row("gained", other.gained, area),
+                           row("lost", other.lost, area)},
+                          "lr");
 }
 
 }  // namespace
@@ -59,18 +145,18 @@ std::string coverageText(const CoverageReport& report) {
                         metres(limits.low.y) + " to " + metres(limits.high.y) + " m"},
          {"grid", std::to_string(report.columns) + " x " + std::to_string(report.rows) + " cells"},
          {"indoor area", area(report.indoor_area)},
-         {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"},
-         {"total effective area",
-          report.total_effective_area.grid ? area(*report.total_effective_area.grid) : "-"},
-         {"coverage", percent(report.coverage.grid) + " of the indoor cells"},
-         {"free coverage", percent(report.free_coverage.grid) + " of the free cells"},
-         {"seen by", redundancyText(report.redundancy)}},
-        "ll");
+         {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
+        "l");
+    text += "\n" + figureTable(report);
+    if (!report.exact_missing.empty())
+        text += "no exact figures of all together: " + printable(report.exact_missing) + "\n";
+    if (report.comparison) text += comparisonText(report);
+    text += "\n";
     if (report.sensors.empty())
-        text += "\nno sensor is placed\n";
+        text += "no sensor is placed\n";
     else
-        text += "\n" + sensorTable(report.sensors);
-    return text + "\nfigures by cells, areas of floor exact; exact coverage is not computed\n";
+        text += sensorTable(report.sensors) + "\n" + piecesText(report);
+    return text;
 }
 
 }  // namespace ispace

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "env/slice.h"
@@ -42,7 +43,11 @@ class CellSet {
         return (words_[cell / 64] >> (cell % 64)) & 1U;
     }
     void set(std::size_t cell) { words_[cell / 64] |= std::uint64_t{1} << (cell % 64); }
+    void reset(std::size_t cell) { words_[cell / 64] &= ~(std::uint64_t{1} << (cell % 64)); }
+    /// Adds the cells first + i for which bit i is set. \pre all of them are < size()
+    void addBits(std::size_t first, std::uint64_t bits);
     [[nodiscard]] std::size_t count() const;
+    [[nodiscard]] bool empty() const;
     CellSet& operator|=(const CellSet& other);
     CellSet& operator&=(const CellSet& other);
     /// Removes the cells of `other`. All three: \pre both are of one size
@@ -70,6 +75,8 @@ void CellSet::forEach(Visit visit) const {
 /// Cells whose centre lies strictly inside the region; exact, by scanline. O(cells + sum of the
 /// rows that each edge spans).
 CellSet cellsIn(const Grid& grid, const Region& region);
+/// The same of closed curves by the even-odd rule, which may touch and repeat edges.
+CellSet cellsWithin(const Grid& grid, std::span<const Polygon> curves);
 /// Cells whose centre lies in a solid or on its edge.
 CellSet cellsBlocked(const Grid& grid, const Slice& slice);
 

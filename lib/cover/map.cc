@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "cover/map_parts.h"
@@ -13,14 +14,14 @@ namespace {
 
 constexpr int kLeastWidth = 200, kMostWidth = 12000;
 
-/// Where everything lies on the page.
+/// Where everything lies on the page, in its units.
 struct Page {
     double em = 0;  ///< size of text
     double width = 0, height = 0;
     double margin = 0;
-    double title_base = 0;  ///< base line of the title
+    double title_base = 0, subtitle_base = 0;  ///< base lines of the head
     PageView view;
-    Box2 plan;              ///< page units
+    Box2 plan;
     Point2 scale_corner;    ///< lower left end of the scale bar
     double scale_most = 0;  ///< its greatest length
     LegendLayout legend;
@@ -43,36 +44,60 @@ void fitPlan(Page& page, const Box2& limits, double left, double top, double wid
     if (x + page.scale_most + 6 * page.em > left + width) page.scale_corner.x = left;
 }
 
-Page layOut(const Scene& scene, const Coverage& coverage, const MapOptions& options) {
+Page layOut(const MapPicture& map) {
+    // Widths of the legend, in sizes of text.
+    constexpr double kPanel = 18, kNarrowPanel = 17, kGap = 2;
     Page page;
-    page.width = options.width;
-    page.em = std::max(10.0, page.width / 1200 * 17);
-    page.margin = std::max(1.4 * page.em, page.width / 40);
+    page.width = map.options.width;
+    page.em = map.em;
+    const double em = page.em;
+    page.margin = std::max(1.4 * em, page.width / 40);
     double top = page.margin;
-    if (!options.title.empty()) {
-        page.title_base = top + 1.1 * page.em;
-        top += 2.4 * page.em;
+    if (!map.options.title.empty()) {
+        page.title_base = top + 1.1 * em;
+        page.subtitle_base = top + 2.6 * em;
+        top += 4.0 * em;
     }
-    const Box2& limits = coverage.target.grid.limits;
+    const Box2& limits = map.limits();
     const double inner = page.width - 2 * page.margin;
-    const double panel = 16 * page.em, gap = 2 * page.em;
-    std::vector<LegendBlock> blocks = legendBlocks(scene, coverage);
-    const bool beside = panel + gap <= 0.32 * page.width && limits.depth() > 0.65 * limits.width();
-    if (beside) {
-        fitPlan(page, limits, page.margin, top, inner - panel - gap, 1.4 * page.width);
-        page.legend = layOutLegend(std::move(blocks), 1, page.em);
+    const std::vector<LegendBlock> blocks = legendBlocks(map);
+    const double panel = kPanel * em, gap = kGap * em;
+    fitPlan(page, limits, page.margin, top, inner - panel - gap, 1.4 * page.width);
+    page.legend = layOutLegend(blocks, 1, em);
+    const double plan_end = page.scale_corner.y;
+    // Beside the plan if it leaves the larger part of the page to it, and no large part empty.
+    if (panel + gap <= 0.32 * page.width && limits.depth() > 0.65 * limits.width() &&
+        page.legend.height < 1.25 * (plan_end - top)) {
         page.legend_corner = {page.width - page.margin - panel, top};
         page.legend_width = panel;
-        page.height = std::max(page.scale_corner.y, top + page.legend.height) + page.margin;
-    } else {
-        fitPlan(page, limits, page.margin, top, inner, 1.4 * page.width);
-        const int columns = std::clamp(static_cast<int>((inner + gap) / (panel + gap)), 1, 4);
-        page.legend = layOutLegend(std::move(blocks), columns, page.em);
-        page.legend_corner = {page.margin, page.scale_corner.y + 1.5 * page.em};
-        page.legend_width = inner;
-        page.height = page.legend_corner.y + page.legend.height + page.margin;
+        page.height = std::max(plan_end, top + page.legend.height) + page.margin;
+        return page;
     }
+    fitPlan(page, limits, page.margin, top, inner, 1.4 * page.width);
+    const double columns = (inner + gap) / (kNarrowPanel * em + gap);
+    page.legend = layOutLegend(blocks, std::clamp(static_cast<int>(columns), 1, 4), em);
+    page.legend_corner = {page.margin, page.scale_corner.y + 1.5 * em};
+    page.legend_width = inner;
+    page.height = page.legend_corner.y + page.legend.height + page.margin;
     return page;
+}
+
+/// Title and main figures, of which as many as fit.
+void drawHead(Canvas& canvas, const MapPicture& map, const Page& page) {
+    if (map.options.title.empty()) return;
+    const double width = page.width - 2 * page.margin;
+    const TextStyle title{1.35 * page.em, true, Align::Left, map_colors::kInk, {}};
+    canvas.text({page.margin, page.title_base}, fitText(map.options.title, width, title), title);
+    const TextStyle style{page.em, false, Align::Left, map_colors::kFaintInk, {}};
+    std::string line;
+    for (const std::string& part : mainFigures(map)) {
+        std::string longer = line;
+        if (!line.empty()) longer += " · ";
+        longer += part;
+        if (!line.empty() && textWidth(longer, style) > width) break;
+        line = std::move(longer);
+    }
+    canvas.text({page.margin, page.subtitle_base}, fitText(line, width, style), style);
 }
 
 PictureFormat pictureFormat(MapFormat format) {
@@ -89,24 +114,24 @@ PictureFormat pictureFormat(MapFormat format) {
 
 }  // namespace
 
-std::string drawCoverageMap(const Scene& scene, const Coverage& coverage,
-                            const MapOptions& options) {
+std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
+                            const Coverage* other) {
     if (options.width < kLeastWidth || options.width > kMostWidth)
         throw UsageError("a map " + std::to_string(options.width) +
                          " pixels wide cannot be drawn, wanted " + std::to_string(kLeastWidth) +
                          " to " + std::to_string(kMostWidth));
-    const Page page = layOut(scene, coverage, options);
+    MapPicture map{scene, coverage, options, other};
+    map.em = std::max(10.0, options.width / 1200.0 * 17);
+    map.terse = options.width < 50 * map.em;
+    const Page page = layOut(map);
+    map.view = page.view;
     Canvas canvas(pictureFormat(options.format), page.width, std::ceil(page.height));
-    if (!options.title.empty()) {
-        const TextStyle style{1.35 * page.em, true, Align::Left, map_colors::kInk, {}};
-        const double width = page.width - 2 * page.margin;
-        canvas.text({page.margin, page.title_base}, fitText(options.title, width, style), style);
-    }
-    drawPlan(canvas, scene, coverage, page.view, page.em);
+    drawHead(canvas, map, page);
+    drawPlan(canvas, map);
     const double rim = page.margin - 0.2 * page.em;
     const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
                      {page.plan.high.x + rim, page.plan.high.y + rim}};
-    drawSensors(canvas, scene, page.view, frame, page.em);
+    drawMarks(canvas, map, frame);
     drawScaleBar(canvas, page.scale_corner, page.scale_most, page.view.scale, page.em);
     drawLegend(canvas, page.legend, page.legend_corner, page.legend_width, page.em);
     return canvas.encode();

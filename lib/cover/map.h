@@ -9,16 +9,36 @@ namespace ispace {
 
 enum class MapFormat { Png, Svg, Pdf };
 
-struct MapOptions {
-    MapFormat format = MapFormat::Png;
-    int width = 1200;   ///< pixels; svg and pdf use it as their nominal width
-    std::string title;  ///< e.g. base name of ENV; "" for none
+/// What the colour of covered floor tells.
+enum class MapColor {
+    Redundancy,  ///< how many sensors see it
+    Sensor,      ///< which one does; where several do, hatched or mixed so that it shows
 };
 
-/// The plan as a picture for a paper: covered floor by redundancy, walls, objects, each sensor with
-/// its id, heading and fan, legend, scale bar, the figures. Returns the bytes of the file; equal
-/// input gives equal bytes.
-std::string drawCoverageMap(const Scene& scene, const Coverage& coverage,
-                            const MapOptions& options);
+/// How a sensor's view is drawn.
+enum class FanStyle {
+    Contours,  ///< the outline of what it sees (the thesis' "show area")
+    Beams,     ///< the beams of lasers, thinned where they would run together; sweeps and other
+               ///< sensors as contours
+};
+
+struct MapOptions {
+    MapFormat format = MapFormat::Png;
+    int width = 1200;        ///< pixels; svg and pdf use it as their nominal width
+    std::string title = {};  ///< e.g. base name of ENV; "" for none
+    MapColor color = MapColor::Redundancy;
+    FanStyle fans = FanStyle::Contours;
+};
+
+/// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
+/// heading and view, the largest unseen spots, legend, scale bar, the figures. Returns the bytes of
+/// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, whatever
+/// the size of the picture sharp, or from cells where there is none.
+///
+/// `other`, if not null, is what coverage was compared with (compare()): the colours then tell the
+/// indoor floor that both see, this one alone (gained), and the other alone (lost), and the other's
+/// sensors are marked as such.
+std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
+                            const Coverage* other = nullptr);
 
 }  // namespace ispace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/number.h"
 #include "cover/map_parts.h"
@@ -9,68 +10,232 @@ namespace ispace {
 
 namespace {
 
-// Of the size of text: from one line to the next, and between blocks.
-constexpr double kLine = 1.5, kBlockGap = 0.9;
-
 using Sign = LegendItem::Sign;
 
 std::string percent(double share) { return formatFixed(100 * share, 1) + "%"; }
-std::string percent(const std::optional<double>& share) { return share ? percent(*share) : "–"; }
-std::string area(double value) { return formatFixed(value, value < 1000 ? 1 : 0) + " m²"; }
 
-LegendBlock figuresBlock(const CoverageReport& report) {
-    const auto line = [](std::string text, std::string value) {
-        return LegendItem{Sign::None, {}, {}, std::move(text), std::move(value)};
-    };
-    const std::optional<double>& effective = report.total_effective_area.grid;
-    return {
-        "Figures",
-        {line("Coverage", percent(report.coverage.grid)),
-         line("Free coverage", percent(report.free_coverage.grid)),
-         line("Indoor area", area(report.indoor_area)), line("Free floor", area(report.free_area)),
-         line("Effective area", effective ? area(*effective) : "–"),
-         line("Grid", std::to_string(report.columns) + " × " + std::to_string(report.rows))}};
+std::string area(double value) {
+    if (value >= 1e6) return formatFixed(value / 1e6, 2) + " km²";
+    const int decimals = value < 0.1 ? 3 : value < 10 ? 2 : value < 100 ? 1 : 0;
+    return formatFixed(value, value == 0 ? 1 : decimals) + " m²";
 }
 
-LegendBlock shadesBlock(const std::vector<double>& redundancy) {
-    const auto patch = [](Color color, std::string text, double share) {
-        return LegendItem{Sign::Patch, color, map_colors::kObjectEdge, std::move(text),
-                          percent(share)};
+using Format = std::string (*)(double);
+
+/// A block whose first column holds exact figures and the second those by cells, if any is exact.
+LegendBlock figureBlock(std::string title, bool exact) {
+    LegendBlock block{std::move(title), {}};
+    if (exact) block.columns = {"exact", "cells"};
+    return block;
+}
+
+/// Sets the values of an item of such a block.
+void setFigure(LegendItem& item, const LegendBlock& block, const Figure& figure, Format format) {
+    const bool columns = !block.columns[0].empty();
+    const auto text = [format](const std::optional<double>& value) {
+        return value ? format(*value) : std::string("–");
     };
-    const Shades shades = shadesFor(redundancy);
-    std::vector<double> shares(static_cast<std::size_t>(shades.count) + 1);
-    for (std::uint32_t k = 0; k < redundancy.size(); ++k)
-        if (redundancy[k] > 0) shares[static_cast<std::size_t>(shades.of(k))] += redundancy[k];
-    LegendBlock block{"Indoor floor seen by", {}};
-    block.items.push_back(patch(map_colors::kUncovered, "no sensor", shares[0]));
-    if (redundancy.size() < 2) return block;
-    for (int shade = 1; shade <= shades.count; ++shade) {
-        const std::uint32_t last = static_cast<std::uint32_t>(shade) * shades.width;
-        std::string text;
-        if (shades.width > 1) text = std::to_string(last - shades.width + 1).append("–");
-        text.append(std::to_string(last)).append(last == 1 ? " sensor" : " sensors");
+    item.value = text(columns || !figure.grid ? figure.exact : figure.grid);
+    if (columns) item.second = text(figure.grid);
+}
+
+LegendBlock figuresBlock(const CoverageReport& report, bool terse) {
+    LegendBlock block = figureBlock(report.coverage.exact ? "Figures" : "Figures by cells",
+                                    report.coverage.exact.has_value());
+    const auto add = [&block](std::string text, const Figure& figure, Format format) {
+        LegendItem item{Sign::None, {}, {}, std::move(text), ""};
+        setFigure(item, block, figure, format);
+        block.items.push_back(std::move(item));
+    };
+    const auto add_area = [&block](std::string text, double value) {
+        block.items.push_back({Sign::None, {}, {}, std::move(text), area(value)});
+    };
+    add("Coverage", report.coverage, percent);
+    if (!terse) add("Free coverage", report.free_coverage, percent);
+    add_area("Indoor area", report.indoor_area);
+    if (!terse) add_area("Free floor", report.free_area);
+    add("Effective area", report.total_effective_area, area);
+    if (report.redundancy.size() > 2 && !terse) add("Overlap", report.overlap, area);
+    if (!terse)
         block.items.push_back(
-            patch(shades.color(shade), std::move(text), shares[static_cast<std::size_t>(shade)]));
+            {Sign::None,
+             {},
+             {},
+             "Grid",
+             std::to_string(report.columns) + " × " + std::to_string(report.rows)});
+    return block;
+}
+
+/// Sums of the shares of `shares[first ..]` up to but without `end`.
+double shareOf(const std::vector<double>& shares, std::size_t first, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = first; k < std::min(end, shares.size()); ++k) sum += shares[k];
+    return sum;
+}
+
+/// How much of the indoor floor is seen by first .. end - 1 sensors.
+Figure shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t end) {
+    Figure figure{shareOf(report.redundancy, first, end), {}};
+    if (report.redundancy_exact) figure.exact = shareOf(*report.redundancy_exact, first, end);
+    return figure;
+}
+
+LegendBlock shadesBlock(const CoverageReport& report) {
+    LegendBlock block = figureBlock("Floor seen by", report.redundancy_exact.has_value());
+    const auto add = [&](Color color, std::string text, std::size_t first, std::size_t end) {
+        LegendItem item{Sign::Patch, color, map_colors::kObjectEdge, std::move(text), ""};
+        setFigure(item, block, shareSeenBy(report, first, end), percent);
+        block.items.push_back(std::move(item));
+    };
+    add(map_colors::kUncovered, "no sensor", 0, 1);
+    if (report.redundancy.size() < 2) return block;
+    const Shades shades = shadesFor(report);
+    for (int shade = 1; shade <= shades.count; ++shade) {
+        const std::uint32_t first = shades.least(shade), last = first + shades.width - 1;
+        std::string text;
+        if (shades.width > 1) text = std::to_string(first).append("–");
+        text.append(std::to_string(last)).append(last == 1 ? " sensor" : " sensors");
+        // The last class is open: what is too little to make one of its own counts there.
+        const std::size_t end = shade == shades.count ? report.redundancy.size() : last + 1;
+        add(shades.color(shade), std::move(text), first, end);
     }
     return block;
 }
 
-LegendBlock sensorsBlock(const std::vector<PlacedLaser>& sensors) {
-    constexpr std::size_t kMostListed = 10, kListedOfMore = 8;
-    LegendBlock block{sensors.size() > 1 ? std::to_string(sensors.size()) + " sensors" : "Sensor",
-                      {}};
-    const std::size_t listed = sensors.size() > kMostListed ? kListedOfMore : sensors.size();
-    for (std::size_t i = 0; i < listed; ++i) {
-        const std::string& model = sensors[i].laser.model;
-        block.items.push_back(
-            {Sign::Sensor, seriesColor(i), {}, sensors[i].id, model.empty() ? "laser" : model});
-    }
-    const auto remark = [&block](std::string text) {
-        block.items.push_back({Sign::None, {}, {}, std::move(text), ""});
+LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
+    LegendBlock block = figureBlock("Floor seen by", report.redundancy_exact.has_value());
+    const std::size_t all = report.redundancy.size();
+    const auto add = [&](LegendItem item, std::size_t first, std::size_t end) {
+        setFigure(item, block, shareSeenBy(report, first, end), percent);
+        block.items.push_back(std::move(item));
     };
-    if (listed < sensors.size())
-        remark("… and " + std::to_string(sensors.size() - listed) + " more");
-    if (sensors.empty()) remark("none is placed");
+    using namespace map_colors;
+    add({Sign::Patch, kUncovered, kObjectEdge, "no sensor", ""}, 0, 1);
+    if (sets > 0) add({Sign::None, {}, {}, "one (in its colour)", ""}, 1, 2);
+    if (sets < 2) return block;
+    const bool striped = sets <= kMostStriped;
+    add({Sign::Hatched, kShared, kSharedHatch, striped ? "more (striped)" : "more", ""}, 2, all);
+    return block;
+}
+
+Figure sum(const Figure& a, const Figure& b, double factor) {
+    const auto add = [factor](std::optional<double> x, std::optional<double> y) {
+        return x && y ? std::optional(std::max(0.0, *x + factor * *y)) : std::nullopt;
+    };
+    return {add(a.grid, b.grid), add(a.exact, b.exact)};
+}
+
+Figure areaOf(const Figure& share, double whole) {
+    const auto times = [whole](std::optional<double> x) {
+        return x ? std::optional(whole * *x) : std::nullopt;
+    };
+    return {times(share.grid), times(share.exact)};
+}
+
+/// The four kinds of floor of a comparison, m2.
+LegendBlock comparisonBlock(const CoverageReport& report) {
+    const Comparison comparison = report.comparison.value_or(Comparison{});
+    LegendBlock block = figureBlock("Indoor floor", comparison.gained.exact.has_value());
+    const auto add = [&](Sign sign, Color color, Color edge, std::string text, Figure figure) {
+        LegendItem item{sign, color, edge, std::move(text), ""};
+        setFigure(item, block, figure, area);
+        block.items.push_back(std::move(item));
+    };
+    const Figure now = areaOf(report.coverage, report.indoor_area);
+    const Figure any = sum(now, comparison.lost, 1);
+    using namespace map_colors;
+    add(Sign::Patch, kBoth, kObjectEdge, "kept", sum(now, comparison.gained, -1));
+    add(Sign::Patch, kGained, kObjectEdge, "gained", comparison.gained);
+    add(Sign::Hatched, kLost, kLostHatch, "lost", comparison.lost);
+    const Figure whole{report.indoor_area, report.indoor_area};
+    add(Sign::Patch, kUncovered, kObjectEdge, "unseen", sum(whole, any, -1));
+    return block;
+}
+
+/// E.g. "2 lasers, 1 ranger".
+std::string countsOf(const std::vector<SensorView>& sensors) {
+    std::string text;
+    for (const ViewKind kind : {ViewKind::Laser, ViewKind::Ranger, ViewKind::Receiver}) {
+        const auto count = std::count_if(sensors.begin(), sensors.end(),
+                                         [kind](const auto& s) { return s.kind == kind; });
+        if (count == 0) continue;
+        const std::string name =
+            kind == ViewKind::Receiver ? "receiver" : std::string(nameOf(kind));
+        if (!text.empty()) text += ", ";
+        text.append(std::to_string(count)).append(" ").append(name).append(count > 1 ? "s" : "");
+    }
+    return text.empty() ? "no sensor" : text;
+}
+
+/// "… and 3 more", if there are more.
+void addRest(LegendBlock& block, std::size_t all, std::size_t listed) {
+    if (listed < all)
+        block.items.push_back(
+            {Sign::None, {}, {}, "… and " + std::to_string(all - listed) + " more", ""});
+}
+
+/// How many of a list are shown if there is room for so many lines.
+std::size_t listedOf(std::size_t all, std::size_t lines) { return all > lines ? lines - 1 : all; }
+
+LegendBlock sensorsBlock(const MapPicture& map) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    LegendBlock block{countsOf(sensors), {}};
+    if (sensors.empty()) block = {"Sensors", {{Sign::None, {}, {}, "none is placed", ""}}};
+    const bool mixed = std::any_of(sensors.begin(), sensors.end(), [&](const auto& sensor) {
+        return sensor.kind != sensors.front().kind;
+    });
+    const std::size_t listed = listedOf(sensors.size(), map.terse ? 5 : 9);
+    const bool colored = map.options.color == MapColor::Sensor && map.other == nullptr;
+    for (std::size_t i = 0; i < listed; ++i) {
+        LegendItem item{Sign::Sensor, {0, 0, 0, 0}, map_colors::kObjectEdge, sensors[i].id, ""};
+        item.mark = markOf(map, i);
+        item.mark.heading = Angle();
+        if (colored) item.color = floorColor(map, setOf(map.coverage, i));
+        item.value = nameOf(sensors[i].kind);
+        if (const std::string& model = sensors[i].model; !model.empty())
+            item.value = mixed ? item.value + " " + model : model;
+        block.items.push_back(std::move(item));
+    }
+    addRest(block, sensors.size(), listed);
+    if (map.other != nullptr) {
+        const std::string name =
+            map.coverage.report.comparison ? map.coverage.report.comparison->name : "";
+        LegendItem item{Sign::Sensor, {0, 0, 0, 0}, {}, name.empty() ? "the other" : name, ""};
+        item.mark = {ViewKind::Laser, Angle(), map_colors::kOtherSensor, true};
+        item.value = countsOf(map.other->sensors);
+        block.items.push_back(std::move(item));
+    }
+    return block;
+}
+
+LegendBlock spotsBlock(const MapPicture& map) {
+    const CoverageReport& report = map.coverage.report;
+    LegendBlock block{"Largest unseen spots", {}};
+    const double extent = std::max(report.limits.width(), report.limits.depth());
+    const int decimals = extent < 2 ? 2 : extent < 200 ? 1 : 0;
+    for (std::size_t i = 0; i < markedSpots(map); ++i) {
+        const UnseenSpot& spot = report.unseen[i];
+        LegendItem item{Sign::Spot, {}, {}, area(spot.area), "at "};
+        item.value.append(formatFixed(spot.place.x, decimals)).append(", ");
+        item.value.append(formatFixed(spot.place.y, decimals));
+        item.number = std::to_string(i + 1);
+        block.items.push_back(std::move(item));
+    }
+    return block;
+}
+
+LegendBlock zonesBlock(const CoverageReport& report, bool terse) {
+    const bool exact = std::any_of(report.zones.begin(), report.zones.end(), [](const auto& zone) {
+        return zone.coverage.exact.has_value();
+    });
+    LegendBlock block = figureBlock("Zones", exact);
+    const std::size_t listed = listedOf(report.zones.size(), terse ? 3 : 7);
+    for (std::size_t i = 0; i < listed; ++i) {
+        LegendItem item{Sign::None, {}, {}, report.zones[i].id, ""};
+        setFigure(item, block, report.zones[i].coverage, percent);
+        block.items.push_back(std::move(item));
+    }
+    addRest(block, report.zones.size(), listed);
     return block;
 }
 
@@ -84,122 +249,55 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,
         "object at " + formatDouble(height) + " m");
     add(contents.objects, Sign::Patch, kObject, kObjectEdge, "object above or below");
-    add(contents.outside, Sign::Patch, kOutside, kObjectEdge, "not indoor");
+    add(contents.outside, Sign::Hatched, kOutside, kOutsideHatch, "not indoor");
     add(contents.zones, Sign::Dashes, kZone, {}, "zone");
     return block;
 }
 
-double heightOf(const LegendBlock& block, double em) {
-    return em * kLine * static_cast<double>(block.items.size() + 1);
-}
-
-/// The sign of an item, in a box 1.6 em wide from `left` on, middle at y.
-void drawSign(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
-    const double right = left + 1.6 * em;
-    switch (item.sign) {
-        case Sign::None:
-            break;
-        case Sign::Patch: {
-            const Polygon patch = {{left, y - 0.42 * em},
-                                   {right, y - 0.42 * em},
-                                   {right, y + 0.42 * em},
-                                   {left, y + 0.42 * em}};
-            canvas.fill(patch, item.color);
-            canvas.stroke(patch, {item.edge, em / 16});
-            break;
-        }
-        case Sign::Line:
-            canvas.line({left, y}, {right, y}, {item.color, em / 7});
-            break;
-        case Sign::Dashes:
-            canvas.line({left, y}, {right, y}, {item.color, em / 10, {em / 2, em / 3}});
-            break;
-        case Sign::Sensor:
-            drawSensorMark(canvas, {left + 0.4 * em, y}, Angle(), 0.36 * em, item.color);
-            break;
-    }
-}
-
-void drawItem(Canvas& canvas, const LegendItem& item, Point2 corner, double width, double em) {
-    const double base = corner.y + em * kLine * 0.5 + 0.36 * em;
-    const double indent = item.sign == Sign::None ? 0 : 2.2 * em;
-    drawSign(canvas, item, corner.x, corner.y + em * kLine * 0.5, em);
-    TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
-    TextStyle value_style = style;
-    value_style.align = Align::Right;
-    if (item.sign == Sign::Sensor) value_style.color = map_colors::kFaintInk;
-    const std::string value = fitText(item.value, (width - indent) * 0.6, value_style);
-    const double left_over = width - indent - textWidth(value, value_style) - 0.5 * em;
-    canvas.text({corner.x + indent, base}, fitText(item.text, left_over, style), style);
-    if (!value.empty()) canvas.text({corner.x + width, base}, value, value_style);
-}
-
 }  // namespace
 
-std::vector<LegendBlock> legendBlocks(const Scene& scene, const Coverage& coverage) {
-    const MapContents contents = contentsOf(scene, coverage);
-    return {figuresBlock(coverage.report), shadesBlock(coverage.report.redundancy),
-            sensorsBlock(scene.lasers), planBlock(contents, coverage.target.height)};
+std::vector<std::string> mainFigures(const MapPicture& map) {
+    const CoverageReport& report = map.coverage.report;
+    const auto best = [](const Figure& figure) {
+        return figure.exact ? figure.exact : figure.grid;
+    };
+    std::vector<std::string> parts;
+    if (const auto share = best(report.coverage)) {
+        parts.push_back("Coverage " + percent(*share));
+        if (!report.coverage.exact)
+            parts.back() += " by cells";
+        else if (report.coverage.grid)
+            parts.back().append(" (cells ").append(percent(*report.coverage.grid)).append(")");
+    }
+    if (const auto& comparison = report.comparison; comparison && map.other != nullptr) {
+        if (const auto gained = best(comparison->gained))
+            parts.push_back("gained " + area(*gained));
+        if (const auto lost = best(comparison->lost)) parts.push_back("lost " + area(*lost));
+        if (const auto before = best(comparison->coverage))
+            parts.push_back(comparison->name + " " + percent(*before));
+        return parts;
+    }
+    if (const auto share = best(report.coverage))
+        parts.push_back(area(*share * report.indoor_area) + " of " + area(report.indoor_area));
+    parts.push_back(countsOf(map.coverage.sensors));
+    return parts;
 }
 
-LegendLayout layOutLegend(std::vector<LegendBlock> blocks, int columns, double em) {
-    LegendLayout layout;
-    layout.columns.resize(static_cast<std::size_t>(columns));
-    std::vector<double> heights(layout.columns.size());
-    for (LegendBlock& block : blocks) {
-        const auto shortest = std::min_element(heights.begin(), heights.end());
-        if (*shortest > 0) *shortest += kBlockGap * em;
-        *shortest += heightOf(block, em);
-        layout.columns[static_cast<std::size_t>(shortest - heights.begin())].push_back(
-            std::move(block));
-    }
-    layout.height = *std::max_element(heights.begin(), heights.end());
-    return layout;
-}
-
-void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, double width,
-                double em) {
-    const double gap = 2 * em;
-    const auto count = static_cast<double>(layout.columns.size());
-    const double column_width = (width - (count - 1) * gap) / count;
-    const TextStyle title{em, true, Align::Left, map_colors::kInk, {}};
-    double x = corner.x;
-    for (const auto& blocks : layout.columns) {
-        double y = corner.y;
-        for (const LegendBlock& block : blocks) {
-            canvas.text({x, y + em}, fitText(block.title, column_width, title), title);
-            canvas.line({x, y + 1.3 * em}, {x + column_width, y + 1.3 * em},
-                        {map_colors::kObjectEdge, em / 16});
-            y += em * kLine;
-            for (const LegendItem& item : block.items) {
-                drawItem(canvas, item, {x, y}, column_width, em);
-                y += em * kLine;
-            }
-            y += kBlockGap * em;
-        }
-        x += column_width + gap;
-    }
-}
-
-void drawScaleBar(Canvas& canvas, Point2 corner, double most, double page_per_metre, double em) {
-    const double limit = most / page_per_metre;
-    double metres = std::pow(10, std::floor(std::log10(limit)));
-    for (const double factor : {5, 2}) {
-        if (factor * metres <= limit) {
-            metres *= factor;
-            break;
-        }
-    }
-    const double right = corner.x + metres * page_per_metre;
-    const Stroke stroke{map_colors::kInk, em / 8};
-    const std::vector<Point2> bar = {
-        {corner.x, corner.y - 0.4 * em}, corner, {right, corner.y}, {right, corner.y - 0.4 * em}};
-    canvas.polyline(bar, stroke);
-    canvas.line({corner.x + (right - corner.x) / 2, corner.y},
-                {corner.x + (right - corner.x) / 2, corner.y - 0.25 * em},
-                {map_colors::kInk, em / 12});
-    const TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
-    canvas.text({right + 0.6 * em, corner.y}, formatDouble(metres) + " m", style);
+std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
+    const CoverageReport& report = map.coverage.report;
+    const MapContents contents = contentsOf(map.scene, map.coverage);
+    std::vector<LegendBlock> blocks = {figuresBlock(report, map.terse)};
+    if (map.other != nullptr)
+        blocks.push_back(comparisonBlock(report));
+    else if (map.options.color == MapColor::Sensor)
+        blocks.push_back(bySensorBlock(report, map.coverage.sets.size()));
+    else
+        blocks.push_back(shadesBlock(report));
+    blocks.push_back(sensorsBlock(map));
+    if (markedSpots(map) > 0) blocks.push_back(spotsBlock(map));
+    if (!report.zones.empty()) blocks.push_back(zonesBlock(report, map.terse));
+    if (!map.terse) blocks.push_back(planBlock(contents, map.coverage.target.height));
+    return blocks;
 }
 
 }  // namespace ispace

@@ -2,31 +2,74 @@
 // The parts of a coverage map, shared by the map*.cc files only.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cover/coverage.h"
+#include "cover/map.h"
 #include "draw/canvas.h"
 
 namespace ispace {
 
-/// Colours of everything that is no data.
+/// Colours of everything that is no data. Floor that is not seen is the lightest, so that what is
+/// seen stands out in grey as well.
 namespace map_colors {
 constexpr Color kInk = Color::rgb(0x1F2328);
-constexpr Color kFaintInk = Color::rgb(0x656D76);
+constexpr Color kFaintInk = Color::rgb(0x57606A);
 constexpr Color kWhite = Color::rgb(0xFFFFFF);
-constexpr Color kUncovered = Color::rgb(0xF6EBD9);
-constexpr Color kOutside = Color::rgb(0xDADADA);
+constexpr Color kUncovered = Color::rgb(0xFBF5E9);
+constexpr Color kOutside = Color::rgb(0xE4E4E4);
+constexpr Color kOutsideHatch = Color::rgb(0xB4B4B4);
 constexpr Color kWall = Color::rgb(0x24292F);
 constexpr Color kSolid = Color::rgb(0x7D746B);
 constexpr Color kSolidEdge = Color::rgb(0x4A443E);
 constexpr Color kObject = Color::rgb(0xE2D9CD);
 constexpr Color kObjectEdge = Color::rgb(0x9A9085);
 constexpr Color kZone = Color::rgb(0x6E3A8E);
+/// Floor that several sensors see, where colours tell which one does: below the stripes.
+constexpr Color kShared = Color::rgb(0xD4D4D4);
+constexpr Color kSharedHatch = Color::rgb(0x6B6B6B);
+/// Of comparisons: blue and orange, far apart for any colour vision; in grey the hatch tells.
+constexpr Color kBoth = Color::rgb(0xC3CDD8);
+constexpr Color kGained = Color::rgb(0x4A96C9);
+constexpr Color kLost = Color::rgb(0xF3B562);
+constexpr Color kLostHatch = Color::rgb(0x9C4A00);
+constexpr Color kOtherSensor = Color::rgb(0x6E7781);
 }  // namespace map_colors
 
-/// Classes of redundancy that are told apart by colour: class c (1..count) holds the cells seen by
+/// What is drawn, and where on the page.
+struct MapPicture {
+    const Scene& scene;
+    const Coverage& coverage;
+    const MapOptions& options;
+    const Coverage* other = nullptr;  ///< what it is compared with, if it is
+    double em = 10;                   ///< size of text, page units
+    PageView view = {};               ///< from metres to the page
+    bool terse = false;               ///< little room: show what matters most
+
+    [[nodiscard]] const Box2& limits() const { return coverage.target.grid.limits; }
+};
+
+// Curves for the page (map_curves.cc).
+
+/// The line through points that lies within `tolerance` of all of them (Douglas and Peucker).
+std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance);
+/// The part of what a closed curve holds in a box; where the curve leaves the box and comes back
+/// the result runs along the box's sides (Sutherland and Hodgman).
+Polygon clipped(const Polygon& curve, const Box2& box);
+/// The part of a segment in a box, if there is one.
+std::optional<Segment2> clipped(const Segment2& segment, const Box2& box);
+/// Curves as they are drawn: clipped well outside of the plan, without vertices that nobody sees.
+std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves);
+/// The same of exact curves: chords for arcs.
+std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& curves);
+
+// Floor (map_floor.cc).
+
+/// Classes of redundancy that are told apart by colour: class c (1..count) holds the floor seen by
 /// (c - 1) * width + 1 to c * width sensors.
 struct Shades {
     std::uint32_t width = 1;
@@ -35,9 +78,59 @@ struct Shades {
     [[nodiscard]] int of(std::uint32_t times) const {
         return static_cast<int>((times + width - 1) / width);
     }
+    /// Least number of sensors of a class. \pre shade >= 1
+    [[nodiscard]] std::uint32_t least(int shade) const {
+        return (static_cast<std::uint32_t>(shade) - 1) * width + 1;
+    }
     [[nodiscard]] Color color(int shade) const { return sequentialColor(shade, count); }
 };
-Shades shadesFor(const std::vector<double>& redundancy);
+/// Of the shares in a report, exact ones where they are known.
+Shades shadesFor(const CoverageReport& report);
+
+/// Colour of a set and its sensors, of the floor where it alone sees (MapColor::Sensor), and of its
+/// stripe where others see, too.
+Color setColor(const MapPicture& map, std::size_t set);
+Color floorColor(const MapPicture& map, std::size_t set);
+Color stripeColor(const MapPicture& map, std::size_t set);
+/// Sets more than these share stripes without colours.
+constexpr std::size_t kMostStriped = 6;
+
+/// Indoor floor in the colours of coverage.
+void drawFloor(Canvas& canvas, const MapPicture& map);
+
+// Sensors (map_views.cc, map_sensors.cc).
+
+/// The set (of Coverage::sets) to which a sensor belongs: all receivers make one.
+std::size_t setOf(const Coverage& coverage, std::size_t sensor);
+/// Line of a sensor's contour: colours repeat, then their dashes differ; where floor is coloured
+/// by sensor, neighbouring ones have other dashes as well.
+Stroke sensorStroke(const MapPicture& map, std::size_t sensor);
+/// Colour of its mark.
+Color sensorColor(const MapPicture& map, std::size_t sensor);
+/// Contours or beams. In metres: a view is open.
+void drawViews(Canvas& canvas, const MapPicture& map);
+
+/// Mark of a sensor: a disc for lasers, a square for rangers, a triangle for receivers.
+struct SensorMark {
+    ViewKind kind = ViewKind::Laser;
+    std::optional<Angle> heading = {};  ///< as seen, y up; none: it looks straight up or down
+    Color color = map_colors::kInk;
+    bool hollow = false;
+};
+SensorMark markOf(const MapPicture& map, std::size_t sensor);
+void drawSensorMark(Canvas& canvas, Point2 page, const SensorMark& mark, double radius);
+/// A number in a disc; its radius is kSpotRadius * em.
+constexpr double kSpotRadius = 0.62;
+void drawSpotSign(Canvas& canvas, Point2 page, const std::string& number, double em);
+
+/// Unseen spots that are marked and listed: the first ones, if they are not small beside the room.
+std::size_t markedSpots(const MapPicture& map);
+
+/// Marks and ids of the sensors, signs of unseen spots, on top of the plan; all keep within
+/// `frame` (page units).
+void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame);
+
+// Plan (map_plan.cc).
 
 /// What the picture shows of a scene, in the order of the legend.
 struct MapContents {
@@ -49,32 +142,38 @@ struct MapContents {
 };
 MapContents contentsOf(const Scene& scene, const Coverage& coverage);
 
-/// Line of a sensor's contour: colours repeat, then their dashes differ.
-Stroke sensorStroke(std::size_t index, std::size_t sensors, double em);
+/// Everything within the plan but marks.
+void drawPlan(Canvas& canvas, const MapPicture& map);
 
-/// A marker of `radius` with an arrow along the heading (as seen, y up).
-void drawSensorMark(Canvas& canvas, Point2 page, Angle heading, double radius, Color color);
-
-/// Everything within the plan. `view` takes metres to the page, `em` is the size of text.
-void drawPlan(Canvas& canvas, const Scene& scene, const Coverage& coverage, const PageView& view,
-              double em);
-/// Sensors' marks and ids, on top of the plan; labels keep within `frame` (page units).
-void drawSensors(Canvas& canvas, const Scene& scene, const PageView& view, const Box2& frame,
-                 double em);
+// Legend (map_legend.cc, map_legend_draw.cc).
 
 struct LegendItem {
-    enum class Sign { None, Patch, Line, Dashes, Sensor };
+    enum class Sign {
+        None,
+        Patch,
+        Hatched,  ///< a patch with lines of the edge's colour
+        Line,
+        Dashes,
+        Sensor,  ///< `mark`; on a patch of `color` unless that is transparent
+        Spot,    ///< a numbered sign; the number is `number`
+    };
     Sign sign = Sign::None;
-    Color color, edge;
+    Color color = {}, edge = {};
     std::string text;
-    std::string value;  ///< at the right side
+    std::string value;        ///< at the right side; in a block with columns in the first
+    std::string second = {};  ///< in the second column
+    SensorMark mark = {};
+    std::string number = {};
 };
 struct LegendBlock {
     std::string title;
     std::vector<LegendItem> items;
+    std::array<std::string, 2> columns = {};  ///< heads of value and second, or none
 };
 
-std::vector<LegendBlock> legendBlocks(const Scene& scene, const Coverage& coverage);
+std::vector<LegendBlock> legendBlocks(const MapPicture& map);
+/// The main figures, the most important first, for a line below the title.
+std::vector<std::string> mainFigures(const MapPicture& map);
 
 /// Blocks shared out over columns, in order.
 struct LegendLayout {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
-#include "cover/contour.h"
 #include "cover/map_parts.h"
-#include "geom/predicates.h"
 
 namespace ispace {
 
@@ -19,51 +16,6 @@ bool standsAt(const Prism& prism, double height) {
 bool isWall(const Element& element) {
     const RecordType type = element.record.schema().type;
     return type == RecordType::Wall || type == RecordType::Space;
-}
-
-/// Class of redundancy of every cell, 0 for unseen ones. Cells that do not count, with the centre
-/// off the free floor, take the best class of their free neighbours, so that the colour of the
-/// floor reaches walls and objects, which are drawn over it.
-std::vector<int> shadesOf(const Coverage& coverage, const Shades& shades) {
-    const Grid& grid = coverage.target.grid;
-    const CellSet& free = coverage.target.free;
-    const std::vector<std::uint32_t> times = timesSeen(grid, coverage.seen);
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    std::vector<int> result(grid.size());
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            const std::size_t cell = grid.cell(column, row);
-            if (coverage.target.indoor.test(cell)) result[cell] = shades.of(times[cell]);
-            if (free.test(cell)) continue;
-            const auto extend = [&](bool exists, std::size_t neighbour) {
-                if (exists && free.test(neighbour))
-                    result[cell] = std::max(result[cell], shades.of(times[neighbour]));
-            };
-            extend(column > 0, cell - 1);
-            extend(column + 1 < grid.columns, cell + 1);
-            extend(row > 0, cell - columns);
-            extend(row + 1 < grid.rows, cell + columns);
-        }
-    }
-    return result;
-}
-
-void drawFloor(Canvas& canvas, const Scene& scene, const Coverage& coverage) {
-    const Grid& grid = coverage.target.grid;
-    const Region& indoor = scene.environment.indoor();
-    const Shades shades = shadesFor(coverage.report.redundancy);
-    canvas.fill(indoor, map_colors::kUncovered);
-    const std::vector<int> shade = shadesOf(coverage, shades);
-    canvas.pushClip(indoor);
-    // Each class is laid over those below it, so that no seam shows between two.
-    for (int level = 1; level <= shades.count; ++level) {
-        CellSet cells(grid.size());
-        for (std::size_t cell = 0; cell < shade.size(); ++cell)
-            if (shade[cell] >= level) cells.set(cell);
-        canvas.fill(contours(grid, cells), shades.color(level));
-    }
-    canvas.pop();
-    for (const Polygon& hole : indoor.holes) canvas.fill(hole, map_colors::kOutside);
 }
 
 void drawObjects(Canvas& canvas, const Scene& scene, double height, double em) {
@@ -104,98 +56,14 @@ void drawWalls(Canvas& canvas, const Scene& scene, double scale, double em) {
     }
 }
 
-void drawZones(Canvas& canvas, const Scene& scene, double scale, double em) {
-    const double inset = 0.5 * em / scale;
-    TextStyle style{0.85 * em, false, Align::Left, map_colors::kZone,
-                    map_colors::kWhite.faded(0.8)};
-    for (const Element& element : scene.environment.elements()) {
-        if (element.record.keyword() != "zone") continue;
-        const Polygon outline = zoneOutline(element.record);
-        canvas.stroke(outline, {map_colors::kZone, em / 10, {em / 2, em / 3}});
-        const Point2 corner = bounds(outline).low;
-        canvas.text({corner.x + inset, corner.y + inset}, element.id, style);
-    }
-}
-
-/// Points of a line that lies within `tolerance` of all of them (Douglas and Peucker).
-std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance) {
-    if (points.size() < 3) return points;
-    std::vector<bool> keep(points.size());
-    keep.front() = keep.back() = true;
-    std::vector<std::pair<std::size_t, std::size_t>> open = {{0, points.size() - 1}};
-    while (!open.empty()) {
-        const auto [first, last] = open.back();
-        open.pop_back();
-        const Segment2 chord{points[first], points[last]};
-        double farthest = tolerance;
-        std::size_t at = first;
-        for (std::size_t i = first + 1; i < last; ++i) {
-            if (const double off = distance(points[i], chord); off > farthest) {
-                farthest = off;
-                at = i;
-            }
-        }
-        if (at == first) continue;
-        keep[at] = true;
-        open.insert(open.end(), {{first, at}, {at, last}});
-    }
-    std::vector<Point2> kept;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (keep[i]) kept.push_back(points[i]);
-    return kept;
-}
-
-/// The ends of all beams on the plan, from above; through the sensor itself unless the beams go
-/// round. Beams end at `farthest`, beyond which nothing is drawn.
-Polygon fanOutline(const PlacedLaser& sensor, const std::vector<float>& beams, double farthest,
-                   double tolerance) {
-    const Point3 origin = sensor.pose.position;
-    std::vector<Point2> ends;
-    for (std::size_t k = 0; k < beams.size(); ++k) {
-        const double range =
-            std::min({static_cast<double>(beams[k]), sensor.laser.max_range, farthest});
-        const Vec3 beam = sensor.pose.beam(sensor.laser.bearing(static_cast<int>(k)));
-        ends.push_back((origin + range * beam).onFloor());
-    }
-    Polygon outline = thinned(ends, tolerance);
-    const Angle span = sensor.laser.last() + sensor.laser.step - sensor.laser.first;
-    if (span < Angle::degrees(360 - 1e-9)) outline.push_back(origin.onFloor());
-    return outline;
-}
-
-void drawFans(Canvas& canvas, const Scene& scene, const Coverage& coverage, double scale,
-              double em) {
-    constexpr std::size_t kMostBands = 12;  // soft rims help to tell few fans apart, and hide many
-    const Box2& limits = coverage.target.grid.limits;
-    const double rim = std::min(0.9 * em, 0.04 * scale * std::min(limits.width(), limits.depth()));
-    for (std::size_t i = 0; i < scene.lasers.size(); ++i) {
-        const Point2 origin = scene.lasers[i].pose.position.onFloor();
-        Box2 reach = limits;
-        reach.add(origin);
-        const double farthest = 2 * length(reach.high - reach.low);
-        const Polygon fan = fanOutline(scene.lasers[i], coverage.beams[i], farthest, 0.2 / scale);
-        const Stroke line = sensorStroke(i, scene.lasers.size(), em);
-        if (scene.lasers.size() <= kMostBands) {
-            canvas.pushClip(fan);
-            canvas.stroke(fan, {line.color.faded(0.16), rim});
-            canvas.pop();
-        }
-        canvas.stroke(fan, line);
-    }
+void drawZones(Canvas& canvas, const MapPicture& map) {
+    for (const Element& element : map.scene.environment.elements())
+        if (element.record.keyword() == "zone")
+            canvas.stroke(zoneOutline(element.record),
+                          {map_colors::kZone, map.em / 10, {map.em / 2, map.em / 3}});
 }
 
 }  // namespace
-
-Shades shadesFor(const std::vector<double>& redundancy) {
-    constexpr std::uint32_t kMostShades = 6;
-    std::uint32_t most = 1;
-    for (std::uint32_t k = 1; k < redundancy.size(); ++k)
-        if (redundancy[k] > 0) most = k;
-    Shades shades;
-    shades.width = (most + kMostShades - 1) / kMostShades;
-    shades.count = shades.of(most);
-    return shades;
-}
 
 MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     MapContents contents;
@@ -211,20 +79,20 @@ MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     return contents;
 }
 
-void drawPlan(Canvas& canvas, const Scene& scene, const Coverage& coverage, const PageView& view,
-              double em) {
-    const Box2& limits = coverage.target.grid.limits;
-    const double rim = em / 4 / view.scale;  // walls on the limits are drawn whole
-    canvas.pushView(view);
-    canvas.pushClip({{limits.low.x - rim, limits.low.y - rim},
-                     {limits.high.x + rim, limits.low.y - rim},
-                     {limits.high.x + rim, limits.high.y + rim},
-                     {limits.low.x - rim, limits.high.y + rim}});
-    drawFloor(canvas, scene, coverage);
-    drawObjects(canvas, scene, coverage.target.height, em);
-    drawFans(canvas, scene, coverage, view.scale, em);
-    drawWalls(canvas, scene, view.scale, em);
-    drawZones(canvas, scene, view.scale, em);
+void drawPlan(Canvas& canvas, const MapPicture& map) {
+    const Box2& limits = map.limits();
+    const double rim = map.em / 4 / map.view.scale;  // walls on the limits are drawn whole
+    const Polygon frame = {{limits.low.x - rim, limits.low.y - rim},
+                           {limits.high.x + rim, limits.low.y - rim},
+                           {limits.high.x + rim, limits.high.y + rim},
+                           {limits.low.x - rim, limits.high.y + rim}};
+    canvas.pushView(map.view);
+    canvas.pushClip(frame);
+    drawFloor(canvas, map);
+    drawViews(canvas, map);
+    drawObjects(canvas, map.scene, map.coverage.target.height, map.em);
+    drawWalls(canvas, map.scene, map.view.scale, map.em);
+    drawZones(canvas, map);
     canvas.pop();
     canvas.pop();
 }

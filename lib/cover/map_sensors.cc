@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
+#include "base/utf8.h"
 #include "cover/map_parts.h"
 
 namespace ispace {
 
 namespace {
+
+constexpr std::size_t kCrowd = 40;  // marks and labels of more sensors are smaller
 
 bool overlap(const Box2& a, const Box2& b) {
     return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
@@ -22,25 +26,46 @@ Box2 boxAround(Point2 p, double half_width, double half_height) {
     return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
 }
 
-/// Puts labels beside their marks where they cover least.
+/// Puts signs and labels where they cover least. All on the page.
 class LabelPlacer {
   public:
     LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {}
 
-    /// A mark and its arrow, which labels should not cover.
-    void addMark(Point2 page, Angle heading) {
-        const Vec2 forward = em_ * unitVector(heading);
+    /// A mark and its arrow, which nothing should cover.
+    void addMark(Point2 page, std::optional<Angle> heading) {
         marks_.push_back(boxAround(page, 0.45 * em_, 0.45 * em_));
+        if (!heading) return;
+        const Vec2 forward = em_ * unitVector(*heading);
         marks_.push_back(boxAround({page.x + forward.x, page.y - forward.y}, 0.4 * em_, 0.4 * em_));
     }
 
-    /// Middle of the label of a mark, or nothing where it would cover another label. Of the places
-    /// around the mark, those behind the heading come first.
-    std::optional<Point2> place(Point2 page, Angle heading, double text_width) {
+    /// Place for the sign of a spot: its own, or the next one around it that is free.
+    Point2 placeSign(Point2 page) {
+        const double half = (kSpotRadius + 0.1) * em_;
+        Point2 best = page;
+        double least = costOf(boxAround(page, half, half));
+        for (const double away : {1.2, 2.4}) {
+            for (int turn = 0; turn < 8 && least > 0; ++turn) {
+                const Vec2 off = away * em_ * unitVector(Angle::degrees(45.0 * turn));
+                const Point2 place{page.x + off.x, page.y - off.y};
+                if (const double cost = costOf(boxAround(place, half, half)) + away; cost < least) {
+                    least = cost;
+                    best = place;
+                }
+            }
+        }
+        labels_.push_back(boxAround(best, half, half));
+        return best;
+    }
+
+    /// Middle of the label of a mark, or nothing where it would cover another label, or another
+    /// mark in a crowd. Of the places around the mark, those behind the heading come first.
+    std::optional<Point2> placeLabel(Point2 page, Angle heading, double text_width,
+                                     double text_size, bool crowd) {
         constexpr std::array<double, 8> kTurns = {180, 135, -135, 90, -90, 45, -45, 0};
-        const double half_width = text_width / 2 + 0.15 * em_, half_height = 0.55 * em_;
+        const double half_width = text_width / 2 + 0.15 * em_, half_height = 0.55 * text_size;
         std::optional<Point2> best;
-        double least = 100;  // of places that are worse than no label
+        double least = crowd ? 1 : 100;  // of places that are worse than no label
         for (std::size_t i = 0; i < kTurns.size(); ++i) {
             const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
             const Point2 middle{page.x + away.x * (0.6 * em_ + half_width),
@@ -53,6 +78,13 @@ class LabelPlacer {
         }
         if (best) labels_.push_back(boxAround(*best, half_width, half_height));
         return best;
+    }
+
+    /// True if nothing else lies in the box, which is then taken.
+    bool take(const Box2& box) {
+        if (costOf(box) > 0) return false;
+        labels_.push_back(box);
+        return true;
     }
 
   private:
@@ -68,52 +100,155 @@ class LabelPlacer {
     std::vector<Box2> marks_, labels_;
 };
 
-}  // namespace
-
-Stroke sensorStroke(std::size_t index, std::size_t sensors, double em) {
-    const bool many = sensors > 2 * kSeriesColors;
-    Stroke stroke{seriesColor(index).faded(many ? 0.6 : 0.95), em / (many ? 16 : 9)};
-    if (index / kSeriesColors % 2 == 1) stroke.dashes = {em / 2, em / 4};
-    return stroke;
+/// The mark's body about the origin, y up.
+Polygon bodyOf(ViewKind kind, double radius) {
+    if (kind == ViewKind::Ranger) {
+        const double half = 0.9 * radius;
+        return {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+    }
+    const double tip = 1.35 * radius, side = std::sqrt(0.75) * tip;
+    return {{0, tip}, {-side, -tip / 2}, {side, -tip / 2}};
 }
 
-void drawSensorMark(Canvas& canvas, Point2 page, Angle heading, double radius, Color color) {
+void fillBody(Canvas& canvas, ViewKind kind, double radius, Color color, double rim = 0) {
+    if (kind == ViewKind::Laser) {
+        canvas.fillCircle({}, radius + rim, color);
+        return;
+    }
+    const Polygon body = bodyOf(kind, radius);
+    if (rim > 0) canvas.stroke(body, {color, 2 * rim});
+    canvas.fill(body, color);
+}
+
+Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
+    return map.view * sensor.pose.position.onFloor();
+}
+
+/// Marks of those that stand on the plan; `hollow`: of the layout that this one is compared with.
+void drawSensors(Canvas& canvas, const MapPicture& map, const Box2& frame, bool hollow,
+                 LabelPlacer& places) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const double radius = map.em * (sensors.size() > kCrowd ? 0.24
+                                    : sensors.size() > 14   ? 0.3
+                                                            : 0.36);
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const Point2 page = pageOf(map, sensors[i]);
+        if (!contains(frame, {page, page})) continue;
+        SensorMark mark = markOf(map, i);
+        mark.hollow = hollow;
+        if (hollow) mark.color = map_colors::kOtherSensor;
+        // On top of another one it is smaller, so that both are seen.
+        const auto is_here = [&](const SensorView& sensor) {
+            return distance(pageOf(map, sensor), page) < 0.4 * radius;
+        };
+        const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
+        const bool on_top = std::any_of(sensors.begin(), end, is_here);
+        drawSensorMark(canvas, page, mark, on_top ? 0.5 * radius : radius);
+        places.addMark(page, mark.heading);
+    }
+}
+
+void drawIds(Canvas& canvas, const MapPicture& map, const Box2& frame, LabelPlacer& places) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const bool crowd = sensors.size() > kCrowd;
+    const double size = crowd ? std::max(10.0, 0.7 * map.em) : map.em;
+    const TextStyle style{size, true, Align::Center, map_colors::kInk,
+                          map_colors::kWhite.faded(0.85)};
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const Point2 page = pageOf(map, sensors[i]);
+        if (!contains(frame, {page, page})) continue;
+        const std::string id = fitText(sensors[i].id, 10 * size, style);
+        const Angle heading = markOf(map, i).heading.value_or(Angle());
+        if (const auto middle = places.placeLabel(page, heading, textWidth(id, style), size, crowd))
+            canvas.text({middle->x, middle->y + 0.36 * size}, id, style);
+    }
+}
+
+/// Names of zones in their first free corner; the legend names those that have no room.
+void drawZoneNames(Canvas& canvas, const MapPicture& map, LabelPlacer& places) {
+    const double size = std::max(10.0, 0.85 * map.em), inset = 0.4 * map.em;
+    const TextStyle style{size, false, Align::Left, map_colors::kZone,
+                          map_colors::kWhite.faded(0.8)};
+    for (const Element& element : map.scene.environment.elements()) {
+        if (element.record.keyword() != "zone") continue;
+        const Box2 zone = bounds(zoneOutline(element.record));
+        const Point2 low = map.view * Point2{zone.low.x, zone.high.y};  // y is down on the page
+        const Point2 high = map.view * Point2{zone.high.x, zone.low.y};
+        const double room = high.x - low.x - 2 * inset;
+        const std::string name = fitText(element.id, room, style);
+        const double width = textWidth(name, style);
+        if (width > room || (room < 5 * size && name != printable(element.id))) continue;
+        for (const Point2 corner :
+             {Point2{low.x + inset, high.y - inset - size}, Point2{low.x + inset, low.y + inset},
+              Point2{high.x - inset - width, high.y - inset - size},
+              Point2{high.x - inset - width, low.y + inset}}) {
+            if (!places.take({corner, {corner.x + width, corner.y + size}})) continue;
+            canvas.text({corner.x, corner.y + 0.86 * size}, name, style);
+            break;
+        }
+    }
+}
+
+}  // namespace
+
+SensorMark markOf(const MapPicture& map, std::size_t sensor) {
+    constexpr double kSteep = 0.02;  // of a direction's level part: no more than a degree
+    const SensorView& view = map.coverage.sensors[sensor];
+    const Vec3 forward = view.pose.beam(Angle());
+    SensorMark mark{view.kind, {}, sensorColor(map, sensor)};
+    if (length(Vec2{forward.x, forward.y}) > kSteep)
+        mark.heading = directionOf(forward.x, forward.y);
+    return mark;
+}
+
+void drawSensorMark(Canvas& canvas, Point2 page, const SensorMark& mark, double radius) {
+    using map_colors::kWhite;
     canvas.pushView({1, {0, 0}, page});
-    const Vec2 forward = unitVector(heading), left = perpendicular(forward);
-    const Point2 center, tip = center + 3.4 * radius * forward;
-    const Point2 neck = center + 1.9 * radius * forward;
-    const Polygon head = {tip, neck + 0.85 * radius * left, neck - 0.85 * radius * left};
-    const Stroke rim{map_colors::kWhite, radius};
-    canvas.line(center, neck, rim);
-    canvas.stroke(head, {map_colors::kWhite, 0.6 * radius});
-    canvas.fillCircle(center, 1.3 * radius, map_colors::kWhite);
-    canvas.line(center, neck, {color, 0.5 * radius});
-    canvas.fill(head, color);
-    canvas.fillCircle(center, radius, color);
+    if (mark.heading) {
+        const Vec2 forward = unitVector(*mark.heading), left = perpendicular(forward);
+        const Point2 center, tip = center + 3.4 * radius * forward;
+        const Point2 neck = center + 1.9 * radius * forward;
+        const Polygon head = {tip, neck + 0.85 * radius * left, neck - 0.85 * radius * left};
+        canvas.line(center, neck, {kWhite, radius});
+        canvas.stroke(head, {kWhite, 0.6 * radius});
+        canvas.line(center, neck, {mark.color, 0.5 * radius});
+        canvas.fill(head, mark.color);
+    }
+    fillBody(canvas, mark.kind, radius, kWhite, 0.3 * radius);
+    fillBody(canvas, mark.kind, radius, mark.color);
+    if (mark.hollow) fillBody(canvas, mark.kind, 0.5 * radius, kWhite);
     canvas.pop();
 }
 
-void drawSensors(Canvas& canvas, const Scene& scene, const PageView& view, const Box2& frame,
-                 double em) {
-    const double radius = (scene.lasers.size() > 2 * kSeriesColors ? 0.28 : 0.36) * em;
-    TextStyle style{em, true, Align::Center, map_colors::kInk, map_colors::kWhite.faded(0.85)};
-    LabelPlacer labels(frame, em);
-    const auto is_on_plan = [&](Point2 page) { return contains(frame, {page, page}); };
-    for (const PlacedLaser& sensor : scene.lasers)
-        if (const Point2 page = view * sensor.pose.position.onFloor(); is_on_plan(page))
-            labels.addMark(page, sensor.pose.heading);
-    for (std::size_t i = 0; i < scene.lasers.size(); ++i) {
-        const Pose3& pose = scene.lasers[i].pose;
-        if (const Point2 page = view * pose.position.onFloor(); is_on_plan(page))
-            drawSensorMark(canvas, page, pose.heading, radius, seriesColor(i));
+void drawSpotSign(Canvas& canvas, Point2 page, const std::string& number, double em) {
+    canvas.fillCircle(page, kSpotRadius * em, map_colors::kWhite);
+    canvas.strokeCircle(page, kSpotRadius * em, {map_colors::kInk, em / 12});
+    const TextStyle style{std::max(10.0, 0.85 * em), true, Align::Center, map_colors::kInk, {}};
+    canvas.text({page.x, page.y + 0.36 * style.size}, number, style);
+}
+
+std::size_t markedSpots(const MapPicture& map) {
+    constexpr double kLeastShare = 0.0025;  // of the room
+    const CoverageReport& report = map.coverage.report;
+    const std::size_t most = std::min<std::size_t>(map.terse ? 3 : 5, report.unseen.size());
+    std::size_t count = 0;
+    while (count < most && report.unseen[count].area >= kLeastShare * report.indoor_area) ++count;
+    return count;
+}
+
+void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame) {
+    LabelPlacer places(frame, map.em);
+    if (map.other != nullptr) {
+        const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
+        drawSensors(canvas, other, frame, true, places);
     }
-    for (const PlacedLaser& sensor : scene.lasers) {
-        const Point2 page = view * sensor.pose.position.onFloor();
-        if (!is_on_plan(page)) continue;
-        const std::string id = fitText(sensor.id, 10 * em, style);
-        if (const auto middle = labels.place(page, sensor.pose.heading, textWidth(id, style)))
-            canvas.text({middle->x, middle->y + 0.36 * em}, id, style);
+    drawSensors(canvas, map, frame, false, places);
+    for (std::size_t i = 0; i < markedSpots(map); ++i) {
+        const Point2 page = map.view * map.coverage.report.unseen[i].place;
+        drawSpotSign(canvas, places.placeSign(page), std::to_string(i + 1), map.em);
     }
+    drawIds(canvas, map, frame, places);
+    drawZoneNames(canvas, map, places);
 }
 
 }  // namespace ispace

@@ -8,19 +8,10 @@
 #include <random>
 
 #include "base/error.h"
-#include "cover/map_parts.h"
-#include "cover/test_scenes.h"
-#include "draw/image.h"
+#include "cover/test_map.h"
 
 namespace ispace {
 namespace {
-
-std::uint32_t pixelOf(Color color) {
-    const auto part = [](double share) {
-        return static_cast<std::uint32_t>(std::lround(share * 255));
-    };
-    return part(color.red) << 16 | part(color.green) << 8 | part(color.blue);
-}
 
 const char* const kOffice =
     "fence path=0,0;8,0;8,6;3,6;3,5;0,5 closed=yes\ninside at=1,1\n"
@@ -31,57 +22,32 @@ const char* const kOffice =
     "laser id=c at=3.5,5.9 heading=-90 fov=240\n"
     "laser id=d at=7,0.3,1.5 heading=120 fov=90 tilt=-20\n";
 
-std::string mapOf(const std::string& lines, MapOptions options = {}) {
-    const Scene scene = sceneOf(lines);
-    return drawCoverageMap(scene, coverageOf(scene), options);
-}
-
-/// A page without title keeps the plan beside the legend, its corner at the margin.
-constexpr int kMargin = 30;
-
 TEST(Map, ShowsFloorWallsAndObjectsWhereTheyAre) {
-    // 8 m x 8 m, upper right quarter seen; 100 px/m or a little more.
-    const Image pixels =
-        decodePng(mapOf("ispace size=8,8\ncube at=-3,-3 size=1,1,1\ncube at=-3,0,2 size=1,1,1\n"
-                        "laser at=0.01,0.01 heading=45 fov=90 range=20\n"));
+    // Upper right quarter seen; 100 px/m or a little less.
+    const PlanPixels pixels(
+        mapOf("ispace size=8,8\ncube at=-3,-3 size=1,1,1\ncube at=-3,0,2 size=1,1,1\n"
+              "laser at=0.01,0.01 heading=45 fov=90 range=20\n"),
+        8);
     EXPECT_EQ(pixels.width, 1200);
-    int right = kMargin;  // of the plan, found on the wall's own line
-    while (pixels.at(right + 1, kMargin) == pixelOf(map_colors::kWall)) ++right;
-    const double scale = (right - kMargin) / 8.0;
-    ASSERT_GT(scale, 90);
-    const auto at = [&](double x, double y) {
-        return pixels.at(static_cast<int>(kMargin + (x + 4) * scale),
-                         static_cast<int>(kMargin + (4 - y) * scale));
-    };
-    EXPECT_EQ(at(3, 3), pixelOf(sequentialColor(1, 1)));
-    EXPECT_EQ(at(2, 1), pixelOf(sequentialColor(1, 1)));
-    EXPECT_EQ(at(3, -3), pixelOf(map_colors::kUncovered));
-    EXPECT_EQ(at(-1, 3), pixelOf(map_colors::kUncovered));
-    EXPECT_EQ(at(-3, -3), pixelOf(map_colors::kSolid));
-    EXPECT_NE(at(-3, 0), pixelOf(map_colors::kSolid));
-    EXPECT_NE(at(-3, 0), pixelOf(map_colors::kUncovered));
-    EXPECT_EQ(at(0.01, 0.01), pixelOf(seriesColor(0)));
-    EXPECT_EQ(pixels.at(5, 5), 0xFFFFFFU);
+    ASSERT_GT(pixels.scale, 90);
+    EXPECT_EQ(pixels.at(3, 3), pixelOf(sequentialColor(1, 1)));
+    EXPECT_EQ(pixels.at(2, 1), pixelOf(sequentialColor(1, 1)));
+    EXPECT_EQ(pixels.at(3, -3), pixelOf(map_colors::kUncovered));
+    EXPECT_EQ(pixels.at(-1, 3), pixelOf(map_colors::kUncovered));
+    EXPECT_EQ(pixels.at(-3, -3), pixelOf(map_colors::kSolid));
+    EXPECT_NE(pixels.at(-3, 0), pixelOf(map_colors::kSolid));
+    EXPECT_NE(pixels.at(-3, 0), pixelOf(map_colors::kUncovered));
+    EXPECT_EQ(pixels.at(0.01, 0.01), pixelOf(seriesColor(0)));
+    EXPECT_EQ(pixels.Image::at(5, 5), 0xFFFFFFU);
 }
 
-TEST(Map, RedundancyDarkensTheFloor) {
-    const Image pixels =
-        decodePng(mapOf("ispace size=8,8\nlaser at=0,-3.99 heading=90 range=20\n"
-                        "laser at=-0.01,0 heading=0 range=20\n"));
-    int right = kMargin;
-    while (pixels.at(right + 1, kMargin) == pixelOf(map_colors::kWall)) ++right;
-    const int quarter = (right - kMargin) / 4;
-    EXPECT_EQ(pixels.at(kMargin + quarter, kMargin + quarter), pixelOf(sequentialColor(1, 2)));
-    EXPECT_EQ(pixels.at(kMargin + 3 * quarter, kMargin + quarter), pixelOf(sequentialColor(2, 2)));
-}
-
-TEST(Map, CellsLeaveNoSeams) {
-    const Image pixels = decodePng(mapOf("ispace size=8,8\nlaser at=0,0 fov=360 range=20\n"));
-    int right = kMargin;
-    while (pixels.at(right + 1, kMargin) == pixelOf(map_colors::kWall)) ++right;
-    // A diagonal through many cells, away from marks, rims and walls.
-    for (int i = 40; i < (right - kMargin) / 2 - 60; ++i)
-        ASSERT_EQ(pixels.at(kMargin + i, kMargin + i), pixelOf(sequentialColor(1, 1))) << i;
+TEST(Map, FloorShowsThroughWhatStandsAboveOrBelow) {
+    const PlanPixels pixels(
+        mapOf("ispace size=8,8\ncube at=2,2,2 size=1,1,1\ncube at=-2,2,2 size=1,1,1\n"
+              "laser at=0.01,0.01 heading=45 fov=90 range=20\n"),
+        8);
+    EXPECT_NE(pixels.at(2, 2), pixels.at(-2, 2));
+    EXPECT_NE(pixels.at(2, 2), pixelOf(sequentialColor(1, 1)));
 }
 
 TEST(Map, EqualScenesGiveEqualBytes) {
@@ -117,10 +83,54 @@ bool isWellFormed(const std::string& xml) {
 }
 
 TEST(Map, SvgIsWellFormedAndSmall) {
-    const std::string svg = mapOf(kOffice, {MapFormat::Svg, 1200, "a <b> & \"c\""});
-    EXPECT_TRUE(isWellFormed(svg));
-    EXPECT_LT(svg.size(), 300000U);
-    EXPECT_NE(svg.find("width=\"1200px\""), std::string::npos);
+    for (const MapColor color : {MapColor::Redundancy, MapColor::Sensor}) {
+        for (const FanStyle fans : {FanStyle::Contours, FanStyle::Beams}) {
+            const std::string svg =
+                mapOf(kOffice, {MapFormat::Svg, 1200, "a <b> & \"c\"", color, fans});
+            EXPECT_TRUE(isWellFormed(svg));
+            EXPECT_LT(svg.size(), 300000U);
+            EXPECT_NE(svg.find("width=\"1200px\""), std::string::npos);
+        }
+    }
+}
+
+TEST(Map, SvgHoldsTitleIdsAndFiguresAsText) {
+    const std::string svg =
+        mapOf("ispace size=8,8\nlaser id=left-one at=0,0 heading=45 fov=90 range=20\n",
+              {MapFormat::Svg, 1200, "a <b> & \"c\""});
+    for (const std::string text :
+         {"a &lt;b&gt; &amp; \"c\"", "left-one", "1 laser", "no sensor", "75.0%", "2 m",
+          "Coverage 25.0% (cells 25.0%) · 16.0 m² of 64.0 m² · 1 laser"})
+        EXPECT_NE(svg.find(">" + text + "</text>"), std::string::npos) << text;
+}
+
+TEST(Map, HostileNamesAreOnlyText) {
+    const Scene scene = sceneOf(kOffice);
+    Coverage coverage = coverageOf(scene);
+    coverage.sensors[0].id = "</text><script>&\"'\x01\x1b\n\xff";
+    coverage.sensors[1].id = std::string(1000, 'W');
+    coverage.sensors[1].model = std::string(1000, 'M');
+    coverage.report.zones[0].id = "]]>\xF0\x9F\x98";
+    for (const int width : {200, 400, 1200}) {
+        const std::string svg = drawCoverageMap(
+            scene, coverage, {MapFormat::Svg, width, "\x02<!--" + std::string(500, 'x')});
+        EXPECT_TRUE(isWellFormed(svg));
+        EXPECT_EQ(svg.find("<script"), std::string::npos);
+        EXPECT_EQ(svg.find("<!--"), std::string::npos);
+        for (const char c : svg) ASSERT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= 0x20);
+        decodePng(drawCoverageMap(scene, coverage, {MapFormat::Png, width, "\x02"}));
+    }
+}
+
+TEST(Map, HeadShowsAsManyFiguresAsFit) {
+    const std::string wide = mapOf(kOffice, {MapFormat::Svg, 1200, "office"});
+    EXPECT_NE(wide.find("· 4 lasers</text>"), std::string::npos);
+    const std::string narrow = mapOf(kOffice, {MapFormat::Svg, 250, "office"});
+    EXPECT_EQ(narrow.find("· 4 lasers</text>"), std::string::npos);
+    EXPECT_NE(narrow.find(">Coverage "), std::string::npos);
+    const std::size_t begin = narrow.find(">Coverage ");
+    const std::string line = narrow.substr(begin, narrow.find('<', begin) - begin);
+    EXPECT_EQ(line.find("…"), std::string::npos) << line;
 }
 
 TEST(Map, PdfIsAPdfWithoutDate) {
@@ -144,7 +154,25 @@ TEST(Map, KeepsTheWidthThatIsAskedForAtAnyAspect) {
 
 TEST(Map, RefusesWidthsItCannotLayOut) {
     EXPECT_THROW(mapOf("ispace", {MapFormat::Png, 0, ""}), UsageError);
+    EXPECT_THROW(mapOf("ispace", {MapFormat::Svg, 199, ""}), UsageError);
     EXPECT_THROW(mapOf("ispace", {MapFormat::Svg, 1'000'000, ""}), UsageError);
+}
+
+TEST(Map, DrawsTheWidestToo) {
+    const std::string svg = mapOf(kOffice, {MapFormat::Svg, 12000, "office"});
+    EXPECT_NE(svg.find("width=\"12000px\""), std::string::npos);
+    EXPECT_EQ(decodePng(mapOf("ispace size=60,1\nlaser at=0,0\n", {.width = 6000})).width, 6000);
+    EXPECT_EQ(decodePng(mapOf(kOffice, {.width = 200})).width, 200);
+}
+
+TEST(Map, TextIsNeverBelowTenPixels) {
+    for (const int width : {200, 400, 1200}) {
+        const std::string svg =
+            mapOf(kOffice, {MapFormat::Svg, width, "office", MapColor::Sensor, FanStyle::Beams});
+        const std::string name = "font-size=\"";
+        for (std::size_t at = svg.find(name); at != std::string::npos; at = svg.find(name, at + 1))
+            ASSERT_GE(std::stod(svg.substr(at + name.size())), 10);
+    }
 }
 
 TEST(Map, ManySensorsDoNotStretchThePage) {
@@ -160,8 +188,9 @@ TEST(Map, ManySensorsDoNotStretchThePage) {
     const Image none = decodePng(mapOf("ispace size=20,20\n"));
     EXPECT_EQ(many.height, none.height);
 
-    std::vector<LegendBlock> blocks = legendBlocks(scene, coverage);
-    EXPECT_EQ(blocks[2].title, "100 sensors");
+    const MapOptions options;
+    const std::vector<LegendBlock> blocks = legendBlocks({scene, coverage, options});
+    EXPECT_EQ(blocks[2].title, "100 lasers");
     ASSERT_EQ(blocks[2].items.size(), 9U);
     EXPECT_EQ(blocks[2].items.back().text, "… and 92 more");
 }
@@ -171,41 +200,6 @@ TEST(Map, SensorsFarOutsideDoNoHarm) {
         decodePng(mapOf("ispace size=8,6\nlaser at=1e5,0 range=1e6 heading=180\n"
                         "laser at=0,0,3 range=1e6\n"));
     EXPECT_EQ(pixels.width, 1200);
-}
-
-TEST(MapLegend, NamesWhatThePictureShows) {
-    const Scene scene = sceneOf(kOffice);
-    const std::vector<LegendBlock> blocks = legendBlocks(scene, coverageOf(scene));
-    ASSERT_EQ(blocks.size(), 4U);
-    EXPECT_EQ(blocks[0].items[2].text, "Indoor area");
-    EXPECT_EQ(blocks[0].items[2].value, "44.0 m²");
-    std::vector<std::string> plan;
-    for (const LegendItem& item : blocks[3].items) plan.push_back(item.text);
-    EXPECT_EQ(plan, (std::vector<std::string>{"wall", "object at 0.15 m", "object above or below",
-                                              "not indoor", "zone"}));
-    EXPECT_EQ(blocks[2].items[1].text, "b");
-    EXPECT_EQ(blocks[2].items[1].value, "laser");
-}
-
-TEST(MapLegend, SharesOfTheClassesAreThoseOfTheReport) {
-    const Scene scene = sceneOf("ispace size=8,8");
-    Coverage coverage = coverageOf(scene);
-    coverage.report.redundancy = {0.25, 0.5, 0.25, 0};
-    const std::vector<LegendItem> few = legendBlocks(scene, coverage)[1].items;
-    ASSERT_EQ(few.size(), 3U);
-    EXPECT_EQ(few[0].value, "25.0%");
-    EXPECT_EQ(few[1].text, "1 sensor");
-    EXPECT_EQ(few[2].text, "2 sensors");
-    coverage.report.redundancy.assign(21, 0.0);
-    coverage.report.redundancy[1] = 0.125;
-    coverage.report.redundancy[4] = 0.125;
-    coverage.report.redundancy[20] = 0.75;
-    const std::vector<LegendItem> many = legendBlocks(scene, coverage)[1].items;
-    ASSERT_EQ(many.size(), 6U);  // width 4: 1-4 ... 17-20
-    EXPECT_EQ(many[1].text, "1–4 sensors");
-    EXPECT_EQ(many[1].value, "25.0%");
-    EXPECT_EQ(many[5].text, "17–20 sensors");
-    EXPECT_EQ(many[5].value, "75.0%");
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cover/visible.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace ispace {
 
@@ -17,115 +14,104 @@ bool withinRange(double distance, double max_range) {
     return static_cast<float>(distance) <= static_cast<float>(max_range);
 }
 
-/// Columns whose centres may lie within `half` of x, with one to spare on each side: [first, last).
-struct Span {
-    int first, last;
-};
-Span columnsNear(const Grid& grid, double x, double half) {
-    const double per_metre = grid.columns / grid.limits.width();
-    const auto column = [&grid, per_metre](double place) {
-        const double raw = (place - grid.limits.low.x) * per_metre;
-        return static_cast<int>(std::clamp(std::floor(raw), -1.0, grid.columns + 1.0));
-    };
-    return {std::max(0, column(x - half) - 1), std::min(grid.columns, column(x + half) + 2)};
+/// The one rule for directions. \param direction in the world
+bool sees(const Laser& laser, Angle heading, Angle direction) {
+    const Angle bearing = direction - heading;
+    if (laser.sees(bearing)) return true;
+    if (laser.sweep != SweepAxis::Heading) return false;
+    const FanLimits limits = fanLimits(laser, heading);
+    const double beyond =
+        std::fmod(std::fmod((direction - limits.first).degrees(), 360) + 360, 360);
+    return beyond <= limits.span.degrees();
 }
 
-/// What is looked at in one row of cells.
-struct Row {
-    std::vector<std::uint32_t> cells;
-    std::vector<Point3> targets;
-    std::vector<std::uint8_t> seen;
-
-    void add(std::size_t cell, Point3 target) {
-        cells.push_back(static_cast<std::uint32_t>(cell));
-        targets.push_back(target);
+/// A polygon with straight edges that holds what is seen and, beyond the greatest range, nothing
+/// that is nearer: arcs become the tangents at their ends.
+Polygon tangentOutline(const VisibleRegion& region) {
+    Polygon outline;
+    outline.reserve(3 * region.ends.size() + 1);
+    for (const SightEnd& end : region.ends) {
+        outline.push_back(end.from);
+        if (end.line == SightEnd::kArc) {
+            const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
+            const double r2 = region.max_range * region.max_range;
+            // Where the tangents meet: on a + b, at t with t (a + b) a = r2.
+            outline.push_back(region.viewpoint + (r2 / (r2 + dot(a, b))) * (a + b));
+        }
+        outline.push_back(end.to);
     }
-    void look(const RayWorld& world, Point3 origin) {
-        seen.resize(targets.size());
-        if (!targets.empty()) world.look(origin, targets, seen);
-    }
-};
-
-std::vector<VisibleCells::Entry> visibleInRow(const Grid& grid, const RayWorld& world,
-                                              Point3 origin, double max_range, int row) {
-    std::vector<VisibleCells::Entry> entries;
-    const double dy = grid.rowCenter(row) - origin.y;
-    if (!withinRange(std::abs(dy), max_range)) return entries;
-    const Span columns = columnsNear(grid, origin.x, max_range);
-    Row batch;
-    for (int column = columns.first; column < columns.last; ++column) {
-        const Point2 center{grid.columnCenter(column), grid.rowCenter(row)};
-        if (withinRange(distance(origin.onFloor(), center), max_range))
-            batch.add(grid.cell(column, row), {center.x, center.y, origin.z});
-    }
-    batch.look(world, origin);
-    for (std::size_t i = 0; i < batch.cells.size(); ++i) {
-        const Vec2 offset = batch.targets[i].onFloor() - origin.onFloor();
-        const auto far = static_cast<float>(length(offset));
-        if (batch.seen[i] == 0 && far != 0) continue;
-        entries.push_back({batch.cells[i], far, directionOf(offset.x, offset.y).degrees()});
-    }
-    return entries;
+    return outline;
 }
 
-/// Where a scan plane that is not level passes above or below the floor.
-struct ScanPlane {
-    explicit ScanPlane(const Pose3& pose)
-        : origin(pose.position),
-          forward(pose.beam(Angle::degrees(0))),
-          left(pose.beam(Angle::degrees(90))),
-          up(forward.x * left.y - forward.y * left.x) {}
-
-    /// Height of the plane over a place. \pre up is not 0
-    [[nodiscard]] double heightAt(Point2 p) const {
-        const double nx = forward.y * left.z - forward.z * left.y;
-        const double ny = forward.z * left.x - forward.x * left.z;
-        return origin.z - (nx * (p.x - origin.x) + ny * (p.y - origin.y)) / up;
-    }
-    [[nodiscard]] Angle bearingOf(Vec3 offset) const {
-        return directionOf(dot(offset, forward), dot(offset, left));
-    }
-
-    Point3 origin;
-    Vec3 forward, left;
-    double up;  ///< vertical part of the normal; 0 if the plane stands upright
-};
-
-std::vector<std::uint32_t> seenInRow(const Grid& grid, const RayWorld& world, const Laser& laser,
-                                     const ScanPlane& plane, int row) {
-    const double dy = grid.rowCenter(row) - plane.origin.y;
-    if (!withinRange(std::abs(dy), laser.max_range)) return {};
-    const Span columns = columnsNear(grid, plane.origin.x, laser.max_range);
-    Row batch;
-    for (int column = columns.first; column < columns.last; ++column) {
-        const Point2 center{grid.columnCenter(column), grid.rowCenter(row)};
-        const Point3 target{center.x, center.y, plane.heightAt(center)};
-        const Vec3 offset = target - plane.origin;
-        if (target.z >= 0 && withinRange(length(offset), laser.max_range) &&
-            (target == plane.origin || laser.sees(plane.bearingOf(offset))))
-            batch.add(grid.cell(column, row), target);
-    }
-    batch.look(world, plane.origin);
-    std::vector<std::uint32_t> cells;
-    for (std::size_t i = 0; i < batch.cells.size(); ++i)
-        if (batch.seen[i] != 0 || batch.targets[i] == plane.origin) cells.push_back(batch.cells[i]);
-    return cells;
+/// Cells strictly inside the outline of what a place sees; some may lie beyond the greatest range.
+CellSet cellsAround(const Grid& grid, const SliceSight& sight, Point2 place, double max_range) {
+    constexpr double kBeyond = 1 + 1e-6;  // centres at the greatest range are not on the outline
+    VisibleRegion region;
+    sight.look(place, kBeyond * max_range, region);
+    const std::vector<Polygon> outline = {tangentOutline(region)};
+    return cellsWithin(grid, outline);
 }
+
+/// Tells most directions apart without an arc tangent: surely in the fan, surely not, or too near
+/// to one of its sides to say.
+class FanFilter {
+  public:
+    FanFilter(const Laser& laser, Angle heading) {
+        const FanLimits limits = fanLimits(laser, heading);
+        is_gap_ = limits.span > Angle::degrees(180);
+        const Angle last = limits.first + limits.span;
+        // The lesser of the fan and the gap beside it is convex.
+        from_ = unitVector(is_gap_ ? last : limits.first);
+        to_ = unitVector(is_gap_ ? limits.first : last);
+        is_line_ = limits.span >= Angle::degrees(360 - 1e-3) || limits.span <= Angle::degrees(1e-3);
+    }
+    enum class Answer { Yes, No, Unsure };
+    [[nodiscard]] Answer operator()(Vec2 offset) const {
+        constexpr double kMargin = 1e-6;  // radians: far more than what rounds
+        const double margin = kMargin * (std::abs(offset.x) + std::abs(offset.y));
+        if (is_line_) return Answer::Unsure;
+        const double left = cross(from_, offset), right = cross(offset, to_);
+        if (left > margin && right > margin) return is_gap_ ? Answer::No : Answer::Yes;
+        if (left < -margin || right < -margin) return is_gap_ ? Answer::Yes : Answer::No;
+        return Answer::Unsure;
+    }
+
+  private:
+    Vec2 from_, to_;
+    bool is_gap_ = false, is_line_ = false;
+};
 
 }  // namespace
 
-VisibleCells visibleCells(const Grid& grid, const RayWorld& world, Point3 origin,
+bool scansSlice(const PlacedLaser& sensor) {
+    return sensor.pose.isLevel() &&
+           (sensor.laser.sweep == SweepAxis::None || sensor.laser.sweep == SweepAxis::Heading);
+}
+
+FanLimits fanLimits(const Laser& laser, Angle heading) {
+    Angle span = laser.last() - laser.first;
+    if (laser.sweep == SweepAxis::Heading)
+        span = span + static_cast<double>(laser.scans() - 1) * laser.sweep_step;
+    return {heading + laser.first, std::min(span, Angle::degrees(360))};
+}
+
+VisibleRegion regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
+    VisibleRegion region;
+    sight.look(sensor.pose.position.onFloor(), sensor.laser.max_range, region);
+    const FanLimits limits = fanLimits(sensor.laser, sensor.pose.heading);
+    return sectorOf(region, limits.first, limits.span);
+}
+
+VisibleCells visibleCells(const Grid& grid, const SliceSight& sight, Point2 place,
                           double max_range) {
-    std::vector<std::vector<VisibleCells::Entry>> rows(static_cast<std::size_t>(grid.rows));
-    tbb::parallel_for(0, grid.rows, [&](int row) {
-        rows[static_cast<std::size_t>(row)] = visibleInRow(grid, world, origin, max_range, row);
-    });
     VisibleCells visible;
-    std::size_t count = 0;
-    for (const auto& row : rows) count += row.size();
-    visible.entries.reserve(count);
-    for (const auto& row : rows)
-        visible.entries.insert(visible.entries.end(), row.begin(), row.end());
+    cellsAround(grid, sight, place, max_range).forEach([&](std::size_t cell) {
+        const Vec2 offset = grid.center(cell) - place;
+        const auto far = static_cast<float>(length(offset));
+        if (withinRange(static_cast<double>(far), max_range))
+            visible.entries.push_back(
+                {static_cast<std::uint32_t>(cell), far, directionOf(offset.x, offset.y).degrees()});
+    });
     return visible;
 }
 
@@ -134,28 +120,41 @@ CellSet cellsInFan(const Grid& grid, const VisibleCells& visible, const Laser& l
     CellSet cells(grid.size());
     for (const VisibleCells::Entry& entry : visible.entries)
         if (withinRange(static_cast<double>(entry.distance), laser.max_range) &&
-            (entry.distance == 0 || laser.sees(Angle::degrees(entry.direction) - heading)))
+            (entry.distance == 0 || sees(laser, heading, Angle::degrees(entry.direction))))
             cells.set(entry.cell);
     return cells;
 }
 
-CellSet cellsSeen(const Grid& grid, const RayWorld& world, const PlacedLaser& sensor) {
-    const Pose3& pose = sensor.pose;
-    if (pose.isLevel()) {
-        const VisibleCells visible =
-            visibleCells(grid, world, pose.position, sensor.laser.max_range);
-        return cellsInFan(grid, visible, sensor.laser, pose.heading);
-    }
-    CellSet cells(grid.size());
-    const ScanPlane plane(pose);
-    if (plane.up == 0) return cells;  // seen from above, an upright plane is a line
-    std::vector<std::vector<std::uint32_t>> rows(static_cast<std::size_t>(grid.rows));
-    tbb::parallel_for(0, grid.rows, [&](int row) {
-        rows[static_cast<std::size_t>(row)] = seenInRow(grid, world, sensor.laser, plane, row);
+CellSet cellsSeen(const Grid& grid, const SliceSight& sight, const PlacedLaser& sensor) {
+    const Point2 place = sensor.pose.position.onFloor();
+    const Laser& laser = sensor.laser;
+    const FanFilter filter(laser, sensor.pose.heading);
+    CellSet cells = cellsAround(grid, sight, place, laser.max_range);
+    const CellSet around = cells;
+    around.forEach([&](std::size_t cell) {
+        const Vec2 offset = grid.center(cell) - place;
+        const FanFilter::Answer answer = filter(offset);
+        if (answer == FanFilter::Answer::No || !withinRange(length(offset), laser.max_range) ||
+            (answer == FanFilter::Answer::Unsure && offset != Vec2{} &&
+             !sees(laser, sensor.pose.heading, directionOf(offset.x, offset.y))))
+            cells.reset(cell);
     });
-    for (const auto& row : rows)
-        for (const std::uint32_t cell : row) cells.set(cell);
     return cells;
+}
+
+CellSet cellsAmongBeams(const Grid& grid, const PlacedLaser& sensor, std::span<const float> beams) {
+    const Point3 origin = sensor.pose.position;
+    Polygon outline;
+    outline.reserve(beams.size() + 1);
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+        const double range = std::min(static_cast<double>(beams[k]), sensor.laser.max_range);
+        const Vec3 beam = sensor.pose.beam(sensor.laser.bearing(static_cast<int>(k)));
+        outline.push_back((origin + range * beam).onFloor());
+    }
+    const Angle span = sensor.laser.last() + sensor.laser.step - sensor.laser.first;
+    if (span < Angle::degrees(360 - 1e-9)) outline.push_back(origin.onFloor());
+    const std::vector<Polygon> curves = {std::move(outline)};
+    return cellsWithin(grid, curves);
 }
 
 }  // namespace ispace

@@ -5,10 +5,25 @@
 #include <vector>
 
 #include "cover/grid.h"
+#include "cover/slice_sight.h"
 #include "layout/laser.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
+
+/// True for a laser whose scans all lie in the slice at its height: level, and turning about the
+/// vertical if it sweeps. Others are a matter of plane_view.h.
+bool scansSlice(const PlacedLaser& sensor);
+
+/// The directions that a laser sees as it stands: from its first beam to its last, in a sweep of
+/// headings on to the last of the last scan.
+struct FanLimits {
+    Angle first;  ///< in the world
+    Angle span;   ///< at most a full turn
+};
+FanLimits fanLimits(const Laser& laser, Angle heading);
+
+/// The exact region of a laser. \pre scansSlice(sensor), the sight is of its height
+VisibleRegion regionSeen(const SliceSight& sight, const PlacedLaser& sensor);
 
 /// The cells that a level laser at one place sees when it may face anywhere, with their
 /// directions: one look per place, then a heading is a sector of it.
@@ -21,16 +36,20 @@ struct VisibleCells {
     std::vector<Entry> entries;  // by cell index
 };
 
-/// Centres within max_range (end included) that `world` lets `origin` see.
-VisibleCells visibleCells(const Grid& grid, const RayWorld& world, Point3 origin, double max_range);
+/// Centres within max_range (end included) strictly inside what a place sees.
+VisibleCells visibleCells(const Grid& grid, const SliceSight& sight, Point2 place,
+                          double max_range);
 
 /// The cells of `visible` that lie in the fan of a level laser with this heading.
 CellSet cellsInFan(const Grid& grid, const VisibleCells& visible, const Laser& laser,
                    Angle heading);
 
-/// The region of a placed laser in cells: centres from first to last beam, within max_range, in
-/// sight; the blind zone is not cut out. A tilted laser covers the floor below or above which its
-/// scan plane passes in sight, above the floor.
-CellSet cellsSeen(const Grid& grid, const RayWorld& world, const PlacedLaser& sensor);
+/// The region of a placed laser in cells: the same as cellsInFan() gives, without directions being
+/// computed. \pre as regionSeen
+CellSet cellsSeen(const Grid& grid, const SliceSight& sight, const PlacedLaser& sensor);
+
+/// Cells whose centre lies in the polygon through the sensor and the ends of its beams, seen from
+/// above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as of castBeams.
+CellSet cellsAmongBeams(const Grid& grid, const PlacedLaser& sensor, std::span<const float> beams);
 
 }  // namespace ispace

@@ -32,9 +32,9 @@ GridSearch searchFor(const Box2& limits, const Laser& laser, const ArrangeOption
 /// Sensors of one kind have the same candidates.
 class CandidatePool {
   public:
-    CandidatePool(const Scene& scene, const Target& target, Worlds& worlds,
-                  const ArrangeOptions& options, Progress& progress)
-        : scene_(scene), target_(target), worlds_(worlds), options_(options), progress_(progress) {}
+    CandidatePool(const Scene& scene, const Target& target, const ArrangeOptions& options,
+                  Progress& progress)
+        : scene_(scene), target_(target), options_(options), progress_(progress) {}
 
     const std::vector<Candidate>* candidatesFor(const PendingLaser& sensor) {
         const Pose3 mount = mountOf(sensor.record);
@@ -71,13 +71,12 @@ class CandidatePool {
         if (bytes_ > kMostBytes)
             throw UsageError("the candidates take " + formatFixed(bytes_ / 1e9, 1) +
                              " GB: use fewer places (-X, -Y), headings (--deg) or cells (--reso)");
-        return makeCandidates(target_.grid, target_.indoor, worlds_, sensor.laser, mount, places,
-                              search.headings, progress_);
+        return makeCandidates(target_.grid, target_.indoor, environment, sensor.laser, mount,
+                              places, search.headings, progress_);
     }
 
     const Scene& scene_;
     const Target& target_;
-    Worlds& worlds_;
     const ArrangeOptions& options_;
     Progress& progress_;
     std::vector<std::unique_ptr<Kind>> kinds_;
@@ -110,13 +109,13 @@ std::vector<PendingLaser> sensorsToPlace(const Scene& scene, const std::vector<R
 Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& sensors,
                           const ArrangeOptions& options, Progress& progress) {
     Worlds worlds(scene.environment);
-    const Coverage before =
-        measureCoverage(scene, worlds, options.columns, options.rows, kScanHeight);
-    CellSet covered(before.target.grid.size());
-    for (const CellSet& seen : before.seen) covered |= seen;
+    const CoverageOptions searching{
+        .columns = options.columns, .rows = options.rows, .exact = false};
+    const Coverage before = measureCoverage(scene, worlds, searching);
+    CellSet covered = coveredCells(before);
     covered &= before.target.indoor;
 
-    CandidatePool pool(scene, before.target, worlds, options, progress);
+    CandidatePool pool(scene, before.target, options, progress);
     std::vector<Choice> choices;
     choices.reserve(sensors.size());
     for (const PendingLaser& sensor : sensors) choices.push_back({pool.candidatesFor(sensor)});
@@ -129,9 +128,8 @@ Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& s
         result.placed.push_back({sensors[i].id, sensors[i].laser, pose});
         whole.lasers.push_back(result.placed.back());
     }
-    const Grid usual;  // as coverage reports without being told otherwise
-    const CoverageReport report =
-        measureCoverage(whole, worlds, usual.columns, usual.rows, kScanHeight).report;
+    const CoverageOptions usual{.exact = false};  // as coverage reports if not told otherwise
+    const CoverageReport report = measureCoverage(whole, worlds, usual).report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
     const std::size_t cells = before.target.indoor.count();

@@ -55,7 +55,7 @@ TEST(Arrangement, ResultIsWhatCoverageMeasures) {
     const Scene again = makeScene(environment, &layout, DeviceCatalogue());
     ASSERT_EQ(again.lasers.size(), 3U);
     Worlds worlds(again.environment);
-    const CoverageReport report = measureCoverage(again, worlds, 100, 100, kScanHeight).report;
+    const CoverageReport report = measureCoverage(again, worlds, {}).report;
     EXPECT_EQ(report.coverage.grid, arrangement.coverage);
     EXPECT_EQ(report.total_effective_area.grid, arrangement.area);
     const Record& result = layout.records.back();
@@ -145,8 +145,7 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
     const Document written = readRecordText(text, "best.3dm", sceneSchemas());
     const Scene again = makeScene(environmentDocument(), &written, DeviceCatalogue());
     Worlds worlds(again.environment);
-    EXPECT_EQ(measureCoverage(again, worlds, 100, 100, kScanHeight).report.coverage.grid,
-              arrangement.coverage);
+    EXPECT_EQ(measureCoverage(again, worlds, {}).report.coverage.grid, arrangement.coverage);
     ASSERT_EQ(again.lasers.size(), 3U);
     EXPECT_EQ(again.robots.size(), 1U);
 }

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 
+#include "cover/plane_view.h"
 #include "cover/visible.h"
 
 namespace ispace {
@@ -54,30 +57,60 @@ std::vector<Point2> standablePlaces(const Environment& environment, const Slice&
     return valid;
 }
 
-std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target, Worlds& worlds,
-                                      const Laser& laser, const Pose3& mount,
-                                      const std::vector<Point2>& places, int headings,
-                                      Progress& progress) {
+namespace {
+
+/// What a laser sees from a place with each of some headings.
+class CandidateViews {
+  public:
+    CandidateViews(const Grid& grid, const Environment& environment, const Laser& laser,
+                   const Pose3& mount)
+        : grid_(grid), laser_(laser), mount_(mount) {
+        if (scansSlice({"", laser, mount}))
+            sight_ = std::make_unique<SliceSight>(environment.slice(mount.position.z));
+        else
+            mesh_ = std::make_unique<RayWorld>(RayWorld::ofEnvironment(environment));
+    }
+
+    void look(Point2 place, std::span<Candidate> headings) const {
+        Pose3 pose = mount_;
+        pose.position = {place.x, place.y, mount_.position.z};
+        // A level sensor looks about once; a heading is a sector of it.
+        VisibleCells visible;
+        if (sight_ != nullptr) visible = visibleCells(grid_, *sight_, place, laser_.max_range);
+        const auto count = static_cast<double>(headings.size());
+        for (std::size_t k = 0; k < headings.size(); ++k) {
+            pose.heading = Angle::degrees(360.0 * static_cast<double>(k) / count);
+            headings[k].pose = pose;
+            headings[k].seen = sight_ != nullptr
+                                   ? cellsInFan(grid_, visible, laser_, pose.heading)
+                                   : cellsSeen(grid_, *mesh_, {"", laser_, pose}, kFloor);
+        }
+    }
+
+  private:
+    static constexpr double kFloor = 0;  ///< plane that coverage reports unless told otherwise
+
+    const Grid& grid_;
+    const Laser& laser_;
+    Pose3 mount_;
+    std::unique_ptr<const SliceSight> sight_;
+    std::unique_ptr<const RayWorld> mesh_;
+};
+
+}  // namespace
+
+std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target,
+                                      const Environment& environment, const Laser& laser,
+                                      const Pose3& mount, const std::vector<Point2>& places,
+                                      int headings, Progress& progress) {
     const auto per_place = static_cast<std::size_t>(headings);
     std::vector<Candidate> candidates(places.size() * per_place);
-    worlds.prepare(mount);
-    const RayWorld& world = worlds.at(mount);
+    const CandidateViews views(grid, environment, laser, mount);
     progress.begin("scanning candidates", static_cast<std::int64_t>(candidates.size()));
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-        Pose3 pose = mount;
-        pose.position = {places[i].x, places[i].y, mount.position.z};
-        // A level sensor looks about once; a heading is a sector of what it sees.
-        const VisibleCells visible = mount.isLevel()
-                                         ? visibleCells(grid, world, pose.position, laser.max_range)
-                                         : VisibleCells();
-        for (int k = 0; k < headings; ++k) {
-            pose.heading = Angle::degrees(360.0 * k / headings);
-            Candidate& candidate = candidates[i * per_place + static_cast<std::size_t>(k)];
-            candidate.pose = pose;
-            candidate.seen = mount.isLevel() ? cellsInFan(grid, visible, laser, pose.heading)
-                                             : cellsSeen(grid, world, {"", laser, pose});
-            candidate.seen &= target;
-        }
+        const auto own = std::span(candidates).subspan(i * per_place, per_place);
+        views.look(places[i], own);
+        for (Candidate& candidate : own) candidate.seen &= target;
         progress.advance(headings);
     });
     progress.end();

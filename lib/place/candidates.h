@@ -7,7 +7,6 @@
 #include "base/progress.h"
 #include "cover/coverage.h"
 #include "layout/laser.h"
-#include "trace/worlds.h"
 
 namespace ispace {
 
@@ -42,9 +41,9 @@ struct Candidate {
 /// `mount` gives height, tilt and roll of the sensor. `target` are the cells that count. Work is
 /// shared out over all cores; the result does not depend on their number. Memory: one bit a cell
 /// and candidate.
-std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target, Worlds& worlds,
-                                      const Laser& laser, const Pose3& mount,
-                                      const std::vector<Point2>& places, int headings,
-                                      Progress& progress);
+std::vector<Candidate> makeCandidates(const Grid& grid, const CellSet& target,
+                                      const Environment& environment, const Laser& laser,
+                                      const Pose3& mount, const std::vector<Point2>& places,
+                                      int headings, Progress& progress);
 
 }  // namespace ispace

@@ -50,16 +50,16 @@ TEST(GridSearch, PlacesAreInteriorCrossings) {
 
 TEST(Candidates, EqualWhatCoverageSees) {
     const Scene scene = sceneFrom("ispace size=8,6,2.5\ncube at=1,1 size=1,1,1\n");
-    Worlds worlds(scene.environment);
+    const SliceSight sight(scene.environment.slice(kScanHeight));
     const Target target = makeTarget(scene.environment, 40, 30, kScanHeight);
     const Pose3 mount{{0, 0, kScanHeight}, {}, {}, {}};
     SilentProgress progress;
-    const auto candidates = makeCandidates(target.grid, target.indoor, worlds, thesisLaser(), mount,
-                                           {{-2, 0}, {2.5, 1.25}}, 8, progress);
+    const auto candidates =
+        makeCandidates(target.grid, target.indoor, scene.environment, thesisLaser(), mount,
+                       {{-2, 0}, {2.5, 1.25}}, 8, progress);
     ASSERT_EQ(candidates.size(), 16U);
     for (const Candidate& candidate : candidates) {
-        CellSet seen =
-            cellsSeen(target.grid, worlds.at(candidate.pose), {"", thesisLaser(), candidate.pose});
+        CellSet seen = cellsSeen(target.grid, sight, {"", thesisLaser(), candidate.pose});
         seen &= target.indoor;
         EXPECT_EQ(candidate.seen, seen);
         EXPECT_GT(candidate.seen.count(), 0U);
@@ -79,7 +79,6 @@ TEST(Candidates, StandIndoorsAndClearOfObjects) {
 /// The best single place of the grid by area seen (eq. 4.6), indoors or anywhere.
 Candidate bestPlace(const Scene& scene, bool insider_judge) {
     const Environment& environment = scene.environment;
-    Worlds worlds(environment);
     const Target target = makeTarget(environment, 100, 100, kScanHeight);
     CellSet all(target.grid.size());
     for (std::size_t cell = 0; cell < all.size(); ++cell) all.set(cell);
@@ -90,7 +89,7 @@ Candidate bestPlace(const Scene& scene, bool insider_judge) {
     const Pose3 mount{{0, 0, kScanHeight}, {}, {}, {}};
     SilentProgress progress;
     const auto candidates =
-        makeCandidates(target.grid, all, worlds, thesisLaser(), mount, places, 8, progress);
+        makeCandidates(target.grid, all, environment, thesisLaser(), mount, places, 8, progress);
     return *std::max_element(
         candidates.begin(), candidates.end(),
         [](const Candidate& a, const Candidate& b) { return a.seen.count() < b.seen.count(); });

@@ -56,7 +56,7 @@ bool SolidJudge::isInside(Point3 place) {
 }
 
 std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
-                                     const std::vector<std::string>& globs) {
+                                     const std::vector<std::string>& globs, bool with_receivers) {
     std::vector<std::string> doubts;
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
@@ -82,7 +82,7 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
     };
     for (const Sensors::Entry& entry : sensors.order)
         check(sensors.id(entry), sensors.pose(entry).position);
-    if (!sensors.tags.empty())
+    if (with_receivers || !sensors.tags.empty())
         for (const PlacedReceiver& receiver : sensors.receivers)
             check(receiver.id, receiver.pose.position);
     return doubts;

@@ -43,7 +43,7 @@ double verify(const GridJob& job) {
     placed.lasers = found.placed;
     Worlds worlds(placed.environment);
     const double measured =
-        measureCoverage(placed, worlds, job.options.columns, job.options.rows, kScanHeight)
+        measureCoverage(placed, worlds, {.columns = job.options.columns, .rows = job.options.rows})
             .report.coverage.grid.value_or(0);
     if (found.placed.size() == 3 && measured == found.coverage && measured <= found.bound) {
         return measured;

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scan tool as a process, from a file of poses to /dev/null, in each of its formats.
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -24,6 +17,7 @@
 #include "embree_raw.h"
 #include "sense/depth.h"
 #include "sense/trajectory.h"
+#include "tool_run.h"
 
 namespace {
 
@@ -33,42 +27,12 @@ constexpr int kRounds = 3;
 constexpr std::size_t kPlaces = 500;
 constexpr std::size_t kChecked = 200;  // poses
 
-struct Spent {
-    double wall = std::numeric_limits<double>::infinity(), processor = wall;
+using bench::Folder;
+using bench::Spent;
 
-    void keepQuicker(const Spent& other) {
-        wall = std::min(wall, other.wall);
-        processor = std::min(processor, other.processor);
-    }
-};
-
-double seconds(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-/// Runs scan to its end. \throws if it fails
 Spent runScan(std::vector<std::string> words, const std::string& output) {
     words.insert(words.begin(), {ISPACE_SCAN_TOOL, "-q"});
-    std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    const auto start = std::chrono::steady_clock::now();
-    pid_t child = 0;
-    if (posix_spawn(&child, ISPACE_SCAN_TOOL, &actions, nullptr, arguments.data(), environ) != 0)
-        throw std::runtime_error("cannot run " ISPACE_SCAN_TOOL);
-    int status = 0;
-    rusage usage{};
-    if (wait4(child, &status, 0, &usage) != child || status != 0)
-        throw std::runtime_error(ISPACE_SCAN_TOOL " failed");
-    const auto end = std::chrono::steady_clock::now();
-    posix_spawn_file_actions_destroy(&actions);
-    return {std::chrono::duration<double>(end - start).count(),
-            seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+    return bench::runTool(std::move(words), output);
 }
 
 /// A scene on disk, and files of poses in its free floor.
@@ -223,17 +187,6 @@ void measure(benchmark::State& state, const Case& test, const Use& use, double p
         bench::cell(bytes / parts, 1, 10) + bench::cell(1e-6 * one * bytes / parts, 0, 6) +
         bench::cell(1000 * times.start[0].wall, 0, 7) + bench::cell(times.others, 1, 8));
 }
-
-struct Folder {
-    std::string name = (std::filesystem::temp_directory_path() / "scan-bench-XXXXXX").string();
-
-    Folder() {
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for files");
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() { std::filesystem::remove_all(name); }
-};
 
 std::string heading(const std::string& what, const std::string& primitives) {
     return what + "\n" + bench::leftCell("scene", 12) + bench::cell(primitives, 8) + "  " +

@@ -8,6 +8,7 @@
 //   --inputs FOLDER   its files are copied into the scratch folder (repeatable)
 //   --status N        expected exit status, 0 without
 //   --creates A;B     the files made, no more and no less
+//   --pictures A;B    PNGs among them that are compared with PREFIX.FILE by their pixels
 //   --abs X --rel Y   tolerance of numbers
 //   --exact yes       history is compared, too
 //
@@ -26,6 +27,7 @@
 #include <vector>
 
 #include "compare.h"
+#include "pictures.h"
 
 namespace fs = std::filesystem;
 
@@ -36,7 +38,7 @@ struct Case {
     fs::path expect, scratch;
     std::vector<fs::path> inputs;
     int status = 0;
-    std::set<std::string> creates;
+    std::set<std::string> creates, pictures;
     golden::Tolerance tolerance;
     bool exact = false;
 };
@@ -64,6 +66,8 @@ Case parseCase(const std::vector<std::string>& words) {
             test.status = std::stoi(value);
         } else if (name == "--creates") {
             test.creates = splitList(value);
+        } else if (name == "--pictures") {
+            test.pictures = splitList(value);
         } else if (name == "--abs") {
             test.tolerance.absolute = std::stod(value);
         } else if (name == "--rel") {
@@ -139,6 +143,12 @@ class Judge {
         if (!found.empty()) fail(what + " differs from " + expected_file.string() + ", " + found);
     }
 
+    void picture(const std::string& name, const fs::path& expected_file, const std::string& png) {
+        if (update_) return update(expected_file, png);
+        const std::string found = golden::pictureDifference(read(expected_file), png);
+        if (!found.empty()) fail(name + " differs from " + expected_file.string() + ": " + found);
+    }
+
     void status(int actual) {
         if (actual != test_.status) {
             fail("exit status is " + std::to_string(actual) + ", expected " +
@@ -158,6 +168,8 @@ class Judge {
             const fs::path expected = withSuffix(test_.expect, name);
             if (!made.contains(name)) {
                 fail("not made: " + name);
+            } else if (test_.pictures.contains(name)) {
+                picture(name, expected, read(room / name));
             } else if (fs::exists(expected)) {
                 text(name, expected, read(room / name));
             }

@@ -1,54 +1,108 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // coverage: measures and draws what the sensors of a scene see.
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/history.h"
-#include "base/number.h"
 #include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
+#include "cover/coverage_files.h"
 #include "coverage/options.h"
+#include "sense/doubts.h"
 
 namespace {
 
 using namespace ispace;
 
-void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
-    const double share = report.coverage.grid.value_or(0);
-    if (!options.require || share >= *options.require) return;
-    throw UnmetError("coverage is " + formatFixed(share * 100, 2) + "%, below the required " +
-                     options.require_text);
+/// Everything measured, and compared if that is wanted.
+struct Measured {
+    Coverage coverage;
+    std::optional<Coverage> other;
+};
+
+void warn(const CoverageToolOptions& options, const std::string& text) {
+    if (!options.common.quiet) std::cerr << "coverage: warning: " << text << '\n';
 }
 
-/// Figures are of lasers alone in this version.
-void warnOfOthers(const Scene& scene, bool quiet) {
-    const std::size_t others = scene.rangers.size() + scene.receivers.size();
-    if (others == 0 || quiet) return;
-    std::cerr << "coverage: warning: " << others
-              << (others == 1 ? " sensor that is no laser is" : " sensors that are no lasers are")
-              << " not measured\n";
+/// Of what a user may not have meant, and of what is left out.
+void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
+    for (const std::string& doubt : doubtsAbout(scene, sensorsOf(scene, {}), {}, true))
+        warn(options, doubt);
+    const auto cameras =
+        std::count_if(scene.placed.begin(), scene.placed.end(), [&scene](const Placed& placed) {
+            return scene.records[placed.record].keyword() == "camera";
+        });
+    if (cameras > 0)
+        warn(options, std::to_string(cameras) + (cameras == 1 ? " camera is" : " cameras are") +
+                          " not measured");
+}
+
+Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
+    Worlds worlds(scene.environment);
+    Measured measured{measureCoverage(scene, worlds, options.measure), {}};
+    if (other == nullptr) return measured;
+    measured.other = measureCoverage(*other, worlds, options.measure);
+    compare(measured.coverage, *measured.other, scene.environment.indoor(),
+            baseName(options.other));
+    return measured;
+}
+
+void writeProduct(const CoverageToolOptions& options, const Scene& scene,
+                  const Measured& measured) {
+    const std::string& output = options.common.output;
+    if (options.format == "csv") {
+        writeAll(output, coverageCsv(measured.coverage));
+    } else if (options.format == "geojson") {
+        writeAll(output, coverageGeoJson(scene, measured.coverage));
+    } else if (options.format == "ros") {
+        const std::string picture = withSuffix(output, ".pgm");
+        const CoverageRosMap map =
+            coverageRosMap(measured.coverage, *options.measure.cell,
+                           std::filesystem::path(picture).filename().string());
+        writeBoth(output, map.yaml, picture, map.pgm);
+    } else {
+        writeAll(output, drawCoverageMap(scene, measured.coverage, options.map,
+                                         measured.other ? &*measured.other : nullptr));
+    }
+}
+
+void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
+    std::string missing;
+    for (const Requirement& requirement : options.requirements) {
+        const std::string text = shortfall(requirement, report);
+        if (!text.empty()) missing.append(missing.empty() ? "" : "; ").append(text);
+    }
+    if (!missing.empty()) throw UnmetError(missing);
 }
 
 void coverage(CoverageToolOptions options) {
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene({options.operands, options.any_environment, true});
-    warnOfOthers(input.scene, options.common.quiet);
-    Worlds worlds(input.scene.environment);
-    const Coverage measured =
-        measureCoverage(input.scene, worlds, options.columns, options.rows, options.height);
-    if (options.draw) {
+    std::vector<std::string> files = filesOf(input);
+    std::optional<OtherLayout> other;
+    if (!options.other.empty()) {
+        other = readOtherLayout(input, options.other, options.any_environment);
+        files.insert(files.end(), other->files.begin(), other->files.end());
+    }
+    warnOfDoubts(options, input.scene);
+    const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
+    const CoverageReport& report = measured.coverage.report;
+    if (!options.format.empty()) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
-        writeAll(options.common.output, drawCoverageMap(input.scene, measured, options.map));
-        writeDependencies(options.common, filesOf(input));
+        writeProduct(options, input.scene, measured);
+        writeDependencies(options.common, files);
     }
-    writeAll("-", options.json ? coverageJson(measured.report) : coverageText(measured.report));
+    writeAll("-", options.json ? coverageJson(report) : coverageText(report));
     talk(options.common, "coverage",
-         std::to_string(measured.seen.size()) + " sensors measured on " +
-             std::to_string(measured.target.grid.size()) + " cells");
-    checkRequired(options, measured.report);
+         std::to_string(report.sensors.size()) + " sensors measured on " +
+             std::to_string(measured.coverage.target.grid.size()) + " cells");
+    checkRequired(options, report);
 }
 
 }  // namespace

@@ -1,52 +1,117 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/options.h"
 
+#include <filesystem>
+
 #include "base/error.h"
-#include "base/number.h"
 #include "cli/scene_options.h"
 
 namespace ispace {
 
 namespace {
 
+const std::vector<std::string> kFormats{"png", "svg", "pdf", "csv", "geojson", "ros"};
+
+/// Edge of cells where a format wants square ones and nobody says how large.
+constexpr double kRosCell = 0.05;
+
+/// Words of options that become something else once they are read.
+struct Words {
+    std::string to, cells_by, color, fans;
+    std::vector<std::string> requirements;
+};
+
+void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
+    addGridOption(line, "--grid", measure.columns, measure.rows,
+                  "cells over the limits that figures count");
+    line.meters("--cell", measure.cell, 0.0001, 1000, "square cells of this size instead, e.g. 2cm",
+                Enters::History);
+    line.choice("--grid-of", words.cells_by, {"region", "beams"},
+                "a cell is seen if it lies in what a laser sees, or in the polygon of its beam "
+                "ends (default region)",
+                Enters::History);
+    line.meters("--height", measure.height, 0, 1000, "height at which free floor is judged",
+                Enters::History);
+    line.meters("--plane", measure.plane, 0, 1000,
+                "height of the plane that rangers and ultrasound cover (default 0, the floor)",
+                Enters::History);
+}
+
 MapFormat mapFormat(const std::string& name) {
     if (name == "svg") return MapFormat::Svg;
     return name == "pdf" ? MapFormat::Pdf : MapFormat::Png;
+}
+
+bool isMap(const std::string& format) {
+    return format == "png" || format == "svg" || format == "pdf";
+}
+
+void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
+    if (!line.given("--output")) {
+        for (const char* option : {"--to", "--width", "--color", "--fans"})
+            if (line.given(option))
+                throw UsageError(std::string(option) + " is about the map: give -o FILE");
+        return;
+    }
+    if (o.common.output == "-")
+        throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
+    const std::string suffix = std::filesystem::path(o.common.output).extension().string();
+    const bool is_yaml = suffix == ".yaml" || suffix == ".yml";
+    o.format = to.empty() && is_yaml ? "ros" : outputFormat(to, o.common.output, kFormats);
+    if (o.format == "ros" && !is_yaml)
+        throw UsageError(
+            "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
+    if (o.format == "ros" && line.given("--grid"))
+        throw UsageError("a ROS map has square cells: give --cell instead of --grid");
+    if (o.format == "ros" && !o.measure.cell) o.measure.cell = kRosCell;
+    o.map.format = mapFormat(o.format);
+    for (const char* option : {"--width", "--color", "--fans"})
+        if (line.given(option) && !isMap(o.format))
+            throw UsageError(std::string(option) + " is about pictures, not about " + o.format);
 }
 
 }  // namespace
 
 CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     CoverageToolOptions o;
+    Words words;
     CommandLine line("coverage", "[ENV] [LAYOUT]",
                      "Measure what the placed sensors see and draw it. Without LAYOUT read it from "
                      "stdin unless ENV holds placed sensors. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
-    addGridOption(line, "--grid", o.columns, o.rows, "cells over the limits that figures count");
-    line.meters("--height", o.height, 0, 1000, "height at which free floor is judged",
+    addMeasureOptions(line, o.measure, words);
+    line.texts("--require", "SHARE", words.requirements,
+               "exit with 3 if less is covered: 95% of the indoor floor, free:95%, zone:NAME=95%; "
+               "may be given several times",
+               Enters::History);
+    line.text("--compare", "LAYOUT", o.other,
+              "tell what is gained and lost beside this layout, in figures and on the map",
+              Enters::BaseName);
+    line.choice("--to", words.to, kFormats, "format of FILE (default: its suffix, else png)",
                 Enters::History);
-    const auto take_share = [&o](const std::string& text) {
-        o.require = parseShare(text);
-        if (!o.require) throw UsageError('`' + text + "` is no share: write 95% or 0.95");
-        o.require_text = formatPercent(*o.require);
-    };
-    line.parsed("--require", "SHARE", take_share,
-                "exit with 3 if the coverage is below this, e.g. 95% or 0.95", Enters::History);
-    line.choice("--to", o.to, {"png", "svg", "pdf"},
-                "format of the map (default: suffix of FILE, else png)", Enters::History);
     constexpr int kNarrowest = 200, kWidest = 10000;
     line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of the map",
                Enters::History);
+    line.choice("--color", words.color, {"redundancy", "sensor"},
+                "what the colour of the floor tells: how many sensors see it, or which (default "
+                "redundancy)",
+                Enters::History);
+    line.choice("--fans", words.fans, {"contours", "beams"},
+                "how views are drawn (default contours)", Enters::History);
     addAnyEnvironmentOption(line, o.any_environment);
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 
-    o.draw = line.given("--output");
-    if (o.draw && o.common.output == "-")
-        throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
-    if (!o.draw && !o.to.empty()) throw UsageError("--to is the format of the map: give -o FILE");
-    o.map.format = mapFormat(outputFormat(o.to, o.common.output, {"png", "svg", "pdf"}));
+    if (line.given("--grid") && line.given("--cell"))
+        throw UsageError("--grid and --cell both say how large cells are: give one of them");
+    if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
+    if (words.color == "sensor") o.map.color = MapColor::Sensor;
+    if (words.fans == "beams") o.map.fans = FanStyle::Beams;
+    o.requirements.reserve(words.requirements.size());
+    for (const std::string& text : words.requirements)
+        o.requirements.push_back(parseRequirement(text));
+    checkProduct(line, o, words.to);
     return o;
 }
 

@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cover/map.h"
+#include "cover/requirement.h"
 
 namespace ispace {
 
 struct CoverageToolOptions {
     CommonOptions common;
     std::vector<std::string> operands;
+    CoverageOptions measure;
+    std::vector<Requirement> requirements;
+    std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
-    int columns = 100, rows = 100;
-    double height = kScanHeight;
-    std::optional<double> require;  ///< least coverage.grid, a fraction
-    std::string require_text;
-    std::string to;
+    std::string format;  ///< of the product; "" without one
     MapOptions map;
-    bool draw = false;  ///< a map is wanted (-o)
     bool any_environment = false;
 };
 

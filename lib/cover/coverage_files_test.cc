@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/coverage_files.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.h"
+#include "cover/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+/// Sees x > 0; a cube stands in the far corner.
+const char* const kHalfSeen =
+    "ispace size=4,4\ncube at=-1.5,1.5 size=1,1,1\nlaser id=half at=0,0 range=20\n";
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
+TEST(CoverageCsv, HasARowForEachCell) {
+    const std::string csv = coverageCsv(coverageOf(sceneOf(kHalfSeen), 4, 2));
+    EXPECT_EQ(csv,
+              "column,row,x,y,indoor,free,seen\n"
+              "0,0,-1.5,-1,1,1,0\n1,0,-0.5,-1,1,1,0\n2,0,0.5,-1,1,1,1\n3,0,1.5,-1,1,1,1\n"
+              "0,1,-1.5,1,1,0,0\n1,1,-0.5,1,1,1,0\n2,1,0.5,1,1,1,1\n3,1,1.5,1,1,1,1\n");
+}
+
+TEST(CoverageGeoJson, HasRegionsViewsAndSpots) {
+    const Scene scene = sceneOf(kHalfSeen);
+    const std::string json = coverageGeoJson(scene, coverageOf(scene));
+    EXPECT_EQ(json.rfind(R"({"type":"FeatureCollection","coordinate_system":"local-metres",)", 0),
+              0U);
+    for (const char* part :
+         {R"("id":"indoor","keyword":"indoor")", R"("id":"free","keyword":"free")",
+          R"("id":"seen-1","keyword":"seen","type":"region","sensors":1,"area":8)",
+          R"("id":"half","keyword":"laser","type":"placement","heading":0)",
+          R"("id":"half","keyword":"view","type":"region")",
+          R"("id":"unseen-1","keyword":"unseen","type":"spot","area":7)"})
+        EXPECT_EQ(count(json, part), 1U) << part << '\n' << json;
+    EXPECT_EQ(count(json, "seen-2"), 0U);
+}
+
+TEST(CoverageGeoJson, OutlinesCellsWhereRegionsAreNotKnown) {
+    const Scene scene = sceneOf(
+        "ispace size=4,4\n"
+        "laser id=nods at=0,0,1 range=20 fov=360 sweep=roll sweep_span=180 sweep_step=1\n");
+    const Coverage coverage = coverageOf(scene, 40, 40);
+    ASSERT_FALSE(coverage.overlay);
+    EXPECT_FALSE(coverage.report.coverage.exact);
+    const std::string json = coverageGeoJson(scene, coverage);
+    EXPECT_EQ(count(json, R"("id":"seen-1")"), 1U);
+    EXPECT_EQ(count(json, R"("keyword":"view")"), 1U);
+}
+
+TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
+    const Scene scene = sceneOf(kHalfSeen);
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(scene, worlds, {.cell = 0.05});
+    const CoverageRosMap map = coverageRosMap(coverage, 0.05, "plan.pgm");
+    EXPECT_EQ(map.yaml,
+              "image: \"plan.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-2, -2, 0]\n"
+              "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    const std::string header = "P5\n80 80\n255\n";
+    ASSERT_EQ(map.pgm.substr(0, header.size()), header);
+    const std::string pixels = map.pgm.substr(header.size());
+    ASSERT_EQ(pixels.size(), 6400U);
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), static_cast<char>(254)), 3200);
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), static_cast<char>(0)), 400);
+    EXPECT_EQ(pixels[0], 0) << "the first line is the uppermost, where the cube stands";
+    EXPECT_EQ(pixels[79], static_cast<char>(254));
+    EXPECT_EQ(pixels[79 * 80], static_cast<char>(205));
+}
+
+TEST(MakeTarget, SquareCellsMayReachBeyondTheLimits) {
+    const Scene scene = sceneOf("ispace size=4,3");
+    const Target target = makeTarget(scene.environment, 0.7, kScanHeight);
+    EXPECT_EQ(target.grid.columns, 6);
+    EXPECT_EQ(target.grid.rows, 5);
+    EXPECT_NEAR(target.grid.cellArea(), 0.49, 1e-12);
+    EXPECT_EQ(target.grid.limits.low, (Point2{-2, -1.5}));
+    EXPECT_EQ(makeTarget(scene.environment, 0.1, kScanHeight).grid.columns, 40);
+    EXPECT_EQ(makeTarget(scene.environment, 100, kScanHeight).grid.size(), 1U);
+}
+
+}  // namespace
+}  // namespace ispace

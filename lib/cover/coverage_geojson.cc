@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/contour.h"
+#include "cover/coverage_files.h"
+#include "draw/feature_writer.h"
+#include "geom/boolean.h"
+
+namespace ispace {
+
+namespace {
+
+/// Cells as pieces: each outline with the holes that lie in it.
+std::vector<Region> regionsOf(const Grid& grid, const CellSet& cells) {
+    std::vector<Polygon> outlines;
+    std::vector<Region> pieces;
+    std::vector<Polygon> holes;
+    for (Polygon& curve : contours(grid, cells)) {
+        if (signedArea(curve) > 0)
+            pieces.push_back({std::move(curve), {}});
+        else
+            holes.push_back(std::move(curve));
+    }
+    for (Polygon& hole : holes)
+        for (Region& piece : pieces) {
+            // A hole lies within one outline alone, but may touch it at corners: its middle
+            // decides.
+            if (locate(piece.outline, interiorPoint({hole, {}})) != Side::Inside) continue;
+            piece.holes.push_back(std::move(hole));
+            break;
+        }
+    return pieces;
+}
+
+/// The view of one sensor as pieces.
+std::vector<Region> viewOf(const SensorView& view, const Grid& grid) {
+    if (!view.region) return regionsOf(grid, view.cells);
+    return LayerOverlay(std::vector<Layer>{{.curves = *view.region}})
+        .regions([](const LayerLabel& label) { return label.count > 0; });
+}
+
+std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
+                           const std::vector<std::uint32_t>& cell_times) {
+    if (coverage.overlay)
+        return coverage.overlay->regions([times](const LayerLabel& label) {
+            return label.count == static_cast<std::int32_t>(times) &&
+                   (label.marks & kIndoorMark) != 0;
+        });
+    const Target& target = coverage.target;
+    CellSet cells(target.grid.size());
+    target.indoor.forEach([&](std::size_t cell) {
+        if (cell_times[cell] == times) cells.set(cell);
+    });
+    return regionsOf(target.grid, cells);
+}
+
+}  // namespace
+
+std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
+    FeatureWriter out;
+    out.json()
+        .key("coverage")
+        .value(coverage.report.coverage.exact ? coverage.report.coverage.exact
+                                              : coverage.report.coverage.grid);
+    out.beginFeatures();
+    out.begin("indoor", "indoor", "region");
+    out.endAsArea({scene.environment.indoor()});
+    out.begin("free", "free", "region");
+    out.endAsArea(scene.environment.freeFloor(coverage.target.height));
+    const std::vector<std::uint32_t> times = timesSeen(coverage);
+    for (std::uint32_t k = 1; k <= coverage.sets.size(); ++k) {
+        const std::vector<Region> pieces = seenBy(coverage, k, times);
+        if (pieces.empty()) continue;
+        out.begin("seen-" + std::to_string(k), "seen", "region")
+            .key("sensors")
+            .value(std::size_t{k});
+        out.json().key("area").value(totalArea(pieces));
+        out.endAsArea(pieces);
+    }
+    for (const SensorView& view : coverage.sensors) {
+        out.begin(view.id, nameOf(view.kind), "placement");
+        out.json().key("heading").value(view.pose.heading.degrees());
+        out.endAsPoint(view.pose.position.onFloor());
+        out.begin(view.id, "view", "region");
+        out.endAsArea(viewOf(view, coverage.target.grid));
+    }
+    for (std::size_t i = 0; i < coverage.report.unseen.size(); ++i) {
+        const UnseenSpot& spot = coverage.report.unseen[i];
+        out.begin("unseen-" + std::to_string(i + 1), "unseen", "spot").key("area").value(spot.area);
+        out.endAsPoint(spot.place);
+    }
+    return out.finish();
+}
+
+}  // namespace ispace

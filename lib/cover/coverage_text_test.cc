@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "cover/coverage.h"
+
+namespace ispace {
+namespace {
+
+CoverageReport sampleReport() {
+    CoverageReport report;
+    report.digest = "sha256:0a";
+    report.limits = {{-1, 0}, {3, 2.5}};
+    report.columns = 4;
+    report.rows = 5;
+    report.height = 0.15;
+    report.indoor_area = 10;
+    report.free_area = 9.25;
+    SensorFigures first{.id = "l1", .model = "urg-04lx", .slice_area = 3.5};
+    first.area = {.grid = 3.25, .exact = 3.375};
+    first.marginal = {.grid = 1.25, .exact = 1.5};
+    first.overlap = {.grid = 2, .exact = 1.875};
+    SensorFigures second{.id = "t", .model = "", .kind = ViewKind::Ranger};
+    second.area.grid = 12;
+    second.marginal.grid = 0;
+    second.overlap.grid = 12;
+    report.sensors = {first, second};
+    report.total_effective_area.grid = 8;
+    report.overlap.grid = 2;
+    report.coverage = {.grid = 0.8, .exact = 0.8125};
+    report.free_coverage.grid = 0.875;
+    report.redundancy = {0.2, 0.8, 0};
+    report.zones = {{.id = "door", .area = 1.5, .coverage = {.grid = 0.5, .exact = 0.25}},
+                    {.id = "far", .area = 0, .coverage = {.grid = 0, .exact = 0}}};
+    report.pieces = 2;
+    report.largest_piece = 0.75;
+    report.unseen = {{{1, 2}, 1.5}, {{0.5, 0.25}, 0.5}};
+    return report;
+}
+
+TEST(CoverageJson, HasTheKeysInTheirOrder) {
+    EXPECT_EQ(
+        coverageJson(sampleReport()),
+        R"({"schema":"ispace-coverage/1","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
+        R"("grid":[4,5],"height":0.15,"plane":0,"indoor_area":10,"free_area":9.25,"sensors":[)"
+        R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":3.375,)"
+        R"("marginal_area":1.25,"kind":"laser","area":{"grid":3.25,"exact":3.375},)"
+        R"("marginal":{"grid":1.25,"exact":1.5},"overlap":{"grid":2,"exact":1.875}},)"
+        R"({"id":"t","model":null,"slice_area":null,"exact_area":null,"marginal_area":0,)"
+        R"("kind":"ranger","area":{"grid":12,"exact":null},"marginal":{"grid":0,"exact":null},)"
+        R"("overlap":{"grid":12,"exact":null}}],)"
+        R"("total_effective_area":{"grid":8,"exact":null},"overlap_area":{"grid":2,"exact":null},)"
+        R"("coverage":{"grid":0.8,"exact":0.8125},)"
+        R"("free_coverage":{"grid":0.875,"exact":null},"redundancy":[0.2,0.8,0],)"
+        R"("redundancy_exact":null,"zones":[)"
+        R"({"id":"door","area":1.5,"coverage":{"grid":0.5,"exact":0.25}},)"
+        R"({"id":"far","area":0,"coverage":{"grid":0,"exact":0}}],)"
+        R"("pieces":{"count":2,"largest_share":0.75},)"
+        R"("unseen":[{"x":1,"y":2,"area":1.5},{"x":0.5,"y":0.25,"area":0.5}],)"
+        R"("exact_missing":null})"
+        "\n");
+}
+
+TEST(CoverageJson, TellsOfAComparison) {
+    CoverageReport report = sampleReport();
+    report.comparison = Comparison{.name = "old.3dm", .coverage = {.grid = 0.5, .exact = {}}};
+    report.comparison->gained.grid = 3;
+    report.comparison->lost.grid = 0;
+    EXPECT_NE(coverageJson(report).find(
+                  R"(,"comparison":{"with":"old.3dm","coverage":{"grid":0.5,"exact":null},)"
+                  R"("gained_area":{"grid":3,"exact":null},"lost_area":{"grid":0,"exact":null}}})"),
+              std::string::npos);
+}
+
+TEST(CoverageText, IsAlignedWithUnitsAndPerCentSigns) {
+    EXPECT_EQ(coverageText(sampleReport()), R"(environment  sha256:0a
+limits       x -1.00 to 3.00 m, y 0.00 to 2.50 m
+grid         4 x 5 cells
+indoor area  10.00 m2
+free floor   9.25 m2 at 0.15 m
+
+                              by cells   exact  difference
+total effective area           8.00 m2       -           -
+seen by several                2.00 m2       -           -
+coverage                        80.00%  81.25%      -1.25%
+free coverage                   87.50%       -           -
+seen by no sensor               20.00%       -           -
+seen by 1 sensor                80.00%       -           -
+zone door                       50.00%  25.00%     +25.00%
+zone far              outside the room
+
+sensor  model     slice area  by cells    exact  difference  marginal    exact   overlap
+l1      urg-04lx     3.50 m2   3.25 m2  3.38 m2    -0.12 m2   1.25 m2  1.50 m2   1.88 m2
+t       ranger             -  12.00 m2        -           -   0.00 m2        -  12.00 m2
+
+covered floor is in 2 pieces, the largest has 75.00% of it
+largest spots of free floor that no sensor sees:
+   1.50 m2  around  (1.00, 2.00)
+   0.50 m2  around  (0.50, 0.25)
+)");
+}
+
+TEST(CoverageText, SaysWhyExactFiguresAreMissing) {
+    CoverageReport report = sampleReport();
+    report.exact_missing = "what t sees is not known";
+    EXPECT_NE(
+        coverageText(report).find("\nno exact figures of all together: what t sees is not known\n"),
+        std::string::npos);
+    EXPECT_NE(coverageJson(report).find(R"("exact_missing":"what t sees is not known")"),
+              std::string::npos);
+}
+
+TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
+    CoverageReport report = sampleReport();
+    report.sensors.clear();
+    EXPECT_NE(coverageText(report).find("\nno sensor is placed\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace

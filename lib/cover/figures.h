@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/cover only: what the parts of measureCoverage() share.
+#pragma once
+
+#include <vector>
+
+#include "cover/coverage.h"
+#include "env/environment.h"
+
+namespace ispace {
+
+/// A zone of the environment.
+struct Zone {
+    std::string id;
+    Polygon outline;
+};
+std::vector<Zone> zonesOf(const Environment& environment);
+
+/// Sets what the report says by cells, of a Coverage whose target, sensors and sets are there.
+void addCellFigures(Coverage& coverage, const std::vector<Zone>& zones);
+
+/// Makes the overlay and sets what the report says in closed form. \pre all regions are known
+void addExactFigures(Coverage& coverage, const Environment& environment,
+                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones);
+
+/// A share of `whole`, from 0 to 1 whatever rounds; 0 of nothing
+double shareOf(double part, double whole);
+
+}  // namespace ispace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "cover/test_map.h"
+
+namespace ispace {
+namespace {
+
+using namespace map_colors;
+
+/// The map of a layout in an empty room of 8 m x 8 m, compared with that of another.
+std::string comparisonOf(const std::string& now, const std::string& before, bool exact = true,
+                         int width = 1200) {
+    const Scene scene = sceneOf("ispace size=8,8\n" + now);
+    const Scene other_scene = sceneOf("ispace size=8,8\n" + before);
+    Worlds worlds(scene.environment);
+    const CoverageOptions options{.exact = exact};
+    Coverage coverage = measureCoverage(scene, worlds, options);
+    const Coverage other = measureCoverage(other_scene, worlds, options);
+    compare(coverage, other, scene.environment.indoor(), "old.3dm");
+    return drawCoverageMap(scene, coverage, {MapFormat::Png, width, ""}, &other);
+}
+
+// Fans of a quarter turn from the middle to the walls.
+const std::string kRight = "laser id=right at=0,0 heading=0 fov=90 range=20\n";
+const std::string kUp = "laser id=up at=0,0 heading=90 fov=90 range=20\n";
+const std::string kUpRight = "laser id=upright at=0,0 heading=45 fov=90 range=20\n";
+
+TEST(MapFloor, RedundancyDarkensTheFloor) {
+    const PlanPixels pixels(mapOf("ispace size=8,8\nlaser at=0,-3.99 heading=90 range=20\n"
+                                  "laser at=-0.01,0 heading=0 range=20\n"),
+                            8);
+    EXPECT_EQ(pixels.at(-2, 2), pixelOf(sequentialColor(1, 2)));
+    EXPECT_EQ(pixels.at(2, 2), pixelOf(sequentialColor(2, 2)));
+}
+
+TEST(MapFloor, NoSeamsByCellsNorExact) {
+    for (const bool exact : {false, true}) {
+        const Scene scene = sceneOf("ispace size=8,8\nlaser at=0,0 fov=360 range=20\n");
+        Worlds worlds(scene.environment);
+        const Coverage coverage = measureCoverage(scene, worlds, {.exact = exact});
+        EXPECT_EQ(coverage.overlay.has_value(), exact);
+        const PlanPixels pixels(drawCoverageMap(scene, coverage, {}), 8);
+        // A diagonal through many cells, away from marks, rims and walls.
+        for (double place = -3.6; place < -0.5; place += 0.01)
+            ASSERT_EQ(pixels.at(place, -place), pixelOf(sequentialColor(1, 1))) << place;
+    }
+}
+
+TEST(MapFloor, ExactOutlinesHaveNoSteps) {
+    // The left side of the fan runs at 60 degrees; cells are 8 cm wide.
+    const PlanPixels pixels(
+        mapOf("ispace size=8,8\nlaser at=0,0 heading=30 fov=60 range=20\n", {.width = 2400}), 8);
+    const Vec2 along = unitVector(Angle::degrees(60)), left = perpendicular(along);
+    for (double away = 0.8; away < 4.2; away += 0.01) {
+        const Point2 inside = Point2{} + away * along - 0.02 * left;
+        const Point2 outside = Point2{} + away * along + 0.02 * left;
+        ASSERT_FALSE(isNear(pixels.at(inside.x, inside.y), kUncovered)) << away;
+        ASSERT_TRUE(isNear(pixels.at(outside.x, outside.y), kUncovered)) << away;
+    }
+}
+
+TEST(MapFloor, ArcsAreRound) {
+    const PlanPixels pixels(
+        mapOf("ispace size=8,8\nlaser at=0,0 heading=0 fov=360 range=3\n", {.width = 2400}), 8);
+    for (int turn = 0; turn < 360; ++turn) {
+        const Vec2 way = unitVector(Angle::degrees(turn + 0.5));
+        ASSERT_FALSE(isNear(pixels.at(2.985 * way.x, 2.985 * way.y), kUncovered)) << turn;
+        ASSERT_TRUE(isNear(pixels.at(3.02 * way.x, 3.02 * way.y), kUncovered)) << turn;
+    }
+}
+
+TEST(MapFloor, SensorsHaveTheirColoursAndShareStripes) {
+    const std::string lines = "ispace size=8,8\n" + kRight + kUpRight;
+    for (const bool exact : {false, true}) {
+        const Scene scene = sceneOf(lines);
+        Worlds worlds(scene.environment);
+        const Coverage coverage = measureCoverage(scene, worlds, {.exact = exact});
+        const MapOptions options{.color = MapColor::Sensor};
+        const MapPicture map{scene, coverage, options};
+        const PlanPixels pixels(drawCoverageMap(scene, coverage, options), 8);
+        EXPECT_TRUE(isNear(pixels.at(2, -1), floorColor(map, 0)));
+        EXPECT_TRUE(isNear(pixels.at(1, 2), floorColor(map, 1)));
+        EXPECT_NE(floorColor(map, 0), floorColor(map, 1));
+        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered));
+        // Where both see, half of the floor has the stripes of each, less their soft sides.
+        for (const std::size_t set : {0U, 1U})
+            EXPECT_NEAR(pixels.shareOf(stripeColor(map, set), 3, 1.3, 40), 0.45, 0.05) << set;
+        EXPECT_EQ(pixels.shareOf(kUncovered, 3, 1.3, 40), 0);
+    }
+}
+
+TEST(MapFloor, ColoursOfSensorsAreLightButDarkerThanUnseenFloor) {
+    const Scene scene = sceneOf("ispace size=8,8\n");
+    const Coverage coverage = coverageOf(scene);
+    const MapOptions options{.color = MapColor::Sensor};
+    for (std::size_t set = 0; set < kSeriesColors; ++set) {
+        const Color floor = floorColor({scene, coverage, options}, set);
+        EXPECT_GT(lightness(floor), 0.7) << set;
+        EXPECT_LT(lightness(floor), lightness(kUncovered) - 0.07) << set;
+        for (std::size_t other = 0; other < set; ++other)
+            EXPECT_NE(floor, floorColor({scene, coverage, options}, other));
+    }
+}
+
+TEST(MapFloor, ManySensorsShareAPlainHatch) {
+    std::string lines = "ispace size=8,8\n";
+    for (std::size_t i = 0; i <= kMostStriped; ++i)
+        lines += "laser at=0,0 heading=45 fov=90 range=20\n";
+    const PlanPixels pixels(mapOf(lines, {.color = MapColor::Sensor}), 8);
+    EXPECT_GT(pixels.shareOf(kShared, 2, 2, 40), 0.7);
+    EXPECT_GT(pixels.shareOf(kShared, 2, 2, 40) + pixels.shareOf(kSharedHatch, 2, 2, 40), 0.71);
+    EXPECT_LT(pixels.shareOf(kShared, 2, 2, 40), 0.95);
+    EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered));
+}
+
+TEST(MapFloor, ComparisonsTellKeptGainedLostAndUnseen) {
+    for (const bool exact : {false, true}) {
+        const PlanPixels pixels(comparisonOf(kRight + kUp, kUp + kUpRight, exact), 8);
+        EXPECT_EQ(pixels.at(3, -1.5), pixelOf(kGained)) << exact;
+        EXPECT_EQ(pixels.at(-1, 2.5), pixelOf(kBoth)) << exact;
+        EXPECT_EQ(pixels.at(1, 2.5), pixelOf(kBoth)) << exact;
+        EXPECT_EQ(pixels.at(2.5, 1), pixelOf(kBoth)) << exact;
+        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered)) << exact;
+        EXPECT_EQ(pixels.shareOf(kLost, 0, 0, 350), 0) << exact;
+    }
+    for (const bool exact : {false, true}) {
+        const PlanPixels pixels(comparisonOf(kUp, kRight, exact), 8);
+        EXPECT_EQ(pixels.at(0.2, 2.5), pixelOf(kGained)) << exact;
+        // Most is plain; what is not has dark lines, and nothing else shows through.
+        EXPECT_GT(pixels.shareOf(kLost, 2.8, 0, 40), 0.6) << exact;
+        EXPECT_LT(pixels.shareOf(kLost, 2.8, 0, 40), 0.95) << exact;
+        EXPECT_EQ(pixels.shareOf(kGained, 2.8, 0, 40), 0) << exact;
+        EXPECT_EQ(pixels.shareOf(kBoth, 2.8, 0, 40), 0) << exact;
+        EXPECT_LT(pixels.shareOf(kBoth, 0, 0, 350), exact ? 1e-3 : 0.01);  // cells on the diagonal
+    }
+}
+
+TEST(MapFloor, ComparedWithItselfNothingIsGainedOrLost) {
+    const PlanPixels pixels(comparisonOf(kRight + kUpRight, kUpRight + kRight), 8);
+    EXPECT_EQ(pixels.shareOf(kGained, 0, 0, 390), 0);
+    EXPECT_EQ(pixels.shareOf(kLost, 0, 0, 390), 0);
+    EXPECT_GT(pixels.shareOf(kBoth, 0, 0, 390), 0.3);
+}
+
+TEST(MapFloor, ComparisonsFallBackToCellsWhereOneIsNotExact) {
+    const Scene scene = sceneOf("ispace size=8,8\n" + kRight);
+    Worlds worlds(scene.environment);
+    const Coverage exact = measureCoverage(scene, worlds, {});
+    const Coverage cells = measureCoverage(scene, worlds, {.exact = false});
+    // The same layout: no fringe where steps of cells would leave the exact outline.
+    const PlanPixels pixels(drawCoverageMap(scene, exact, {}, &cells), 8);
+    EXPECT_EQ(pixels.shareOf(kGained, 0, 0, 390), 0);
+    EXPECT_EQ(pixels.shareOf(kLost, 0, 0, 390), 0);
+}
+
+TEST(MapFloor, WhatIsNotIndoorIsHatched) {
+    const PlanPixels pixels(
+        mapOf("fence path=-4,-4;4,-4;4,4;-4,4 closed=yes\ninside at=3,3\n"
+              "fence path=-1,-1;1,-1;1,1;-1,1 closed=yes\nlaser at=-3,-3 heading=45\n"),
+        8);
+    EXPECT_GT(pixels.shareOf(kOutside, 0, 0, 40), 0.7);
+    EXPECT_LT(pixels.shareOf(kOutside, 0, 0, 40), 0.95);
+}
+
+TEST(MapFloor, ClassesComeFromExactSharesWhereTheyAreKnown) {
+    CoverageReport report;
+    report.redundancy = {0.5, 0.5, 0};
+    EXPECT_EQ(shadesFor(report).count, 1);
+    report.redundancy_exact = {0.5, 0.49, 0.01};
+    EXPECT_EQ(shadesFor(report).count, 2);
+    report.redundancy_exact = {0.5, 0.5, 1e-12};  // rounding makes no class
+    EXPECT_EQ(shadesFor(report).count, 1);
+    const Shades wide{4, 5};
+    EXPECT_EQ(wide.least(1), 1U);
+    EXPECT_EQ(wide.least(2), 5U);
+    EXPECT_EQ(wide.of(wide.least(2)), 2);
+    EXPECT_EQ(wide.of(wide.least(2) - 1), 1);
+}
+
+}  // namespace
+}  // namespace ispace

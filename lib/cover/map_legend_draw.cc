@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.h"
+#include "cover/map_parts.h"
+
+namespace ispace {
+
+namespace {
+
+// Of the size of text: from one line to the next, and between blocks.
+constexpr double kLine = 1.5, kBlockGap = 0.9;
+// Likewise: between columns of figures, and the place of a sign.
+constexpr double kColumnGap = 0.7, kSignWidth = 1.6;
+
+using Sign = LegendItem::Sign;
+
+double heightOf(const LegendBlock& block, double em) {
+    return em * kLine * static_cast<double>(block.items.size() + 1);
+}
+
+void drawPatch(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
+    const double right = left + kSignWidth * em, half = 0.42 * em;
+    const Polygon patch = {
+        {left, y - half}, {right, y - half}, {right, y + half}, {left, y + half}};
+    canvas.fill(patch, item.color);
+    if (item.sign == Sign::Hatched)
+        canvas.hatch(std::span(&patch, 1), {item.edge, 0.5 * em, 0.09 * em});
+    canvas.stroke(patch, {map_colors::kObjectEdge, em / 16});
+}
+
+/// The sign of an item, in a box kSignWidth em wide from `left` on, middle at y.
+void drawSign(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
+    const double right = left + kSignWidth * em;
+    switch (item.sign) {
+        case Sign::None:
+            break;
+        case Sign::Patch:
+        case Sign::Hatched:
+            drawPatch(canvas, item, left, y, em);
+            break;
+        case Sign::Line:
+            canvas.line({left, y}, {right, y}, {item.color, em / 7});
+            break;
+        case Sign::Dashes:
+            canvas.line({left, y}, {right, y}, {item.color, em / 10, {em / 2, em / 3}});
+            break;
+        case Sign::Sensor:
+            if (item.color.alpha > 0) drawPatch(canvas, item, left, y, em);
+            drawSensorMark(canvas, {left + 0.45 * em, y}, item.mark, 0.3 * em);
+            break;
+        case Sign::Spot:
+            drawSpotSign(canvas, {left + kSignWidth / 2 * em, y}, item.number, em);
+            break;
+    }
+}
+
+/// How far the columns of a block's figures reach from its right side.
+struct ColumnWidths {
+    double second = 0;  ///< without its gap; 0: there is one column only
+    double first = 0;   ///< of the first alone
+};
+
+ColumnWidths columnsOf(const LegendBlock& block, double em) {
+    ColumnWidths widths;
+    if (block.columns[0].empty()) return widths;
+    const TextStyle style{em, false, Align::Right, map_colors::kInk, {}};
+    widths = {textWidth(block.columns[1], style), textWidth(block.columns[0], style)};
+    for (const LegendItem& item : block.items) {
+        widths.second = std::max(widths.second, textWidth(item.second, style));
+        // A figure alone may take more than its column.
+        if (!item.second.empty())
+            widths.first = std::max(widths.first, textWidth(item.value, style));
+    }
+    return widths;
+}
+
+void drawItem(Canvas& canvas, const LegendItem& item, const ColumnWidths& columns, Point2 corner,
+              double width, double em) {
+    const double base = corner.y + em * kLine * 0.5 + 0.36 * em;
+    const double indent = item.sign == Sign::None ? 0 : (kSignWidth + 0.6) * em;
+    drawSign(canvas, item, corner.x, corner.y + em * kLine * 0.5, em);
+    const TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
+    TextStyle value_style = style;
+    value_style.align = Align::Right;
+    if (item.sign == Sign::Sensor || item.sign == Sign::Spot)
+        value_style.color = map_colors::kFaintInk;
+    const double right = corner.x + width;
+    double room = width - indent;
+    if (columns.second > 0) {
+        const double first = right - columns.second - kColumnGap * em;
+        canvas.text({first, base}, item.value, value_style);
+        room -= right - first + kColumnGap * em;
+        room -= item.second.empty() ? textWidth(item.value, value_style) : columns.first;
+        value_style.color = map_colors::kFaintInk;
+        canvas.text({right, base}, item.second, value_style);
+    } else {
+        // What does not fit is cut on both sides alike.
+        const double needed = textWidth(item.text, style) + 0.7 * em;
+        const double most = std::max(0.5 * room, room - needed);
+        const std::string value = fitText(item.value, most, value_style);
+        canvas.text({right, base}, value, value_style);
+        room -= textWidth(value, value_style) + (value.empty() ? 0 : 0.7 * em);
+    }
+    canvas.text({corner.x + indent, base}, fitText(item.text, room, style), style);
+}
+
+void drawHead(Canvas& canvas, const LegendBlock& block, const ColumnWidths& columns, Point2 corner,
+              double width, double em) {
+    const TextStyle title{em, true, Align::Left, map_colors::kInk, {}};
+    const double base = corner.y + em, right = corner.x + width;
+    double room = width;
+    if (columns.second > 0) {
+        const TextStyle head{em, false, Align::Right, map_colors::kFaintInk, {}};
+        const double first = columns.second + kColumnGap * em;
+        canvas.text({right - first, base}, block.columns[0], head);
+        canvas.text({right, base}, block.columns[1], head);
+        room -= first + textWidth(block.columns[0], head) + kColumnGap * em;
+    }
+    canvas.text({corner.x, base}, fitText(block.title, room, title), title);
+    canvas.line({corner.x, corner.y + 1.3 * em}, {right, corner.y + 1.3 * em},
+                {map_colors::kObjectEdge, em / 16});
+}
+
+}  // namespace
+
+LegendLayout layOutLegend(std::vector<LegendBlock> blocks, int columns, double em) {
+    LegendLayout layout;
+    layout.columns.resize(static_cast<std::size_t>(columns));
+    std::vector<double> heights(layout.columns.size());
+    for (LegendBlock& block : blocks) {
+        const auto shortest = std::min_element(heights.begin(), heights.end());
+        if (*shortest > 0) *shortest += kBlockGap * em;
+        *shortest += heightOf(block, em);
+        layout.columns[static_cast<std::size_t>(shortest - heights.begin())].push_back(
+            std::move(block));
+    }
+    layout.height = *std::max_element(heights.begin(), heights.end());
+    return layout;
+}
+
+void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, double width,
+                double em) {
+    const double gap = 2 * em;
+    const auto count = static_cast<double>(layout.columns.size());
+    const double column_width = (width - (count - 1) * gap) / count;
+    double x = corner.x;
+    for (const auto& blocks : layout.columns) {
+        double y = corner.y;
+        for (const LegendBlock& block : blocks) {
+            const ColumnWidths widths = columnsOf(block, em);
+            drawHead(canvas, block, widths, {x, y}, column_width, em);
+            y += em * kLine;
+            for (const LegendItem& item : block.items) {
+                drawItem(canvas, item, widths, {x, y}, column_width, em);
+                y += em * kLine;
+            }
+            y += kBlockGap * em;
+        }
+        x += column_width + gap;
+    }
+}
+
+void drawScaleBar(Canvas& canvas, Point2 corner, double most, double page_per_metre, double em) {
+    const double limit = most / page_per_metre;
+    double metres = std::pow(10, std::floor(std::log10(limit)));
+    for (const double factor : {5, 2}) {
+        if (factor * metres <= limit) {
+            metres *= factor;
+            break;
+        }
+    }
+    const double right = corner.x + metres * page_per_metre;
+    const Stroke stroke{map_colors::kInk, em / 8};
+    const std::vector<Point2> bar = {
+        {corner.x, corner.y - 0.4 * em}, corner, {right, corner.y}, {right, corner.y - 0.4 * em}};
+    canvas.polyline(bar, stroke);
+    canvas.line({corner.x + (right - corner.x) / 2, corner.y},
+                {corner.x + (right - corner.x) / 2, corner.y - 0.25 * em},
+                {map_colors::kInk, em / 12});
+    const TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
+    canvas.text({right + 0.6 * em, corner.y}, formatDouble(metres) + " m", style);
+}
+
+}  // namespace ispace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cover/grid.h"
+#include "env/environment.h"
+#include "geom/curve.h"
+#include "layout/laser.h"
+#include "layout/ranger.h"
+#include "layout/ultrasound.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// What sensors that do not scan in a level slice see of a level plane: by field of view, greatest
+/// range and occlusion by everything that stands (`mesh`: a RayWorld::ofEnvironment). The blind
+/// zone is not cut out. A place on the plane that a body covers is seen if sight reaches it.
+///
+/// By cells: centres, with rays of float32 as RayWorld::look has them.
+///
+/// A laser that scans in one tilted plane is seen to cover the floor over or under which that plane
+/// passes in sight, above the floor (`height` does not count); a swept one what its scans pass of
+/// the plane at `height` as it turns on, between scans as well.
+CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedLaser& sensor, double height);
+CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedRanger& sensor,
+                  double height);
+/// Where the receiver hears a tag that emits all around.
+CellSet cellsHeard(const Grid& grid, const RayWorld& mesh, const PlacedReceiver& sensor,
+                   double height);
+
+/// The bodies whose shadows make the same regions exactly. Needs the environment no longer once it
+/// is made; copies share what they hold. Thread-safe.
+class ShadowCaster {
+  public:
+    explicit ShadowCaster(const Environment& environment);
+
+    /// The same regions as curves with what is seen on their left, disjoint: the field of view on
+    /// the plane less the shadows of all triangles between it and the sensor. Conics are laid out
+    /// within kChordError. Empty curves: nothing is seen; nothing: not known exactly (swept
+    /// lasers).
+    [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const PlacedLaser& sensor,
+                                                               double height) const;
+    [[nodiscard]] std::vector<Curve> regionSeen(const PlacedRanger& sensor, double height) const;
+    [[nodiscard]] std::vector<Curve> regionHeard(const PlacedReceiver& sensor, double height) const;
+
+  private:
+    struct Data;
+    std::shared_ptr<const Data> data_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/plane_view.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "cover/plane_sweep.h"
+#include "cover/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+struct Room {
+    explicit Room(const std::string& lines, int columns = 60, int rows = 40)
+        : scene(sceneOf(lines)),
+          grid{scene.environment.limits(), columns, rows},
+          mesh(RayWorld::ofEnvironment(scene.environment)) {}
+
+    /// Checks each cell with `is_seen(centre)`, which gives how far inside a place is (below 0:
+    /// outside); places nearer to the edge are left out.
+    template <typename Inside>
+    void expect(const CellSet& cells, Inside inside) const {
+        std::size_t count = 0;
+        for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+            const double depth = inside(grid.center(cell));
+            if (std::fabs(depth) < 1e-4) continue;
+            ASSERT_EQ(cells.test(cell), depth > 0)
+                << grid.center(cell).x << ", " << grid.center(cell).y;
+            count += depth > 0 ? 1 : 0;
+        }
+        EXPECT_GT(count, 0U);
+    }
+
+    Scene scene;
+    Grid grid;
+    RayWorld mesh;
+};
+
+Pose3 poseAt(Point3 place, double heading, double tilt, double roll = 0) {
+    return {place, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
+}
+
+PlacedRanger rangerAt(const Pose3& pose, double fov_x, double fov_y, double range) {
+    Ranger ranger;
+    ranger.fov_x = Angle::degrees(fov_x);
+    ranger.fov_y = Angle::degrees(fov_y);
+    ranger.max_range = range;
+    return {"r", ranger, pose};
+}
+
+PlacedReceiver receiverAt(const Pose3& pose, double fov, double range) {
+    Receiver receiver;
+    receiver.fov = Angle::degrees(fov);
+    receiver.max_range = range;
+    return {"u", receiver, pose};
+}
+
+Laser laserWith(double range, double first, double span) {
+    Laser laser;
+    laser.max_range = range;
+    laser.first = Angle::degrees(first);
+    laser.beams = static_cast<int>(span) + 1;
+    return laser;
+}
+
+double tanOf(double degrees) { return tan(Angle::degrees(degrees)); }
+
+TEST(PlaneCells, RangerLookingDownSeesARectangle) {
+    const Room room("ispace size=12,8,4");
+    const Point3 place{0.3, -0.2, 3};
+    for (const double plane : {0.0, 0.7, 2.9, 3.8}) {
+        // Looking down the left of the picture is +y, looking up its top is -x.
+        const PlacedRanger sensor = rangerAt(poseAt(place, 0, plane < 3 ? -90 : 90), 70, 40, 20);
+        const double w = std::fabs(plane - 3) * tanOf(35), d = std::fabs(plane - 3) * tanOf(20);
+        const Room fine("ispace size=12,8,4", 1200, 400);
+        fine.expect(cellsSeen(fine.grid, fine.mesh, sensor, plane), [&](Point2 p) {
+            return std::min(w - std::fabs(p.y - place.y), d - std::fabs(p.x - place.x));
+        });
+    }
+}
+
+TEST(PlaneCells, RollTurnsThePicture) {
+    const Room room("ispace size=12,8,4", 120, 80);
+    const PlacedRanger sensor = rangerAt(poseAt({0, 0, 3}, 0, -90, 90), 70, 40, 20);
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+        return std::min(3 * tanOf(35) - std::fabs(p.x), 3 * tanOf(20) - std::fabs(p.y));
+    });
+}
+
+TEST(PlaneCells, RangeIsADistanceOrADepth) {
+    const Room room("ispace size=12,8,4", 120, 80);
+    PlacedRanger sensor = rangerAt(poseAt({0, 0, 1}, 0, 0), 90, 100, 4);
+    const auto wedge = [](Point2 p) { return std::min(p.x - std::fabs(p.y), p.x - 1 / tanOf(50)); };
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
+                [&](Point2 p) { return std::min(wedge(p), 4 - std::hypot(p.x, p.y, 1)); });
+    sensor.ranger.measures_depth = true;
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
+                [&](Point2 p) { return std::min(wedge(p), 4 - p.x); });
+}
+
+TEST(PlaneCells, HeadSeesBearingsAndElevations) {
+    const Room room("ispace size=12,8,4", 120, 80);
+    for (const double span : {30.0, 180.0, 300.0, 360.0}) {
+        PlacedRanger sensor = rangerAt(poseAt({0.05, 0, 2}, 20, 0), span, 100, 4);
+        sensor.ranger.projection = Projection::Spherical;
+        room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+            const Vec2 way = p - Point2{0.05, 0};
+            const Angle off = wrapped(directionOf(way.x, way.y) - Angle::degrees(20));
+            const double side = span == 360 ? 1 : span / 2 - std::fabs(off.degrees());
+            const double ring = length(way) - 2 / tanOf(50);
+            return std::min({side, ring, 4 - std::hypot(way.x, way.y, 2)});
+        });
+    }
+}
+
+TEST(PlaneCells, ReceiverHearsACone) {
+    const Room room("ispace size=12,8,4", 120, 80);
+    for (const double fov : {60.0, 120.0, 180.0, 240.0, 360.0}) {
+        const Pose3 pose = poseAt({0.3, 0.1, 2}, 30, -50, 77);
+        const PlacedReceiver sensor = receiverAt(pose, fov, 5);
+        room.expect(cellsHeard(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
+            const Vec3 way = Point3{p.x, p.y, 0.5} - pose.position;
+            const double cosine = dot(way, pose.beam({})) / length(way);
+            const double off = std::acos(std::min(1.0, cosine)) * (180 / std::numbers::pi);
+            return std::min(fov == 360 ? 1 : fov / 2 - off, 5 - length(way));
+        });
+    }
+}
+
+TEST(PlaneCells, ThingsAreInTheWayOnlyFromAbove) {
+    const Room room("ispace size=12,8,4\ncube at=2,0 size=1,1,1\n", 61, 41);
+    const PlacedReceiver sensor = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 30);
+    const CellSet floor = cellsHeard(room.grid, room.mesh, sensor, 0);
+    const CellSet top = cellsHeard(room.grid, room.mesh, sensor, 1);
+    for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
+        const Point2 p = room.grid.center(cell);
+        const bool hidden = p.x > 1.5 && p.x < 5 && std::fabs(p.y) < std::min(1.0, p.x / 3);
+        ASSERT_EQ(floor.test(cell), !hidden) << p.x << ", " << p.y;
+        ASSERT_TRUE(top.test(cell)) << "its top is no shadow on itself: " << p.x << ", " << p.y;
+    }
+}
+
+TEST(PlaneCells, PlaneOutOfRangeIsNotSeen) {
+    const Room room("ispace size=12,8,4");
+    const PlacedReceiver sensor = receiverAt(poseAt({0, 0, 3}, 0, -90), 360, 2);
+    EXPECT_EQ(cellsHeard(room.grid, room.mesh, sensor, 0).count(), 0U);
+    EXPECT_GT(cellsHeard(room.grid, room.mesh, sensor, 1.1).count(), 0U);
+    EXPECT_EQ(cellsHeard(room.grid, room.mesh, receiverAt(sensor.pose, 360, 0), 0).count(), 0U);
+}
+
+TEST(PlaneCells, TiltedLaserCoversTheFloorUnderItsPlane) {
+    const Room room("ispace size=12,8,20", 120, 80);
+    const Laser wide = laserWith(30, -90, 180);
+    room.expect(cellsSeen(room.grid, room.mesh, {"l", wide, poseAt({0, 0, 1}, 0, -45)}, 0),
+                [](Point2 p) { return std::min(p.x, 1 - p.x); });
+    const Laser near = laserWith(2, -90, 180);
+    room.expect(cellsSeen(room.grid, room.mesh, {"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
+                [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); });
+    const PlacedLaser upright{"l", wide, poseAt({0, 0, 1}, 0, -90)};
+    EXPECT_EQ(cellsSeen(room.grid, room.mesh, upright, 0).count(), 0U);
+}
+
+TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
+    // Table 5.4 of the thesis: 7 m, looking down, 180 degrees, each heading.
+    const Room room("ispace size=9,9,4.5", 90, 90);
+    PlacedLaser sensor{"l", laserWith(7, -90, 180), poseAt({0, 0, 4}, 0, -90)};
+    sensor.laser.sweep = SweepAxis::Heading;
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
+                [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); });
+    // Four scans, and all between the last and the first.
+    sensor.laser.sweep_step = Angle::degrees(90);
+    sensor.laser.first = Angle::degrees(10);
+    sensor.laser.beams = 61;
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
+        const double off = std::hypot(p.x, p.y) / 4;  // tangent, from straight down
+        return std::min({off - tanOf(10), tanOf(60) - off, 7 - std::hypot(p.x, p.y, 4)});
+    });
+    sensor.laser = laserWith(7, -90, 180);
+    sensor.laser.sweep = SweepAxis::Heading;
+    // A quarter of the headings, of both halves of the scan.
+    sensor.laser.sweep_span = Angle::degrees(90);
+    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
+                [](Point2 p) { return std::min(7 - std::hypot(p.x, p.y, 4), -p.x * p.y); });
+}
+
+/// The same by trying angle after angle: where the place changes sides of the scan plane.
+/// \return how far inside the window of bearings it then is, in degrees: the most of all
+double passesByTrying(const PlacedLaser& sensor, Point3 place) {
+    const Laser& laser = sensor.laser;
+    const Vec3 way = place - sensor.pose.position;
+    const double last =
+        laser.sweep_span.degrees() < 360 ? (laser.scans() - 1) * laser.sweep_step.degrees() : 360;
+    const auto frame = [&](double angle) {
+        return Frame3(sweptPose(laser, sensor.pose, angle / laser.sweep_step.degrees()));
+    };
+    constexpr int kSteps = 360;
+    double most = -1e9, before = dot(frame(0).up, way);
+    for (int i = 1; i <= kSteps; ++i) {
+        const double step = last / kSteps, end = step * i, side = dot(frame(end).up, way);
+        if ((before > 0) != (side > 0)) {
+            double low = end - step, high = end;
+            for (int k = 0; k < 40; ++k) {
+                const double middle = (low + high) / 2;
+                ((dot(frame(middle).up, way) > 0) == (before > 0) ? low : high) = middle;
+            }
+            const Frame3 at = frame(low);
+            const Angle bearing = directionOf(dot(way, at.forward), dot(way, at.left));
+            const Angle middle = 0.5 * (laser.first + laser.last());
+            const double half = 0.5 * (laser.last() - laser.first).degrees();
+            most = std::max(most, half - std::fabs(wrapped(bearing - middle).degrees()));
+        }
+        before = side;
+    }
+    return most;
+}
+
+TEST(SweptScan, PassesWhatTryingAllAnglesFinds) {
+    std::mt19937_64 random(17);
+    std::uniform_real_distribution<double> turn(-200, 200), place(-4, 4), half(5, 175);
+    const std::array axes{SweepAxis::Heading, SweepAxis::Tilt, SweepAxis::Roll};
+    int seen = 0, unseen = 0;
+    for (int trial = 0; trial < 90; ++trial) {
+        PlacedLaser sensor{
+            "l", laserWith(30, -half(random), 2 * half(random)),
+            poseAt({place(random), place(random), place(random)}, turn(random),
+                   trial % 4 == 0 ? 0 : turn(random), trial % 5 < 2 ? 0 : turn(random))};
+        sensor.laser.sweep = axes[static_cast<std::size_t>(trial) % 3];
+        if (sensor.pose.isLevel() && sensor.laser.sweep == SweepAxis::Heading) continue;
+        if (trial % 7 != 0) sensor.laser.sweep_span = Angle::degrees(2 * half(random) + 0.5);
+        const SweptScan scan(sensor);
+        for (int i = 0; i < 12; ++i) {
+            const Point3 target{place(random), place(random), place(random)};
+            const double depth = passesByTrying(sensor, target);
+            if (std::fabs(depth) < 1e-3) continue;
+            ASSERT_EQ(scan.passes(target), depth > 0) << trial << ": " << depth;
+            ++(depth > 0 ? seen : unseen);
+        }
+    }
+    EXPECT_GT(seen, 100);
+    EXPECT_GT(unseen, 100);
+}
+
+TEST(SweptScan, PlacesOnTheAxisAreSeenByTheirBearing) {
+    PlacedLaser sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 1}, 0, 0)};
+    sensor.laser.sweep = SweepAxis::Tilt;
+    sensor.laser.sweep_span = Angle::degrees(30);
+    EXPECT_TRUE(SweptScan(sensor).passes({0, 2, 1}));
+    sensor.laser.first = Angle::degrees(-80);
+    sensor.laser.beams = 161;
+    EXPECT_FALSE(SweptScan(sensor).passes({0, 2, 1}));
+    sensor.laser.sweep = SweepAxis::Roll;
+    EXPECT_TRUE(SweptScan(sensor).passes({2, 0, 1}));
+    EXPECT_FALSE(SweptScan(sensor).passes({-2, 0, 1}));
+    // A scan that turns in its own plane.
+    sensor.laser.sweep = SweepAxis::Heading;
+    EXPECT_TRUE(SweptScan(sensor).passes({std::cos(1.8), std::sin(1.8), 1}));
+    EXPECT_FALSE(SweptScan(sensor).passes({std::cos(2.0), std::sin(2.0), 1}));
+    EXPECT_FALSE(SweptScan(sensor).passes({1, 0, 1.01}));
+}
+
+TEST(PlaneCells, SweptLaserSeesWhatNothingHides) {
+    const Room room("ispace size=12,8,4\ncube at=2,0 size=1,1,1\n", 61, 41);
+    PlacedLaser sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 2}, 0, -90)};
+    sensor.laser.sweep = SweepAxis::Tilt;
+    sensor.laser.sweep_span = Angle::degrees(90);
+    const CellSet floor = cellsSeen(room.grid, room.mesh, sensor, 0);
+    for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
+        const Point2 p = room.grid.center(cell);
+        const bool hidden = p.x > 1.5 && p.x < 5 && std::fabs(p.y) < std::min(1.0, p.x / 3);
+        ASSERT_EQ(floor.test(cell), p.x > -1e-9 && !hidden) << p.x << ", " << p.y;
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "cover/coverage.h"
+
+namespace ispace {
+
+/// What somebody asks of a layout: `95%` of the indoor region, `free:95%` of the free floor, or
+/// `zone:NAME=95%` of a zone. Figures by cells decide, as a layout's `result` has them.
+struct Requirement {
+    enum class Of { Indoor, Free, Zone };
+    Of of = Of::Indoor;
+    std::string zone;
+    double share = 0;
+    friend bool operator==(const Requirement&, const Requirement&) = default;
+};
+
+/// \throws UsageError for what is none
+Requirement parseRequirement(std::string_view text);
+
+/// What is missing, as a sentence without end: "coverage is 50.00%, below the required 95%: 7.20 m2
+/// are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)"; "" if nothing is.
+/// \throws UsageError if the room has no such zone, with the nearest name
+std::string shortfall(const Requirement& requirement, const CoverageReport& report);
+
+}  // namespace ispace

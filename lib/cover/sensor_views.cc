@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/sensor_views.h"
+
+#include <tbb/parallel_for.h>
+
+#include <map>
+#include <memory>
+
+#include "base/error.h"
+#include "cover/plane_view.h"
+#include "cover/visible.h"
+#include "sense/scan.h"
+#include "sense/ultrasound.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+static_assert(kSightContact == kContact, "rays and exact regions have the same rule for contact");
+
+namespace {
+
+SensorView viewOf(const PlacedLaser& sensor, std::size_t index) {
+    return {.kind = ViewKind::Laser,
+            .index = index,
+            .id = sensor.id,
+            .model = sensor.laser.model,
+            .pose = sensor.pose,
+            .max_range = sensor.laser.max_range};
+}
+SensorView viewOf(const PlacedRanger& sensor, std::size_t index) {
+    return {.kind = ViewKind::Ranger,
+            .index = index,
+            .id = sensor.id,
+            .model = sensor.ranger.model,
+            .pose = sensor.pose,
+            .max_range = sensor.ranger.max_range};
+}
+SensorView viewOf(const PlacedReceiver& sensor, std::size_t index) {
+    return {.kind = ViewKind::Receiver,
+            .index = index,
+            .id = sensor.id,
+            .model = sensor.receiver.model,
+            .pose = sensor.pose,
+            .max_range = sensor.receiver.max_range};
+}
+
+std::vector<Curve> curvesOf(const VisibleRegion& region) {
+    Curve outline = outlineOf(region);
+    if (outline.empty()) return {};
+    return {std::move(outline)};
+}
+
+/// Fills in the views of a scene's sensors.
+class Viewer {
+  public:
+    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options)
+        : scene_(scene), worlds_(worlds), grid_(grid), options_(options) {}
+
+    std::vector<SensorView> run() {
+        makeViews();
+        std::vector<std::size_t> on_planes;
+        std::map<double, std::vector<std::size_t>> by_height;
+        for (std::size_t i = 0; i < views_.size(); ++i) {
+            if (views_[i].kind == ViewKind::Laser && scansSlice(scene_.lasers[views_[i].index]))
+                by_height[views_[i].pose.position.z].push_back(i);
+            else
+                on_planes.push_back(i);
+        }
+        lookInSlices({by_height.begin(), by_height.end()});
+        lookAtPlanes(on_planes);
+        return std::move(views_);
+    }
+
+  private:
+    using Level = std::pair<double, std::vector<std::size_t>>;
+
+    void makeViews() {
+        for (std::size_t i = 0; i < scene_.lasers.size(); ++i)
+            views_.push_back(viewOf(scene_.lasers[i], i));
+        for (std::size_t i = 0; i < scene_.rangers.size(); ++i)
+            views_.push_back(viewOf(scene_.rangers[i], i));
+        for (std::size_t i = 0; i < scene_.receivers.size(); ++i)
+            views_.push_back(viewOf(scene_.receivers[i], i));
+        for (const PlacedLaser& sensor : scene_.lasers) worlds_.prepare(sensor.pose);
+    }
+
+    /// One slice after another is held by each thread, however many heights there are.
+    void lookInSlices(const std::vector<Level>& levels) {
+        tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t k) {
+            const auto& [height, members] = levels[k];
+            std::vector<Box2> reach;
+            reach.reserve(members.size());
+            for (const std::size_t i : members) reach.push_back(reachOf(views_[i]));
+            const SliceSight sight(scene_.environment.slice(height), reach);
+            tbb::parallel_for(std::size_t{0}, members.size(),
+                              [&](std::size_t i) { lookInSlice(views_[members[i]], sight); });
+        });
+    }
+
+    static Box2 reachOf(const SensorView& view) {
+        const Point2 p = view.pose.position.onFloor();
+        const Vec2 reach{view.max_range + kSightContact, view.max_range + kSightContact};
+        return {p - reach, p + reach};
+    }
+
+    void lookInSlice(SensorView& view, const SliceSight& sight) const {
+        const PlacedLaser& sensor = scene_.lasers[view.index];
+        view.beams = castBeams(worlds_.at(sensor.pose), sensor);
+        view.cells = options_.cells_by == CellRule::Beams
+                         ? cellsAmongBeams(grid_, sensor, view.beams)
+                         : cellsSeen(grid_, sight, sensor);
+        if (options_.exact) view.region = curvesOf(regionSeen(sight, sensor));
+    }
+
+    void lookAtPlanes(const std::vector<std::size_t>& members) {
+        if (members.empty()) return;
+        worlds_.prepareMesh();
+        const RayWorld& mesh = worlds_.mesh();
+        std::unique_ptr<const ShadowCaster> shadows;
+        if (options_.exact) shadows = std::make_unique<ShadowCaster>(scene_.environment);
+        tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t i) {
+            SensorView& view = views_[members[i]];
+            lookAtPlane(view, mesh);
+            if (shadows != nullptr) addRegion(view, *shadows);
+        });
+    }
+
+    void lookAtPlane(SensorView& view, const RayWorld& mesh) const {
+        const double plane = options_.plane;
+        if (view.kind == ViewKind::Ranger) {
+            view.cells = cellsSeen(grid_, mesh, scene_.rangers[view.index], plane);
+        } else if (view.kind == ViewKind::Receiver) {
+            view.cells = cellsHeard(grid_, mesh, scene_.receivers[view.index], plane);
+        } else {
+            const PlacedLaser& sensor = scene_.lasers[view.index];
+            view.beams = castBeams(worlds_.at(sensor.pose), sensor);
+            view.cells = options_.cells_by == CellRule::Beams
+                             ? cellsAmongBeams(grid_, sensor, view.beams)
+                             : cellsSeen(grid_, mesh, sensor, plane);
+        }
+    }
+
+    void addRegion(SensorView& view, const ShadowCaster& shadows) const {
+        const double plane = options_.plane;
+        try {
+            if (view.kind == ViewKind::Ranger)
+                view.region = shadows.regionSeen(scene_.rangers[view.index], plane);
+            else if (view.kind == ViewKind::Receiver)
+                view.region = shadows.regionHeard(scene_.receivers[view.index], plane);
+            else
+                view.region = shadows.regionSeen(scene_.lasers[view.index], plane);
+        } catch (const FormatError&) {
+            view.region.reset();  // more shadows than can be laid over each other
+        }
+    }
+
+    const Scene& scene_;
+    Worlds& worlds_;
+    const Grid& grid_;
+    const CoverageOptions& options_;
+    std::vector<SensorView> views_;
+};
+
+/// The region that at least kLeastReceivers hear; nothing if that of one of them is not known.
+std::optional<std::vector<Curve>> regionOfEnough(const std::vector<const SensorView*>& receivers) {
+    std::vector<Layer> layers;
+    layers.reserve(receivers.size());
+    for (const SensorView* view : receivers) {
+        if (!view->region) return std::nullopt;
+        layers.push_back({.curves = *view->region});
+    }
+    std::vector<Curve> curves;
+    const auto is_enough = [](const LayerLabel& label) {
+        return label.count >= static_cast<std::int32_t>(kLeastReceivers);
+    };
+    for (const Region& region : LayerOverlay(layers).regions(is_enough))
+        for (Curve& curve : curvesWithArcs(region)) curves.push_back(std::move(curve));
+    return curves;
+}
+
+/// Where at least kLeastReceivers hear.
+SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
+    SeenSet set;
+    set.cells = CellSet(grid.size());
+    std::vector<std::uint16_t> heard(grid.size());
+    for (const SensorView* view : receivers)
+        view->cells.forEach([&](std::size_t cell) {
+            if (++heard[cell] == kLeastReceivers) set.cells.set(cell);
+        });
+    set.region = regionOfEnough(receivers);
+    return set;
+}
+
+}  // namespace
+
+std::vector<SensorView> viewsOf(const Scene& scene, Worlds& worlds, const Grid& grid,
+                                const CoverageOptions& options) {
+    return Viewer(scene, worlds, grid, options).run();
+}
+
+std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
+    std::vector<SeenSet> sets;
+    std::vector<const SensorView*> receivers;
+    for (const SensorView& view : views) {
+        if (view.kind == ViewKind::Receiver)
+            receivers.push_back(&view);
+        else
+            sets.push_back({view.cells, view.region});
+    }
+    if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid));
+    return sets;
+}
+
+}  // namespace ispace

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cover/plane_sweep.h"
+#include "cover/plane_view.h"
+#include "cover/shadow_bodies.h"
+#include "cover/shadow_footprint.h"
+#include "geom/layers.h"
+#include "geom/visibility.h"
+
+namespace ispace {
+
+struct ShadowCaster::Data {
+    std::vector<ShadowBody> bodies;
+
+    [[nodiscard]] std::span<const ShadowBody> withoutFloor() const {
+        return std::span(bodies).first(bodies.size() - 1);
+    }
+};
+
+ShadowCaster::ShadowCaster(const Environment& environment)
+    : data_(std::make_shared<const Data>(Data{shadowBodiesOf(environment)})) {}
+
+namespace {
+
+/// The arc over a chord that has `bulge` between them.
+CurveEdge arcOver(Point2 from, Point2 to, double bulge) {
+    const double chord = distance(from, to), share = std::fabs(bulge) / (chord * chord);
+    if (!(share > 1e-12)) return {from, to};
+    // share = (a - sin a) / (8 sin^2 (a / 2)), close to a / 12 for short arcs of angle a.
+    double angle = 0;
+    for (int i = 0; i < 50; ++i) {
+        const double half = std::sin(angle / 2);
+        const double found = half > 0 ? (angle - std::sin(angle)) / (8 * half * half) : 0;
+        const double step = 12 * (share - found);
+        angle = std::min(angle + step, 3.0);
+        if (std::fabs(step) < 1e-14) break;
+    }
+    const double radius = chord / (2 * std::sin(angle / 2));
+    const double turn = bulge > 0 ? 1 : -1;
+    const Vec2 half = 0.5 * (to - from);
+    const Point2 center =
+        from + half + (turn * radius * std::cos(angle / 2) / length(half)) * perpendicular(half);
+    return {from, to, turn * radius, center};
+}
+
+/// Puts arcs back in the place of chords.
+class ArcTable {
+  public:
+    explicit ArcTable(const LayerOverlay& overlay) {
+        for (const LayerOverlay::Edge& edge : overlay.edges()) {
+            if (edge.bulge == 0) continue;
+            chords_.push_back({edge.from, edge.to, edge.bulge});
+            chords_.push_back({edge.to, edge.from, -edge.bulge});
+        }
+        std::sort(chords_.begin(), chords_.end(), less);
+    }
+    [[nodiscard]] CurveEdge edge(Point2 from, Point2 to) const {
+        const Chord wanted{from, to, 0};
+        const auto found = std::lower_bound(chords_.begin(), chords_.end(), wanted, less);
+        if (found == chords_.end() || less(wanted, *found)) return {from, to};
+        return arcOver(from, to, found->bulge);
+    }
+
+  private:
+    struct Chord {
+        Point2 from, to;
+        double bulge;
+    };
+    static bool less(const Chord& a, const Chord& b) {
+        return a.from != b.from ? lexLess(a.from, b.from) : lexLess(a.to, b.to);
+    }
+    std::vector<Chord> chords_;
+};
+
+Curve movedBy(Vec2 way, Curve curve) {
+    for (CurveEdge& edge : curve) {
+        edge.from = edge.from + way;
+        edge.to = edge.to + way;
+        if (edge.isArc()) edge.center = edge.center + way;
+    }
+    return curve;
+}
+
+/// What has all marks and is in no shadow, of layers that count from `foot`.
+std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Point2 foot) {
+    const LayerOverlay overlay(layers);
+    const std::vector<Region> regions = overlay.regions(
+        [marks](const LayerLabel& label) { return label.marks == marks && label.count == 0; });
+    const ArcTable arcs(overlay);
+    std::vector<Curve> curves;
+    for (const Region& region : regions)
+        for (const Polygon& polygon : curvesOf(region)) {
+            Curve curve;
+            curve.reserve(polygon.size());
+            forEachEdge(polygon,
+                        [&](const Segment2& edge) { curve.push_back(arcs.edge(edge.a, edge.b)); });
+            curves.push_back(movedBy(foot - Point2{}, std::move(curve)));
+        }
+    return curves;
+}
+
+/// A plane this near to the sensor is taken for one that passes through it.
+bool passesThrough(double drop) { return std::fabs(drop) <= kContact; }
+
+std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldOfView& view,
+                                double height) {
+    const Point3 sensor = view.frame.origin;
+    const bool is_level = passesThrough(height - sensor.z);
+    const double drop = is_level ? 0 : height - sensor.z;
+    Footprint footprint(view, drop, is_level);
+    const Box2 box = footprint.box;
+    if (!(box.low.x < box.high.x && box.low.y < box.high.y)) return {};
+    if (is_level) {
+        Frame3 plane;
+        plane.origin = sensor;
+        const VisibilityMap map(cutsOf(bodies, plane, footprint.reach));
+        const Curve seen = outlineOf(map.look({0, 0}, footprint.reach));
+        if (seen.empty()) return {};
+        footprint.mark({seen});
+    } else {
+        const Shadows shadows(bodies, sensor, height, box);
+        for (const ShadowBody& body : bodies)
+            for (Layer& layer : shadows.of(body)) footprint.layers.push_back(std::move(layer));
+    }
+    return laid(footprint.layers, footprint.marks, sensor.onFloor());
+}
+
+/// A line of sight in a scan plane ends at the floor, which has no end.
+void addFloor(const Frame3& plane, double max_range, std::vector<Segment2>& lines) {
+    const Vec2 uphill{plane.forward.z, plane.left.z};
+    const double slope = length(uphill);
+    if (!(slope * max_range > plane.origin.z)) return;
+    const Vec2 way = 1 / slope * uphill;
+    const Point2 nearest = Point2{} - (plane.origin.z / slope) * way;
+    const Vec2 aside = (2 * max_range) * perpendicular(way);
+    lines.push_back({nearest - aside, nearest + aside});
+}
+
+/// A curve of a scan plane on the plan, counted from the foot.
+Curve onPlan(const Curve& curve, const ScanPlane& plane) {
+    const Vec3 &f = plane.frame().forward, &l = plane.frame().left;
+    const auto place_of = [&](Point2 p) {
+        return Point2{p.x * f.x + p.y * l.x, p.x * f.y + p.y * l.y};
+    };
+    Curve out;
+    out.reserve(curve.size());
+    for (const CurveEdge& edge : curve) {
+        const Point2 from = out.empty() ? place_of(edge.from) : out.back().to;
+        const Point2 to = place_of(edge.to);
+        if (!edge.isArc()) {
+            if (from != to) out.push_back({from, to});
+            continue;
+        }
+        const double radius = std::fabs(edge.radius);
+        const Vec2 begin = edge.from - edge.center, end = edge.to - edge.center;
+        const double first = std::atan2(begin.y, begin.x);
+        const double span = std::atan2(cross(begin, end), dot(begin, end));
+        if (out.empty()) out.push_back({from, from});
+        follow(
+            [&](double angle) {
+                return place_of(edge.center + radius * Vec2{std::cos(angle), std::sin(angle)});
+            },
+            first, first + span, out);
+    }
+    if (out.empty()) return out;
+    out.back().to = out.front().from;
+    std::erase_if(out, [](const CurveEdge& edge) { return edge.from == edge.to; });
+    if (plane.up() > 0) return out;
+    std::reverse(out.begin(), out.end());
+    for (CurveEdge& edge : out) {
+        std::swap(edge.from, edge.to);
+        edge.radius = -edge.radius;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& sensor,
+                                                           double) const {
+    const Laser& laser = sensor.laser;
+    if (laser.sweep != SweepAxis::None) return std::nullopt;
+    const ScanPlane plane(sensor.pose);
+    if (plane.up() == 0) return std::vector<Curve>{};
+    const bool is_over_floor = sensor.pose.position.z > kContact;
+    std::vector<Segment2> lines = cutsOf(is_over_floor ? data_->withoutFloor() : data_->bodies,
+                                         plane.frame(), laser.max_range);
+    if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
+    const VisibilityMap map(lines);
+    const VisibleRegion seen = map.look({0, 0}, laser.max_range);
+    const Curve curve =
+        onPlan(outlineOf(sectorOf(seen, laser.first, laser.last() - laser.first)), plane);
+    if (curve.empty()) return std::vector<Curve>{};
+    const Point2 foot = sensor.pose.position.onFloor();
+    if (is_over_floor) return std::vector<Curve>{movedBy(foot - Point2{}, curve)};
+    // From below the floor: what of it is above.
+    const double far = laser.max_range;
+    const double z = plane.heightAt(foot);
+    const Vec2 uphill{plane.heightAt(foot + Vec2{1, 0}) - z, plane.heightAt(foot + Vec2{0, 1}) - z};
+    const Polygon over = halfOf({{-far, -far}, {far, -far}, {far, far}, {-far, far}}, uphill, z);
+    if (over.empty()) return std::vector<Curve>{};
+    const Layer layers[] = {{{curve}, false, 0, 1}, {{curveOf(over)}, false, 0, 2}};
+    return laid(layers, 3, foot);
+}
+
+std::vector<Curve> ShadowCaster::regionSeen(const PlacedRanger& sensor, double height) const {
+    return regionInView(data_->bodies, FieldOfView(sensor), height);
+}
+
+std::vector<Curve> ShadowCaster::regionHeard(const PlacedReceiver& sensor, double height) const {
+    return regionInView(data_->bodies, FieldOfView(sensor), height);
+}
+
+}  // namespace ispace

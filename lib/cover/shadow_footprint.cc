@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/shadow_footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Polygon square(double half) { return {{-half, -half}, {half, -half}, {half, half}, {-half, half}}; }
+
+/// The part of a level plane, `drop` over the foot, on the side of a plane through the sensor to
+/// which its normal points.
+Polygon halfOf(const Polygon& polygon, Vec3 normal, double drop) {
+    return ispace::halfOf(polygon, Vec2{normal.x, normal.y}, normal.z * drop);
+}
+
+/// A cone with its tip at the sensor, cut by a level plane: a conic that opens along `axis`.
+struct Conic {
+    Vec2 along{1, 0}, across{0, 1};  ///< of unit length
+    double run = 0, rise = 0;        ///< of the axis: along the plane and towards it
+    double cosine = 1, sine = 0;     ///< of the half angle
+    double drop = 0;                 ///< distance of the plane, not 0
+
+    Conic(Vec3 axis, Angle half, double height)
+        : run(std::hypot(axis.x, axis.y)),
+          rise(height < 0 ? -axis.z : axis.z),
+          cosine(cos(half)),
+          sine(sin(half)),
+          drop(std::fabs(height)) {
+        if (run > 0) along = {axis.x / run, axis.y / run};
+        across = perpendicular(along);
+    }
+    /// How steep the cone is at an angle around its axis: 0 where it is nearest to the plane.
+    [[nodiscard]] double steepness(double around) const {
+        return cosine * rise + sine * run * std::cos(around);
+    }
+    [[nodiscard]] Point2 at(double around) const {
+        const double far = drop / steepness(around);
+        const double u = cosine * run - sine * rise * std::cos(around);
+        return Point2{} + far * u * along + far * sine * std::sin(around) * across;
+    }
+};
+
+/// What a cone makes of the disc about the foot: all of it, nothing, or what a curve holds.
+struct ConeCut {
+    bool holds_all = false;
+    std::optional<Curve> curve;
+};
+
+/// \pre 0 < half < 90 degrees
+ConeCut wedgeOf(Vec3 axis, Angle half, double reach) {
+    const double run = std::hypot(axis.x, axis.y), cosine = cos(half);
+    if (run <= cosine) return {};
+    const Vec2 along{axis.x / run, axis.y / run}, across = perpendicular(along);
+    const double c = cosine / run, s = std::sqrt(1 - c * c);
+    Polygon wedge = square(2 * reach);
+    wedge = ispace::halfOf(wedge, s * along + c * across, 0);
+    wedge = ispace::halfOf(wedge, s * along - c * across, 0);
+    return {false, curveOf(wedge)};
+}
+
+/// Where the conic leaves the disc it is closed well outside of it. \pre 0 < half < 90 degrees
+ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
+    if (drop == 0) return wedgeOf(axis, half, reach);
+    const Conic conic(axis, half, drop);
+    const double beyond = 2 * std::hypot(reach, drop);
+    // cos(around) from where on the conic is within that distance.
+    const double least = conic.drop / beyond - conic.cosine * conic.rise;
+    const double swing = conic.sine * conic.run;
+    if (swing <= least) return {conic.rise >= conic.cosine, std::nullopt};
+    Curve curve;
+    if (-swing >= least) {
+        follow([&conic](double around) { return conic.at(around); }, kPi, -kPi, curve);
+        curve.back().to = curve.front().from;
+        return {false, std::move(curve)};
+    }
+    const double end = std::acos(std::clamp(least / swing, -1.0, 1.0));
+    const double radius = std::sqrt(beyond * beyond - drop * drop);
+    const Point2 left = conic.at(end), right = conic.at(-end);
+    const double turn =
+        std::atan2(dot(left - Point2{}, conic.across), dot(left - Point2{}, conic.along));
+    const auto outside = [&conic, radius](double angle) {
+        return Point2{} + radius * std::cos(angle) * conic.along +
+               radius * std::sin(angle) * conic.across;
+    };
+    curve.push_back({right, outside(-turn)});  // of no length but for rounding
+    follow(outside, -turn, turn, curve);
+    curve.back().to = left;
+    follow([&conic](double around) { return conic.at(around); }, end, -end, curve);
+    curve.back().to = right;
+    std::erase_if(curve, [](const CurveEdge& edge) { return edge.from == edge.to; });
+    return {false, std::move(curve)};
+}
+
+Box2 common(const Box2& a, const Box2& b) {
+    return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+}
+
+Box2 boundsOf(std::span<const Curve> curves) {
+    Box2 box;
+    for (const Curve& curve : curves) {
+        const Box2 one = bounds(curve);
+        box.add(one.low);
+        box.add(one.high);
+    }
+    return box;
+}
+
+}  // namespace
+
+CurveEdge arcThrough(Point2 a, Point2 middle, Point2 b) {
+    const Vec2 m = middle - a, c = b - a;
+    const double turn = cross(m, c);
+    constexpr double kStraight = 1e-9;  // metres between chord and arc
+    if (!(std::fabs(turn) > kStraight * length(c))) return {a, b};
+    const double mm = dot(m, m), cc = dot(c, c);
+    const Vec2 center{(c.y * mm - m.y * cc) / (2 * turn), (m.x * cc - c.x * mm) / (2 * turn)};
+    const double radius = length(center);
+    return {a, b, turn > 0 ? radius : -radius, a + center};
+}
+
+double distanceFrom(const CurveEdge& edge, Point2 middle, Point2 place) {
+    if (!edge.isArc()) {
+        const Vec2 way = edge.to - edge.from;
+        const double size = length(way);
+        return size > 0 ? std::fabs(cross(way, place - edge.from)) / size
+                        : distance(edge.from, place);
+    }
+    if (dot(middle - edge.from, edge.to - middle) < 0)
+        return std::numeric_limits<double>::infinity();
+    return std::fabs(distance(edge.center, place) - std::fabs(edge.radius));
+}
+
+Curve circleOf(double radius) {
+    const Point2 corners[] = {{radius, 0}, {0, radius}, {-radius, 0}, {0, -radius}};
+    Curve curve;
+    for (std::size_t i = 0; i < 4; ++i)
+        curve.push_back({corners[i], corners[(i + 1) % 4], radius, {0, 0}});
+    return curve;
+}
+
+Polygon halfOf(const Polygon& polygon, Vec2 normal, double offset) {
+    const auto over = [normal, offset](Point2 p) {
+        return normal.x * p.x + normal.y * p.y + offset;
+    };
+    Polygon half;
+    half.reserve(polygon.size() + 2);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point2 p = polygon[i], q = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const double fp = over(p), fq = over(q);
+        if (fp >= 0) half.push_back(p);
+        if ((fp > 0 && fq < 0) || (fp < 0 && fq > 0)) half.push_back(p + fp / (fp - fq) * (q - p));
+    }
+    if (half.size() < 3) half.clear();
+    return half;
+}
+
+void Footprint::mark(std::vector<Curve> curves) {
+    const std::uint64_t bit = marks + 1;
+    marks |= bit;
+    box = common(box, boundsOf(curves));
+    layers.push_back({std::move(curves), false, 0, bit});
+}
+
+void Footprint::addCone(Vec3 axis, Angle half, double drop, bool is_in_view) {
+    ConeCut cut;
+    if (half > Angle()) cut = coneOnPlane(axis, half, drop, reach);
+    if (cut.curve && is_in_view) return mark({*std::move(cut.curve)});
+    if (cut.curve) {
+        layers.push_back({{*std::move(cut.curve)}, true, 0, 0});
+        return;
+    }
+    if (cut.holds_all != is_in_view) box = {};
+}
+
+/// What planes through the sensor, and a range along its axis, bound.
+void Footprint::addPolygon(const FieldOfView& view, double drop) {
+    const Frame3& frame = view.frame;
+    const Angle right_angle = Angle::degrees(90);
+    Polygon polygon = square(reach);
+    const auto keep = [&](Vec3 local) { polygon = halfOf(polygon, frame * local, drop); };
+    if (view.shape == FieldOfView::Shape::Pyramid) {
+        for (const double side : {1.0, -1.0}) {
+            keep({view.across, side, 0});
+            keep({view.upright, 0, side});
+        }
+    } else if (view.shape == FieldOfView::Shape::Window && view.half_x <= right_angle) {
+        const auto [c, s] = cosSin(view.half_x);
+        for (const double side : {1.0, -1.0}) keep({s, side * c, 0});
+    } else if (view.shape == FieldOfView::Shape::Cone && view.half_x == right_angle) {
+        keep({1, 0, 0});
+    }
+    if (view.is_by_depth) {
+        const Vec3 f = frame.forward;
+        polygon = ispace::halfOf(polygon, Vec2{-f.x, -f.y}, view.max_range - f.z * drop);
+    }
+    if (polygon.empty()) {
+        box = {};
+        return;
+    }
+    mark({curveOf(polygon)});
+}
+
+/// What bearings leave out behind the sensor that span more than a half turn.
+void Footprint::addWedgeBehind(const FieldOfView& view, double drop) {
+    const auto [c, s] = cosSin(Angle::degrees(180) - view.half_x);
+    Polygon wedge = square(2 * reach);
+    for (const double side : {1.0, -1.0})
+        wedge = halfOf(wedge, view.frame * Vec3{-s, side * c, 0}, drop);
+    if (!wedge.empty()) layers.push_back({{curveOf(wedge)}, true, 0, 0});
+}
+
+Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out) {
+    const double far = view.farthest();
+    if (!withinRange(std::fabs(drop), far) || std::fabs(drop) >= far) return;
+    reach = std::sqrt(far * far - drop * drop);
+    const Angle right_angle = Angle::degrees(90), half_turn = Angle::degrees(180);
+    box.add({-reach, -reach});
+    box.add({reach, reach});
+    addPolygon(view, drop);
+    if (!view.is_by_depth && !disc_is_left_out) mark({circleOf(reach)});
+    const Frame3& frame = view.frame;
+    if (view.shape == FieldOfView::Shape::Cone) {
+        if (view.half_x < right_angle)
+            addCone(frame.forward, view.half_x, drop, true);
+        else if (view.half_x > right_angle && view.half_x < half_turn)
+            addCone(-1 * frame.forward, half_turn - view.half_x, drop, false);
+    }
+    if (view.shape == FieldOfView::Shape::Window) {
+        if (view.half_x > right_angle && view.half_x < half_turn) addWedgeBehind(view, drop);
+        if (view.half_y < right_angle)
+            for (const double side : {1.0, -1.0})
+                addCone(side * frame.up, right_angle - view.half_y, drop, false);
+    }
+}
+
+}  // namespace ispace

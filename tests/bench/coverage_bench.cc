@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The coverage tool as a process, on compiled rooms of three sizes with few sensors and many, and
+// what of that is measuring.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/file.h"
+#include "base/number.h"
+#include "bench_scenes.h"
+#include "bench_table.h"
+#include "cover/map.h"
+#include "io/glb.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+#include "tool_run.h"
+
+namespace {
+
+using namespace ispace;
+
+constexpr int kRounds = 5;
+const char* const kModel = "urg-04lx";
+
+/// A room with sensors in its free floor, in memory and on disk.
+struct Case {
+    std::string name, room_file, layout_file;
+    Scene scene;
+    std::size_t lines = 0;
+};
+
+std::string layoutText(const std::vector<PlacedLaser>& places) {
+    std::string text = "#3dm 1\n";
+    for (const PlacedLaser& place : places) {
+        text += "laser model=" + std::string(kModel);
+        text += " at=" + formatDouble(place.pose.position.x) + ',';
+        text += formatDouble(place.pose.position.y);
+        text += " heading=" + formatDouble(place.pose.heading.degrees()) + '\n';
+    }
+    return text;
+}
+
+Case makeCase(int columns, int rows, std::size_t sensors, const std::string& folder) {
+    const Document room =
+        readRecordText(bench::officeText(columns, rows), "office.env", sceneSchemas());
+    const Scene empty = makeScene(room, nullptr, bench::devices());
+    const std::string text = layoutText(bench::fans(empty, sensors, true));
+    const Document layout = readRecordText(text, "layout.3dm", sceneSchemas());
+    Case test{std::to_string(columns * rows) + " rooms, " + std::to_string(sensors) + " sensors",
+              folder + "/room" + std::to_string(columns * rows) + ".glb",
+              folder + "/layout" + std::to_string(columns * rows) + "-" + std::to_string(sensors),
+              makeScene(room, &layout, bench::devices())};
+    test.lines = bench::linesOf(empty);
+    writeAll(test.room_file, writeGlb(empty, room));
+    writeAll(test.layout_file, text);
+    return test;
+}
+
+/// Cells and closed forms agree within the length of all boundaries times the size of a cell.
+void verify(const Case& test) {
+    Worlds worlds(test.scene.environment);
+    const Coverage coverage = measureCoverage(test.scene, worlds, {.columns = 1000, .rows = 1000});
+    double boundary = 0;
+    for (const SensorView& view : coverage.sensors) boundary += perimeter(*view.region);
+    const Grid& grid = coverage.target.grid;
+    const double cell = std::hypot(grid.limits.width(), grid.limits.depth()) / 1000;
+    const Figure& area = coverage.report.total_effective_area;
+    if (area.grid && area.exact && std::abs(*area.grid - *area.exact) <= boundary * cell) return;
+    std::fprintf(stderr, "%s: cells and closed forms differ\n", test.name.c_str());
+    std::exit(1);
+}
+
+std::vector<std::string> words(const Case& test, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {ISPACE_COVERAGE_TOOL, "-q", test.room_file, test.layout_file,
+                                      "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+void measure(benchmark::State& state, const Case& test, const std::string& folder) {
+    bench::Spent one, two, drawn, fine;
+    bench::Contest contest;  // of what is measured within the program, on one thread
+    const auto inside = [&test](const CoverageOptions& options) {
+        bench::shareOut(1, 1, [&](std::size_t) {
+            Worlds worlds(test.scene.environment);
+            benchmark::DoNotOptimize(measureCoverage(test.scene, worlds, options));
+        });
+    };
+    contest.add([&] { inside({.exact = false}); });
+    contest.add([&] { inside({}); });
+    for (auto _ : state) {
+        one.keepQuicker(bench::runTool(words(test, {"-j", "1"}), "/dev/null"));
+        two.keepQuicker(bench::runTool(words(test, {"-j", "2"}), "/dev/null"));
+        drawn.keepQuicker(
+            bench::runTool(words(test, {"-j", "1", "-o", folder + "/map.png"}), "/dev/null"));
+        fine.keepQuicker(bench::runTool(words(test, {"-j", "1", "--grid", "1000"}), "/dev/null"));
+        contest.round();
+        state.SetIterationTime(one.wall);
+    }
+    state.SetLabel(bench::leftCell(test.name, 24) +
+                   bench::cell(static_cast<double>(test.lines), 0, 8) +
+                   bench::cell(1e3 * contest.quickest(0), 1, 8) +
+                   bench::cell(1e3 * contest.quickest(1), 1, 8) +
+                   bench::cell(1e3 * one.wall, 0, 8) + bench::cell(1e3 * two.wall, 0, 8) +
+                   bench::cell(1e3 * fine.wall, 0, 8) + bench::cell(1e3 * drawn.wall, 0, 8));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    const bench::Folder scratch;
+    const std::string& folder = scratch.name;
+    std::vector<Case> cases;
+    for (const std::size_t sensors : {std::size_t{3}, std::size_t{100}})
+        for (const auto& [columns, rows] : {std::pair{4, 3}, {8, 6}, {46, 40}})
+            cases.push_back(makeCase(columns, rows, sensors, folder));
+    for (const Case& test : cases) {
+        if (test.lines < 10'000) verify(test);
+        benchmark::RegisterBenchmark(
+            ("coverage/" + test.name).c_str(),
+            [&test, &folder](benchmark::State& state) { measure(state, test, folder); })
+            ->Iterations(kRounds)
+            ->UseManualTime();
+    }
+    bench::TableReporter table(
+        {{"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
+                          "; milliseconds\n"
+                          "                           lines   cells + exact   -j 1    -j 2  1000^2 "
+                          "    map     MiB"}});
+    benchmark::RunSpecifiedBenchmarks(&table);
+    return 0;
+}
