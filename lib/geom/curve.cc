@@ -34,6 +34,7 @@ double twiceBulge(const CurveEdge& arc) {
 }
 
 void addExtremes(Box2& box, const CurveEdge& arc) {
+    if (arc.from == arc.to) return;  // no way round, not all of it
     const Vec2 from = arc.from - arc.center, to = arc.to - arc.center;
     const double radius = std::abs(arc.radius);
     const double turn = arc.radius > 0 ? 1 : -1;

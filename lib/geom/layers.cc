@@ -7,7 +7,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "geom/layers_label.h"
@@ -62,15 +61,15 @@ struct ChordCurves {
     /// sensors that stand at one place become the same chords.
     void addArc(const CurveEdge& edge, Index layer) {
         using std::numbers::pi;
-        const double radius = std::abs(edge.radius);
-        const Index circle = circleOf({edge.center, radius});
+        const Index circle = circleOf({edge.center, std::abs(edge.radius)});
+        const auto [center, radius] = circles[circle];
         vertices.push_back({edge.from, layer, circle});
         // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
         constexpr double kFewest = 16, kMost = 1 << 16;
         const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
         const double chords = std::clamp(std::ceil(pi / half), kFewest, kMost);
         const double step = 2 * pi / chords;
-        const Vec2 a = edge.from - edge.center, b = edge.to - edge.center;
+        const Vec2 a = edge.from - center, b = edge.to - center;
         const double first = std::atan2(a.y, a.x);
         const double turn = edge.radius > 0 ? 1 : -1;
         double span = turn * (std::atan2(b.y, b.x) - first);
@@ -82,18 +81,29 @@ struct ChordCurves {
         for (double k = std::floor(turn * first / step + kNear) + 1; k < last; ++k) {
             const double angle = turn * k * step;
             vertices.push_back(
-                {edge.center + radius * Vec2{std::cos(angle), std::sin(angle)}, layer, circle});
+                {center + radius * Vec2{std::cos(angle), std::sin(angle)}, layer, circle});
         }
     }
 
+    /// Circles this near to each other are one: the same place reckoned in two ways (on a robot,
+    /// and written). Else chords that coincide on the lattice would be of two circles.
+    static constexpr double kSameCircle = 1e-9;
+
     Index circleOf(const Circle& circle) {
-        const auto [place, is_new] = known_.try_emplace(
-            {circle.center.x, circle.center.y, circle.radius}, static_cast<Index>(circles.size()));
-        if (is_new) circles.push_back(circle);
-        return place->second;
+        const auto first = known_.lower_bound(circle.center.x - kSameCircle);
+        for (auto it = first; it != known_.end() && it->first <= circle.center.x + kSameCircle;
+             ++it) {
+            const Circle& other = circles[it->second];
+            if (std::abs(other.center.y - circle.center.y) <= kSameCircle &&
+                std::abs(other.radius - circle.radius) <= kSameCircle)
+                return it->second;
+        }
+        known_.emplace(circle.center.x, static_cast<Index>(circles.size()));
+        circles.push_back(circle);
+        return static_cast<Index>(circles.size() - 1);
     }
 
-    std::map<std::tuple<double, double, double>, Index> known_;
+    std::multimap<double, Index> known_;  // by the x of their middles
 };
 
 /// Integer coordinates for the places in a box.

@@ -52,7 +52,9 @@ class LayerOverlay {
 
     /// `walls` part what regions() gives: it joins nothing across them. They change no label.
     /// \pre all coordinates are finite
-    /// \throws FormatError (without a place) for outlines that cross by the ten million
+    /// \throws FormatError (without a place) for outlines that cross by the ten million (16 million
+    /// places
+    ///         where an edge passes a point of another)
     explicit LayerOverlay(std::span<const Layer> layers, std::span<const Segment2> walls = {});
 
     /// Edges between different labels; in an order that depends only on the input.
@@ -75,6 +77,13 @@ class LayerOverlay {
     template <typename In>
     [[nodiscard]] std::vector<Region> regions(In in) const;
 
+    /// The outlines and holes of regions() with arcs in the place of their chords, each with the
+    /// area of its piece of the arc.
+    template <typename In>
+    [[nodiscard]] std::vector<Curve> curves(In in) const {
+        return withArcs(regions(in));
+    }
+
   private:
     /// Places of the lattice, and the ends of an edge among them.
     struct LatticePoint {
@@ -93,6 +102,7 @@ class LayerOverlay {
     }
     /// The pieces with these boundaries: for each of edges_ and then of walls_.
     [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
+    [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;
     [[nodiscard]] Point2 place(std::uint32_t point) const {
         return middle_ + Vec2{unit_ * points_[point].x, unit_ * points_[point].y};
     }

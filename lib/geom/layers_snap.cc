@@ -90,6 +90,14 @@ std::vector<Span> spansOf(const Cell& cell, const std::vector<Edge>& edges,
     return spans;
 }
 
+/// \throws FormatError for more than some gigabytes of them
+void mustBeFew(const std::vector<Pass>& passes) {
+    constexpr std::size_t kMostPasses = 16'000'000;
+    if (passes.size() > kMostPasses)
+        throw FormatError(
+            {"", 0, 0, "outlines cross more than " + std::to_string(kMostPasses) + " times"});
+}
+
 /// Ends of edges that lay along another before rounding: both were moved by at most half a step in
 /// x and in y.
 std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
@@ -105,6 +113,7 @@ std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector
                     passes.push_back({s.edge, i, at});
             }
         }
+        mustBeFew(passes);
     });
     return passes;
 }
@@ -135,9 +144,6 @@ bool crossingOf(const Span& s, const Span& t, Point& pixel) {
     return true;
 }
 
-/// More than this is no plan: some gigabytes.
-constexpr std::size_t kMostPasses = 16'000'000;
-
 /// All edges that meet the pixels of ends and crossings.
 std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table) {
     std::vector<Pass> passes;
@@ -162,9 +168,7 @@ std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& tab
                     passes.push_back({s.edge, id, s.at(p)});
             }
         }
-        if (passes.size() > kMostPasses)
-            throw FormatError(
-                {"", 0, 0, "outlines cross more than " + std::to_string(kMostPasses) + " times"});
+        mustBeFew(passes);
     });
     return passes;
 }

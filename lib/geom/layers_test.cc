@@ -556,5 +556,36 @@ TEST(LayerOverlay, sliversHaveLabelsOfSets) {
     }
 }
 
+// A sensor on a robot and one written beside it: the same place, reckoned in two ways.
+TEST(LayerOverlay, DiscsOneRoundingApartAreOne) {
+    for (const double apart : {0.0, 0x1p-52, 1e-15, 1e-10}) {
+        std::vector<Layer> layers;
+        for (const double shift : {0.0, apart}) {
+            Curve disc;
+            for (int quarter = 0; quarter < 4; ++quarter) {
+                const Point2 center{0.3 + shift, 0.1};
+                const auto at = [&](int k) {
+                    return center + 9 * unitVector(Angle::degrees(90.0 * k));
+                };
+                disc.push_back({at(quarter), at(quarter + 1), 9, center});
+            }
+            layers.push_back({.curves = {disc}});
+        }
+        const LayerOverlay overlay(layers);
+        const double both = overlay.area([](const LayerLabel& label) { return label.count > 0; });
+        EXPECT_NEAR(both, 81 * std::numbers::pi, 1e-6) << apart;
+    }
+}
+
+TEST(LayerOverlay, CurvesHaveArcsAgain) {
+    Curve half{{{-2, 0}, {2, 0}}, {{2, 0}, {0, 2}, 2, {0, 0}}, {{0, 2}, {-2, 0}, 2, {0, 0}}};
+    const Layer layers[] = {{.curves = {half}},
+                            {.curves = {curveOf({{0, -1}, {3, -1}, {3, 3}, {0, 3}})}}};
+    const LayerOverlay overlay(layers);
+    const auto in_both = [](const LayerLabel& label) { return label.count == 2; };
+    EXPECT_NEAR(signedArea(overlay.curves(in_both)), std::numbers::pi, 1e-7);
+    EXPECT_LT(totalArea(overlay.regions(in_both)), std::numbers::pi - 1e-5) << "chords";
+}
+
 }  // namespace
 }  // namespace ispace

@@ -77,13 +77,19 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     VisibleRegion sector{region.viewpoint, region.max_range, false, {}};
     if (region.ends.empty() || !(span > Angle())) return sector;
     const Vec2 begin = unitVector(first), stop = unitVector(first + span);
-    // The end in which the sector begins is the first one to stop after that.
+    // The end in which the sector begins is the first one to stop after that: where the angles
+    // fall back by almost a turn. The least of them may be a tie, or one of the last by rounding.
     std::vector<double> stops;
     stops.reserve(region.ends.size());
     for (const SightEnd& end : region.ends)
         stops.push_back(angleBetween(begin, end.to - region.viewpoint));
-    const auto start =
-        static_cast<std::size_t>(std::min_element(stops.begin(), stops.end()) - stops.begin());
+    std::size_t start = 0;
+    double drop = stops.back() - stops.front();
+    for (std::size_t i = 1; i < stops.size(); ++i)
+        if (stops[i - 1] - stops[i] > drop) {
+            drop = stops[i - 1] - stops[i];
+            start = i;
+        }
     const std::size_t count = region.ends.size();
     sector.ends.reserve(count + 1);
     for (std::size_t i = 0; i <= count; ++i) {
@@ -93,9 +99,10 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
         // Whether the first one begins before the sector: then it does so almost a turn later too.
         const bool is_split = (i == 0 || comes_back) && from > stops[start];
         if (comes_back && !is_split) break;
+        // All others begin where the one before them stopped, whatever their angle rounds to.
         if (i == 0 && is_split)
             end.from = endIn(region, end, begin);
-        else if (from >= span.radians())
+        else if (i == 0 && from >= span.radians())
             break;
         const bool is_last = comes_back || stops[(start + i) % count] >= span.radians();
         if (is_last) end.to = endIn(region, end, stop);

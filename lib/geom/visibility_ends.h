@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/simd.h"
 #include "geom/visibility.h"
 
 namespace ispace {
@@ -18,7 +19,7 @@ class EndWriter {
     EndWriter(Point2 viewpoint, double range, std::vector<SightEnd>& ends)
         : viewpoint_(viewpoint), range_(range), ends_(ends) {}
 
-    void addLine(std::uint32_t line, Point2 from, Point2 to) {
+    ISPACE_INLINE void addLine(std::uint32_t line, Point2 from, Point2 to) {
         if (has_arc_) flushArc();
         if (!ends_.empty()) {
             SightEnd& last = ends_.back();

@@ -185,7 +185,8 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
             doors[edge].behind = target;
             if (face->is_constrained(i)) {
                 // Once for both sides.
-                target = target < edge ? targetOf(target) : Door::kBlocked | finder.find(from, to);
+                doors[edge].line = target < edge ? doors[target].line : finder.find(from, to);
+                target = Door::kBlocked | edge;
             }
             doors[beforeOf(edge)].right = target;
             doors[nextOf(edge)].left = target;

@@ -23,10 +23,12 @@ namespace ispace {
 struct alignas(32) Door {
     Point2 corner;
     /// Where sight gets through the edges right (i + 1) and left (i + 2) of the corner: a door, or
-    /// a line with kBlocked set, or kFree.
+    /// that edge with kBlocked set if it is of a line, or kFree.
     std::uint32_t right = 0, left = 0;
-    /// The door on the other side of edge i, be it a line or not, or kFree.
+    /// The door on the other side of edge i, be it of a line or not, or kFree.
     std::uint32_t behind = 0;
+    /// Of which line edge i is, if of any.
+    std::uint32_t line = 0;
 
     static constexpr std::uint32_t kBlocked = 1U << 31;
     static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
@@ -41,9 +43,13 @@ inline Point2 withinSight(Point2 p) {
             std::clamp(p.y, -kFarthestSight, kFarthestSight)};
 }
 
-/// The next and the one before of the same triangle, counter-clockwise.
-inline std::uint32_t nextOf(std::uint32_t door) { return door % 3 == 2 ? door - 2 : door + 1; }
-inline std::uint32_t beforeOf(std::uint32_t door) { return door % 3 == 0 ? door + 2 : door - 1; }
+/// The next and the one before of the same triangle, counter-clockwise. Without branches.
+inline std::uint32_t nextOf(std::uint32_t door) {
+    return door + 1 - 3 * static_cast<std::uint32_t>(door % 3 == 2);
+}
+inline std::uint32_t beforeOf(std::uint32_t door) {
+    return door - 1 + 3 * static_cast<std::uint32_t>(door % 3 == 0);
+}
 
 /// Lines, and a box around them that is none, triangulated: sight beyond the box is free.
 struct SightMesh {

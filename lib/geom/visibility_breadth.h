@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to VisibilityMap.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/simd.h"
+#include "geom/visibility_look.h"
+#include "geom/visibility_mesh.h"
+
+namespace ispace {
+
+/// Directions of sight that have come equally far: from its right limit to that of the next window.
+struct Window {
+    Vec2 right;            ///< from the viewpoint to the corner of a door
+    std::uint32_t corner;  ///< that door
+    std::uint32_t next;    ///< the window on the left
+    std::uint32_t target;  ///< the door that is got through, or what stops sight
+};
+
+/// A chain of windows, counter-clockwise, and those of them that wait their turn, first come first
+/// served. In memory that needs none from the heap but for the widest views.
+class Windows {
+  public:
+    Windows() {}  // nothing is set before it is used
+    Windows(const Windows&) = delete;
+    Windows& operator=(const Windows&) = delete;
+
+    /// Where all is, to be kept in registers.
+    struct State {
+        Window* windows;
+        std::uint32_t* queue;
+        std::uint32_t mask, count, head, tail;
+        [[nodiscard]] bool isFull() const { return count + 8 > mask; }
+    };
+    [[nodiscard]] State state() const { return s_; }
+    void setState(const State& s) { s_ = s; }
+    [[nodiscard]] std::uint32_t count() const { return s_.count; }
+    Window& operator[](std::uint32_t i) { return s_.windows[i]; }
+
+    /// Adds one to the left end of the chain. Those that are split off keep within.
+    void append(const Window& window) {
+        if (s_.isFull()) s_ = grow(s_);
+        s_.windows[s_.count] = window;
+        s_.windows[s_.count].next = s_.count + 1;
+        ++s_.count;
+    }
+    void wait(std::uint32_t window) { s_.queue[s_.tail++ & s_.mask] = window; }
+
+    /// Twice the room. \return where all is now
+    [[nodiscard]] State grow(State s) {
+        const std::uint32_t size = 2 * (s.mask + 1);
+        std::vector<Window> windows(size);
+        std::vector<std::uint32_t> queue(size);
+        std::copy(s.windows, s.windows + s.count, windows.begin());
+        for (std::uint32_t i = s.head; i != s.tail; ++i)
+            queue[i & (size - 1)] = s.queue[i & s.mask];
+        many_windows_.swap(windows);
+        long_queue_.swap(queue);
+        s.windows = many_windows_.data();
+        s.queue = long_queue_.data();
+        s.mask = size - 1;
+        return s;
+    }
+
+  private:
+    static constexpr std::uint32_t kHere = 256;  // a power of 2, as all sizes are
+    union {
+        Window windows_here_[kHere];
+    };
+    union {
+        std::uint32_t queue_here_[kHere];
+    };
+    std::vector<Window> many_windows_;
+    std::vector<std::uint32_t> long_queue_;
+    State s_{windows_here_, queue_here_, kHere - 1, 0, 0, 0};
+};
+
+/// One look in a large mesh, in which nobody can predict which way sight goes next: a processor
+/// that guesses wrong loses more time than the step takes. So all windows go on in turn, one
+/// triangle each, without branches: the steps do not depend on each other and overlap. What is seen
+/// is the same as what Look finds, to the last bit.
+class BreadthFirst {
+  public:
+    using Index = std::uint32_t;
+
+    /// \param look turns and stops are left to it
+    BreadthFirst(const Door* doors, Point2 viewpoint, double farthest, Look<false, false>& look)
+        : doors_(doors), viewpoint_(viewpoint), sure_(errorOfTurns(farthest)), look_(look) {}
+
+    [[nodiscard]] double turn(Index a, Index b) const { return look_.turn(a, b); }
+    /// Through an edge of a triangle that holds the viewpoint. Edges follow each other
+    /// counter-clockwise.
+    void throughEdge(Index edge) {
+        const Index target = doors_[beforeOf(edge)].right;
+        windows_.append({look_.wayTo(nextOf(edge)), nextOf(edge), 0, target});
+        if (isDoor(target) != 0) windows_.wait(windows_.count() - 1);
+        left_corner_ = beforeOf(edge);
+    }
+    /// Looks through all edges that were named, and writes what is seen.
+    void run() {
+        windows_.append({look_.wayTo(left_corner_), left_corner_, 0, Door::kFree});
+        const Index end = windows_.count() - 1;
+        expand();
+        for (Index i = 0; i != end;) {
+            const Window& window = windows_[i];
+            i = window.next;
+            look_.stopAt(window.target, window.right, windows_[i].right);
+        }
+    }
+
+  private:
+    /// 1 or 0.
+    static Index isDoor(Index target) { return target >> 31 ^ 1; }
+    static_assert(Door::kBlocked == Index{1} << 31 && Door::kFree >> 31 == 1);
+
+    template <Index kBatch>
+    void advance(Windows::State& s) const;
+
+    /// Lets all windows that wait pass on through triangles until all of them are stopped.
+    void expand() {
+        // In registers, for all that is written: each step adds to what the one before left.
+        Windows::State s = windows_.state();
+        while (s.head != s.tail) {
+            if (s.isFull()) [[unlikely]]
+                s = windows_.grow(s);
+            if (s.tail - s.head >= 4)
+                advance<4>(s);
+            else
+                advance<1>(s);
+        }
+        windows_.setState(s);
+    }
+
+    const Door* doors_;
+    Point2 viewpoint_;
+    double sure_;  // no cross product of two ways is wrong by more
+    Look<false, false>& look_;
+    Index left_corner_ = 0;  // of the last window
+    Windows windows_;
+};
+
+/// Lets so many of the windows that wait pass one triangle each: all is read before anything is
+/// written, so that no reading has to wait.
+template <std::uint32_t kBatch>
+ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
+    Index here[kBatch], entered[kBatch], next[kBatch];
+    double x[kBatch], y[kBatch], from_right[kBatch], from_left[kBatch];
+    bool is_sure = true;
+#pragma GCC unroll 4
+    for (Index i = 0; i < kBatch; ++i) {
+        here[i] = s.queue[(s.head + i) & s.mask];
+        const Window& window = s.windows[here[i]];
+        entered[i] = window.target;
+        next[i] = window.next;
+        const Window& beyond = s.windows[next[i]];
+        const Door& door = doors_[entered[i]];
+        x[i] = door.corner.x - viewpoint_.x;
+        y[i] = door.corner.y - viewpoint_.y;
+        from_right[i] = window.right.x * y[i] - window.right.y * x[i];
+        from_left[i] = beyond.right.x * y[i] - beyond.right.y * x[i];
+        is_sure &= std::min(std::abs(from_right[i]), std::abs(from_left[i])) > sure_;
+    }
+    s.head += kBatch;
+    if (!is_sure) [[unlikely]] {
+        for (Index i = 0; i < kBatch; ++i) {
+            from_right[i] = look_.turn(s.windows[here[i]].corner, entered[i]);
+            from_left[i] = look_.turn(s.windows[next[i]].corner, entered[i]);
+        }
+    }
+#pragma GCC unroll 4
+    for (Index i = 0; i < kBatch; ++i) {
+        const Door& door = doors_[entered[i]];
+        const Index goes_right = from_right[i] > 0, goes_left = from_left[i] < 0;
+        const Index splits = goes_right & goes_left;
+        const Index left = door.left, target = left ^ ((left ^ door.right) & -goes_right);
+        prefetch(doors_, target);
+        prefetch(doors_, left);
+        Window& window = s.windows[here[i]];
+        window.target = target;
+        window.next = next[i] ^ ((next[i] ^ s.count) & -splits);
+        Window& spare = s.windows[s.count];
+        spare.right.x = x[i];
+        spare.right.y = y[i];
+        spare.corner = entered[i];
+        spare.next = next[i];
+        spare.target = left;
+        s.queue[s.tail & s.mask] = here[i];
+        s.tail += isDoor(target);
+        s.queue[s.tail & s.mask] = s.count;
+        s.tail += splits & isDoor(left);
+        s.count += splits;
+    }
+}
+
+}  // namespace ispace

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to VisibilityMap.
+//
+// Triangular expansion: F. Bungiu, M. Hemmer, J. Hershberger, K. Huang, A. Kröller, Efficient
+// computation of visibility polygons, 2014. Windows are limited by vertices, never by points made
+// on the way, so that each decision is the turn of three given points.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/simd.h"
+#include "geom/visibility.h"
+#include "geom/visibility_ends.h"
+#include "geom/visibility_mesh.h"
+
+namespace ispace {
+
+/// What will be needed if sight gets there; harmless where that is no door.
+inline void prefetch(const Door* doors, std::uint32_t target) {
+    __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(doors) +
+                                                     target * sizeof(Door)));
+}
+
+/// Two numbers, one each for the right and the left limit: what is chosen between two pairs is so
+/// without branches.
+using Pair = double __attribute__((vector_size(16)));
+
+struct PairOfPoints {
+    Pair x, y;
+};
+
+/// Where rays along the limits cross from a to b, as shares of that way; a is on their right or on
+/// them (exactly 0 if it is a limit itself), b on their left or on them (exactly 1).
+ISPACE_INLINE Pair crossings(Pair limits_x, Pair limits_y, Vec2 a, Vec2 b) {
+    const Pair right = a.x * limits_y - a.y * limits_x, left = limits_x * b.y - limits_y * b.x;
+    const Pair share = right / (right + left), zero{}, one{1, 1};
+    // Rounding may lead out; 0 / 0 gives 0.
+    const Pair above = share > zero ? share : zero;
+    return above < one ? above : one;
+}
+
+/// So far on the way from a to b, from the nearer one: exact at both.
+ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
+    const Vec2 way = s.b - s.a;
+    const Pair half{0.5, 0.5};
+    const auto near_a = share < half;
+    const Pair from_x = near_a ? Pair{s.a.x, s.a.x} : Pair{s.b.x, s.b.x};
+    const Pair from_y = near_a ? Pair{s.a.y, s.a.y} : Pair{s.b.y, s.b.y};
+    const Pair part = near_a ? share : share - 1;
+    return {from_x + part * way.x, from_y + part * way.y};
+}
+
+/// Sight that waits until what lies on its right is done: past the corner of a door, on its left.
+struct Pending {
+    std::uint32_t target;       ///< what lies there
+    std::uint32_t corner;       ///< the door whose corner is the right limit
+    std::uint32_t left_vertex;  ///< a door whose corner is the left limit
+    Vec2 right, left;           ///< the limits, from the viewpoint
+};
+
+/// Memory for as many as may come: seldom more than fit in here.
+class PendingStack {
+  public:
+    [[nodiscard]] bool empty() const { return top_ == base_; }
+    void push(const Pending& pending) {
+        if (top_ == end_) grow();
+        *top_++ = pending;
+    }
+    const Pending& pop() { return *--top_; }
+    void reverse() { std::reverse(base_, top_); }
+
+  private:
+    void grow() {
+        const auto count = static_cast<std::size_t>(top_ - base_);
+        std::vector<Pending> larger(2 * count);
+        std::copy(base_, top_, larger.begin());
+        heap_.swap(larger);
+        base_ = heap_.data();
+        top_ = base_ + count;
+        end_ = base_ + heap_.size();
+    }
+
+    static constexpr std::size_t kHere = 64;
+    union {
+        Pending here_[kHere];  // not set before it is used
+    };
+    std::vector<Pending> heap_;
+    Pending *base_ = here_, *top_ = base_, *end_ = base_ + kHere;
+
+  public:
+    PendingStack() {}
+};
+
+/// One look, to the end of one way after the other. Bounded: some line may lie beyond the range.
+/// Contact: some lines are transparent.
+template <bool kBounded, bool kContact>
+class Look {
+  public:
+    using Index = std::uint32_t;
+
+    /// \param farthest no corner is farther from the viewpoint
+    Look(const Door* doors, Point2 viewpoint, double range, double farthest,
+         std::span<const Index> transparent, std::vector<SightEnd>& ends)
+        : doors_(doors),
+          viewpoint_(viewpoint),
+          squared_range_(range * range),
+          sure_(errorOfTurns(farthest)),
+          transparent_(transparent),
+          out_(viewpoint, range, ends) {}
+
+    /// Through an edge of a triangle that holds the viewpoint. Edges follow each other
+    /// counter-clockwise.
+    void throughEdge(Index edge) {
+        begin(doors_[beforeOf(edge)].right, nextOf(edge), beforeOf(edge));
+    }
+    /// From outside of all triangles; in the same order.
+    void throughDoor(Index door) { begin(door, beforeOf(door), nextOf(door)); }
+
+    /// Looks through all edges and doors that were named, and writes what is seen.
+    void run();
+
+    /// Writes down what sight ends at between two limits, counter-clockwise: a line, or kFree.
+    void stopAt(Index target, const Vec2& right, const Vec2& left);
+    EndWriter& out() { return out_; }
+
+    [[nodiscard]] Vec2 wayTo(Index door) const { return doors_[door].corner - viewpoint_; }
+
+    /// Above 0 if the corner of door b lies to the left of that of a.
+    [[nodiscard]] double turn(Index a, Index b) const {
+        const double turn = surelyTurns(wayTo(a), wayTo(b));
+        if (turn != 0) [[likely]]
+            return turn;
+        return static_cast<int>(orientation(viewpoint_, doors_[a].corner, doors_[b].corner));
+    }
+
+  private:
+    static double square(double x) { return x * x; }
+    static double squaredLength(Vec2 v) { return dot(v, v); }
+
+    /// A vertex that limits what is looked through.
+    struct Limit {
+        Index door;  ///< its corner is the vertex
+        Vec2 way;    ///< to the vertex
+    };
+
+    void begin(Index target, Index right, Index left) {
+        pending_.push({passed(target), right, left, wayTo(right), wayTo(left)});
+    }
+
+    /// What sight gets to past a line that is transparent.
+    [[nodiscard]] Index passed(Index target) const {
+        if (!kContact || target < Door::kBlocked || target == Door::kFree) return target;
+        const Index edge = target - Door::kBlocked;
+        const bool is_transparent =
+            std::binary_search(transparent_.begin(), transparent_.end(), edge);
+        return is_transparent ? doors_[edge].behind : target;
+    }
+
+    [[nodiscard]] bool isBeyond(Index edge) const;
+    void stopWithinRange(Index line, const Segment2& wall, Pair shares, const Vec2& right,
+                         const Vec2& left);
+
+    const Door* doors_;
+    Point2 viewpoint_;
+    double squared_range_;
+    double sure_;                         // no cross product of two ways is wrong by more
+    std::span<const Index> transparent_;  // edges, both sides of each, ascending
+    EndWriter out_;
+    PendingStack pending_;
+};
+
+template <bool kBounded, bool kContact>
+void Look<kBounded, kContact>::run() {
+    pending_.reverse();  // the rightmost one first
+    while (!pending_.empty()) {
+        const Pending& next = pending_.pop();
+        Index target = next.target;
+        const Limit right{next.corner, next.right};
+        Limit left{next.left_vertex, next.left};
+        // Whether the end points of the edge may both lie beyond the range.
+        bool may_be_beyond = kBounded && squaredLength(right.way) > squared_range_;
+        while (target < Door::kBlocked && !(may_be_beyond && isBeyond(target))) {
+            const Door& door = doors_[target];
+            const Limit corner{target, door.corner - viewpoint_};
+            if (kBounded) may_be_beyond = squaredLength(corner.way) > squared_range_;
+            // Whichever way sight goes.
+            prefetch(doors_, door.left);
+            prefetch(doors_, door.right);
+            double from_right = cross(right.way, corner.way);
+            double from_left = cross(left.way, corner.way);
+            if (!(std::min(std::abs(from_right), std::abs(from_left)) > sure_)) [[unlikely]] {
+                from_right = turn(right.door, target);
+                from_left = turn(left.door, target);
+            }
+            if (!(from_right > 0)) {
+                target = passed(door.left);
+                continue;
+            }
+            if (from_left < 0) {
+                // Both: the left one waits.
+                pending_.push({passed(door.left), target, left.door, corner.way, left.way});
+                left = corner;
+            }
+            target = passed(door.right);
+        }
+        stopAt(target < Door::kBlocked ? Door::kFree : target, right.way, left.way);
+    }
+}
+
+/// Whether all of an edge lies beyond the range.
+template <bool kBounded, bool kContact>
+bool Look<kBounded, kContact>::isBeyond(Index edge) const {
+    const Vec2 a = wayTo(nextOf(edge)), b = wayTo(beforeOf(edge)), along = b - a;
+    const bool ends_are = std::min(squaredLength(a), squaredLength(b)) > squared_range_;
+    const bool end_is_nearest = std::max(dot(a, along), -dot(b, along)) >= 0;
+    const bool line_is = square(cross(a, b)) >= squared_range_ * squaredLength(along);
+    return ends_are & (end_is_nearest | line_is);
+}
+
+template <bool kBounded, bool kContact>
+ISPACE_INLINE void Look<kBounded, kContact>::stopAt(Index target, const Vec2& right,
+                                                    const Vec2& left) {
+    if (target == Door::kFree) {
+        out_.addFree(right, left);
+        return;
+    }
+    const Index edge = target - Door::kBlocked, line = doors_[edge].line;
+    const Point2 &from = doors_[nextOf(edge)].corner, &to = doors_[beforeOf(edge)].corner;
+    const Segment2 wall{{from.x, from.y}, {to.x, to.y}};
+    const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_;
+    const Pair shares = crossings(Pair{right.x, left.x}, Pair{right.y, left.y}, a, b);
+    if (kBounded && std::max(squaredLength(a), squaredLength(b)) > squared_range_) {
+        stopWithinRange(line, wall, shares, right, left);
+        return;
+    }
+    const PairOfPoints ends = between(wall, shares);
+    out_.addLine(line, {ends.x[0], ends.y[0]}, {ends.x[1], ends.y[1]});
+}
+
+/// The same for a wall that does not lie within the range as a whole.
+template <bool kBounded, bool kContact>
+void Look<kBounded, kContact>::stopWithinRange(Index line, const Segment2& wall, Pair shares,
+                                               const Vec2& right, const Vec2& left) {
+    const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_, along = b - a;
+    const double from = shares[0], to = shares[1];
+    // Where the line through the wall is nearest, and within the range, as shares of the wall.
+    const double squared_length = squaredLength(along);
+    const double room = squared_range_ - square(cross(a, b)) / squared_length;
+    const double middle = -dot(a, along) / squared_length;
+    const double half = room > 0 ? std::sqrt(room / squared_length) : 0;
+    const double first = std::max(from, middle - half), last = std::min(to, middle + half);
+    if (!(first < last)) {
+        out_.addFree(right, left);
+        return;
+    }
+    const PairOfPoints ends = between(wall, Pair{first, last});
+    const Point2 begin{ends.x[0], ends.y[0]}, end{ends.x[1], ends.y[1]};
+    if (first > from) out_.addFree(right, begin - viewpoint_);
+    out_.addLine(line, begin, end);
+    if (last < to) out_.addFree(end - viewpoint_, left);
+}
+
+}  // namespace ispace
