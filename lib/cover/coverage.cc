@@ -2,8 +2,10 @@
 #include "cover/coverage.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "cover/figures.h"
 #include "cover/sensor_views.h"
 #include "geom/boolean.h"
@@ -21,13 +23,30 @@ SensorFigures figuresOf(const Scene& scene, const SensorView& view) {
     return figures;
 }
 
+/// Cells are a bit a sensor, twice: of its view, and of the set it is.
+void mustFit(const Scene& scene, const Grid& grid) {
+    constexpr double kMostBytes = 8e9;
+    const std::size_t sensors = scene.lasers.size() + scene.rangers.size() + scene.receivers.size();
+    const double bytes = static_cast<double>(sensors) * static_cast<double>(grid.size()) / 4;
+    if (bytes > kMostBytes)
+        throw UsageError("cells of all sensors take " + formatFixed(bytes / 1e9, 1) +
+                         " GB: use fewer cells");
+}
+
 /// Exact figures, or the reason why there are none.
 void tryExactFigures(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
     std::string& missing = coverage.report.exact_missing;
     for (const SensorView& view : coverage.sensors)
-        if (!view.region) missing = "what " + view.id + " sees is known by cells only";
-    if (!missing.empty()) return;
+        if (!view.region) {
+            missing = "what " + view.id + " sees is known by cells only";
+            return;
+        }
+    for (const SeenSet& set : coverage.sets)
+        if (!set.region) {
+            missing = "what enough receivers hear is known by cells only";
+            return;
+        }
     try {
         addExactFigures(coverage, environment, free_floor, zones);
     } catch (const FormatError& error) {
@@ -85,6 +104,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
                           ? makeTarget(environment, *options.cell, options.height)
                           : makeTarget(environment, options.columns, options.rows, options.height);
     const Grid& grid = coverage.target.grid;
+    mustFit(scene, grid);
     coverage.sensors = viewsOf(scene, worlds, grid, options);
     coverage.sets = setsOf(coverage.sensors, grid);
 
@@ -102,8 +122,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     for (const SensorView& view : coverage.sensors)
         report.sensors.push_back(figuresOf(scene, view));
     const std::vector<Zone> zones = zonesOf(environment);
-    report.zones.reserve(zones.size());
-    for (const Zone& zone : zones) report.zones.push_back({.id = zone.id});
+    report.zones = zoneFiguresOf(environment, zones);
     if (options.exact) tryExactFigures(coverage, environment, free_floor, zones);
     addCellFigures(coverage, zones);
     return coverage;
@@ -111,6 +130,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
 
 void compare(Coverage& coverage, const Coverage& other, const Region& indoor,
              const std::string& name) {
+    assert(coverage.target.grid == other.target.grid);
     Comparison comparison{.name = name, .coverage = other.report.coverage};
     const double cell_area = coverage.target.grid.cellArea();
     const CellSet& inside = coverage.target.indoor;

@@ -60,7 +60,7 @@ struct UnseenSpot {
     double area = 0;
 };
 
-/// Pieces of this many m2 and less are left out: what rounding cuts off.
+/// Pieces of less m2 are left out: what rounding cuts off.
 constexpr double kLeastPiece = 1e-4;
 
 /// What another layout of the same room sees, beside this one.
@@ -89,7 +89,8 @@ struct CoverageReport {
     std::optional<std::vector<double>> redundancy_exact;
     std::vector<ZoneFigures> zones;  ///< in the order of their records
     /// Connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the largest in
-    /// it, 0 without any; walls part them. Exact where that is known, else by cells.
+    /// it, 0 without any; walls part them. Where that is not known exactly, of cells, which walls
+    /// do not part.
     std::size_t pieces = 0;
     double largest_piece = 0;
     /// Pieces of the free floor that no sensor sees, the largest first. Likewise.

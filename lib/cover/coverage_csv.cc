@@ -8,8 +8,8 @@ std::string coverageCsv(const Coverage& coverage) {
     const Target& target = coverage.target;
     const std::vector<std::uint32_t> times = timesSeen(coverage);
     std::string text = "column,row,x,y,indoor,free,seen\n";
+    const auto columns = static_cast<std::size_t>(target.grid.columns);
     for (std::size_t cell = 0; cell < target.grid.size(); ++cell) {
-        const auto columns = static_cast<std::size_t>(target.grid.columns);
         const Point2 center = target.grid.center(cell);
         text += std::to_string(cell % columns);
         text += ',';

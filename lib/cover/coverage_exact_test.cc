@@ -208,6 +208,34 @@ TEST(ExactCoverage, SensorOnAWallSeesBothSidesOfIt) {
     }
 }
 
+// The fan's first and last beams run along the face, where ends of sight begin by rounding.
+TEST(ExactCoverage, SensorOnAFaceSeesTheHalfBeforeIt) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> at(-2, 2), size(0.2, 1.5), share(-0.5, 0.5);
+    for (int trial = 0; trial < 400; ++trial) {
+        const double x = at(random), y = at(random), width = size(random), depth = size(random);
+        const double along = share(random);
+        const int side = trial % 4;
+        const Point2 p = side == 0   ? Point2{x + along * width, y + depth / 2}
+                         : side == 1 ? Point2{x - width / 2, y + along * depth}
+                         : side == 2 ? Point2{x + along * width, y - depth / 2}
+                                     : Point2{x + width / 2, y + along * depth};
+        const CoverageReport report =
+            coverageOf(
+                sceneOf("ispace size=8,6\ncube at=" + formatDouble(x) + "," + formatDouble(y) +
+                        " size=" + formatDouble(width) + "," + formatDouble(depth) +
+                        ",1\nlaser at=" + formatDouble(p.x) + "," + formatDouble(p.y) +
+                        " range=20 heading=" + std::to_string(90 + 90 * side) + "\n"),
+                10, 10)
+                .report;
+        const double expected = side == 0   ? 8 * (3 - p.y)
+                                : side == 1 ? 6 * (p.x + 4)
+                                : side == 2 ? 8 * (p.y + 3)
+                                            : 6 * (4 - p.x);
+        EXPECT_NEAR(*report.sensors[0].area.exact, expected, 1e-6) << trial;
+    }
+}
+
 TEST(ExactCoverage, SensorInASolidSeesNothing) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=8,8\ncube at=1,1 size=1,1,1\nlaser at=1,1 fov=360\n"))
@@ -272,6 +300,104 @@ TEST(ExactCoverage, WallsPartCoveredFloor) {
             .report;
     EXPECT_EQ(apart.pieces, 2U);
     EXPECT_NEAR(apart.largest_piece, 0.8, 0.05);
+}
+
+TEST(ExactCoverage, AWallBetweenTwoPiecesPartsThem) {
+    // Two discs, cut off along the same part of a wall that ends in the room.
+    const std::string room =
+        "ispace size=8,8\nlaser at=-0.5,0 fov=360 range=1\n"
+        "laser at=0.5,0 fov=360 range=1\n";
+    EXPECT_EQ(coverageOf(sceneOf(room + "fence path=0,-2;0,2\n")).report.pieces, 2U);
+    EXPECT_EQ(coverageOf(sceneOf(room)).report.pieces, 1U);
+}
+
+TEST(ExactCoverage, NothingIsSeenInASolidThatTheSensorTouches) {
+    for (const double into : {-5e-5, 0.0, 5e-5}) {
+        const CoverageReport report =
+            coverageOf(sceneOf("ispace size=8,8\ncube at=1,0 size=2,2,1\nlaser at=" +
+                               formatDouble(into) + ",0 fov=360 range=3\n"),
+                       200, 200)
+                .report;
+        EXPECT_NEAR(*report.sensors[0].area.exact, 4.5 * kPi, 1e-3) << into;
+        EXPECT_NEAR(*report.sensors[0].area.grid, 4.5 * kPi, 0.1) << into;
+        EXPECT_NEAR(*report.free_coverage.exact * report.free_area, 4.5 * kPi, 1e-3);
+        const CoverageReport inwards =
+            coverageOf(sceneOf("ispace size=8,8\ncube at=1,0 size=2,2,1\nlaser at=" +
+                               formatDouble(into) + ",0 range=3\n"))
+                .report;
+        EXPECT_NEAR(*inwards.sensors[0].area.exact, 0, 1e-3) << into;
+        EXPECT_NEAR(*inwards.coverage.grid, 0, 1e-2) << into;
+    }
+}
+
+TEST(ExactCoverage, RangersInASolidSeeNothing) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=8,8\ncube at=1,1 size=1,1,1\n"
+                           "ranger at=1,1,0.5 tilt=-60\nlaser at=1,1,0.9 tilt=-45 range=4\n"))
+            .report;
+    for (const SensorFigures& sensor : report.sensors) {
+        EXPECT_EQ(sensor.area.grid, 0.0);
+        EXPECT_EQ(sensor.area.exact, 0.0);
+    }
+}
+
+TEST(ExactCoverage, FourReceiversHearTogether) {
+    std::string lines = "ispace size=12,12,5\n";
+    for (int i = 0; i < 4; ++i) lines += "ultrasound at=0,0,3 tilt=-90 fov=90 range=20\n";
+    const CoverageReport four = coverageOf(sceneOf(lines)).report;
+    EXPECT_NEAR(*four.total_effective_area.exact, 9 * kPi, 1e-6);
+    EXPECT_NEAR(*four.sensors[0].marginal.exact, 9 * kPi, 1e-6);
+    EXPECT_NEAR(*four.sensors[0].marginal.grid, 9 * kPi, 0.5);
+    EXPECT_EQ(four.redundancy.size(), 2U) << "together they are one";
+    const CoverageReport five =
+        coverageOf(sceneOf(lines + "ultrasound at=2,0,3 tilt=-90 fov=90 range=20\n")).report;
+    EXPECT_GT(*five.total_effective_area.exact, 9 * kPi - 1e-6);
+    // What four hear without the first: where the fifth hears, too. Two discs, 2 m apart.
+    const double lens = 18 * std::acos(1.0 / 3) - std::sqrt(36.0 - 4);
+    EXPECT_NEAR(*five.sensors[0].marginal.exact, 9 * kPi - lens, 1e-5);
+    EXPECT_NEAR(*five.sensors[0].marginal.grid, 9 * kPi - lens, 0.5);
+    EXPECT_NEAR(*five.sensors[4].marginal.exact, 0, 1e-6);
+    EXPECT_EQ(five.sensors[4].marginal.grid, 0.0);
+}
+
+TEST(ExactCoverage, OtherSensorsChangeNothingOfWhatOneSees) {
+    for (unsigned seed = 200; seed < 210; ++seed) {
+        const Scene scene = sceneOf(randomScene(seed, 6, {}));
+        const Coverage all = coverageOf(scene);
+        for (std::size_t i = 0; i < 6; ++i) {
+            Scene one = scene;
+            one.lasers = {scene.lasers[i]};
+            const Coverage alone = coverageOf(one);
+            EXPECT_EQ(alone.sensors[0].cells, all.sensors[i].cells) << seed;
+            EXPECT_EQ(alone.report.sensors[0].area.exact, all.report.sensors[i].area.exact);
+        }
+    }
+}
+
+TEST(ExactCoverage, ZonesHaveAreasWithoutExactFigures) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=8,8\nzone id=door at=1,0 size=1,1\n"
+                           "laser at=0,0,1 sweep=tilt tilt=-30 sweep_span=20\n"))
+            .report;
+    EXPECT_NE(report.exact_missing, "");
+    EXPECT_NEAR(report.zones[0].area, 1, 1e-9);
+    EXPECT_FALSE(report.zones[0].coverage.exact);
+}
+
+TEST(GridOfBeams, CellsLieAmongTheEndsOfBeams) {
+    const auto report = [](const std::string& laser) {
+        const Scene scene = sceneOf("ispace size=12,12\n" + laser);
+        Worlds worlds(scene.environment);
+        return measureCoverage(scene, worlds,
+                               {.columns = 400, .rows = 400, .cells_by = CellRule::Beams})
+            .report;
+    };
+    // Five beams over half a turn: four triangles.
+    EXPECT_NEAR(*report("laser at=0,0 range=4 fov=180 step=45\n").sensors[0].area.grid,
+                4 * 8 * std::sqrt(0.5), 0.1);
+    // Beams of a sweep outline nothing: their region decides.
+    EXPECT_NEAR(*report("laser at=0,0 range=4 fov=10 sweep=heading\n").sensors[0].area.grid,
+                16 * kPi, 0.2);
 }
 
 TEST(ExactCoverage, LasersAtSeveralHeightsSeeTheirOwnSlice) {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <optional>
+
 #include "cover/contour.h"
 #include "cover/coverage_files.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
+#include "geom/box_tree.h"
 
 namespace ispace {
 
@@ -10,24 +14,38 @@ namespace {
 
 /// Cells as pieces: each outline with the holes that lie in it.
 std::vector<Region> regionsOf(const Grid& grid, const CellSet& cells) {
-    std::vector<Polygon> outlines;
     std::vector<Region> pieces;
     std::vector<Polygon> holes;
+    std::vector<Box2> boxes;
     for (Polygon& curve : contours(grid, cells)) {
-        if (signedArea(curve) > 0)
-            pieces.push_back({std::move(curve), {}});
-        else
+        if (signedArea(curve) < 0) {
             holes.push_back(std::move(curve));
-    }
-    for (Polygon& hole : holes)
-        for (Region& piece : pieces) {
-            // A hole lies within one outline alone, but may touch it at corners: its middle
-            // decides.
-            if (locate(piece.outline, interiorPoint({hole, {}})) != Side::Inside) continue;
-            piece.holes.push_back(std::move(hole));
-            break;
+            continue;
         }
+        boxes.push_back(bounds(curve));
+        pieces.push_back({std::move(curve), {}});
+    }
+    const BoxTree tree(boxes);
+    for (Polygon& hole : holes) {
+        // Outlines touch at corners at most, so its middle decides; of nested ones the innermost.
+        const Point2 middle = interiorPoint({hole, {}});
+        std::optional<std::size_t> owner;
+        tree.search({middle, middle}, [&](std::size_t i) {
+            const bool is_within = !owner || boxes[i].width() < boxes[*owner].width();
+            if (is_within && locate(pieces[i].outline, middle) == Side::Inside) owner = i;
+        });
+        if (owner) pieces[*owner].holes.push_back(std::move(hole));
+    }
     return pieces;
+}
+
+/// The most sensors that see one place.
+std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
+    if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
+    std::int32_t most = 0;
+    for (const LayerOverlay::Edge& edge : coverage.overlay->edges())
+        most = std::max({most, edge.left.count, edge.right.count});
+    return static_cast<std::uint32_t>(most);
 }
 
 /// The view of one sensor as pieces.
@@ -66,7 +84,8 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     out.begin("free", "free", "region");
     out.endAsArea(scene.environment.freeFloor(coverage.target.height));
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    for (std::uint32_t k = 1; k <= coverage.sets.size(); ++k) {
+    const std::uint32_t most = mostSeeing(coverage, times);
+    for (std::uint32_t k = 1; k <= most; ++k) {
         const std::vector<Region> pieces = seenBy(coverage, k, times);
         if (pieces.empty()) continue;
         out.begin("seen-" + std::to_string(k), "seen", "region")

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "cover/coverage_files.h"
 #include "cover/test_scenes.h"
 
 namespace ispace {
@@ -106,12 +107,21 @@ TEST(Coverage, LoneSensorIsWorthAllItSees) {
 }
 
 TEST(Coverage, SameForAnyNumberOfThreads) {
-    const Scene scene = sceneOf(kOffice);
+    std::string lines = kOffice;
+    lines +=
+        "laser at=1,1,0.6 fov=200\nlaser at=6,5,1.2 sweep=tilt sweep_span=30\n"
+        "ranger at=7,5,1.5 tilt=-50 heading=-120\nranger at=1,4,2 tilt=-90\n";
+    for (int i = 0; i < 5; ++i)
+        lines += "ultrasound tilt=-90 at=" + std::to_string(i + 1) + ",2,2.4\n";
+    const Scene scene = sceneOf(lines);
     const auto with_threads = [&scene](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return coverageJson(coverageOf(scene).report);
+        const Coverage coverage = coverageOf(scene);
+        return coverageJson(coverage.report) + coverageGeoJson(scene, coverage) +
+               coverageCsv(coverage);
     };
-    EXPECT_EQ(with_threads(1), with_threads(4));
+    const std::string one = with_threads(1);
+    for (int run = 0; run < 3; ++run) EXPECT_EQ(with_threads(4), one);
 }
 
 TEST(Coverage, OneCellWillDo) {

@@ -55,9 +55,33 @@ Row row(std::string name, const Figure& figure, Format format) {
     return row;
 }
 
-std::string seenBy(std::size_t k) {
-    if (k == 0) return "seen by no sensor";
-    return "seen by " + std::to_string(k) + (k == 1 ? " sensor" : " sensors");
+std::string seenBy(std::size_t first, std::size_t last) {
+    if (last == 0) return "seen by no sensor";
+    if (last == 1) return "seen by 1 sensor";
+    std::string text = "seen by ";
+    if (first != last) text += std::to_string(first) + " to ";
+    return text + std::to_string(last) + " sensors";
+}
+
+/// A row for each number of sensors, of many the greater ones together.
+void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
+    constexpr std::size_t kMostRows = 8;
+    const auto exact = [&report](std::size_t k) { return (*report.redundancy_exact)[k]; };
+    std::size_t end = report.redundancy.size();
+    while (end > 1 && report.redundancy[end - 1] == 0 &&
+           (!report.redundancy_exact || exact(end - 1) < 1e-9))
+        --end;
+    for (std::size_t k = 0; k < end; ++k) {
+        const std::size_t last = k + 1 == kMostRows ? end - 1 : k;
+        Figure share{.grid = 0, .exact = {}};
+        if (report.redundancy_exact) share.exact = 0;
+        for (std::size_t i = k; i <= last; ++i) {
+            *share.grid += report.redundancy[i];
+            if (share.exact) *share.exact += exact(i);
+        }
+        rows.push_back(row(seenBy(k, last), share, percent));
+        k = last;
+    }
 }
 
 std::string figureTable(const CoverageReport& report) {
@@ -66,15 +90,9 @@ std::string figureTable(const CoverageReport& report) {
                              row("seen by several", report.overlap, area),
                              row("coverage", report.coverage, percent),
                              row("free coverage", report.free_coverage, percent)};
-    std::size_t end = report.redundancy.size();
-    while (end > 1 && report.redundancy[end - 1] == 0) --end;
-    for (std::size_t k = 0; k < end; ++k) {
-        Figure share{.grid = report.redundancy[k], .exact = {}};
-        if (report.redundancy_exact) share.exact = (*report.redundancy_exact)[k];
-        rows.push_back(row(seenBy(k), share, percent));
-    }
+    addRedundancy(report, rows);
     for (const ZoneFigures& zone : report.zones) {
-        if (zone.area > 0 || !zone.coverage.exact)
+        if (zone.area > 0)
             rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));
         else
             rows.push_back({"zone " + printable(zone.id), "outside the room"});
@@ -85,14 +103,13 @@ std::string figureTable(const CoverageReport& report) {
 std::string sensorTable(const std::vector<SensorFigures>& sensors) {
     const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
     std::vector<Row> rows = {{"sensor", "model", "slice area", "by cells", "exact", "difference",
-                              "marginal", "exact", "overlap"}};
+                              "marginal", "exact", "difference", "overlap"}};
     for (const SensorFigures& sensor : sensors) {
-        const Row region = row("", sensor.area, area);
+        const Row region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
         rows.push_back(
             {printable(sensor.id),
              sensor.model.empty() ? std::string(nameOf(sensor.kind)) : printable(sensor.model),
-             cell(sensor.slice_area), region[1], region[2], region[3], cell(sensor.marginal.grid),
-             cell(sensor.marginal.exact),
+             cell(sensor.slice_area), region[1], region[2], region[3], alone[1], alone[2], alone[3],
              cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
     }
     return aligned(rows, "llr");

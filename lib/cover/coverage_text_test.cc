@@ -88,9 +88,9 @@ seen by 1 sensor                80.00%       -           -
 zone door                       50.00%  25.00%     +25.00%
 zone far              outside the room
 
-sensor  model     slice area  by cells    exact  difference  marginal    exact   overlap
-l1      urg-04lx     3.50 m2   3.25 m2  3.38 m2    -0.12 m2   1.25 m2  1.50 m2   1.88 m2
-t       ranger             -  12.00 m2        -           -   0.00 m2        -  12.00 m2
+sensor  model     slice area  by cells    exact  difference  marginal    exact  difference   overlap
+l1      urg-04lx     3.50 m2   3.25 m2  3.38 m2    -0.12 m2   1.25 m2  1.50 m2    -0.25 m2   1.88 m2
+t       ranger             -  12.00 m2        -           -   0.00 m2        -           -  12.00 m2
 
 covered floor is in 2 pieces, the largest has 75.00% of it
 largest spots of free floor that no sensor sees:
@@ -107,6 +107,19 @@ TEST(CoverageText, SaysWhyExactFiguresAreMissing) {
         std::string::npos);
     EXPECT_NE(coverageJson(report).find(R"("exact_missing":"what t sees is not known")"),
               std::string::npos);
+}
+
+TEST(CoverageText, ManySensorsShareARow) {
+    CoverageReport report = sampleReport();
+    report.redundancy.assign(21, 0.05);
+    report.redundancy[20] = 0;
+    report.redundancy_exact = report.redundancy;
+    (*report.redundancy_exact)[20] = 0.001;
+    const std::string text = coverageText(report);
+    EXPECT_NE(text.find("\nseen by 6 sensors"), std::string::npos);
+    EXPECT_NE(text.find("\nseen by 7 to 20 sensors"), std::string::npos) << text;
+    EXPECT_NE(text.find("65.00%  65.10%"), std::string::npos) << text;
+    EXPECT_EQ(text.find("seen by 8"), std::string::npos);
 }
 
 TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {

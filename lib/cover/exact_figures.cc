@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <bit>
+#include <optional>
 
 #include "cover/figures.h"
+#include "cover/sensor_views.h"
 #include "geom/boolean.h"
 
 namespace ispace {
@@ -19,6 +22,24 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
     return {.curves = std::move(curves), .counts = false, .marks = marks};
 }
 
+void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+        Polygon outline = zones[i].outline;
+        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
+        layers.push_back(markLayer({curveOf(outline)}, zoneMark(i)));
+    }
+}
+
+/// Calls add(zone, label, area) for each zone that holds a face of the indoor region.
+template <typename Add>
+void addIndoorAreas(const LayerOverlay& overlay, Add add) {
+    overlay.addAreas([&](const LayerLabel& label, double area) {
+        if ((label.marks & kIndoorMark) == 0) return;
+        for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
+            add(static_cast<std::size_t>(std::countr_zero(bits)), label, area);
+    });
+}
+
 /// All sets over indoor region, free floor and some zones.
 LayerOverlay overlayOf(const Coverage& coverage, const Environment& environment,
                        const std::vector<Region>& free_floor, std::span<const Zone> zones) {
@@ -32,11 +53,7 @@ LayerOverlay overlayOf(const Coverage& coverage, const Environment& environment,
     for (const Region& piece : free_floor)
         for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
     layers.push_back(markLayer(std::move(free), kFreeMark));
-    for (std::size_t i = 0; i < zones.size(); ++i) {
-        Polygon outline = zones[i].outline;
-        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
-        layers.push_back(markLayer({curveOf(outline)}, zoneMark(i)));
-    }
+    addZoneLayers(zones, layers);
     return LayerOverlay(layers, environment.slice(coverage.target.height).sheets);
 }
 
@@ -62,18 +79,11 @@ struct Areas {
 
 void addZones(std::span<ZoneFigures> figures, const LayerOverlay& overlay) {
     std::vector<double> covered(figures.size());
-    overlay.addAreas([&](const LayerLabel& label, double area) {
-        if ((label.marks & kIndoorMark) == 0) return;
-        for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1) {
-            const auto zone = static_cast<std::size_t>(std::countr_zero(bits));
-            figures[zone].area += area;
-            if (label.count > 0) covered[zone] += area;
-        }
+    addIndoorAreas(overlay, [&](std::size_t zone, const LayerLabel& label, double area) {
+        if (label.count > 0) covered[zone] += area;
     });
-    for (std::size_t i = 0; i < figures.size(); ++i) {
-        if (figures[i].area < kLeastPiece) figures[i].area = 0;
+    for (std::size_t i = 0; i < figures.size(); ++i)
         figures[i].coverage.exact = shareOf(covered[i], figures[i].area);
-    }
 }
 
 void addPieces(CoverageReport& report, const LayerOverlay& overlay) {
@@ -111,18 +121,71 @@ void addSensors(Coverage& coverage, const Areas& areas) {
     }
 }
 
+/// What is lost without one receiver: what enough of them hear with it alone, and nothing else
+/// sees. Left out for more receivers than there are marks.
+void addReceivers(Coverage& coverage) {
+    constexpr std::size_t kMost = 62;
+    std::vector<const SensorView*> receivers;
+    std::vector<SensorFigures*> figures;
+    for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
+        if (coverage.sensors[i].kind != ViewKind::Receiver) continue;
+        receivers.push_back(&coverage.sensors[i]);
+        figures.push_back(&coverage.report.sensors[i]);
+    }
+    if (receivers.empty() || receivers.size() > kMost) return;
+    std::vector<Layer> layers;
+    layers.reserve(coverage.sets.size() + receivers.size());
+    for (std::size_t i = 0; i < coverage.sets.size(); ++i)
+        layers.push_back(
+            {.curves = *coverage.sets[i].region, .number = static_cast<std::int64_t>(i)});
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        std::vector<const SensorView*> others = receivers;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        auto heard = regionHeardByEnough(others);
+        if (!heard) return;
+        layers.push_back(markLayer(std::move(*heard), std::uint64_t{1} << i));
+    }
+    const auto joint = static_cast<std::int64_t>(coverage.sets.size()) - 1;
+    const LayerOverlay overlay(layers);
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        figures[i]->marginal.exact = std::max(0.0, overlay.area([&](const LayerLabel& label) {
+            return label.count == 1 && label.numbers == joint && ((label.marks >> i) & 1U) == 0;
+        }));
+}
+
 }  // namespace
+
+std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
+                                       const std::vector<Zone>& zones) {
+    std::vector<ZoneFigures> figures;
+    figures.reserve(zones.size());
+    for (const Zone& zone : zones) figures.push_back({.id = zone.id});
+    for (std::size_t first = 0; first < zones.size(); first += kZonesAtOnce) {
+        const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
+        std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
+        addZoneLayers(std::span(zones).subspan(first, count), layers);
+        addIndoorAreas(LayerOverlay(layers), [&](std::size_t zone, const LayerLabel&, double area) {
+            figures[first + zone].area += area;
+        });
+    }
+    for (ZoneFigures& zone : figures)
+        if (zone.area < kLeastPiece) zone.area = 0;
+    return figures;
+}
 
 void addExactFigures(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
     CoverageReport& report = coverage.report;
+    std::optional<LayerOverlay> main;  // with the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
         LayerOverlay overlay =
             overlayOf(coverage, environment, free_floor, std::span(zones).subspan(first, count));
         addZones(std::span(report.zones).subspan(first, count), overlay);
-        if (first == 0) coverage.overlay = std::move(overlay);
+        if (first == 0) main = std::move(overlay);
     }
+    addReceivers(coverage);
+    coverage.overlay = std::move(main);  // from here on nothing throws
 
     Areas areas(coverage.sets.size());
     coverage.overlay->addAreas(

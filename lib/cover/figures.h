@@ -15,6 +15,9 @@ struct Zone {
     Polygon outline;
 };
 std::vector<Zone> zonesOf(const Environment& environment);
+/// Their indoor areas, exact.
+std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
+                                       const std::vector<Zone>& zones);
 
 /// Sets what the report says by cells, of a Coverage whose target, sensors and sets are there.
 void addCellFigures(Coverage& coverage, const std::vector<Zone>& zones);

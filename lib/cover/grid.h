@@ -32,6 +32,7 @@ struct Grid {
     [[nodiscard]] Point2 center(std::size_t cell) const;
     /// Area of one cell: the factor of eq. (4.6).
     [[nodiscard]] double cellArea() const;
+    friend bool operator==(const Grid&, const Grid&) = default;
 };
 
 /// A set of cells of one grid, 64 to a word.

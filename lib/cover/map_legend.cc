@@ -232,7 +232,10 @@ LegendBlock zonesBlock(const CoverageReport& report, bool terse) {
     const std::size_t listed = listedOf(report.zones.size(), terse ? 3 : 7);
     for (std::size_t i = 0; i < listed; ++i) {
         LegendItem item{Sign::None, {}, {}, report.zones[i].id, ""};
-        setFigure(item, block, report.zones[i].coverage, percent);
+        if (report.zones[i].area > 0)
+            setFigure(item, block, report.zones[i].coverage, percent);
+        else
+            item.value = "outside";
         block.items.push_back(std::move(item));
     }
     addRest(block, report.zones.size(), listed);
@@ -246,6 +249,7 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     };
     using namespace map_colors;
     add(contents.walls, Sign::Line, kWall, {}, "wall");
+    add(contents.openings, Sign::Line, kOpening, {}, "open at " + formatDouble(height) + " m");
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,
         "object at " + formatDouble(height) + " m");
     add(contents.objects, Sign::Patch, kObject, kObjectEdge, "object above or below");

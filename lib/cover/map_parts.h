@@ -23,6 +23,7 @@ constexpr Color kWhite = Color::rgb(0xFFFFFF);
 constexpr Color kUncovered = Color::rgb(0xFBF5E9);
 constexpr Color kOutside = Color::rgb(0xE4E4E4);
 constexpr Color kOutsideHatch = Color::rgb(0xB4B4B4);
+constexpr Color kOpening = Color::rgb(0xA39B90);
 constexpr Color kWall = Color::rgb(0x24292F);
 constexpr Color kSolid = Color::rgb(0x7D746B);
 constexpr Color kSolidEdge = Color::rgb(0x4A443E);
@@ -134,10 +135,11 @@ void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame);
 
 /// What the picture shows of a scene, in the order of the legend.
 struct MapContents {
-    bool walls = false;    ///< wall lines or bodies
-    bool solids = false;   ///< objects that stand at the height of the target
-    bool objects = false;  ///< other objects
-    bool outside = false;  ///< holes in the indoor region
+    bool walls = false;     ///< wall lines or bodies
+    bool openings = false;  ///< what of them lets sight pass at the height of the target
+    bool solids = false;    ///< objects that stand at the height of the target
+    bool objects = false;   ///< other objects
+    bool outside = false;   ///< holes in the indoor region
     bool zones = false;
 };
 MapContents contentsOf(const Scene& scene, const Coverage& coverage);

@@ -42,16 +42,27 @@ double wallWidth(const Environment& environment, double scale, double em) {
     return std::clamp(0.1 * scale * mean, em / 14, em / 7);
 }
 
-void drawWalls(Canvas& canvas, const Scene& scene, double scale, double em) {
+/// What of a wall stops sight at this height; the rest is an open door's lintel, a sill, glass.
+bool stopsAt(const Sheet& sheet, double height) {
+    return !sheet.clear && sheet.bottom <= height && height <= sheet.top;
+}
+
+/// Lines and bodies of walls: those that let sight pass first, pale, so that the others' ends show.
+void drawWalls(Canvas& canvas, const Scene& scene, double height, double scale, double em) {
     const double width = wallWidth(scene.environment, scale, em);
-    for (const Element& element : scene.environment.elements()) {
-        std::vector<Segment2> lines;
-        for (const Sheet& sheet : element.body.sheets) lines.push_back(sheet.line);
-        if (!lines.empty()) canvas.lines(lines, {map_colors::kWall, width});
-        if (!isWall(element)) continue;
-        for (const Prism& prism : element.body.prisms) {
-            canvas.fill(prism.footprint, map_colors::kWall);
-            canvas.stroke(prism.footprint, {map_colors::kWall, em / 16});
+    for (const bool stopping : {false, true}) {
+        const Color color = stopping ? map_colors::kWall : map_colors::kOpening;
+        for (const Element& element : scene.environment.elements()) {
+            std::vector<Segment2> lines;
+            for (const Sheet& sheet : element.body.sheets)
+                if (stopsAt(sheet, height) == stopping) lines.push_back(sheet.line);
+            if (!lines.empty()) canvas.lines(lines, {color, stopping ? width : width / 2});
+            if (!isWall(element)) continue;
+            for (const Prism& prism : element.body.prisms) {
+                if (standsAt(prism, height) != stopping) continue;
+                if (stopping) canvas.fill(prism.footprint, color);
+                canvas.stroke(prism.footprint, {color, em / 16});
+            }
         }
     }
 }
@@ -70,9 +81,15 @@ MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     contents.outside = !scene.environment.indoor().holes.empty();
     for (const Element& element : scene.environment.elements()) {
         if (element.record.keyword() == "zone") contents.zones = true;
-        if (!element.body.sheets.empty()) contents.walls = true;
+        const double height = coverage.target.height;
+        for (const Sheet& sheet : element.body.sheets)
+            (stopsAt(sheet, height) ? contents.walls : contents.openings) = true;
         for (const Prism& prism : element.body.prisms) {
-            const bool solid = standsAt(prism, coverage.target.height);
+            const bool solid = standsAt(prism, height);
+            if (isWall(element) && !standsAt(prism, height)) {
+                contents.openings = true;
+                continue;
+            }
             (isWall(element) ? contents.walls : solid ? contents.solids : contents.objects) = true;
         }
     }
@@ -91,7 +108,7 @@ void drawPlan(Canvas& canvas, const MapPicture& map) {
     drawFloor(canvas, map);
     drawViews(canvas, map);
     drawObjects(canvas, map.scene, map.coverage.target.height, map.em);
-    drawWalls(canvas, map.scene, map.view.scale, map.em);
+    drawWalls(canvas, map.scene, map.coverage.target.height, map.view.scale, map.em);
     drawZones(canvas, map);
     canvas.pop();
     canvas.pop();

@@ -18,21 +18,14 @@ double shareOfText(std::string_view text) {
                      "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%");
 }
 
-const ZoneFigures& zoneNamed(const std::string& id, const CoverageReport& report) {
-    const auto found = std::find_if(report.zones.begin(), report.zones.end(),
-                                    [&id](const ZoneFigures& zone) { return zone.id == id; });
-    if (found != report.zones.end()) return *found;
-    std::vector<std::string> known;
-    known.reserve(report.zones.size());
-    for (const ZoneFigures& zone : report.zones) known.push_back(zone.id);
-    throw UsageError("the room has no zone `" + printable(id) + '`' + didYouMean(id, known));
-}
-
 /// With all digits where two do not show that a share is below another.
 std::string percent(double share, double required) {
     const std::string text = formatFixed(100 * share, 2);
     return text == formatFixed(100 * required, 2) ? formatPercent(share) : text + "%";
 }
+
+/// With more digits where two would be 0.00.
+std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
 
 }  // namespace
 
@@ -49,6 +42,16 @@ Requirement parseRequirement(std::string_view text) {
             shareOfText(text.substr(equals + 1))};
 }
 
+void mustHaveZone(const Requirement& requirement, const Environment& environment) {
+    if (requirement.of != Requirement::Of::Zone) return;
+    std::vector<std::string> known;
+    for (const Element& element : environment.elements())
+        if (element.record.keyword() == "zone") known.push_back(element.id);
+    if (std::find(known.begin(), known.end(), requirement.zone) != known.end()) return;
+    throw UsageError("the room has no zone `" + printable(requirement.zone) + '`' +
+                     didYouMean(requirement.zone, known));
+}
+
 std::string shortfall(const Requirement& requirement, const CoverageReport& report) {
     double share = report.coverage.grid.value_or(0), area = report.indoor_area;
     std::string what = "coverage";
@@ -57,7 +60,9 @@ std::string shortfall(const Requirement& requirement, const CoverageReport& repo
         area = report.free_area;
         what = "free coverage";
     } else if (requirement.of == Requirement::Of::Zone) {
-        const ZoneFigures& zone = zoneNamed(requirement.zone, report);
+        const ZoneFigures& zone = *std::find_if(
+            report.zones.begin(), report.zones.end(),
+            [&requirement](const ZoneFigures& one) { return one.id == requirement.zone; });
         share = zone.coverage.grid.value_or(0);
         area = zone.area;
         what = "coverage of zone " + printable(zone.id);
@@ -66,10 +71,10 @@ std::string shortfall(const Requirement& requirement, const CoverageReport& repo
     what += " is " + percent(share, requirement.share) + ", below the required " +
             formatPercent(requirement.share);
     if (area <= 0) return what + ": it has no floor in the room";
-    what += ": " + formatFixed((requirement.share - share) * area, 2) + " m2 are missing";
+    what += ": " + squareMetres((requirement.share - share) * area) + " are missing";
     if (requirement.of == Requirement::Of::Zone || report.unseen.empty()) return what;
     const UnseenSpot& spot = report.unseen.front();
-    return what + "; the largest unseen spot has " + formatFixed(spot.area, 2) + " m2 around (" +
+    return what + "; the largest unseen spot has " + squareMetres(spot.area) + " around (" +
            formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")";
 }
 

@@ -21,9 +21,12 @@ struct Requirement {
 /// \throws UsageError for what is none
 Requirement parseRequirement(std::string_view text);
 
+/// \throws UsageError if it is about a zone that the room does not have, with the nearest name
+void mustHaveZone(const Requirement& requirement, const Environment& environment);
+
 /// What is missing, as a sentence without end: "coverage is 50.00%, below the required 95%: 7.20 m2
 /// are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)"; "" if nothing is.
-/// \throws UsageError if the room has no such zone, with the nearest name
+/// \pre mustHaveZone()
 std::string shortfall(const Requirement& requirement, const CoverageReport& report);
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "cover/test_scenes.h"
 
 namespace ispace {
 namespace {
@@ -57,9 +58,15 @@ TEST(Shortfall, ShowsDifferencesBelowTheSecondDecimal) {
     EXPECT_EQ(shortfall(parseRequirement("95%"), report).substr(0, 20), "coverage is 94.9999%");
 }
 
-TEST(Shortfall, HintsAtTheZoneThatIsMeant) {
+TEST(MustHaveZone, HintsAtTheZoneThatIsMeant) {
+    const Scene scene = sceneOf("ispace size=4,4\nzone id=door at=0,0 size=1,1\n");
+    const auto check = [&scene](const char* text) {
+        mustHaveZone(parseRequirement(text), scene.environment);
+    };
+    EXPECT_NO_THROW(check("zone:door=100%"));
+    EXPECT_NO_THROW(check("free:100%"));
     try {
-        missing("zone:doof=100%");
+        check("zone:doof=100%");
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_NE(std::string(error.what()).find("did you mean `door`?"), std::string::npos)

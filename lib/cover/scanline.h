@@ -26,10 +26,6 @@ class Scanline {
     void addClosed(CellSet& cells) const { finish(cells, true); }
 
   private:
-    struct Row {
-        std::uint64_t* flips;
-        std::uint64_t* edges;
-    };
     [[nodiscard]] std::size_t wordsPerRow() const {
         return static_cast<std::size_t>(last_column_ - first_column_ + 63) / 64;
     }

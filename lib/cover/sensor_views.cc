@@ -2,6 +2,7 @@
 #include "cover/sensor_views.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "base/error.h"
 #include "cover/plane_view.h"
 #include "cover/visible.h"
+#include "sense/doubts.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
 #include "trace/ray_world.h"
@@ -42,12 +44,6 @@ SensorView viewOf(const PlacedReceiver& sensor, std::size_t index) {
             .model = sensor.receiver.model,
             .pose = sensor.pose,
             .max_range = sensor.receiver.max_range};
-}
-
-std::vector<Curve> curvesOf(const VisibleRegion& region) {
-    Curve outline = outlineOf(region);
-    if (outline.empty()) return {};
-    return {std::move(outline)};
 }
 
 /// Fills in the views of a scene's sensors.
@@ -84,32 +80,31 @@ class Viewer {
         for (const PlacedLaser& sensor : scene_.lasers) worlds_.prepare(sensor.pose);
     }
 
-    /// One slice after another is held by each thread, however many heights there are.
+    /// Each thread holds one slice after another, however many heights there are. All lines of a
+    /// slice are kept, near a sensor or not, so that what one sees depends on no other, to the bit.
     void lookInSlices(const std::vector<Level>& levels) {
         tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t k) {
             const auto& [height, members] = levels[k];
-            std::vector<Box2> reach;
-            reach.reserve(members.size());
-            for (const std::size_t i : members) reach.push_back(reachOf(views_[i]));
-            const SliceSight sight(scene_.environment.slice(height), reach);
-            tbb::parallel_for(std::size_t{0}, members.size(),
-                              [&](std::size_t i) { lookInSlice(views_[members[i]], sight); });
+            const SliceSight sight(scene_.environment.slice(height));
+            // Whoever waits for the others here does not begin with another slice.
+            tbb::this_task_arena::isolate([&, &members = members] {
+                tbb::parallel_for(std::size_t{0}, members.size(),
+                                  [&](std::size_t i) { lookInSlice(views_[members[i]], sight); });
+            });
         });
     }
 
-    static Box2 reachOf(const SensorView& view) {
-        const Point2 p = view.pose.position.onFloor();
-        const Vec2 reach{view.max_range + kSightContact, view.max_range + kSightContact};
-        return {p - reach, p + reach};
+    /// Beams are those of one scan: of a sweep they outline nothing.
+    [[nodiscard]] bool byBeams(const PlacedLaser& sensor) const {
+        return options_.cells_by == CellRule::Beams && sensor.laser.sweep == SweepAxis::None;
     }
 
     void lookInSlice(SensorView& view, const SliceSight& sight) const {
         const PlacedLaser& sensor = scene_.lasers[view.index];
         view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-        view.cells = options_.cells_by == CellRule::Beams
-                         ? cellsAmongBeams(grid_, sensor, view.beams)
-                         : cellsSeen(grid_, sight, sensor);
-        if (options_.exact) view.region = curvesOf(regionSeen(sight, sensor));
+        view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
+                                     : cellsSeen(grid_, sight, sensor);
+        if (options_.exact) view.region = regionSeen(sight, sensor);
     }
 
     void lookAtPlanes(const std::vector<std::size_t>& members) {
@@ -118,9 +113,18 @@ class Viewer {
         const RayWorld& mesh = worlds_.mesh();
         std::unique_ptr<const ShadowCaster> shadows;
         if (options_.exact) shadows = std::make_unique<ShadowCaster>(scene_.environment);
+        SolidJudge judge(scene_.environment);
+        std::vector<char> is_buried(members.size());
+        for (std::size_t i = 0; i < members.size(); ++i)
+            is_buried[i] = judge.isInside(views_[members[i]].pose.position) ? 1 : 0;
         tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t i) {
             SensorView& view = views_[members[i]];
             lookAtPlane(view, mesh);
+            if (is_buried[i] != 0) {  // it sees nothing, as in a slice
+                view.cells = CellSet(grid_.size());
+                if (shadows != nullptr) view.region.emplace();
+                return;
+            }
             if (shadows != nullptr) addRegion(view, *shadows);
         });
     }
@@ -134,9 +138,8 @@ class Viewer {
         } else {
             const PlacedLaser& sensor = scene_.lasers[view.index];
             view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-            view.cells = options_.cells_by == CellRule::Beams
-                             ? cellsAmongBeams(grid_, sensor, view.beams)
-                             : cellsSeen(grid_, mesh, sensor, plane);
+            view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
+                                         : cellsSeen(grid_, mesh, sensor, plane);
         }
     }
 
@@ -161,23 +164,6 @@ class Viewer {
     std::vector<SensorView> views_;
 };
 
-/// The region that at least kLeastReceivers hear; nothing if that of one of them is not known.
-std::optional<std::vector<Curve>> regionOfEnough(const std::vector<const SensorView*>& receivers) {
-    std::vector<Layer> layers;
-    layers.reserve(receivers.size());
-    for (const SensorView* view : receivers) {
-        if (!view->region) return std::nullopt;
-        layers.push_back({.curves = *view->region});
-    }
-    std::vector<Curve> curves;
-    const auto is_enough = [](const LayerLabel& label) {
-        return label.count >= static_cast<std::int32_t>(kLeastReceivers);
-    };
-    for (const Region& region : LayerOverlay(layers).regions(is_enough))
-        for (Curve& curve : curvesWithArcs(region)) curves.push_back(std::move(curve));
-    return curves;
-}
-
 /// Where at least kLeastReceivers hear.
 SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
     SeenSet set;
@@ -187,7 +173,7 @@ SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Gri
         view->cells.forEach([&](std::size_t cell) {
             if (++heard[cell] == kLeastReceivers) set.cells.set(cell);
         });
-    set.region = regionOfEnough(receivers);
+    set.region = regionHeardByEnough(receivers);
     return set;
 }
 
@@ -196,6 +182,23 @@ SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Gri
 std::vector<SensorView> viewsOf(const Scene& scene, Worlds& worlds, const Grid& grid,
                                 const CoverageOptions& options) {
     return Viewer(scene, worlds, grid, options).run();
+}
+
+std::optional<std::vector<Curve>> regionHeardByEnough(
+    std::span<const SensorView* const> receivers) {
+    std::vector<Layer> layers;
+    layers.reserve(receivers.size());
+    for (const SensorView* view : receivers) {
+        if (!view->region) return std::nullopt;
+        layers.push_back({.curves = *view->region});
+    }
+    try {
+        return LayerOverlay(layers).curves([](const LayerLabel& label) {
+            return label.count >= static_cast<std::int32_t>(kLeastReceivers);
+        });
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
 }
 
 std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {

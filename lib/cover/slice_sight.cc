@@ -2,6 +2,7 @@
 #include "cover/slice_sight.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "geom/predicates.h"
@@ -10,14 +11,9 @@ namespace ispace {
 
 namespace {
 
-std::vector<Segment2> linesNear(const Slice& slice, std::span<const Box2> reach) {
+std::vector<Segment2> linesOf(const Slice& slice) {
     std::vector<Segment2> lines;
-    slice.forEachLine([&](const Segment2& line) {
-        const Box2 box = bounds(line);
-        if (reach.empty() || std::any_of(reach.begin(), reach.end(),
-                                         [&box](const Box2& one) { return meets(one, box); }))
-            lines.push_back(line);
-    });
+    slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
     return lines;
 }
 
@@ -28,9 +24,15 @@ std::vector<Box2> boxesOf(const std::vector<Polygon>& solids) {
     return boxes;
 }
 
+double distanceFromEdges(const Polygon& solid, Point2 p) {
+    double least = std::numeric_limits<double>::infinity();
+    forEachEdge(solid, [&](const Segment2& edge) { least = std::min(least, distance(p, edge)); });
+    return least;
+}
+
 }  // namespace
 
-SliceSight::SliceSight(Slice slice, std::span<const Box2> reach) : map_(linesNear(slice, reach)) {
+SliceSight::SliceSight(Slice slice) : map_(linesOf(slice)) {
     solids_ = std::move(slice.solids);
     boxes_ = BoxTree(boxesOf(solids_));
 }
@@ -49,13 +51,19 @@ void SliceSight::look(Point2 viewpoint, double max_range, VisibleRegion& region)
 bool SliceSight::isInSolid(Point2 p) const {
     bool inside = false;
     boxes_.search({p, p}, [&](std::size_t i) {
-        if (inside || locate(solids_[i], p) != Side::Inside) return;
-        inside = true;
-        forEachEdge(solids_[i], [&](const Segment2& edge) {
-            inside = inside && distance(p, edge) > kSightContact;
-        });
+        inside = inside || (locate(solids_[i], p) == Side::Inside &&
+                            distanceFromEdges(solids_[i], p) > kSightContact);
     });
     return inside;
+}
+
+std::vector<Polygon> SliceSight::solidsTouching(Point2 p) const {
+    constexpr Vec2 kReach{kSightContact, kSightContact};
+    std::vector<Polygon> touching;
+    boxes_.search({p - kReach, p + kReach}, [&](std::size_t i) {
+        if (distanceFromEdges(solids_[i], p) <= kSightContact) touching.push_back(solids_[i]);
+    });
+    return touching;
 }
 
 }  // namespace ispace

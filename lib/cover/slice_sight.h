@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "env/slice.h"
@@ -10,17 +9,18 @@
 
 namespace ispace {
 
-/// A slice as level sensors at its height see it. Thread-safe once built.
+/// A slice as level sensors at its height see it: its lines stop sight. Thread-safe once built.
 class SliceSight {
   public:
-    /// Lines of the slice stop sight. With boxes, those alone that meet one of them: enough for
-    /// viewpoints whose reach lies within a box.
-    explicit SliceSight(Slice slice, std::span<const Box2> reach = {});
+    explicit SliceSight(Slice slice);
 
     /// As VisibilityMap::look; but nothing is seen from strictly inside a solid, farther than
     /// kSightContact from its surface.
     void look(Point2 viewpoint, double max_range, VisibleRegion& region) const;
     [[nodiscard]] bool isInSolid(Point2 p) const;
+    /// The solids whose surface p touches (within kSightContact): sight passes into them there, but
+    /// there is nothing to be seen.
+    [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
 
   private:
     std::vector<Polygon> solids_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/layers.h"
+
 namespace ispace {
 
 namespace {
@@ -22,7 +24,7 @@ bool sees(const Laser& laser, Angle heading, Angle direction) {
     const FanLimits limits = fanLimits(laser, heading);
     const double beyond =
         std::fmod(std::fmod((direction - limits.first).degrees(), 360) + 360, 360);
-    return beyond <= limits.span.degrees();
+    return beyond <= limits.span.degrees() + 1e-9;  // as Laser::sees has it
 }
 
 /// A polygon with straight edges that holds what is seen and, beyond the greatest range, nothing
@@ -49,7 +51,11 @@ CellSet cellsAround(const Grid& grid, const SliceSight& sight, Point2 place, dou
     VisibleRegion region;
     sight.look(place, kBeyond * max_range, region);
     const std::vector<Polygon> outline = {tangentOutline(region)};
-    return cellsWithin(grid, outline);
+    CellSet cells = cellsWithin(grid, outline);
+    Slice touching;
+    touching.solids = sight.solidsTouching(place);
+    if (!touching.solids.empty()) cells -= cellsBlocked(grid, touching);
+    return cells;
 }
 
 /// Tells most directions apart without an arc tangent: surely in the fan, surely not, or too near
@@ -91,15 +97,25 @@ bool scansSlice(const PlacedLaser& sensor) {
 FanLimits fanLimits(const Laser& laser, Angle heading) {
     Angle span = laser.last() - laser.first;
     if (laser.sweep == SweepAxis::Heading)
-        span = span + static_cast<double>(laser.scans() - 1) * laser.sweep_step;
+        span = laser.sweep_span >= Angle::degrees(360)
+                   ? laser.sweep_span
+                   : span + static_cast<double>(laser.scans() - 1) * laser.sweep_step;
     return {heading + laser.first, std::min(span, Angle::degrees(360))};
 }
 
-VisibleRegion regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
+std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
+    const Point2 place = sensor.pose.position.onFloor();
     VisibleRegion region;
-    sight.look(sensor.pose.position.onFloor(), sensor.laser.max_range, region);
+    sight.look(place, sensor.laser.max_range, region);
     const FanLimits limits = fanLimits(sensor.laser, sensor.pose.heading);
-    return sectorOf(region, limits.first, limits.span);
+    Curve outline = outlineOf(sectorOf(region, limits.first, limits.span));
+    if (outline.empty()) return {};
+    const std::vector<Polygon> solids = sight.solidsTouching(place);
+    if (solids.empty()) return {std::move(outline)};
+    std::vector<Layer> layers = {{.curves = {std::move(outline)}, .counts = false, .marks = 1}};
+    for (const Polygon& solid : solids) layers.push_back({.curves = {curveOf(solid)}});
+    return LayerOverlay(layers).curves(
+        [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
 }
 
 VisibleCells visibleCells(const Grid& grid, const SliceSight& sight, Point2 place,

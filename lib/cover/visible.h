@@ -15,15 +15,16 @@ namespace ispace {
 bool scansSlice(const PlacedLaser& sensor);
 
 /// The directions that a laser sees as it stands: from its first beam to its last, in a sweep of
-/// headings on to the last of the last scan.
+/// headings on to the last of the last scan and, if it goes all around, on to the first again.
 struct FanLimits {
     Angle first;  ///< in the world
     Angle span;   ///< at most a full turn
 };
 FanLimits fanLimits(const Laser& laser, Angle heading);
 
-/// The exact region of a laser. \pre scansSlice(sensor), the sight is of its height
-VisibleRegion regionSeen(const SliceSight& sight, const PlacedLaser& sensor);
+/// The exact region of a laser: disjoint curves, what is seen on their left. What lies in a solid
+/// that the sensor touches is not seen. \pre scansSlice(sensor), the sight is of its height
+std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor);
 
 /// The cells that a level laser at one place sees when it may face anywhere, with their
 /// directions: one look per place, then a heading is a sector of it.

@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
         {{"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
                           "; milliseconds\n"
                           "                           lines   cells + exact   -j 1    -j 2  1000^2 "
-                          "    map     MiB"}});
+                          "    map"}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }

@@ -42,14 +42,34 @@ void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
                           " not measured");
 }
 
+/// A layout may bring furniture, which is part of the comparison, but not another room.
+void mustBeSameRoom(const Environment& room, const Environment& other, const std::string& file) {
+    if (room.limits() == other.limits() && room.indoor().outline == other.indoor().outline &&
+        room.indoor().holes == other.indoor().holes)
+        return;
+    throw FormatError({displayName(file), 0, 0,
+                       "its walls make another room: layouts of one room can be compared"});
+}
+
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
     Worlds worlds(scene.environment);
     Measured measured{measureCoverage(scene, worlds, options.measure), {}};
     if (other == nullptr) return measured;
-    measured.other = measureCoverage(*other, worlds, options.measure);
+    mustBeSameRoom(scene.environment, other->environment, options.other);
+    Worlds other_worlds(other->environment);
+    measured.other = measureCoverage(*other, other_worlds, options.measure);
     compare(measured.coverage, *measured.other, scene.environment.indoor(),
-            baseName(options.other));
+            options.other == "-" ? displayName("-") : baseName(options.other));
     return measured;
+}
+
+/// Nobody means to replace what was read by a map of it.
+void mustNotBeRead(const std::string& output, const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(output, file, ignored))
+            throw UsageError(output + " is read by this command: write the map to another file");
+    }
 }
 
 void writeProduct(const CoverageToolOptions& options, const Scene& scene,
@@ -89,6 +109,10 @@ void coverage(CoverageToolOptions options) {
         other = readOtherLayout(input, options.other, options.any_environment);
         files.insert(files.end(), other->files.begin(), other->files.end());
     }
+    if (!options.format.empty()) mustNotBeRead(options.common.output, files);
+    if (options.format == "ros") mustNotBeRead(withSuffix(options.common.output, ".pgm"), files);
+    for (const Requirement& requirement : options.requirements)
+        mustHaveZone(requirement, input.scene.environment);
     warnOfDoubts(options, input.scene);
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
