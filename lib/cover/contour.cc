@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
+
+#include "geom/box_tree.h"
 
 namespace ispace {
 
@@ -92,6 +95,36 @@ class EdgeLattice {
 
 std::vector<Polygon> contours(const Grid& grid, const CellSet& cells) {
     return EdgeLattice(grid, cells).trace();
+}
+
+std::vector<Region> cellRegions(const Grid& grid, const CellSet& cells) {
+    std::vector<Region> pieces;
+    std::vector<Polygon> holes;
+    std::vector<Box2> boxes;
+    for (Polygon& curve : contours(grid, cells)) {
+        if (signedArea(curve) < 0) {
+            holes.push_back(std::move(curve));
+            continue;
+        }
+        boxes.push_back(bounds(curve));
+        pieces.push_back({std::move(curve), {}});
+    }
+    const BoxTree tree(boxes);
+    for (Polygon& hole : holes) {
+        // Of the outlines about the cell on the left of its first edge the innermost.
+        const Vec2 way = hole[1] - hole[0], ahead = 1 / length(way) * way;
+        const Vec2 left = perpendicular(ahead);
+        const Point2 cell = hole[0] + Vec2{(ahead.x + left.x) * grid.limits.width() / grid.columns,
+                                           (ahead.y + left.y) * grid.limits.depth() / grid.rows};
+        const Point2 middle = hole[0] + 0.5 * (cell - hole[0]);
+        std::optional<std::size_t> owner;
+        tree.search({middle, middle}, [&](std::size_t i) {
+            const bool is_within = !owner || boxes[i].width() < boxes[*owner].width();
+            if (is_within && locate(pieces[i].outline, middle) == Side::Inside) owner = i;
+        });
+        if (owner) pieces[*owner].holes.push_back(std::move(hole));
+    }
+    return pieces;
 }
 
 }  // namespace ispace

@@ -12,4 +12,7 @@ namespace ispace {
 /// rule they fill exactly the cells. Deterministic; O(cells of the grid).
 std::vector<Polygon> contours(const Grid& grid, const CellSet& cells);
 
+/// The same as pieces, each with its holes.
+std::vector<Region> cellRegions(const Grid& grid, const CellSet& cells);
+
 }  // namespace ispace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+
 #include <random>
 
 namespace ispace {
@@ -70,6 +73,27 @@ TEST(Contours, FillExactlyTheCells) {
             ASSERT_EQ(inside % 2 == 1, cells.test(i)) << trial;
         }
     }
+}
+
+TEST(CellRegions, HolesBelongToTheInnermostOutline) {
+    // A ring, in its hole an island that has a hole of its own.
+    const Grid grid{{{0, 0}, {9, 9}}, 9, 9};
+    CellSet cells(grid.size());
+    for (int row = 0; row < 9; ++row)
+        for (int column = 0; column < 9; ++column)
+            if (const int ring = std::max(std::abs(row - 4), std::abs(column - 4));
+                ring == 4 || ring == 3 || ring == 1)
+                cells.set(grid.cell(column, row));
+    const std::vector<Region> pieces = cellRegions(grid, cells);
+    ASSERT_EQ(pieces.size(), 2U);
+    std::vector<double> areas;
+    for (const Region& piece : pieces) {
+        EXPECT_EQ(piece.holes.size(), 1U);
+        areas.push_back(piece.area());
+    }
+    std::sort(areas.begin(), areas.end());
+    EXPECT_EQ(areas[0], 8);
+    EXPECT_EQ(areas[1], 81 - 25);
 }
 
 }  // namespace

@@ -57,25 +57,6 @@ TEST(CoverageGeoJson, OutlinesCellsWhereRegionsAreNotKnown) {
     EXPECT_EQ(count(json, R"("keyword":"view")"), 1U);
 }
 
-TEST(CoverageGeoJson, HolesBelongToTheInnermostOutline) {
-    // Unseen rings about a nodding laser that is hidden from: seen floor, a ring of blocks, seen
-    // floor beyond it, and again.
-    const Scene scene = sceneOf(
-        "ispace size=10,10\n"
-        "laser id=nods at=0,0,2.4 range=20 fov=360 sweep=roll sweep_span=180 sweep_step=1\n"
-        "fence closed=yes height=0.4 path=-2,-2;2,-2;2,2;-2,2\n"
-        "fence closed=yes height=0.4 path=-4,-4;4,-4;4,4;-4,4\n");
-    const Coverage coverage = coverageOf(scene, 100, 100);
-    ASSERT_FALSE(coverage.overlay);
-    const std::string json = coverageGeoJson(scene, coverage);
-    const auto at = json.find(R"("id":"seen-1")");
-    ASSERT_NE(at, std::string::npos);
-    // The area that the feature tells is that of its outlines less their holes.
-    const auto area = json.find(R"("area":)", at) + 7;
-    EXPECT_NEAR(std::stod(json.substr(area)),
-                *coverage.report.coverage.grid * coverage.report.indoor_area, 1e-6);
-}
-
 TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Scene scene = sceneOf(kHalfSeen);
     Worlds worlds(scene.environment);

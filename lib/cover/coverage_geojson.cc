@@ -1,43 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <optional>
 
 #include "cover/contour.h"
 #include "cover/coverage_files.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
-#include "geom/box_tree.h"
 
 namespace ispace {
 
 namespace {
-
-/// Cells as pieces: each outline with the holes that lie in it.
-std::vector<Region> regionsOf(const Grid& grid, const CellSet& cells) {
-    std::vector<Region> pieces;
-    std::vector<Polygon> holes;
-    std::vector<Box2> boxes;
-    for (Polygon& curve : contours(grid, cells)) {
-        if (signedArea(curve) < 0) {
-            holes.push_back(std::move(curve));
-            continue;
-        }
-        boxes.push_back(bounds(curve));
-        pieces.push_back({std::move(curve), {}});
-    }
-    const BoxTree tree(boxes);
-    for (Polygon& hole : holes) {
-        // Outlines touch at corners at most, so its middle decides; of nested ones the innermost.
-        const Point2 middle = interiorPoint({hole, {}});
-        std::optional<std::size_t> owner;
-        tree.search({middle, middle}, [&](std::size_t i) {
-            const bool is_within = !owner || boxes[i].width() < boxes[*owner].width();
-            if (is_within && locate(pieces[i].outline, middle) == Side::Inside) owner = i;
-        });
-        if (owner) pieces[*owner].holes.push_back(std::move(hole));
-    }
-    return pieces;
-}
 
 /// The most sensors that see one place.
 std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
@@ -50,7 +21,7 @@ std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32
 
 /// The view of one sensor as pieces.
 std::vector<Region> viewOf(const SensorView& view, const Grid& grid) {
-    if (!view.region) return regionsOf(grid, view.cells);
+    if (!view.region) return cellRegions(grid, view.cells);
     return LayerOverlay(std::vector<Layer>{{.curves = *view.region}})
         .regions([](const LayerLabel& label) { return label.count > 0; });
 }
@@ -67,7 +38,7 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
     target.indoor.forEach([&](std::size_t cell) {
         if (cell_times[cell] == times) cells.set(cell);
     });
-    return regionsOf(target.grid, cells);
+    return cellRegions(target.grid, cells);
 }
 
 }  // namespace

@@ -41,6 +41,12 @@ std::string aligned(const std::vector<Row>& rows, const std::string& sides) {
     return text;
 }
 
+template <typename Format>
+std::string withSign(double value, Format format) {
+    const std::string text = format(value);
+    return text.front() == '-' ? text : "+" + text;
+}
+
 /// A figure three ways: by cells, exact, and by how much cells are off.
 template <typename Format>
 Row row(std::string name, const Figure& figure, Format format) {
@@ -50,8 +56,7 @@ Row row(std::string name, const Figure& figure, Format format) {
         row.emplace_back("-");
         return row;
     }
-    const std::string difference = format(*figure.grid - *figure.exact);
-    row.push_back(difference.front() == '-' ? difference : "+" + difference);
+    row.push_back(withSign(*figure.grid - *figure.exact, format));
     return row;
 }
 
@@ -146,7 +151,8 @@ std::string comparisonText(const CoverageReport& report) {
                         .exact = gain(report.coverage.exact, other.coverage.exact)};
     return "\n" + aligned({{"beside " + printable(other.name), "by cells", "exact", "difference"},
                            row("its coverage", other.coverage, percent),
-                           row("change of coverage", change, percent),
+                           row("change of coverage", change,
+                               [](double share) { return withSign(share, percent); }),
                            row("gained", other.gained, area),
                            row("lost", other.lost, area)},
                           "lr");

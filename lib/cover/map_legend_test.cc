@@ -6,15 +6,6 @@
 namespace ispace {
 namespace {
 
-const char* const kOffice =
-    "fence path=0,0;8,0;8,6;3,6;3,5;0,5 closed=yes\ninside at=1,1\n"
-    "fence id=shaft path=6,4;7,4;7,5;6,5 closed=yes\n"
-    "desk at=2,3 heading=30 size=1.2,0.8,0.7\ncube at=4,2 size=0.5,0.5,0.5\n"
-    "zone id=z path=1,1;2,1;2,2\n"
-    "laser id=a at=0.1,2.5\nlaser id=b at=7.9,3 heading=180 range=4\n"
-    "laser id=c at=3.5,5.9 heading=-90 fov=240\n"
-    "laser id=d at=7,0.3,1.5 heading=120 fov=90 tilt=-20\n";
-
 TEST(MapLegend, NamesWhatThePictureShows) {
     const Scene scene = sceneOf(kOffice);
     const Coverage coverage = coverageOf(scene);

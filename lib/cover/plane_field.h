@@ -3,16 +3,12 @@
 
 #include <cmath>
 
+#include "cover/range_rule.h"
 #include "geom/pose.h"
 #include "layout/ranger.h"
 #include "layout/ultrasound.h"
 
 namespace ispace {
-
-/// The rule of all range tests: as float32, end included.
-inline bool withinRange(double distance, double max_range) {
-    return static_cast<float>(distance) <= static_cast<float>(max_range);
-}
 
 /// All that a ranger or a receiver would see if nothing stood in its way. Its edges are in it,
 /// whatever rounding makes of them.

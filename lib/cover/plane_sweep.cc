@@ -35,7 +35,7 @@ double cosineOfHalf(Angle span) { return span >= Angle::degrees(360) ? -1 : cos(
 
 BearingWindow::BearingWindow(const Laser& laser, Angle more)
     : middle(unitVector(0.5 * (laser.first + laser.last() + more))),
-      cosine(cosineOfHalf(laser.last() - laser.first + more)) {}
+      cosine(cosineOfHalf(laser.last() - laser.first + std::max(more, -more))) {}
 
 bool BearingWindow::holds(Vec3 local) const {
     const double distance = std::sqrt(local.x * local.x + local.y * local.y);
@@ -49,7 +49,9 @@ SweptScan::SweptScan(const PlacedLaser& placed)
       middle_(cosSin(angleOf(placed.laser, placed.pose) + 0.5 * sweepOf(placed.laser))),
       cosine_(cosineOfHalf(sweepOf(placed.laser))),
       window_(placed.laser),
-      wide_(placed.laser, sweepOf(placed.laser)) {}
+      // Upside down, it turns the other way in its own frame.
+      wide_(placed.laser,
+            (turns_.tilt.cos * turns_.roll.cos < 0 ? -1.0 : 1.0) * sweepOf(placed.laser)) {}
 
 /// Rx(-roll) Ry(tilt) Rz(-heading).
 Vec3 SweptScan::Turns::toSensor(Vec3 way) const {

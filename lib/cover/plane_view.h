@@ -32,18 +32,22 @@ CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedRanger& se
 CellSet cellsHeard(const Grid& grid, const RayWorld& mesh, const PlacedReceiver& sensor,
                    double height);
 
-/// The bodies whose shadows make the same regions exactly. Needs the environment no longer once it
-/// is made; copies share what they hold. Thread-safe.
+/// The same as exact regions, by the shadows that bodies throw. (Contact with the plane is by
+/// height here and along the ray there: where sight grazes what is less than kContact above the
+/// plane, the two differ.) Needs the environment no longer once it is made; copies share what they
+/// hold. Thread-safe. O(n log n) in the triangles near the field of view and the crossings of their
+/// shadows.
 class ShadowCaster {
   public:
     explicit ShadowCaster(const Environment& environment);
 
-    /// The same regions as curves with what is seen on their left, disjoint: the field of view on
+    /// Regions as curves with what is seen on their left, disjoint: the field of view on
     /// the plane less the shadows of all triangles between it and the sensor. Conics are laid out
-    /// within kChordError. Empty curves: nothing is seen; nothing: not known exactly (swept
-    /// lasers).
-    [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const PlacedLaser& sensor,
-                                                               double height) const;
+    /// within kChordError (of receivers and spherical rangers that see farther than some hundred
+    /// times their height over the plane somewhat worse). Empty curves: nothing is seen; nothing:
+    /// not known exactly (swept lasers).
+    /// \throws FormatError for shadows that cross by the ten million
+    [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const PlacedLaser& sensor) const;
     [[nodiscard]] std::vector<Curve> regionSeen(const PlacedRanger& sensor, double height) const;
     [[nodiscard]] std::vector<Curve> regionHeard(const PlacedReceiver& sensor, double height) const;
 

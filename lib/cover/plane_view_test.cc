@@ -9,6 +9,7 @@
 
 #include "cover/plane_sweep.h"
 #include "cover/test_scenes.h"
+#include "cover/test_sensors.h"
 
 namespace ispace {
 namespace {
@@ -38,35 +39,6 @@ struct Room {
     Grid grid;
     RayWorld mesh;
 };
-
-Pose3 poseAt(Point3 place, double heading, double tilt, double roll = 0) {
-    return {place, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
-}
-
-PlacedRanger rangerAt(const Pose3& pose, double fov_x, double fov_y, double range) {
-    Ranger ranger;
-    ranger.fov_x = Angle::degrees(fov_x);
-    ranger.fov_y = Angle::degrees(fov_y);
-    ranger.max_range = range;
-    return {"r", ranger, pose};
-}
-
-PlacedReceiver receiverAt(const Pose3& pose, double fov, double range) {
-    Receiver receiver;
-    receiver.fov = Angle::degrees(fov);
-    receiver.max_range = range;
-    return {"u", receiver, pose};
-}
-
-Laser laserWith(double range, double first, double span) {
-    Laser laser;
-    laser.max_range = range;
-    laser.first = Angle::degrees(first);
-    laser.beams = static_cast<int>(span) + 1;
-    return laser;
-}
-
-double tanOf(double degrees) { return tan(Angle::degrees(degrees)); }
 
 TEST(PlaneCells, RangerLookingDownSeesARectangle) {
     const Room room("ispace size=12,8,4");
@@ -259,6 +231,19 @@ TEST(SweptScan, PlacesOnTheAxisAreSeenByTheirBearing) {
     EXPECT_TRUE(SweptScan(sensor).passes({std::cos(1.8), std::sin(1.8), 1}));
     EXPECT_FALSE(SweptScan(sensor).passes({std::cos(2.0), std::sin(2.0), 1}));
     EXPECT_FALSE(SweptScan(sensor).passes({1, 0, 1.01}));
+}
+
+TEST(SweptScan, UpsideDownBearingsRunTheOtherWay) {
+    // Beams from 0 to 20 degrees to its left, which is our right; headings from 0 to 60.
+    PlacedLaser sensor{"l", laserWith(30, 0, 20), poseAt({0, 0, 1}, 0, 0, 180)};
+    sensor.laser.sweep = SweepAxis::Heading;
+    sensor.laser.sweep_span = Angle::degrees(60);
+    const SweptScan scan(sensor);
+    for (int degrees = -179; degrees < 180; ++degrees) {
+        if (degrees == -20 || degrees == 60) continue;
+        const Vec2 way = unitVector(Angle::degrees(degrees));
+        EXPECT_EQ(scan.passes({2 * way.x, 2 * way.y, 1}), -20 < degrees && degrees < 60) << degrees;
+    }
 }
 
 TEST(PlaneCells, SweptLaserSeesWhatNothingHides) {

@@ -21,29 +21,15 @@ static_assert(kSightContact == kContact, "rays and exact regions have the same r
 
 namespace {
 
-SensorView viewOf(const PlacedLaser& sensor, std::size_t index) {
-    return {.kind = ViewKind::Laser,
+/// \param device the figures of a placed sensor
+template <typename Placed, typename Device>
+SensorView viewOf(ViewKind kind, const Placed& sensor, const Device& device, std::size_t index) {
+    return {.kind = kind,
             .index = index,
             .id = sensor.id,
-            .model = sensor.laser.model,
+            .model = device.model,
             .pose = sensor.pose,
-            .max_range = sensor.laser.max_range};
-}
-SensorView viewOf(const PlacedRanger& sensor, std::size_t index) {
-    return {.kind = ViewKind::Ranger,
-            .index = index,
-            .id = sensor.id,
-            .model = sensor.ranger.model,
-            .pose = sensor.pose,
-            .max_range = sensor.ranger.max_range};
-}
-SensorView viewOf(const PlacedReceiver& sensor, std::size_t index) {
-    return {.kind = ViewKind::Receiver,
-            .index = index,
-            .id = sensor.id,
-            .model = sensor.receiver.model,
-            .pose = sensor.pose,
-            .max_range = sensor.receiver.max_range};
+            .max_range = device.max_range};
 }
 
 /// Fills in the views of a scene's sensors.
@@ -71,12 +57,15 @@ class Viewer {
     using Level = std::pair<double, std::vector<std::size_t>>;
 
     void makeViews() {
-        for (std::size_t i = 0; i < scene_.lasers.size(); ++i)
-            views_.push_back(viewOf(scene_.lasers[i], i));
-        for (std::size_t i = 0; i < scene_.rangers.size(); ++i)
-            views_.push_back(viewOf(scene_.rangers[i], i));
-        for (std::size_t i = 0; i < scene_.receivers.size(); ++i)
-            views_.push_back(viewOf(scene_.receivers[i], i));
+        std::size_t index = 0;
+        for (const PlacedLaser& sensor : scene_.lasers)
+            views_.push_back(viewOf(ViewKind::Laser, sensor, sensor.laser, index++));
+        index = 0;
+        for (const PlacedRanger& sensor : scene_.rangers)
+            views_.push_back(viewOf(ViewKind::Ranger, sensor, sensor.ranger, index++));
+        index = 0;
+        for (const PlacedReceiver& sensor : scene_.receivers)
+            views_.push_back(viewOf(ViewKind::Receiver, sensor, sensor.receiver, index++));
         for (const PlacedLaser& sensor : scene_.lasers) worlds_.prepare(sensor.pose);
     }
 
@@ -151,7 +140,7 @@ class Viewer {
             else if (view.kind == ViewKind::Receiver)
                 view.region = shadows.regionHeard(scene_.receivers[view.index], plane);
             else
-                view.region = shadows.regionSeen(scene_.lasers[view.index], plane);
+                view.region = shadows.regionSeen(scene_.lasers[view.index]);
         } catch (const FormatError&) {
             view.region.reset();  // more shadows than can be laid over each other
         }

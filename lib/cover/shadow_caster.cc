@@ -119,8 +119,7 @@ Curve onPlan(const Curve& curve, const ScanPlane& plane) {
 
 }  // namespace
 
-std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& sensor,
-                                                           double) const {
+std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& sensor) const {
     const Laser& laser = sensor.laser;
     if (laser.sweep != SweepAxis::None) return std::nullopt;
     const ScanPlane plane(sensor.pose);

@@ -8,6 +8,7 @@
 
 #include "cover/plane_view.h"
 #include "cover/test_scenes.h"
+#include "cover/test_sensors.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -15,36 +16,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Pose3 poseAt(Point3 place, double heading, double tilt, double roll = 0) {
-    return {place, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
-}
-
-PlacedRanger rangerAt(const Pose3& pose, double fov_x, double fov_y, double range,
-                      Projection projection = Projection::Pinhole) {
-    Ranger ranger;
-    ranger.projection = projection;
-    ranger.fov_x = Angle::degrees(fov_x);
-    ranger.fov_y = Angle::degrees(fov_y);
-    ranger.max_range = range;
-    return {"r", ranger, pose};
-}
-
-PlacedReceiver receiverAt(const Pose3& pose, double fov, double range) {
-    Receiver receiver;
-    receiver.fov = Angle::degrees(fov);
-    receiver.max_range = range;
-    return {"u", receiver, pose};
-}
-
 PlacedLaser laserAt(const Pose3& pose, double range, double first, double span) {
-    Laser laser;
-    laser.max_range = range;
-    laser.first = Angle::degrees(first);
-    laser.beams = static_cast<int>(span) + 1;
-    return {"l", laser, pose};
+    return {"l", laserWith(range, first, span), pose};
 }
-
-double tanOf(double degrees) { return tan(Angle::degrees(degrees)); }
 
 ShadowCaster casterOf(const std::string& lines) { return ShadowCaster(sceneOf(lines).environment); }
 
@@ -162,11 +136,17 @@ TEST(ShadowCaster, BoxThrowsAShadow) {
 }
 
 TEST(ShadowCaster, WallsHideWhatIsBehind) {
-    const ShadowCaster caster =
-        casterOf(std::string(kEmpty) + "\ncube at=2,0 size=0.2,39.9,8\nscreen at=-2,0 size=1,2\n");
-    const auto curves = caster.regionHeard(receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 8), 0);
+    const std::string wall = std::string(kEmpty) + "\ncube at=2,0 size=0.2,39.9,8\n";
+    const PlacedReceiver receiver = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 8);
+    const auto curves = casterOf(wall).regionHeard(receiver, 0);
     for (const Curve& curve : curves) EXPECT_LE(bounds(curve).high.x, 1.9 + 1e-7);
-    EXPECT_LT(areaOf(curves), kPi * 30 + 1.9 * 15.6);
+    // A disc of radius sqrt(60) up to the wall's face.
+    const double area =
+        60 * (kPi - std::acos(1.9 / std::sqrt(60.0))) + 1.9 * std::sqrt(60 - 1.9 * 1.9);
+    EXPECT_NEAR(areaOf(curves), area, 1e-5);
+    // A screen as high as the receiver throws its shadow to the rim.
+    const auto less = casterOf(wall + "fence path=-2,-1;-2,1 height=2\n").regionHeard(receiver, 0);
+    EXPECT_NEAR(areaOf(less), area - (60 * std::atan(0.5) - 2), 1e-5);
 }
 
 TEST(ShadowCaster, UnderATableThereIsNothingToSeeAbove) {
@@ -203,8 +183,7 @@ TEST(ShadowCaster, NothingInRangeIsNothing) {
     EXPECT_TRUE(caster.regionHeard(receiverAt(poseAt({0, 0, 3}, 0, -90), 60, 3), 0).empty());
     EXPECT_TRUE(caster.regionHeard(receiverAt(poseAt({0, 0, 3}, 0, -90), 0, 9), 0).empty());
     EXPECT_TRUE(caster.regionSeen(rangerAt(poseAt({0, 0, 3}, 0, 90), 60, 40, 9), 0).empty());
-    EXPECT_TRUE(
-        caster.regionSeen(laserAt(poseAt({0, 0, 1}, 0, -90), 5, -90, 180), 0).value().empty());
+    EXPECT_TRUE(caster.regionSeen(laserAt(poseAt({0, 0, 1}, 0, -90), 5, -90, 180)).value().empty());
 }
 
 TEST(ShadowCaster, PlaneThroughTheSensorIsItsSlice) {
@@ -227,7 +206,7 @@ TEST(ShadowCaster, PlaneThroughTheSensorIsItsSlice) {
 TEST(ShadowCaster, TiltedLaserCoversTheFloorUnderItsPlane) {
     const ShadowCaster caster = casterOf("ispace size=12,8,20");
     const auto area = [&](const PlacedLaser& sensor) {
-        return areaOf(caster.regionSeen(sensor, 0).value());
+        return areaOf(caster.regionSeen(sensor).value());
     };
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 1}, 0, -45), 30, -90, 180)), 8, 1e-5);
     EXPECT_NEAR(area(laserAt(poseAt({0, 0, 1}, 0, -45), 2, -90, 180)), (2 + kPi) / std::sqrt(2.0),
@@ -243,7 +222,7 @@ TEST(ShadowCaster, TiltedLaserCoversTheFloorUnderItsPlane) {
                 1e-5);
     PlacedLaser swept = laserAt(poseAt({0, 0, 1}, 0, -45), 2, -90, 180);
     swept.laser.sweep = SweepAxis::Tilt;
-    EXPECT_FALSE(caster.regionSeen(swept, 0));
+    EXPECT_FALSE(caster.regionSeen(swept));
 }
 
 /// Tables, boxes and their kin at random in a room of 12 x 8 m.
@@ -320,7 +299,7 @@ struct Furnished {
         compare(cellsHeard(grid, mesh, receiver, height), caster.regionHeard(receiver, height),
                 what + " receiver");
         const PlacedLaser laser = laserAt(pose, range, -wide, 2 * wide);
-        compare(cellsSeen(grid, mesh, laser, height), caster.regionSeen(laser, height).value(),
+        compare(cellsSeen(grid, mesh, laser, height), caster.regionSeen(laser).value(),
                 what + " laser");
     }
 

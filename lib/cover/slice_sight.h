@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "env/slice.h"
-#include "geom/box_tree.h"
+#include "env/solid_tree.h"
 #include "geom/visibility.h"
 
 namespace ispace {
@@ -17,15 +17,15 @@ class SliceSight {
     /// As VisibilityMap::look; but nothing is seen from strictly inside a solid, farther than
     /// kSightContact from its surface.
     void look(Point2 viewpoint, double max_range, VisibleRegion& region) const;
-    [[nodiscard]] bool isInSolid(Point2 p) const;
     /// The solids whose surface p touches (within kSightContact): sight passes into them there, but
     /// there is nothing to be seen.
-    [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const;
+    [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const {
+        return solids_.touching(p, kSightContact);
+    }
 
   private:
-    std::vector<Polygon> solids_;
-    BoxTree boxes_;
     VisibilityMap map_;
+    SolidTree solids_;
 };
 
 }  // namespace ispace

@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cover/range_rule.h"
 #include "geom/layers.h"
 
 namespace ispace {
 
 namespace {
-
-/// One rule for every range test, on the float that Entry keeps, so that a place looked at with a
-/// longer range gives the same fan.
-bool withinRange(double distance, double max_range) {
-    return static_cast<float>(distance) <= static_cast<float>(max_range);
-}
 
 /// The one rule for directions. \param direction in the world
 bool sees(const Laser& laser, Angle heading, Angle direction) {

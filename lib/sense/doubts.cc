@@ -4,34 +4,22 @@
 #include <map>
 
 #include "base/number.h"
-#include "geom/box_tree.h"
-#include "geom/predicates.h"
+#include "env/solid_tree.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 
 struct SolidJudge::Data {
-    /// Solids of one height.
-    struct Level {
-        std::vector<Polygon> solids;
-        BoxTree boxes;
-    };
-
     const Environment& environment;
-    std::map<double, Level> levels = {};
+    std::map<double, SolidTree> levels = {};
 
-    const Level* at(double height) {
+    /// The solids of one height.
+    const SolidTree* at(double height) {
         constexpr std::size_t kMostLevels = 64;
         const auto known = levels.find(height);
         if (known != levels.end()) return &known->second;
         if (levels.size() == kMostLevels) return nullptr;
-        Level& level = levels[height];
-        level.solids = environment.slice(height).solids;
-        std::vector<Box2> boxes;
-        boxes.reserve(level.solids.size());
-        for (const Polygon& solid : level.solids) boxes.push_back(bounds(solid));
-        level.boxes = BoxTree(boxes);
-        return &level;
+        return &levels.emplace(height, environment.slice(height).solids).first->second;
     }
 };
 
@@ -40,19 +28,8 @@ SolidJudge::SolidJudge(const Environment& environment)
 SolidJudge::~SolidJudge() = default;
 
 bool SolidJudge::isInside(Point3 place) {
-    const Data::Level* const level = data_->at(place.z);
-    if (level == nullptr) return false;
-    const Point2 p = place.onFloor();
-    bool inside = false;
-    level->boxes.search({p, p}, [&](std::size_t i) {
-        const Polygon& solid = level->solids[i];
-        if (inside || locate(solid, p) != Side::Inside) return;
-        inside = true;
-        forEachEdge(solid, [&](const Segment2& edge) {
-            inside = inside && distance(nearestPoint(edge, p), p) > kContact;
-        });
-    });
-    return inside;
+    const SolidTree* const level = data_->at(place.z);
+    return level != nullptr && level->isInside(place.onFloor(), kContact);
 }
 
 std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,

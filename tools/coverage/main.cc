@@ -14,6 +14,7 @@
 #include "cover/coverage_files.h"
 #include "coverage/options.h"
 #include "sense/doubts.h"
+#include "sense/ultrasound.h"
 
 namespace {
 
@@ -33,6 +34,9 @@ void warn(const CoverageToolOptions& options, const std::string& text) {
 void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
     for (const std::string& doubt : doubtsAbout(scene, sensorsOf(scene, {}), {}, true))
         warn(options, doubt);
+    if (const std::size_t count = scene.receivers.size(); count > 0 && count < kLeastReceivers)
+        warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
+                          " receivers have to hear a tag, here are " + std::to_string(count));
     const auto cameras =
         std::count_if(scene.placed.begin(), scene.placed.end(), [&scene](const Placed& placed) {
             return scene.records[placed.record].keyword() == "camera";
