@@ -44,7 +44,7 @@ std::string aligned(const std::vector<Row>& rows, const std::string& sides) {
 template <typename Format>
 std::string withSign(double value, Format format) {
     const std::string text = format(value);
-    return text.front() == '-' ? text : "+" + text;
+    return text.front() == '-' || text.front() == '+' ? text : "+" + text;
 }
 
 /// A figure three ways: by cells, exact, and by how much cells are off.

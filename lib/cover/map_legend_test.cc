@@ -175,5 +175,18 @@ TEST(MapLegend, NarrowPagesShowWhatMattersMost) {
     EXPECT_EQ(legendBlocks(map)[0].items[0].text, "Coverage");
 }
 
+TEST(MapContents, TellsWallsFromWhatIsOpenAtTheHeight) {
+    const std::string room = "fence id=f closed=yes path=0,0;4,0;4,4;0,4\n";
+    const auto contents = [](const std::string& lines) {
+        const Scene scene = sceneOf(lines);
+        return contentsOf(scene, coverageOf(scene));
+    };
+    EXPECT_TRUE(contents(room).walls);
+    EXPECT_FALSE(contents(room).openings);
+    EXPECT_TRUE(contents(room + "door wall=f offset=1 size=1 open=yes\n").openings) << "a lintel";
+    EXPECT_FALSE(contents(room + "door wall=f offset=1 size=1\n").openings) << "closed";
+    EXPECT_TRUE(contents(room + "fence path=1,1;2,2 height=0.1\n").openings) << "below";
+}
+
 }  // namespace
 }  // namespace ispace
