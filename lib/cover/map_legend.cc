@@ -249,7 +249,7 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     };
     using namespace map_colors;
     add(contents.walls, Sign::Line, kWall, {}, "wall");
-    add(contents.openings, Sign::Line, kOpening, {}, "open at " + formatDouble(height) + " m");
+    add(contents.openings, Sign::Line, kOpening, {}, "wall above, below, or glass");
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,
         "object at " + formatDouble(height) + " m");
     add(contents.objects, Sign::Patch, kObject, kObjectEdge, "object above or below");

@@ -184,7 +184,6 @@ TEST(MapContents, TellsWallsFromWhatIsOpenAtTheHeight) {
     EXPECT_TRUE(contents(room).walls);
     EXPECT_FALSE(contents(room).openings);
     EXPECT_TRUE(contents(room + "door wall=f offset=1 size=1 open=yes\n").openings) << "a lintel";
-    EXPECT_FALSE(contents(room + "door wall=f offset=1 size=1\n").openings) << "closed";
     EXPECT_TRUE(contents(room + "fence path=1,1;2,2 height=0.1\n").openings) << "below";
 }
 
