@@ -69,14 +69,14 @@ class Windows {
   private:
     static constexpr std::uint32_t kHere = 256;  // a power of 2, as all sizes are
     union {
-        Window windows_here_[kHere];
+        Window windows_here[kHere];
     };
     union {
-        std::uint32_t queue_here_[kHere];
+        std::uint32_t queue_here[kHere];
     };
     std::vector<Window> many_windows_;
     std::vector<std::uint32_t> long_queue_;
-    State s_{windows_here_, queue_here_, kHere - 1, 0, 0, 0};
+    State s_{windows_here, queue_here, kHere - 1, 0, 0, 0};
 };
 
 /// One look in a large mesh, in which nobody can predict which way sight goes next: a processor

@@ -21,6 +21,8 @@ namespace ispace {
 
 /// What will be needed if sight gets there; harmless where that is no door.
 inline void prefetch(const Door* doors, std::uint32_t target) {
+    // The place may lie beyond the doors: nothing is read there.
+    // NOLINTNEXTLINE(performance-no-int-to-ptr)
     __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(doors) +
                                                      target * sizeof(Door)));
 }
@@ -86,10 +88,10 @@ class PendingStack {
 
     static constexpr std::size_t kHere = 64;
     union {
-        Pending here_[kHere];  // not set before it is used
+        Pending here[kHere];  // not set before it is used
     };
     std::vector<Pending> heap_;
-    Pending *base_ = here_, *top_ = base_, *end_ = base_ + kHere;
+    Pending *base_ = here, *top_ = base_, *end_ = base_ + kHere;
 
   public:
     PendingStack() {}

@@ -101,8 +101,9 @@ void lookFromOutside(const SightMesh& mesh, Point2 viewpoint, Look& look) {
 
 /// False only if nothing within kSightContact of p lies outside of its triangle or on its boundary.
 bool isNearEdge(const SightMesh& mesh, Point2 p, Index triangle) {
-    const Vec2 a = mesh.doors[3 * triangle].corner - p, b = mesh.doors[3 * triangle + 1].corner - p;
-    const Vec2 c = mesh.doors[3 * triangle + 2].corner - p;
+    const std::size_t door = std::size_t{3} * triangle;
+    const Vec2 a = mesh.doors[door].corner - p, b = mesh.doors[door + 1].corner - p;
+    const Vec2 c = mesh.doors[door + 2].corner - p;
     const auto is_near = [](Vec2 from, Vec2 to) {
         return square(cross(from, to)) <= square(kSightContact) * squaredLength(to - from);
     };

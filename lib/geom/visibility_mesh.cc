@@ -253,7 +253,7 @@ Index SightMesh::locateFrom(Point2 p, Index triangle) const {
         came = next;
         triangle = next / 3;
     }
-    for (triangle = 0; 3 * triangle < doors.size(); ++triangle)
+    for (triangle = 0; std::size_t{3} * triangle < doors.size(); ++triangle)
         if (!is_right(3 * triangle) && !is_right(3 * triangle + 1) && !is_right(3 * triangle + 2))
             return triangle;
     return 0;

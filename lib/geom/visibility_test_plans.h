@@ -40,8 +40,9 @@ class PlanMaker {
         const int rooms = size_.columns * size_.rows;
         for (int i = 0; i < size_.furniture; ++i) {
             const int room = i % rooms, place = 4 * (i / rooms) % 9;
-            const Point2 center{kRoom * (room % size_.columns) + 0.9 + 1.1 * (place % 3),
-                                kRoom * (room / size_.columns) + 0.9 + 1.1 * (place / 3)};
+            const int column = room % size_.columns, row = room / size_.columns;
+            const int across = place % 3, up = place / 3;
+            const Point2 center{kRoom * column + 0.9 + 1.1 * across, kRoom * row + 0.9 + 1.1 * up};
             addHole(plan, piece(center));
         }
         return plan;
