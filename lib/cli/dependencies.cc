@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -68,6 +69,13 @@ void checkDependencies(const DependencyOptions& options, const std::string& outp
 
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files) {
     if (!options.dependencies.wanted) return;
+    for (const std::string& file : files) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(ruleFile(options.dependencies, options.output), file,
+                                        ignored))
+            throw UsageError("-MD would write its rule over " + file +
+                             ", which was read: name another file with -MF");
+    }
     writeAll(ruleFile(options.dependencies, options.output), dependencyRule(options.output, files));
 }
 

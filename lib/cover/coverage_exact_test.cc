@@ -330,6 +330,32 @@ TEST(ExactCoverage, NothingIsSeenInASolidThatTheSensorTouches) {
     }
 }
 
+// Arcs of one circle, laid out once to take the solid away, and again for the union.
+TEST(ExactCoverage, FansAtOnePlaceOnASolidAddUp) {
+    const std::string room = "ispace size=60,60\ncube at=1,0 size=2,2,1\n";
+    for (const double range : {2.0, 4.0, 10.0, 20.0}) {
+        const auto laser = [range](int heading, int fov) {
+            return "laser at=0,0 heading=" + std::to_string(heading) +
+                   " fov=" + std::to_string(fov) + " range=" + formatDouble(range) + "\n";
+        };
+        const CoverageReport two =
+            coverageOf(sceneOf(room + laser(180, 180) + laser(180, 90))).report;
+        const double half = kPi / 2 * range * range;
+        EXPECT_NEAR(*two.total_effective_area.exact, half, 1e-6) << range;
+        EXPECT_NEAR(*two.overlap.exact, half / 2, 1e-6) << range;
+        const CoverageReport turned =
+            coverageOf(sceneOf(room + laser(195, 270) + laser(240, 180))).report;
+        EXPECT_NEAR(*turned.total_effective_area.exact, half, 2e-6) << range;
+    }
+}
+
+TEST(ExactCoverage, UnseenSpotsHaveArcs) {
+    const CoverageReport report =
+        coverageOf(sceneOf("ispace size=60,60\nlaser at=0,0 fov=360 range=20\n")).report;
+    ASSERT_EQ(report.unseen.size(), 1U);
+    EXPECT_NEAR(report.unseen[0].area, 3600 - 400 * kPi, 1e-5);
+}
+
 TEST(ExactCoverage, RangersInASolidSeeNothing) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=8,8\ncube at=1,1 size=1,1,1\n"

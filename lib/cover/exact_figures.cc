@@ -87,22 +87,22 @@ void addZones(std::span<ZoneFigures> figures, const LayerOverlay& overlay) {
 }
 
 void addPieces(CoverageReport& report, const LayerOverlay& overlay) {
+    const std::vector<Region> covered = overlay.regions([](const LayerLabel& label) {
+        return label.count > 0 && (label.marks & kIndoorMark) != 0;
+    });
     double sum = 0, largest = 0;
-    for (const Region& piece : overlay.regions([](const LayerLabel& label) {
-             return label.count > 0 && (label.marks & kIndoorMark) != 0;
-         })) {
-        const double area = piece.area();
+    for (const double area : overlay.areasOf(covered)) {
         if (area < kLeastPiece) continue;
         ++report.pieces;
         sum += area;
         largest = std::max(largest, area);
     }
     report.largest_piece = shareOf(largest, sum);
-    for (const Region& piece : overlay.regions([](const LayerLabel& label) {
-             return label.count == 0 && (label.marks & kFreeMark) != 0;
-         }))
-        if (const double area = piece.area(); area >= kLeastPiece)
-            report.unseen.push_back({interiorPoint(piece), area});
+    const std::vector<Region> unseen = overlay.regions(
+        [](const LayerLabel& label) { return label.count == 0 && (label.marks & kFreeMark) != 0; });
+    const std::vector<double> areas = overlay.areasOf(unseen);
+    for (std::size_t i = 0; i < unseen.size(); ++i)
+        if (areas[i] >= kLeastPiece) report.unseen.push_back({interiorPoint(unseen[i]), areas[i]});
     std::stable_sort(report.unseen.begin(), report.unseen.end(),
                      [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; });
 }

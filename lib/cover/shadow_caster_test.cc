@@ -139,7 +139,7 @@ TEST(ShadowCaster, WallsHideWhatIsBehind) {
     const std::string wall = std::string(kEmpty) + "\ncube at=2,0 size=0.2,39.9,8\n";
     const PlacedReceiver receiver = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 8);
     const auto curves = casterOf(wall).regionHeard(receiver, 0);
-    for (const Curve& curve : curves) EXPECT_LE(bounds(curve).high.x, 1.9 + 1e-7);
+    for (const Curve& curve : curves) EXPECT_LE(bounds(curve).high.x, 1.9 + kChordError);
     // A disc of radius sqrt(60) up to the wall's face.
     const double area =
         60 * (kPi - std::acos(1.9 / std::sqrt(60.0))) + 1.9 * std::sqrt(60 - 1.9 * 1.9);

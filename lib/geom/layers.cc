@@ -230,9 +230,13 @@ LayerOverlay::LayerOverlay(std::span<const Layer> layers, std::span<const Segmen
         const Ends ends{edge.from, edge.to, edge.is_wall};
         if (left != right) {
             const Point2 from = place(edge.from), to = place(edge.to);
-            const double bulge =
-                edge.circle == kNone ? 0 : bulgeOf(curves.circles[edge.circle], from, to);
-            edges_.push_back({from, to, left, right, bulge});
+            edges_.push_back({from, to, left, right});
+            if (edge.circle != kNone) {
+                const Circle& circle = curves.circles[edge.circle];
+                edges_.back().bulge = bulgeOf(circle, from, to);
+                edges_.back().radius = circle.radius;
+                edges_.back().center = circle.center;
+            }
             ends_.push_back(ends);
         } else if (edge.is_wall && left != LayerLabel{}) {
             walls_.push_back(left);

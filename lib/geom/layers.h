@@ -46,8 +46,10 @@ class LayerOverlay {
     struct Edge {
         Point2 from, to;
         LayerLabel left, right;
-        double bulge = 0;  ///< area between the chord and its arc, m2; positive if the arc lies to
-                           ///< the right of from -> to
+        double bulge = 0;   ///< area between the chord and its arc, m2; positive if the arc lies to
+                            ///< the right of from -> to
+        double radius = 0;  ///< of the arc's circle; 0: straight
+        Point2 center = {};
     };
 
     /// `walls` part what regions() gives: it joins nothing across them. They change no label.
@@ -83,6 +85,9 @@ class LayerOverlay {
     [[nodiscard]] std::vector<Curve> curves(In in) const {
         return withArcs(regions(in));
     }
+
+    /// The areas of regions(), each with the arcs of its outline.
+    [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
 
   private:
     /// Places of the lattice, and the ends of an edge among them.
