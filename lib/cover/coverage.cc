@@ -50,7 +50,7 @@ void tryExactFigures(Coverage& coverage, const Environment& environment,
     try {
         addExactFigures(coverage, environment, free_floor, zones);
     } catch (const FormatError& error) {
-        missing = error.what();
+        missing = error.diagnostics().front().message;
     }
 }
 
