@@ -2,6 +2,7 @@
 #include "layout/scene.h"
 
 #include <map>
+#include <type_traits>
 #include <utility>
 
 #include "layout/carriers.h"
@@ -18,7 +19,7 @@ bool isMeta(const Record& record) { return record.schema().type == RecordType::M
 /// What is placed, and the sensors that are not.
 struct Placements {
     std::vector<PlacedLaser> lasers;
-    std::vector<PendingLaser> pending;
+    std::vector<PendingSensor> pending;
     std::vector<PlacedRanger> rangers;
     std::vector<PlacedReceiver> receivers;
     std::vector<PlacedTag> tags;
@@ -53,7 +54,7 @@ class Resolver {
     void add(std::size_t i) {
         const Record& record = records_[i];
         if (record.keyword() == "laser") {
-            addLaser(i);
+            addSensor(i, out_.lasers, laserOf(record, devices_));
         } else if (record.keyword() == "robot") {
             RobotModel model = robotOf(record, devices_);
             const Pose2 pose = floorPoseOf(record);
@@ -74,17 +75,6 @@ class Resolver {
         }
     }
 
-    void addLaser(std::size_t i) {
-        const Record& record = records_[i];
-        Laser laser = laserOf(record, devices_);
-        if (auto place = placeOf(record)) {
-            out_.placed.push_back({i, place->pose, out_.lasers.size(), place->mount});
-            out_.lasers.push_back({ids_[i], std::move(laser), place->pose, place->mount});
-        } else {
-            out_.pending.push_back({ids_[i], record, std::move(laser)});
-        }
-    }
-
     /// Of a sensor that is not simulated: as far as they are looked at.
     void checkFigures(const Record& sensor) {
         static_cast<void>(deviceOf(sensor, devices_));
@@ -98,7 +88,11 @@ class Resolver {
     template <typename Sensors, typename Figures>
     void addSensor(std::size_t i, Sensors& sensors, Figures figures) {
         const auto place = placeOf(records_[i]);
-        if (!place) return;
+        if (!place) {
+            if constexpr (std::is_constructible_v<SensorDevice, Figures>)
+                out_.pending.push_back({ids_[i], records_[i], std::move(figures)});
+            return;
+        }
         out_.placed.push_back({i, place->pose, sensors.size(), place->mount});
         sensors.push_back({ids_[i], std::move(figures), place->pose, place->mount});
     }

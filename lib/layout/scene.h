@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "env/environment.h"
@@ -16,11 +17,14 @@
 
 namespace ispace {
 
+/// Figures of a sensor that arrange can place.
+using SensorDevice = std::variant<Laser, Ranger, Receiver>;
+
 /// A sensor that still has to be placed.
-struct PendingLaser {
+struct PendingSensor {
     std::string id;
     Record record;
-    Laser laser;
+    SensorDevice device;
 };
 
 /// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
@@ -35,13 +39,13 @@ struct Placed {
 ///
 /// A LAYOUT record replaces the ENV record of the same written id, in its place; others follow.
 struct Scene {
-    std::vector<Record> records;        ///< joined, without `environment` and `result`
-    std::vector<std::string> ids;       ///< of each record
-    Environment environment;            ///< of the joined records
-    std::string digest;                 ///< of ENV alone, see environmentDigest
-    std::vector<PlacedLaser> lasers;    ///< with a place, or on what has one, in order
-    std::vector<PendingLaser> pending;  ///< without a place, in order
-    std::vector<PlacedRanger> rangers;  ///< as lasers; likewise:
+    std::vector<Record> records;         ///< joined, without `environment` and `result`
+    std::vector<std::string> ids;        ///< of each record
+    Environment environment;             ///< of the joined records
+    std::string digest;                  ///< of ENV alone, see environmentDigest
+    std::vector<PlacedLaser> lasers;     ///< with a place, or on what has one, in order
+    std::vector<PendingSensor> pending;  ///< lasers, rangers, receivers without a place, in order
+    std::vector<PlacedRanger> rangers;   ///< as lasers; likewise:
     std::vector<PlacedReceiver> receivers;
     std::vector<PlacedTag> tags;
     std::vector<PlacedRobot> robots;  ///< in order

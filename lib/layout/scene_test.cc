@@ -52,7 +52,7 @@ TEST(MakeScene, SensorsOfLayoutFollowPlacedAndPending) {
     EXPECT_EQ(made.lasers[1].pose.position.z, kScanHeight);
     ASSERT_EQ(made.pending.size(), 1U);
     EXPECT_EQ(made.pending[0].id, "laser1");
-    EXPECT_EQ(made.pending[0].laser.max_range, 4);
+    EXPECT_EQ(std::get<Laser>(made.pending[0].device).max_range, 4);
     EXPECT_EQ(made.pending[0].record, made.records[4]);
 }
 

@@ -176,23 +176,38 @@ Schema resultSchema() {
                        .lower = 0,
                        .upper = 1};
     };
-    return {
-        .keyword = "result",
-        .type = RecordType::Meta,
-        .help = "how good a layout is, and how it was found",
-        .keys = {idKey(),
-                 share("coverage", "covered share of the target"),
-                 {.name = "area",
-                  .type = KeyType::Number,
-                  .unit = Unit::Area,
-                  .help = "total effective area, eq. (4.6)",
-                  .lower = 0},
-                 share("bound", "no layout covers more than this share"),
-                 {.name = "strategy", .type = KeyType::Word, .help = "how places were proposed"},
-                 {.name = "complete",
-                  .type = KeyType::Flag,
-                  .help = "no if a time limit or a signal cut the search",
-                  .default_value = true}}};
+    return {.keyword = "result",
+            .type = RecordType::Meta,
+            .help = "how good a layout is, and how it was found",
+            .keys = {
+                idKey(),
+                share("coverage", "covered share of the target"),
+                {.name = "area",
+                 .type = KeyType::Number,
+                 .unit = Unit::Area,
+                 .help = "total effective area, eq. (4.6)",
+                 .lower = 0},
+                share("value",
+                      "share of what counts (zones, weights, redundancy), where that is "
+                      "not the coverage"),
+                share("bound",
+                      "no layout of the candidates has a greater value, or coverage where "
+                      "no value is written"),
+                {.name = "strategy", .type = KeyType::Word, .help = "how places were proposed"},
+                {.name = "optimize", .type = KeyType::Word, .help = "how they were chosen"},
+                {.name = "candidates",
+                 .type = KeyType::Number,
+                 .help = "poses to choose from, of all kinds of sensors",
+                 .lower = 0,
+                 .whole = true},
+                {.name = "least",
+                 .type = KeyType::Number,
+                 .help = "no fewer sensors reach the target (no less cost, with a budget or costs)",
+                 .lower = 0},
+                {.name = "complete",
+                 .type = KeyType::Flag,
+                 .help = "no if a time limit or a signal cut the search",
+                 .default_value = true}}};
 }
 
 /// The schema of a device file's record: `add_figures` between what it is and who says so.

@@ -54,6 +54,13 @@ KeySpec onKey() {
             .role = Role::Carrier};
 }
 
+KeySpec costKey() {
+    KeySpec key =
+        positiveKey("cost", Unit::None, "of one, in any currency; for arrange --budget", kFarthest);
+    key.default_value = 1.0;
+    return key;
+}
+
 Schema sensorSchema(std::string keyword, std::string help, std::string heading_help,
                     void (*add_figures)(std::vector<KeySpec>&)) {
     Schema schema{.keyword = std::move(keyword),
@@ -65,6 +72,7 @@ Schema sensorSchema(std::string keyword, std::string help, std::string heading_h
     addSensorPose(schema.keys, std::move(heading_help));
     add_figures(schema.keys);
     schema.keys.push_back(onKey());
+    schema.keys.push_back(costKey());
     return schema;
 }
 

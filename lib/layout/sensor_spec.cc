@@ -83,16 +83,16 @@ Record recordFor(const std::string& model, Kinds kinds, const Schemas& schemas,
 
 }  // namespace
 
-std::vector<Record> readSensorSpec(const std::string& text, Kinds kinds, const Schemas& schemas,
-                                   const DeviceCatalogue& devices) {
+SensorSpec readSensorSpec(const std::string& text, Kinds kinds, const Schemas& schemas,
+                          const DeviceCatalogue& devices) {
     std::string body = text;
-    std::int64_t count = 1;
+    std::optional<int> count;
     if (const auto colon = text.rfind(':'); colon != std::string::npos) {
         const auto number = parseInteger(text.substr(colon + 1));
         if (!number || *number < 1 || *number > kMostSensors)
             throw UsageError("`" + text.substr(colon + 1) + "` is no count from 1 to " +
                              std::to_string(kMostSensors));
-        count = *number;
+        count = static_cast<int>(*number);
         body.resize(colon);
     }
     const std::vector<std::string> pieces = split(body, ',');
@@ -111,8 +111,9 @@ std::vector<Record> readSensorSpec(const std::string& text, Kinds kinds, const S
             throw UsageError(error.diagnostics().front().message);
         }
     }
-    if (count > 1 && record.has("id")) throw UsageError("`id` names one sensor, not several");
-    return std::vector<Record>(static_cast<std::size_t>(count), record);
+    if (count.value_or(1) > 1 && record.has("id"))
+        throw UsageError("`id` names one sensor, not several");
+    return {std::move(record), count};
 }
 
 }  // namespace ispace

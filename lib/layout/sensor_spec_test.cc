@@ -10,7 +10,7 @@
 namespace ispace {
 namespace {
 
-std::vector<Record> read(const std::string& text) {
+SensorSpec read(const std::string& text) {
     static const DeviceCatalogue kDevices =
         DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
     constexpr std::string_view kKinds[] = {"laser"};
@@ -28,19 +28,20 @@ std::string errorOf(const std::string& text) {
 
 TEST(SensorSpec, DeviceAndBareKind) {
     const auto device = read("urg-04lx");
-    ASSERT_EQ(device.size(), 1U);
-    EXPECT_EQ(formatRecord(device[0]), "laser model=urg-04lx");
-    EXPECT_EQ(formatRecord(read("laser")[0]), "laser");
+    EXPECT_FALSE(device.count);
+    EXPECT_EQ(formatRecord(device.record), "laser model=urg-04lx");
+    EXPECT_EQ(formatRecord(read("laser").record), "laser");
 }
 
 TEST(SensorSpec, CountFollowsTheLastColon) {
-    EXPECT_EQ(read("urg-04lx:3").size(), 3U);
-    EXPECT_EQ(read("laser,range=4,fov=270:12").size(), 12U);
+    EXPECT_EQ(read("urg-04lx:3").count, 3);
+    EXPECT_EQ(read("laser,range=4,fov=270:12").count, 12);
 }
 
 TEST(SensorSpec, APieceWithoutEqualsContinuesTheValueBeforeIt) {
-    EXPECT_EQ(formatRecord(read("laser,range=0.1,4,fov=270:2")[0]), "laser range=0.1,4 fov=270");
-    EXPECT_EQ(formatRecord(read("laser,range=50cm,4m")[0]), "laser range=0.5,4");
+    EXPECT_EQ(formatRecord(read("laser,range=0.1,4,fov=270:2").record),
+              "laser range=0.1,4 fov=270");
+    EXPECT_EQ(formatRecord(read("laser,range=50cm,4m").record), "laser range=0.5,4");
 }
 
 TEST(SensorSpec, ErrorsNameWhatIsWrong) {

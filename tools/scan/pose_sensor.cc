@@ -15,21 +15,22 @@ namespace {
 constexpr std::string_view kMovable[] = {"laser", "ranger"};
 
 Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
-    const std::vector<Record> records = readSensorSpec(model, kMovable, sceneSchemas(), devices);
+    const SensorSpec spec = readSensorSpec(model, kMovable, sceneSchemas(), devices);
+    const Record& record = spec.record;
     // What is wrong with its figures is wrong on the command line.
     try {
-        if (records.front().keyword() == "laser")
-            static_cast<void>(laserOf(records.front(), devices));
+        if (record.keyword() == "laser")
+            static_cast<void>(laserOf(record, devices));
         else
-            static_cast<void>(rangerOf(records.front(), devices));
+            static_cast<void>(rangerOf(record, devices));
     } catch (const FormatError& error) {
         throw UsageError(error.diagnostics().front().message);
     }
-    if (records.size() > 1) throw UsageError("one sensor takes the poses, not several");
+    if (spec.count.value_or(1) > 1) throw UsageError("one sensor takes the poses, not several");
     for (const char* key : {"at", "heading", "tilt", "roll", "on"})
-        if (records.front().has(key))
+        if (record.has(key))
             throw UsageError(std::string("`") + key + "` is told by the poses; leave it out");
-    return records.front();
+    return record;
 }
 
 std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs) {

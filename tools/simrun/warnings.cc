@@ -32,8 +32,8 @@ void CollisionLog::tell() {
 
 void warnOfPending(const Scene& scene, bool quiet) {
     if (quiet) return;
-    for (const PendingLaser& laser : scene.pending)
-        std::cerr << kWarning << laser.id
+    for (const PendingSensor& sensor : scene.pending)
+        std::cerr << kWarning << sensor.id
                   << " has no place and is left out: give it `at` or `on`, or let arrange place "
                      "it\n";
 }
