@@ -9,7 +9,7 @@
 namespace ispace {
 
 /// What random numbers are for: those of different purposes are independent.
-enum class Purpose : std::uint32_t { Range = 1, Ultrasound = 2 };
+enum class Purpose : std::uint32_t { Range = 1, Ultrasound = 2, Placement = 3, Candidates = 4 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.
 std::uint64_t hashOf(std::string_view id);

@@ -38,6 +38,7 @@ ProgressBar::~ProgressBar() { end(); }
 void ProgressBar::begin(std::string_view phase, std::int64_t total) {
     end();
     phase_ = phase;
+    note_.clear();
     total_ = std::max<std::int64_t>(total, 1);
     done_ = 0;
     next_draw_ = 0;
@@ -53,6 +54,15 @@ void ProgressBar::advance(std::int64_t count) {
     if (now >= due && next_draw_.compare_exchange_strong(due, now + kDrawEvery)) draw(done, false);
 }
 
+void ProgressBar::note(std::string_view text) {
+    {
+        const std::lock_guard<std::mutex> lock(drawing_);
+        if (note_ == text) return;
+        note_ = text;
+    }
+    advance(0);
+}
+
 void ProgressBar::draw(std::int64_t done, bool last) {
     const std::lock_guard<std::mutex> lock(drawing_);
     const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
@@ -66,6 +76,7 @@ void ProgressBar::draw(std::int64_t done, bool last) {
         line += ", " + rateText(static_cast<double>(done) / elapsed);
         if (!last) line += ", " + timeText(elapsed / share - elapsed) + " left";
     }
+    if (!note_.empty()) line.append(", ").append(note_);
     std::cerr << line << "\x1b[K" << std::flush;
     shown_ = true;
 }

@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-constexpr char kStop = 's', kQuit = 'q';
+constexpr char kQuit = 0;  ///< no signal has this number
 /// Where the handler tells the listener; a handler reaches nothing but what is global.
 std::atomic<int> write_end = -1;
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -33,7 +33,7 @@ void handle(int signal, void (*handler)(int)) {
 
 void onSignal(int signal) {
     const int error = errno;
-    tell(kStop);
+    tell(static_cast<char>(signal));
     // A person who presses the keys again does not want to wait.
     if (signal == SIGINT) handle(signal, SIG_DFL);
     errno = error;
@@ -47,7 +47,7 @@ char nextWord(int fd) {
 
 }  // namespace
 
-StopSignals::StopSignals(std::function<void()> stop) {
+StopSignals::StopSignals(std::function<void(int)> stop) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
         throw std::system_error(errno, std::generic_category(), "pipe for signals");
@@ -55,7 +55,7 @@ StopSignals::StopSignals(std::function<void()> stop) {
     write_end = ends[1];
     ::fcntl(write_end, F_SETFL, O_NONBLOCK);
     listener_ = std::thread([fd = read_end_, stop = std::move(stop)] {
-        while (nextWord(fd) == kStop) stop();
+        for (char signal = nextWord(fd); signal != kQuit; signal = nextWord(fd)) stop(signal);
     });
     for (const int signal : {SIGTERM, SIGINT}) handle(signal, onSignal);
 }

@@ -11,8 +11,9 @@ namespace ispace {
 /// in a process.
 class StopSignals {
   public:
-    /// `stop` is called from another thread, at each signal. \throws std::system_error
-    explicit StopSignals(std::function<void()> stop);
+    /// `stop` is called from another thread with the signal's number, at each. \throws
+    /// std::system_error
+    explicit StopSignals(std::function<void(int)> stop);
     ~StopSignals();
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;

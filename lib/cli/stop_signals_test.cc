@@ -15,13 +15,17 @@ namespace {
 
 TEST(StopSignals, AskToEndAndAreIgnoredAfterwards) {
     for (int round = 0; round < 2; ++round) {
-        std::atomic<int> asked = 0;
+        std::atomic<int> asked = 0, last = 0;
         {
-            const StopSignals signals([&asked] { ++asked; });
+            const StopSignals signals([&asked, &last](int signal) {
+                last = signal;
+                ++asked;
+            });
             for (const int signal : {SIGTERM, SIGINT, SIGTERM}) {
                 const int before = asked;
                 std::raise(signal);
                 while (asked == before) std::this_thread::yield();
+                EXPECT_EQ(last, signal);
             }
             EXPECT_EQ(asked, 3);
         }
@@ -36,7 +40,7 @@ TEST(StopSignals, AskToEndAndAreIgnoredAfterwards) {
 TEST(StopSignals, ASecondIntEndsTheProcess) {
     const pid_t child = ::fork();
     if (child == 0) {
-        const StopSignals signals([] {});
+        const StopSignals signals([](int) {});
         std::raise(SIGTERM);
         std::raise(SIGTERM);
         std::raise(SIGINT);
@@ -52,7 +56,7 @@ TEST(StopSignals, ASecondIntEndsTheProcess) {
 TEST(StopSignals, EndsWithoutASignal) {
     int asked = 0;
     {
-        const StopSignals signals([&asked] { ++asked; });
+        const StopSignals signals([&asked](int) { ++asked; });
     }
     EXPECT_EQ(asked, 0);
     std::signal(SIGTERM, SIG_DFL);

@@ -95,7 +95,7 @@ void simrun(const SimrunCommand& command) {
     simulation.onStep([&collisions] { collisions.tell(); });
 
     Server server(simulation, options.listen, withinFileLimit(options.limits));
-    const StopSignals signals([&server] { server.stop(); });
+    const StopSignals signals([&server](int) { server.stop(); });
     std::optional<OutputFile> port_file;
     if (!options.port_file.empty()) {
         port_file.emplace(options.port_file);

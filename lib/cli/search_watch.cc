@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/search_watch.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+namespace ispace {
+
+SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit)
+    : shown_(std::move(shown)), signals_([this](int signal) { signal_ = signal; }) {
+    constexpr double kLongest = 1e9;  // some thirty years, and no overflow
+    if (limit)
+        end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(std::min(*limit, kLongest)));
+}
+
+bool SearchWatch::stopped() const { return signal_ != 0 || (end_ && Clock::now() >= *end_); }
+
+void endBySignal(int signal) {
+    constexpr int kSignalBase = 128;
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+    ::_exit(kSignalBase + signal);  // not reached unless it is blocked
+}
+
+}  // namespace ispace
