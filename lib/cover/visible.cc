@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cover/range_rule.h"
+#include "cover/sight_outline.h"
 #include "geom/layers.h"
 
 namespace ispace {
@@ -22,31 +23,14 @@ bool sees(const Laser& laser, Angle heading, Angle direction) {
     return beyond <= limits.span.degrees() + 1e-9;  // as Laser::sees has it
 }
 
-/// A polygon with straight edges that holds what is seen and, beyond the greatest range, nothing
-/// that is nearer: arcs become the tangents at their ends.
-Polygon tangentOutline(const VisibleRegion& region) {
-    Polygon outline;
-    outline.reserve(3 * region.ends.size() + 1);
-    for (const SightEnd& end : region.ends) {
-        outline.push_back(end.from);
-        if (end.line == SightEnd::kArc) {
-            const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
-            const double r2 = region.max_range * region.max_range;
-            // Where the tangents meet: on a + b, at t with t (a + b) a = r2.
-            outline.push_back(region.viewpoint + (r2 / (r2 + dot(a, b))) * (a + b));
-        }
-        outline.push_back(end.to);
-    }
-    return outline;
-}
-
 /// Cells strictly inside the outline of what a place sees; some may lie beyond the greatest range.
 CellSet cellsAround(const Grid& grid, const SliceSight& sight, Point2 place, double max_range) {
-    constexpr double kBeyond = 1 + 1e-6;  // centres at the greatest range are not on the outline
     VisibleRegion region;
-    sight.look(place, kBeyond * max_range, region);
-    const std::vector<Polygon> outline = {tangentOutline(region)};
-    CellSet cells = cellsWithin(grid, outline);
+    sight.look(place, kBeyondRange * max_range, region);
+    Polygon outline;
+    outline.reserve(3 * region.ends.size());
+    forEachCorner(region, [&outline](Point2 corner) { outline.push_back(corner); });
+    CellSet cells = cellsWithin(grid, {&outline, 1});
     Slice touching;
     touching.solids = sight.solidsTouching(place);
     if (!touching.solids.empty()) cells -= cellsBlocked(grid, touching);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/worth.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "env/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+namespace {
+
+Environment room() {
+    static const Schemas kSchemas(environmentSchemas());
+    const Document document = readRecordText(
+        "#env 1\nfence path=-4,-3;4,-3;4,1;0,1;0,3;-4,3 closed=yes\ninside at=-1,0\n", "room.env",
+        kSchemas);
+    return {document.records, assignIds(document.records)};
+}
+
+TEST(Worth, IsOneIndoorsByDefault) {
+    const Target target = makeTarget(room(), 16, 12, kScanHeight);
+    EXPECT_TRUE(Worth().isUniform());
+    const auto worths = worthOfCells(target, {});
+    ASSERT_EQ(worths.size(), target.grid.size());
+    for (std::size_t cell = 0; cell < worths.size(); ++cell)
+        EXPECT_EQ(worths[cell], target.indoor.test(cell) ? 1 : 0);
+}
+
+TEST(Worth, GoesByTargetsAndTheLastWeight) {
+    const Environment environment = room();
+    const auto zone = [&environment](const char* text) { return readZone(text, environment); };
+    const Target target = makeTarget(environment, 37, 29, kScanHeight);
+    Worth worth;
+    worth.targets = {zone("rect:-3,-2,1,2"), zone("poly:0,-3;4,-3;4,3")};
+    worth.weights = {{zone("rect:-3,-2,0,0"), 2.5},
+                     {zone("rect:-1,-1,3,0.5"), 0},
+                     {zone("rect:-0.5,-3,0.5,3"), 4}};
+    EXPECT_FALSE(worth.isUniform());
+    const auto worths = worthOfCells(target, worth);
+    const auto holds = [](const NamedZone& one, Point2 p) {
+        return locate(one.outline, p) == Side::Inside;
+    };
+    for (std::size_t cell = 0; cell < worths.size(); ++cell) {
+        const Point2 p = target.grid.center(cell);
+        double wanted = holds(worth.targets[0], p) || holds(worth.targets[1], p) ? 1 : 0;
+        if (environment.indoor().locate(p) != Side::Inside) wanted = 0;
+        for (const auto& [one, weight] : worth.weights)
+            if (wanted != 0 || weight == 0) wanted = holds(one, p) ? weight : wanted;
+        // A weight of 0 hides what a later one raises again.
+        if (holds(worth.weights[2].first, p) && environment.indoor().locate(p) == Side::Inside)
+            wanted = holds(worth.targets[0], p) || holds(worth.targets[1], p) ? 4 : 0;
+        EXPECT_EQ(worths[cell], wanted) << p.x << ' ' << p.y;
+    }
+}
+
+TEST(Worth, OfCentresOnAnEdgeIsNotChanged) {
+    const Environment environment = room();
+    const Target target = makeTarget(environment, 8, 6, kScanHeight);  // centres at halves
+    Worth worth;
+    worth.weights = {{readZone("rect:-3.5,-2.5,-1.5,-0.5", environment), 7}};
+    const auto worths = worthOfCells(target, worth);
+    EXPECT_EQ(worths[target.grid.cell(0, 0)], 1);
+    EXPECT_EQ(worths[target.grid.cell(1, 1)], 7);
+    EXPECT_EQ(worths[target.grid.cell(2, 1)], 1);
+}
+
+TEST(Worth, OfATargetOutsideIsNothing) {
+    const Environment environment = room();
+    const Target target = makeTarget(environment, 10, 10, kScanHeight);
+    Worth worth;
+    worth.targets = {readZone("rect:10,10,12,12", environment)};
+    for (const double one : worthOfCells(target, worth)) EXPECT_EQ(one, 0);
+}
+
+}  // namespace
+}  // namespace ispace
