@@ -131,6 +131,7 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     const double rim = page.margin - 0.2 * page.em;
     const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
                      {page.plan.high.x + rim, page.plan.high.y + rim}};
+    drawTrace(canvas, map, frame);
     drawMarks(canvas, map, frame);
     drawScaleBar(canvas, page.scale_corner, page.scale_most, page.view.scale, page.em);
     drawLegend(canvas, page.legend, page.legend_corner, page.legend_width, page.em);

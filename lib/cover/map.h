@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cover/coverage.h"
+#include "cover/trace_file.h"
 
 namespace ispace {
 
@@ -28,6 +30,8 @@ struct MapOptions {
     std::string title = {};  ///< e.g. base name of ENV; "" for none
     MapColor color = MapColor::Redundancy;
     FanStyle fans = FanStyle::Contours;
+    /// What a search tried: places in the colours of the best value there, below the sensors.
+    std::vector<TriedPose> trace = {};
 };
 
 /// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,

@@ -242,6 +242,25 @@ LegendBlock zonesBlock(const CoverageReport& report, bool terse) {
     return block;
 }
 
+/// Places tried and what the best sensor there would add.
+LegendBlock triedBlock(const std::vector<TriedPose>& trace) {
+    const std::vector<TriedPlace> places = placesTried(trace);
+    LegendBlock block{"Places tried", {}};
+    const auto add = [&block](Sign sign, std::string text, std::string value) {
+        block.items.push_back({sign, {}, {}, std::move(text), std::move(value)});
+    };
+    std::string ends = percent(places.front().value);
+    if (places.back().value > places.front().value)
+        ends.append(" – ").append(percent(places.back().value));
+    add(Sign::Scale, "adds at best", std::move(ends));
+    const auto chosen = std::count_if(trace.begin(), trace.end(),
+                                      [](const TriedPose& tried) { return tried.is_chosen; });
+    if (chosen > 0) add(Sign::Ring, "chosen", std::to_string(chosen));
+    add(Sign::None, "Candidates", std::to_string(trace.size()));
+    add(Sign::None, "Places", std::to_string(places.size()));
+    return block;
+}
+
 LegendBlock planBlock(const MapContents& contents, double height) {
     LegendBlock block{"Plan", {}};
     const auto add = [&block](bool shown, Sign sign, Color color, Color edge, std::string text) {
@@ -298,6 +317,7 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
     else
         blocks.push_back(shadesBlock(report));
     blocks.push_back(sensorsBlock(map));
+    if (!map.options.trace.empty()) blocks.push_back(triedBlock(map.options.trace));
     if (markedSpots(map) > 0) blocks.push_back(spotsBlock(map));
     if (!report.zones.empty()) blocks.push_back(zonesBlock(report, map.terse));
     if (!map.terse) blocks.push_back(planBlock(contents, map.coverage.target.height));

@@ -20,6 +20,19 @@ double heightOf(const LegendBlock& block, double em) {
     return em * kLine * static_cast<double>(block.items.size() + 1);
 }
 
+/// The colours of places tried, from left to right.
+void drawScale(Canvas& canvas, double left, double y, double em) {
+    constexpr int kSteps = 24;
+    const double half = 0.42 * em, step = kSignWidth * em / kSteps;
+    for (int i = 0; i < kSteps; ++i) {
+        const double from = left + i * step;
+        // Each reaches to the end, so that no seam shows.
+        const double to = left + kSignWidth * em;
+        const Polygon patch = {{from, y - half}, {to, y - half}, {to, y + half}, {from, y + half}};
+        canvas.fill(patch, triedColor(i / (kSteps - 1.0)));
+    }
+}
+
 void drawPatch(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
     const double right = left + kSignWidth * em, half = 0.42 * em;
     const Polygon patch = {
@@ -52,6 +65,12 @@ void drawSign(Canvas& canvas, const LegendItem& item, double left, double y, dou
             break;
         case Sign::Spot:
             drawSpotSign(canvas, {left + kSignWidth / 2 * em, y}, item.number, em);
+            break;
+        case Sign::Scale:
+            drawScale(canvas, left, y, em);
+            break;
+        case Sign::Ring:
+            drawChosenRing(canvas, {left + kSignWidth / 2 * em, y}, 0.5 * em, em);
             break;
     }
 }

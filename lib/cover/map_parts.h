@@ -131,6 +131,27 @@ std::size_t markedSpots(const MapPicture& map);
 /// `frame` (page units).
 void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame);
 
+// What a search tried (map_trace.cc).
+
+/// A place that was tried: the best value there, of any sensor and heading.
+struct TriedPlace {
+    Point2 place;
+    double value = 0;
+    std::optional<Angle> heading = {};  ///< of the best; none: it looks straight up or down
+    bool is_chosen = false;             ///< a sensor was placed there
+};
+/// Each place once, the worst first; of equal ones the first tried comes first.
+std::vector<TriedPlace> placesTried(const std::vector<TriedPose>& trace);
+
+/// From pale yellow to dark brown: apart from the blue of covered floor, and darker with each step,
+/// for any colour vision and in grey. \param share 0 (worst) to 1 (best)
+Color triedColor(double share);
+
+void drawChosenRing(Canvas& canvas, Point2 page, double radius, double em);
+/// Dots with a tick in the best heading, the best on top; places of chosen sensors in rings. All
+/// keep within `frame` (page units).
+void drawTrace(Canvas& canvas, const MapPicture& map, const Box2& frame);
+
 // Plan (map_plan.cc).
 
 /// What the picture shows of a scene, in the order of the legend.
@@ -144,7 +165,7 @@ struct MapContents {
 };
 MapContents contentsOf(const Scene& scene, const Coverage& coverage);
 
-/// Everything within the plan but marks.
+/// Everything within the plan but marks and what was tried.
 void drawPlan(Canvas& canvas, const MapPicture& map);
 
 // Legend (map_legend.cc, map_legend_draw.cc).
@@ -158,6 +179,8 @@ struct LegendItem {
         Dashes,
         Sensor,  ///< `mark`; on a patch of `color` unless that is transparent
         Spot,    ///< a numbered sign; the number is `number`
+        Scale,   ///< the colours of triedColor(), worst to best
+        Ring,
     };
     Sign sign = Sign::None;
     Color color = {}, edge = {};

@@ -12,6 +12,7 @@
 #include "cli/operands.h"
 #include "cli/run_tool.h"
 #include "cover/coverage_files.h"
+#include "cover/trace_file.h"
 #include "coverage/options.h"
 #include "sense/doubts.h"
 #include "sense/ultrasound.h"
@@ -67,6 +68,15 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
     return measured;
 }
 
+/// What a search tried, from stdin only where that is not read yet.
+std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SceneInput& input) {
+    if (options.trace != "-")
+        return readTrace(readAll(options.trace), displayName(options.trace)).poses;
+    if (options.other == "-" || std::count(input.named.begin(), input.named.end(), "-") > 0)
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
+    return readTrace(readStdin(), displayName(options.trace)).poses;
+}
+
 /// Nobody means to replace what was read by a map of it.
 void mustNotBeRead(const std::string& output, const std::vector<std::string>& files) {
     for (const std::string& file : files) {
@@ -112,6 +122,10 @@ void coverage(CoverageToolOptions options) {
     if (!options.other.empty()) {
         other = readOtherLayout(input, options.other, options.any_environment);
         files.insert(files.end(), other->files.begin(), other->files.end());
+    }
+    if (!options.trace.empty()) {
+        options.map.trace = readTried(options, input);
+        files.push_back(options.trace);
     }
     if (!options.format.empty()) mustNotBeRead(options.common.output, files);
     if (options.format == "ros") mustNotBeRead(withSuffix(options.common.output, ".pgm"), files);

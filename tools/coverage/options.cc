@@ -48,7 +48,7 @@ bool isMap(const std::string& format) {
 
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
     if (!line.given("--output")) {
-        for (const char* option : {"--to", "--width", "--color", "--fans"})
+        for (const char* option : {"--to", "--width", "--color", "--fans", "--trace"})
             if (line.given(option))
                 throw UsageError(std::string(option) + " is about the map: give -o FILE");
         return;
@@ -65,7 +65,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         throw UsageError("a ROS map has square cells: give --cell instead of --grid");
     if (o.format == "ros" && !o.measure.cell) o.measure.cell = kRosCell;
     o.map.format = mapFormat(o.format);
-    for (const char* option : {"--width", "--color", "--fans"})
+    for (const char* option : {"--width", "--color", "--fans", "--trace"})
         if (line.given(option) && !isMap(o.format))
             throw UsageError(std::string(option) + " is about pictures, not about " + o.format);
 }
@@ -99,6 +99,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},
                 "how views are drawn (default contours)", Enters::History);
+    line.text("--trace", "FILE", o.trace,
+              "draw the places that arrange --trace wrote to this file on the map, coloured by the "
+              "best value there",
+              Enters::Nothing);
     addAnyEnvironmentOption(line, o.any_environment);
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);

@@ -18,6 +18,7 @@ struct CoverageToolOptions {
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
     std::string format;  ///< of the product; "" without one
+    std::string trace;   ///< file of what a search tried, for the map; "" for none
     MapOptions map;
     bool any_environment = false;
 };
