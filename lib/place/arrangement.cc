@@ -2,190 +2,350 @@
 #include "place/arrangement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
-#include <set>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "layout/schemas.h"
-#include "place/greedy.h"
+#include "cover/coverage.h"
+#include "place/any_place.h"
+#include "place/candidate_pool.h"
+#include "place/model_file.h"
+#include "place/refine.h"
+#include "sense/ultrasound.h"
+#include "trace/worlds.h"
 
 namespace ispace {
 
 namespace {
 
-/// What the candidates of one job may take; beyond it a finer search is refused, not swapped out.
-constexpr double kMostBytes = 8e9;
-
-Pose3 mountOf(const Record& record) {
-    return {{0, 0, kScanHeight}, {}, record.angle("tilt"), record.angle("roll")};
+/// Weights in whole units: times the least power of ten that makes all of them whole, or as large a
+/// one as the sum below 2^32 allows.
+std::vector<std::uint32_t> wholeUnits(const std::vector<double>& worth) {
+    constexpr double kMostUnits = 4e9;
+    double sum = 0;
+    for (const double w : worth) sum += w;
+    if (sum > kMostUnits) throw UsageError("--weight: the weights are too large");
+    const auto is_whole = [&worth](double scale) {
+        return std::all_of(worth.begin(), worth.end(), [scale](double w) {
+            return std::abs(w * scale - std::round(w * scale)) < 1e-9 * scale;
+        });
+    };
+    double scale = 1;
+    while (scale < 1e6 && !is_whole(scale) && sum * scale * 10 < kMostUnits) scale *= 10;
+    std::vector<std::uint32_t> units;
+    units.reserve(worth.size());
+    for (const double w : worth)
+        units.push_back(static_cast<std::uint32_t>(std::llround(w * scale)));
+    return units;
 }
 
-GridSearch searchFor(const Box2& limits, const Laser& laser, const ArrangeOptions& options) {
-    GridSearch search = defaultGridSearch(limits, laser.max_range);
-    search.x = options.x.value_or(search.x);
-    search.y = options.y.value_or(search.y);
-    search.headings = options.headings;
-    return search;
-}
+bool isReceiver(const SensorDevice& device) { return std::holds_alternative<Receiver>(device); }
 
-/// Sensors of one kind have the same candidates.
-class CandidatePool {
+/// What is asked for, as numbers for the search, and the way back from what it finds.
+class Job {
   public:
-    CandidatePool(const Scene& scene, const Target& target, const ArrangeOptions& options,
-                  Progress& progress)
-        : scene_(scene), target_(target), options_(options), progress_(progress) {}
+    Job(const Scene& scene, const std::vector<SensorGroup>& groups, const ArrangeOptions& options,
+        Progress& progress)
+        : scene_(scene),
+          groups_(groups),
+          options_(options),
+          progress_(progress),
+          worlds_(scene.environment),
+          kinds_(kindsOf(groups)) {
+        checkBudget();
+        const Coverage before = measureCoverage(scene, worlds_, searching());
+        target_ = before.target;
+        problem_.weights = wholeUnits(worthOfCells(target_, options.worth));
+        total_ = problem_.totalWeight();
+        if (total_ == 0)
+            throw UnmetError(
+                "nothing to cover: no cell of the target lies indoors; use a larger "
+                "zone or more cells (--reso)");
+        setDemand(before);
+        CellWorth worth{CellSet(target_.grid.size()), weightsLeft()};
+        for (std::size_t i = 0; i < problem_.cells(); ++i)
+            if (problem_.weights[i] > 0) worth.counted.set(i);
+        pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_,
+                                                std::move(worth), options, progress);
+        addKinds();
+    }
 
-    const std::vector<Candidate>* candidatesFor(const PendingLaser& sensor) {
-        const Pose3 mount = mountOf(sensor.record);
-        for (const auto& kind : kinds_)
-            if (kind->laser == sensor.laser && kind->mount == mount) return &kind->candidates;
-        kinds_.push_back(std::make_unique<Kind>(Kind{sensor.laser, mount, make(sensor, mount)}));
-        return &kinds_.back()->candidates;
+    Arrangement run(std::ostream* mps) {
+        Arrangement result;
+        result.is_complete = is_complete_;
+        for (const auto& set : sets_) {
+            result.candidates += set->size();
+            result.bytes += set->bytes();
+        }
+        if (mps != nullptr) writeMps(problem_, names(), *mps);
+        const SearchResult found = find(result);
+        result.is_complete = result.is_complete && found.is_complete;
+        result.cost = costOf(problem_, found.best.chosen);
+        result.candidate_value = share(found.best.value);
+        result.candidate_bound = is_complete_ ? share(found.bound) : 1;
+        result.bound = result.candidate_bound;
+        result.sensors = sensorsOf(found.best.chosen);
+        if (options_.refine) refineIn(result, found.best.value);
+        measure(result);
+        if (options_.wants_curve) result.curve = curveTo(found);
+        if (options_.wants_trace) result.tried = tried(found.best.chosen);
+        return result;
     }
 
   private:
-    struct Kind {
-        Laser laser;
-        Pose3 mount;
-        std::vector<Candidate> candidates;
-    };
+    [[nodiscard]] CoverageOptions searching() const {
+        return {.columns = options_.columns,
+                .rows = options_.rows,
+                .plane = options_.plane,
+                .exact = false};
+    }
 
-    std::vector<Candidate> make(const PendingLaser& sensor, const Pose3& mount) {
-        const Environment& environment = scene_.environment;
-        const GridSearch search = searchFor(environment.limits(), sensor.laser, options_);
-        const std::string grid = std::to_string(search.x) + " x " + std::to_string(search.y);
-        constexpr std::int64_t kMostPlaces = 1000000;
-        if (std::int64_t{search.x} * search.y > kMostPlaces)
-            throw UsageError("a grid of " + grid +
-                             " places is more than a million: use fewer lines " + "(-X, -Y)");
-        const Slice slice = environment.slice(mount.position.z);
-        const std::vector<Point2> places = standablePlaces(
-            environment, slice, gridPlaces(environment.limits(), search), progress_);
-        if (places.empty())
-            throw UnmetError("no place for " + sensor.id + ": none of the " + grid +
-                             " grid points lies indoors and clear of objects at " +
-                             formatDouble(mount.position.z) + " m; use more grid lines (-X, -Y)");
-        bytes_ += static_cast<double>(places.size()) * search.headings *
-                  static_cast<double>(target_.grid.size()) / 8;
-        if (bytes_ > kMostBytes)
-            throw UsageError("the candidates take " + formatFixed(bytes_ / 1e9, 1) +
-                             " GB: use fewer places (-X, -Y), headings (--deg) or cells (--reso)");
-        return makeCandidates(target_.grid, target_.indoor, environment, sensor.laser, mount,
-                              places, search.headings, progress_);
+    [[nodiscard]] double share(std::uint64_t value) const {
+        return static_cast<double>(value) / static_cast<double>(total_);
+    }
+
+    void checkBudget() const {
+        if (!options_.budget) return;
+        double least = kinds_.front().cost;
+        for (const SensorKind& kind : kinds_) least = std::min(least, kind.cost);
+        if (*options_.budget < least)
+            throw UnmetError("a budget of " + formatDouble(*options_.budget) +
+                             " buys nothing: the cheapest sensor costs " + formatDouble(least));
+    }
+
+    /// Receivers count four together; so others count as four each where there are receivers.
+    void setDemand(const Coverage& before) {
+        const bool listens = !scene_.receivers.empty() ||
+                             std::any_of(kinds_.begin(), kinds_.end(), [](const SensorKind& kind) {
+                                 return isReceiver(kind.device);
+                             });
+        unit_ = listens ? static_cast<int>(kLeastReceivers) : 1;
+        problem_.demand = unit_ * options_.redundancy;
+        problem_.met.assign(target_.grid.size(), 0);
+        problem_.standing = CellSet(target_.grid.size());
+        for (const SensorView& view : before.sensors) {
+            const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
+            view.cells.forEach([&](std::size_t cell) {
+                problem_.met[cell] =
+                    static_cast<std::uint16_t>(std::min(problem_.met[cell] + part, 0xffff));
+            });
+            problem_.standing |= view.cells;
+        }
+        problem_.is_connected = options_.is_connected;
+        problem_.budget = options_.budget;
+    }
+
+    /// Of cells whose demand nobody meets yet.
+    [[nodiscard]] std::vector<std::uint32_t> weightsLeft() const {
+        std::vector<std::uint32_t> left = problem_.weights;
+        for (std::size_t i = 0; i < left.size(); ++i)
+            if (problem_.met[i] >= problem_.demand) left[i] = 0;
+        return left;
+    }
+
+    void addKinds() {
+        for (const SensorKind& kind : kinds_) {
+            CandidatePool::Made made = pool_->make(kind);
+            is_complete_ = is_complete_ && made.is_complete;
+            if (made.set->size() == 0)
+                throw UnmetError("stopped before there was any candidate for " + kind.id);
+            sets_.push_back(std::move(made.set));
+            problem_.kinds.push_back(
+                {sets_.back().get(), kind.most, kind.cost, isReceiver(kind.device) ? 1 : unit_});
+        }
+        if (options_.budget || options_.target) return;
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+            for (int i = 0; i < groups_[g].most; ++i) problem_.order.push_back(kindOf(g));
+    }
+
+    [[nodiscard]] std::size_t kindOf(std::size_t group) const {
+        std::size_t kind = 0;
+        while (std::find(kinds_[kind].groups.begin(), kinds_[kind].groups.end(), group) ==
+               kinds_[kind].groups.end())
+            ++kind;
+        return kind;
+    }
+
+    [[nodiscard]] std::vector<std::string> names() const {
+        std::vector<std::string> names;
+        names.reserve(kinds_.size());
+        for (const SensorKind& kind : kinds_) names.push_back(kind.id);
+        return names;
+    }
+
+    SearchResult find(Arrangement& result) {
+        if (!options_.target) return search(problem_, options_.search, progress_);
+        const auto wanted = static_cast<std::uint64_t>(
+            std::ceil(*options_.target * static_cast<double>(total_) - 1e-6));
+        Fewest fewest = placeFewest(problem_, wanted, options_.search, progress_);
+        result.is_reached = fewest.is_reached;
+        if (fewest.is_reached) result.least = fewest.least_cost;
+        return fewest.result;
+    }
+
+    /// The chosen of a kind go to its groups, in their order.
+    [[nodiscard]] std::vector<ArrangedSensor> sensorsOf(const std::vector<Choice>& chosen) const {
+        std::vector<std::vector<Pose3>> poses(kinds_.size());
+        for (const Choice& choice : chosen)
+            poses[choice.kind].push_back(sets_[choice.kind]->pose(choice.candidate));
+        std::vector<std::size_t> used(kinds_.size());
+        std::vector<ArrangedSensor> sensors;
+        std::vector<Record> records = scene_.records;
+        std::vector<std::size_t> added;  // sensors without an id
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const std::size_t kind = kindOf(g);
+            for (int i = 0; i < groups_[g].most && used[kind] < poses[kind].size(); ++i) {
+                sensors.push_back({g, groups_[g].id, poses[kind][used[kind]++]});
+                if (groups_[g].is_pending) continue;
+                records.push_back(groups_[g].record);
+                added.push_back(sensors.size() - 1);
+            }
+        }
+        const std::vector<std::string> ids = assignIds(records);
+        for (std::size_t i = 0; i < added.size(); ++i)
+            sensors[added[i]].id = ids[scene_.records.size() + i];
+        return sensors;
+    }
+
+    /// Worth of what the whole scene sees, in units.
+    std::uint64_t valueOfScene(const std::vector<ArrangedSensor>& sensors) {
+        const Coverage coverage =
+            measureCoverage(withArranged(scene_, groups_, sensors), worlds_, searching());
+        std::vector<int> met(target_.grid.size());
+        for (const SensorView& view : coverage.sensors) {
+            const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
+            view.cells.forEach([&](std::size_t cell) { met[cell] += part; });
+        }
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < met.size(); ++i)
+            if (met[i] >= problem_.demand) value += problem_.weights[i];
+        return value;
+    }
+
+    void refineIn(Arrangement& result, std::uint64_t before) {
+        std::vector<Movable> movables;
+        for (const ArrangedSensor& sensor : result.sensors)
+            movables.push_back({sensor.id, groups_[sensor.group].device, sensor.pose,
+                                &pool_->judgeAt(sensor.pose.position.z)});
+        const auto with = [&](const std::vector<Pose3>& poses) {
+            std::vector<ArrangedSensor> sensors = result.sensors;
+            for (std::size_t i = 0; i < sensors.size(); ++i) sensors[i].pose = poses[i];
+            return sensors;
+        };
+        const RefineOptions refining{.demand = options_.redundancy, .plane = options_.plane};
+        Refined refined = ispace::refine(scene_, movables, options_.worth, refining, {}, progress_);
+        // What is best in truth may be a cell less on the grid by which results are compared.
+        if (valueOfScene(with(refined.poses)) < before)
+            refined = ispace::refine(
+                scene_, movables, options_.worth, refining,
+                [&](const std::vector<Pose3>& poses) {
+                    return valueOfScene(with(poses)) >= before;
+                },
+                progress_);
+        result.sensors = with(refined.poses);
+        result.refined_before = refined.before;
+        result.refined_after = refined.after;
+        result.is_complete = result.is_complete && !progress_.stopped();
+        result.is_bound_of_candidates = false;
+        std::vector<SensorDevice> devices;
+        for (const ArrangedSensor& sensor : result.sensors)
+            devices.push_back(groups_[sensor.group].device);
+        result.bound = share(mostFromAnyPlace(problem_, target_.grid, devices, unit_));
+    }
+
+    void measure(Arrangement& result) {
+        const CoverageOptions usual{.plane = options_.plane, .exact = false};
+        const CoverageReport report =
+            measureCoverage(withArranged(scene_, groups_, result.sensors), worlds_, usual).report;
+        result.coverage = report.coverage.grid.value_or(0);
+        result.area = report.total_effective_area.grid.value_or(0);
+        const bool is_coverage = options_.worth.isUniform() && options_.redundancy == 1 &&
+                                 options_.columns == usual.columns && options_.rows == usual.rows;
+        if (!is_coverage) result.value = share(valueOfScene(result.sensors));
+    }
+
+    [[nodiscard]] std::vector<CurvePoint> curveTo(const SearchResult& found) {
+        const auto last = static_cast<int>(found.best.chosen.size());
+        std::vector<CurvePoint> curve;
+        Problem fewer = problem_;
+        fewer.order.clear();
+        for (Kind& kind : fewer.kinds) kind.cost = 1;
+        for (int n = 1; n < last && !progress_.stopped(); ++n) {
+            fewer.budget = n;
+            const SearchResult best = search(fewer, options_.search, progress_);
+            curve.push_back({n, share(best.best.value), share(best.bound)});
+        }
+        curve.push_back({last, share(found.best.value), share(found.bound)});
+        return curve;
+    }
+
+    /// Every candidate with what it would add to what stands.
+    [[nodiscard]] std::vector<TriedPose> tried(const std::vector<Choice>& chosen) const {
+        const CellPrices prices(weightsLeft());
+        std::vector<TriedPose> all;
+        for (std::size_t k = 0; k < kinds_.size(); ++k) {
+            const CandidateSet& set = *sets_[k];
+            std::vector<std::uint32_t> values(set.size());
+            set.priceAll(prices, values);
+            const double part = static_cast<double>(problem_.kinds[k].share) / problem_.demand;
+            const std::size_t first = all.size();
+            all.reserve(first + set.size());
+            for (std::size_t i = 0; i < set.size(); ++i)
+                all.push_back({kinds_[k].id, set.pose(i), part * share(values[i]), false});
+            for (const Choice& choice : chosen)
+                if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+        }
+        return all;
     }
 
     const Scene& scene_;
-    const Target& target_;
+    const std::vector<SensorGroup>& groups_;
     const ArrangeOptions& options_;
     Progress& progress_;
-    std::vector<std::unique_ptr<Kind>> kinds_;
-    double bytes_ = 0;
+    Worlds worlds_;
+    std::vector<SensorKind> kinds_;
+    Target target_;
+    Problem problem_;
+    std::uint64_t total_ = 0;
+    int unit_ = 1;
+    std::unique_ptr<CandidatePool> pool_;
+    std::vector<std::unique_ptr<CandidateSet>> sets_;
+    bool is_complete_ = true;  ///< all candidates were made
 };
 
 }  // namespace
 
-std::vector<PendingLaser> sensorsToPlace(const Scene& scene, const std::vector<Record>& added,
-                                         const DeviceCatalogue& devices) {
-    std::vector<PendingLaser> sensors = scene.pending;
-    std::vector<Record> records = scene.records;
-    std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
-    for (const Record& record : added) {
-        for (const char* key : {"at", "heading", "on"})
-            if (record.has(key))
-                throw UsageError("a sensor to be arranged has no place yet: leave out `" +
-                                 std::string(key) + '`');
-        const std::string id = record.writtenId();
-        if (!id.empty() && !taken.insert(id).second)
-            throw UsageError("the id `" + id + "` is taken in this scene");
-        records.push_back(record);
-    }
-    const std::vector<std::string> ids = assignIds(records);
-    for (std::size_t i = scene.records.size(); i < records.size(); ++i)
-        sensors.push_back({ids[i], records[i], laserOf(records[i], devices)});
-    return sensors;
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    return Job(scene, groups, options, progress).run(mps);
 }
 
-Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& sensors,
-                          const ArrangeOptions& options, Progress& progress) {
-    Worlds worlds(scene.environment);
-    const CoverageOptions searching{
-        .columns = options.columns, .rows = options.rows, .exact = false};
-    const Coverage before = measureCoverage(scene, worlds, searching);
-    CellSet covered = coveredCells(before);
-    covered &= before.target.indoor;
-
-    CandidatePool pool(scene, before.target, options, progress);
-    std::vector<Choice> choices;
-    choices.reserve(sensors.size());
-    for (const PendingLaser& sensor : sensors) choices.push_back({pool.candidatesFor(sensor)});
-    const Placement placement = placeGreedily(choices, covered, progress);
-
-    Arrangement result;
-    Scene whole = scene;
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
-        const Pose3& pose = (*choices[i].candidates)[placement.chosen[i]].pose;
-        result.placed.push_back({sensors[i].id, sensors[i].laser, pose});
-        whole.lasers.push_back(result.placed.back());
-    }
-    const CoverageOptions usual{.exact = false};  // as coverage reports if not told otherwise
-    const CoverageReport report = measureCoverage(whole, worlds, usual).report;
-    result.coverage = report.coverage.grid.value_or(0);
-    result.area = report.total_effective_area.grid.value_or(0);
-    const std::size_t cells = before.target.indoor.count();
-    const bool same_grid = options.columns == usual.columns && options.rows == usual.rows;
-    result.bound = same_grid && cells > 0
-                       ? static_cast<double>(placement.bound) / static_cast<double>(cells)
-                       : 1;
-    return result;
-}
-
-Record placedRecord(const PendingLaser& sensor, const PlacedLaser& placed) {
-    Record record = sensor.record;
-    const Point3& p = placed.pose.position;
+Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
+    Record record = group.record;
+    const Point3& p = sensor.pose.position;
     record.set("id", Value(sensor.id));
     record.set("at", Value(Tuple{p.x, p.y, p.z}));
-    record.set("heading", Value(placed.pose.heading.degrees()));
+    record.set("heading", Value(sensor.pose.heading.degrees()));
+    if (!(record.angle("tilt") == sensor.pose.tilt))
+        record.set("tilt", Value(sensor.pose.tilt.degrees()));
     return record;
 }
 
-Document layoutDocument(const LayoutParts& parts, const Document* before,
-                        const std::vector<PendingLaser>& sensors, const Arrangement& arrangement) {
-    Document document{DocumentKind::Layout, parts.history, {}};
-    Record environment(*sceneSchemas().find("environment"));
-    if (!parts.environment_file.empty()) environment.set("file", Value(parts.environment_file));
-    environment.set("digest", Value(parts.environment_digest));
-    document.records.push_back(environment);
-
-    std::vector<bool> written(sensors.size(), false);
-    const auto place = [&](std::size_t i) {
-        document.records.push_back(placedRecord(sensors[i], arrangement.placed[i]));
-        written[i] = true;
-    };
-    if (before != nullptr) {
-        for (const Record& record : before->records) {
-            if (record.schema().type == RecordType::Meta) continue;
-            const auto pending =
-                std::find_if(sensors.begin(), sensors.end(), [&](const PendingLaser& sensor) {
-                    const auto i = static_cast<std::size_t>(&sensor - sensors.data());
-                    return !written[i] && sensor.record == record;
-                });
-            if (pending == sensors.end())
-                document.records.push_back(record);
-            else
-                place(static_cast<std::size_t>(pending - sensors.begin()));
-        }
+Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
+                   const std::vector<ArrangedSensor>& sensors) {
+    Scene whole = scene;
+    for (const auto& [group, id, pose] : sensors) {
+        const SensorDevice& device = groups[group].device;
+        if (const auto* laser = std::get_if<Laser>(&device))
+            whole.lasers.push_back({id, *laser, pose});
+        else if (const auto* ranger = std::get_if<Ranger>(&device))
+            whole.rangers.push_back({id, *ranger, pose});
+        else
+            whole.receivers.push_back({id, std::get<Receiver>(device), pose});
     }
-    for (std::size_t i = 0; i < sensors.size(); ++i)
-        if (!written[i]) place(i);
-
-    Record result(*sceneSchemas().find("result"));
-    result.set("coverage", Value(arrangement.coverage));
-    result.set("area", Value(arrangement.area));
-    result.set("bound", Value(arrangement.bound));
-    result.set("strategy", Value(parts.strategy));
-    document.records.push_back(result);
-    return document;
+    return whole;
 }
 
 }  // namespace ispace

@@ -1,64 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <ostream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/history.h"
 #include "base/progress.h"
+#include "cover/trace_file.h"
 #include "layout/scene.h"
-#include "place/candidates.h"
+#include "place/arrange_options.h"
+#include "place/curve.h"
+#include "place/sensor_group.h"
 
 namespace ispace {
 
-/// The keywords of what can be placed.
-constexpr std::string_view kArrangedKinds[] = {"laser"};
-
-struct ArrangeOptions {
-    std::optional<int> x, y;        ///< interior grid lines; default by eq. (4.1) and (4.2)
-    int headings = 8;               ///< directions per place
-    int columns = 100, rows = 100;  ///< cells over the limits while searching
+/// A sensor at the place found for it.
+struct ArrangedSensor {
+    std::size_t group = 0;
+    std::string id;
+    Pose3 pose;
 };
-
-/// All sensors to be placed: those the scene has without place, then `added`, which get the next
-/// free ids of their kind.
-/// \throws UsageError if an added record has a place or an id that is taken, FormatError as laserOf
-std::vector<PendingLaser> sensorsToPlace(const Scene& scene, const std::vector<Record>& added,
-                                         const DeviceCatalogue& devices);
 
 /// Where the sensors stand and what that is worth.
 struct Arrangement {
-    std::vector<PlacedLaser> placed;  ///< in the order of the sensors given
-    double coverage = 0;              ///< as `coverage` reports coverage.grid for the whole layout
-    double area = 0;                  ///< total effective area by cells, m2, eq. (4.6)
-    /// No choice of the same candidates covers a greater share; 1 where the search had another grid
-    /// than the report, as a bound holds for its grid only.
-    double bound = 0;
+    std::vector<ArrangedSensor> sensors;  ///< by group
+    double coverage = 0;  ///< as `coverage` reports coverage.grid for the whole layout
+    double area = 0;      ///< total effective area by cells, m2, eq. (4.6)
+    /// Share of what counts; not set where that is the coverage.
+    std::optional<double> value;
+    double bound =
+        1;  ///< nothing that the search could choose is worth more; of `value` or coverage
+    /// What the bound is over: these candidates, or, of a refined layout, every place there is.
+    bool is_bound_of_candidates = true;
+    double candidate_value = 0, candidate_bound = 1;  ///< before refining
+    std::size_t candidates = 0, bytes = 0;            ///< of all kinds
+    bool is_complete = true;                          ///< false: cut by time or a signal
+
+    double cost = 0;  ///< of the sensors placed
+    /// With a target: whether it is reached, and that nothing of less cost (fewer sensors, where
+    /// costs are equal) reaches it.
+    bool is_reached = true;
+    std::optional<double> least;
+
+    std::vector<CurvePoint> curve;
+    std::vector<TriedPose> tried;
+    double refined_before = 0, refined_after = 0;  ///< exact worth, m2
 };
 
-/// Ordinary Grid of the thesis (section 4.4.2), sensor after sensor, beside the lasers that the
-/// scene has placed already.
-/// \throws UnmetError if a sensor has no valid place, UsageError if the candidates do not fit in
-///         memory
-Arrangement arrangeOnGrid(const Scene& scene, const std::vector<PendingLaser>& sensors,
-                          const ArrangeOptions& options, Progress& progress);
+/// Places the groups' sensors beside those that the scene has placed already.
+///
+/// Candidates by options.strategy, one table per kind of sensor; the target's cells weigh what
+/// options.worth says; then search() or placeFewest(), then refine(). `mps`: the model is written
+/// there before the search.
+/// \throws UnmetError if a kind has no valid place or nothing may be bought, UsageError if the
+///         candidates do not fit in memory
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
 
-/// The record of a pending sensor at its place: `id`, `at` with z and `heading` set.
-Record placedRecord(const PendingLaser& sensor, const PlacedLaser& placed);
+/// The record of a sensor at its place: `id`, `at` with z, `heading` and, where it was chosen,
+/// `tilt` set.
+Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor);
 
-/// What the layout to be written is made of.
-struct LayoutParts {
-    History history;
-    std::string environment_file;  ///< "" if there is none to name
-    std::string environment_digest;
-    std::string strategy;
-};
-
-/// A `.3dm`: the `environment` record, what `before` (or nothing) holds with its pending sensors
-/// placed, the other new sensors, the `result`.
-Document layoutDocument(const LayoutParts& parts, const Document* before,
-                        const std::vector<PendingLaser>& sensors, const Arrangement& arrangement);
+/// The scene with the arranged sensors placed.
+Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
+                   const std::vector<ArrangedSensor>& sensors);
 
 }  // namespace ispace

@@ -5,77 +5,66 @@
 #include <tbb/global_control.h>
 
 #include "base/error.h"
-#include "layout/schemas.h"
-#include "layout/sensor_spec.h"
-#include "record/digest.h"
-#include "record/text.h"
+#include "place/test_arrange.h"
 
 namespace ispace {
 namespace {
 
-const std::string kRoom =
-    "#env 1\n"
-    "ispace id=room size=8,6,2.5\n"
-    "desk id=d1 at=2,1\n"
-    "pillar id=p1 at=-2,-1\n";
-
-Document environmentDocument(const std::string& text = kRoom) {
-    return readRecordText(text, "room.env", sceneSchemas());
-}
-
-Document layoutFrom(const std::string& records) {
-    return readRecordText("#3dm 1\n# before\n" + records, "layout.3dm", sceneSchemas());
-}
-
-std::vector<Record> specs(const std::string& text) {
-    return readSensorSpec(text, kArrangedKinds, sceneSchemas(), DeviceCatalogue());
-}
-
-LayoutParts parts(const Scene& scene) {
-    return {{"arrange room.glb"}, "room.glb", scene.digest, "grid"};
-}
-
 TEST(Arrangement, ResultIsWhatCoverageMeasures) {
-    const Document environment = environmentDocument();
-    const Scene scene = makeScene(environment, nullptr, DeviceCatalogue());
-    const auto sensors = sensorsToPlace(scene, specs("laser,range=4:3"), DeviceCatalogue());
-    ASSERT_EQ(sensors.size(), 3U);
-    SilentProgress progress;
-    ArrangeOptions options;
-    options.x = 5;
-    options.y = 5;
-    const Arrangement arrangement = arrangeOnGrid(scene, sensors, options, progress);
-    EXPECT_GE(arrangement.bound, arrangement.coverage);
-    EXPECT_LE(arrangement.bound, 1);
-
-    // Through text and back, as the tools do it.
-    const std::string text =
-        writeRecordText(layoutDocument(parts(scene), nullptr, sensors, arrangement));
-    const Document layout = readRecordText(text, "best.3dm", sceneSchemas());
-    const Scene again = makeScene(environment, &layout, DeviceCatalogue());
-    ASSERT_EQ(again.lasers.size(), 3U);
-    Worlds worlds(again.environment);
-    const CoverageReport report = measureCoverage(again, worlds, {}).report;
-    EXPECT_EQ(report.coverage.grid, arrangement.coverage);
-    EXPECT_EQ(report.total_effective_area.grid, arrangement.area);
-    const Record& result = layout.records.back();
-    EXPECT_EQ(result.keyword(), "result");
-    EXPECT_EQ(result.number("coverage"), arrangement.coverage);
-    EXPECT_EQ(layout.records.front().text("digest"), environmentDigest(environment.records));
+    const Scene scene = roomScene();
+    for (const char* sensor : {"laser,range=4:3", "ranger,tilt=-40:2", "laser,tilt=-10:2"}) {
+        const auto groups = groupsOf(scene, {sensor});
+        ArrangeOptions options = coarse();
+        options.mount.heights = {1.2};
+        const Arrangement arrangement = arranged(scene, groups, options);
+        const CoverageReport report = reportOf(scene, groups, arrangement);
+        EXPECT_EQ(report.coverage.grid, arrangement.coverage) << sensor;
+        EXPECT_EQ(report.total_effective_area.grid, arrangement.area) << sensor;
+        EXPECT_DOUBLE_EQ(arrangement.candidate_value, arrangement.coverage) << sensor;
+        EXPECT_FALSE(arrangement.value);
+        EXPECT_GE(arrangement.bound, arrangement.coverage) << sensor;
+        EXPECT_GT(arrangement.coverage, 0) << sensor;
+        EXPECT_TRUE(arrangement.is_complete);
+    }
 }
 
 TEST(Arrangement, SameForAnyNumberOfThreads) {
-    const Scene scene = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
-    const auto sensors = sensorsToPlace(scene, specs("laser:4"), DeviceCatalogue());
-    SilentProgress progress;
-    std::string texts[2];
-    for (const std::size_t threads : {1U, 2U}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const Arrangement arrangement = arrangeOnGrid(scene, sensors, {}, progress);
-        texts[threads - 1] =
-            writeRecordText(layoutDocument(parts(scene), nullptr, sensors, arrangement));
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser:2", "laser,range=3,fov=270:2"});
+    for (const Strategy strategy : {Strategy::All, Strategy::Random, Strategy::Wall}) {
+        std::string texts[2];
+        for (const std::size_t threads : {1U, 2U}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            ArrangeOptions options = coarse();
+            options.strategy = strategy;
+            options.refine = strategy == Strategy::Wall;
+            const Arrangement arrangement = arranged(scene, groups, options);
+            texts[threads - 1] =
+                writeRecordText(layoutDocument(partsOf(scene), nullptr, groups, arrangement));
+        }
+        EXPECT_EQ(texts[0], texts[1]);
     }
-    EXPECT_EQ(texts[0], texts[1]);
+}
+
+TEST(Arrangement, AMovedRoomHasTheSameArrangement) {
+    const std::string there =
+        "#env 1\nfence path=16,8;24,8;24,14;16,14 closed=yes\ndesk at=22,12 heading=30\n"
+        "inside at=17,9\n";
+    const std::string here =
+        "#env 1\nfence path=0,0;8,0;8,6;0,6 closed=yes\ndesk at=6,4 heading=30\ninside at=1,1\n";
+    const Scene scene = roomScene(here), moved = roomScene(there);
+    const auto groups = groupsOf(scene, {"laser,range=4:3"});
+    const ArrangeOptions options = coarse(Optimizer::Exact);
+    const Arrangement a = arranged(scene, groups, options), b = arranged(moved, groups, options);
+    ASSERT_EQ(a.sensors.size(), b.sensors.size());
+    EXPECT_EQ(a.coverage, b.coverage);
+    EXPECT_EQ(a.bound, b.bound);
+    for (std::size_t i = 0; i < a.sensors.size(); ++i) {
+        const Pose3 &p = a.sensors[i].pose, &q = b.sensors[i].pose;
+        EXPECT_NEAR(p.position.x + 16, q.position.x, 1e-9);
+        EXPECT_NEAR(p.position.y + 8, q.position.y, 1e-9);
+        EXPECT_EQ(p.heading, q.heading);
+    }
 }
 
 TEST(Arrangement, KeepsALayoutAndPlacesItsPendingSensors) {
@@ -83,45 +72,45 @@ TEST(Arrangement, KeepsALayoutAndPlacesItsPendingSensors) {
         "laser id=fixed at=0,0 heading=90\n"
         "laser id=todo range=3\n"
         "chair at=3,-2\n"
+        "ultrasound id=ear\n"
         "result coverage=1%\n");
-    const Scene scene = makeScene(environmentDocument(), &layout, DeviceCatalogue());
-    ASSERT_EQ(scene.pending.size(), 1U);
-    const auto sensors = sensorsToPlace(scene, specs("laser"), DeviceCatalogue());
-    ASSERT_EQ(sensors.size(), 2U);
-    EXPECT_EQ(sensors[0].id, "todo");
-    EXPECT_EQ(sensors[1].id, "laser1");
-    SilentProgress progress;
-    const Arrangement arrangement = arrangeOnGrid(scene, sensors, {}, progress);
-    const Document written = layoutDocument(parts(scene), &layout, sensors, arrangement);
+    const Scene scene = roomScene(kTestRoom, &layout);
+    ASSERT_EQ(scene.pending.size(), 2U);
+    const auto groups = groupsOf(scene, {"laser"});
+    ASSERT_EQ(groups.size(), 3U);
+    EXPECT_EQ(groups[0].id, "todo");
+    const Arrangement arrangement = arranged(scene, groups, coarse());
+    const Document written = layoutDocument(partsOf(scene), &layout, groups, arrangement);
     std::vector<std::string> keywords, ids;
     for (const Record& record : written.records) {
         keywords.push_back(record.keyword());
         ids.push_back(record.writtenId());
     }
-    EXPECT_EQ(keywords, (std::vector<std::string>{"environment", "laser", "laser", "chair", "laser",
-                                                  "result"}));
-    EXPECT_EQ(ids, (std::vector<std::string>{"", "fixed", "todo", "", "laser1", ""}));
+    EXPECT_EQ(keywords, (std::vector<std::string>{"environment", "laser", "laser", "chair",
+                                                  "ultrasound", "laser", "result"}));
+    EXPECT_EQ(ids, (std::vector<std::string>{"", "fixed", "todo", "", "ear", "laser1", ""}));
     EXPECT_EQ(written.records[2].tuple("range"), (Tuple{3}));
     EXPECT_TRUE(written.records[2].has("at"));
+    EXPECT_TRUE(written.records[4].has("at"));
 }
 
 TEST(Arrangement, SensorsAlreadyPlacedCount) {
-    const Scene empty = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
-    SilentProgress progress;
-    ArrangeOptions options;
+    const Scene empty = roomScene();
+    ArrangeOptions options = coarse(Optimizer::Greedy);
+    options.strategy = Strategy::Grid;
     options.x = options.y = 5;
-    const auto two = sensorsToPlace(empty, specs("laser,range=4:2"), DeviceCatalogue());
-    const Arrangement both = arrangeOnGrid(empty, two, options, progress);
+    const auto two = groupsOf(empty, {"laser,range=4:2"});
+    const Arrangement both = arranged(empty, two, options);
     // The first of the two given as fixed, the second is placed as before.
-    const auto one = sensorsToPlace(empty, specs("laser,range=4"), DeviceCatalogue());
-    const Arrangement first = arrangeOnGrid(empty, one, options, progress);
-    const Document layout = layoutDocument(parts(empty), nullptr, one, first);
-    const Scene begun = makeScene(environmentDocument(), &layout, DeviceCatalogue());
-    const auto second = sensorsToPlace(begun, specs("laser,range=4"), DeviceCatalogue());
-    EXPECT_EQ(second[0].id, "laser2");
-    const Arrangement rest = arrangeOnGrid(begun, second, options, progress);
+    const auto one = groupsOf(empty, {"laser,range=4"});
+    const Arrangement first = arranged(empty, one, options);
+    const Document layout = layoutDocument(partsOf(empty), nullptr, one, first);
+    const Scene begun = roomScene(kTestRoom, &layout);
+    const auto second = groupsOf(begun, {"laser,range=4"});
+    const Arrangement rest = arranged(begun, second, options);
+    EXPECT_EQ(rest.sensors[0].id, "laser2");
     EXPECT_EQ(rest.coverage, both.coverage);
-    EXPECT_EQ(rest.placed[0].pose, both.placed[1].pose);
+    EXPECT_EQ(rest.sensors[0].pose, both.sensors[1].pose);
 }
 
 TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
@@ -130,58 +119,99 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
         "laser id=own at=0.1,0 range=2 on=r1\n"
         "laser id=top range=2 on=d1\n";
     const Document layout = layoutFrom(kept + "laser id=todo range=3\n");
-    const Scene scene = makeScene(environmentDocument(), &layout, DeviceCatalogue());
+    const Scene scene = roomScene(kTestRoom, &layout);
     ASSERT_EQ(scene.pending.size(), 1U);
-    const auto sensors = sensorsToPlace(scene, {}, DeviceCatalogue());
-    SilentProgress progress;
-    ArrangeOptions options;
-    options.x = options.y = 3;
-    const Arrangement arrangement = arrangeOnGrid(scene, sensors, options, progress);
+    const auto groups = groupsOf(scene, {});
+    const Arrangement arrangement = arranged(scene, groups, coarse());
     const std::string text =
-        writeRecordText(layoutDocument(parts(scene), &layout, sensors, arrangement));
+        writeRecordText(layoutDocument(partsOf(scene), &layout, groups, arrangement));
     EXPECT_NE(text.find(kept), std::string::npos) << text;
 
     // What they see counts, and the result is what coverage measures.
     const Document written = readRecordText(text, "best.3dm", sceneSchemas());
-    const Scene again = makeScene(environmentDocument(), &written, DeviceCatalogue());
+    const Scene again = roomScene(kTestRoom, &written);
     Worlds worlds(again.environment);
     EXPECT_EQ(measureCoverage(again, worlds, {}).report.coverage.grid, arrangement.coverage);
     ASSERT_EQ(again.lasers.size(), 3U);
     EXPECT_EQ(again.robots.size(), 1U);
 }
 
-TEST(Arrangement, TiltedSensorsArePlacedToo) {
-    const Scene scene = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
-    const auto sensors = sensorsToPlace(scene, specs("laser,tilt=10,range=4"), DeviceCatalogue());
-    SilentProgress progress;
-    ArrangeOptions options;
-    options.x = options.y = 2;
-    options.columns = options.rows = 40;
-    const Arrangement arrangement = arrangeOnGrid(scene, sensors, options, progress);
-    EXPECT_EQ(arrangement.placed[0].pose.tilt, Angle::degrees(10));
-    EXPECT_GT(arrangement.coverage, 0);
+TEST(Arrangement, TiltsAndHeightsAreChosen) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"ranger,fov=60,60,range=4"});
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    options.mount.heights = {0.15, 2.2};
+    options.mount.tilts = {Angle::degrees(-60), Angle::degrees(0)};
+    const Arrangement both = arranged(scene, groups, options);
+    options.mount.heights = {0.15};
+    options.mount.tilts = {Angle::degrees(0)};
+    const Arrangement low = arranged(scene, groups, options);
+    EXPECT_GT(both.coverage, low.coverage);
+    EXPECT_EQ(both.sensors[0].pose.position.z, 2.2);
+    const Record record = placedRecord(groups[0], both.sensors[0]);
+    EXPECT_EQ(record.angle("tilt"), both.sensors[0].pose.tilt);
+    // What the sensor says itself stays.
+    options.mount.tilts = {Angle::degrees(0)};
+    const auto tilted = groupsOf(scene, {"laser,tilt=10,range=4"});
+    EXPECT_EQ(arranged(scene, tilted, options).sensors[0].pose.tilt, Angle::degrees(10));
 }
 
-TEST(Arrangement, NoValidPlaceIsSaid) {
-    const Scene scene = makeScene(
-        environmentDocument("#env 1\nispace size=4,4\ncube size=3,3,1\ninside at=1.8,1.8\n"),
-        nullptr, DeviceCatalogue());
-    const auto sensors = sensorsToPlace(scene, specs("laser"), DeviceCatalogue());
-    SilentProgress progress;
-    ArrangeOptions options;
+TEST(Arrangement, FourReceiversUnderTheCeilingHearTogether) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"ultrasound:4"});
+    ArrangeOptions options = coarse();
+    options.density = {2, 2, 1};
+    options.mount.on = MountOn::Ceiling;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    ASSERT_EQ(arrangement.sensors.size(), 4U);
+    EXPECT_EQ(arrangement.sensors[0].pose.tilt, Angle::degrees(-90));
+    EXPECT_NEAR(arrangement.sensors[0].pose.position.z, 2.45, 1e-9);
+    EXPECT_GT(arrangement.coverage, 0.4);
+    EXPECT_EQ(reportOf(scene, groups, arrangement).coverage.grid, arrangement.coverage);
+    const auto three = groupsOf(scene, {"ultrasound:3"});
+    EXPECT_EQ(arranged(scene, three, options).coverage, 0) << "four are needed";
+}
+
+TEST(Arrangement, StopsWithTheBestSoFar) {
+    class Impatient final : public Progress {
+      public:
+        void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++phases; }
+        void advance(std::int64_t /*count*/) override {}
+        void end() override {}
+        [[nodiscard]] bool stopped() const override { return phases > 2; }
+        int phases = 0;
+    };
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=4:3"});
+    Impatient progress;
+    const Arrangement arrangement = arrange(scene, groups, coarse(Optimizer::Exact), progress);
+    EXPECT_FALSE(arrangement.is_complete);
+    EXPECT_EQ(arrangement.sensors.size(), 3U);
+    EXPECT_GE(arrangement.bound, arrangement.coverage);
+    const Document layout = layoutDocument(partsOf(scene), nullptr, groups, arrangement);
+    EXPECT_FALSE(layout.records.back().flag("complete"));
+}
+
+TEST(Arrangement, WhatCannotBeIsSaid) {
+    const Scene full = roomScene("#env 1\nispace size=4,4\ncube size=3,3,1\ninside at=1.8,1.8\n");
+    ArrangeOptions options = coarse();
+    options.strategy = Strategy::Grid;
     options.x = options.y = 1;
-    EXPECT_THROW(arrangeOnGrid(scene, sensors, options, progress), UnmetError);
-}
+    EXPECT_THROW(arranged(full, groupsOf(full, {"laser"}), options), UnmetError);
 
-TEST(Arrangement, RefusesIdsThatAreTakenAndPlacesThatAreGiven) {
-    const Scene scene = makeScene(environmentDocument(), nullptr, DeviceCatalogue());
-    EXPECT_THROW(sensorsToPlace(scene, specs("laser,id=d1"), DeviceCatalogue()), UsageError);
-    EXPECT_THROW(sensorsToPlace(scene, specs("laser,at=1,1"), DeviceCatalogue()), UsageError);
-    EXPECT_THROW(sensorsToPlace(scene, specs("laser,heading=30"), DeviceCatalogue()), UsageError);
-    EXPECT_THROW(sensorsToPlace(scene, specs("laser,on=d1"), DeviceCatalogue()), UsageError);
-    std::vector<Record> twice = specs("laser,id=a");
-    twice.push_back(twice.front());
-    EXPECT_THROW(sensorsToPlace(scene, twice, DeviceCatalogue()), UsageError);
+    const Scene scene = roomScene();
+    options = coarse();
+    options.budget = 0;
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}, true), options), UnmetError);
+    options = coarse();
+    options.most_bytes = 1000;
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
+    options = coarse();
+    options.worth.targets = {readZone("rect:100,100,101,101", scene.environment)};
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
+    options = coarse();
+    options.mount.on = MountOn::Frame;
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
 }
 
 }  // namespace

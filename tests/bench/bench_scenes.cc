@@ -11,7 +11,7 @@
 #include "io/input.h"
 #include "layout/schemas.h"
 #include "layout/sensor_spec.h"
-#include "place/candidates.h"
+#include "place/sites.h"
 #include "record/digest.h"
 #include "record/text.h"
 
@@ -103,7 +103,7 @@ std::size_t linesOf(const Scene& scene) {
 namespace {
 
 Record recordOfModel(std::string_view keyword, const std::string& model) {
-    return readSensorSpec(model, {&keyword, 1}, sceneSchemas(), devices()).front();
+    return readSensorSpec(model, {&keyword, 1}, sceneSchemas(), devices()).record;
 }
 
 }  // namespace
@@ -178,7 +178,9 @@ std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level)
     // No furniture ends there: a beam along its top is a matter of the last bit.
     constexpr double kHigh = 1.55;
     const double height = level ? kScanHeight : kHigh;
-    const Slice slice = scene.environment.slice(height);
+    SiteRules rules;
+    rules.height = height;
+    const SiteJudge judge(scene.environment, rules);
     const Box2& limits = scene.environment.limits();
     std::mt19937_64 random(42);
     std::uniform_real_distribution<double> x(limits.low.x, limits.high.x);
@@ -187,7 +189,7 @@ std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level)
     std::vector<PlacedLaser> sensors;
     while (sensors.size() < count) {
         const Point2 place{x(random), y(random)};
-        if (!isStandable(scene.environment, slice, place)) continue;
+        if (!judge.isValid(place)) continue;
         PlacedLaser sensor;
         sensor.id = "l" + std::to_string(sensors.size() + 1);
         sensor.laser.max_range = 30;

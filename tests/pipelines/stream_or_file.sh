@@ -16,11 +16,14 @@ arrange room.glb "${placing[@]}" | tee copy.3dm | coverage room.glb - -o dash.pn
 expect_same file.png dash.png "another picture with -"
 expect_same best.3dm copy.3dm "another layout on stdout than with -o"
 
-# Talk goes to stderr, and only if it is wanted.
+# Talk goes to stderr: what was found, in a line; progress only if it is wanted; nothing with -q.
 arrange room.glb "${placing[@]}" --progress 2>talk | cmp - best.3dm || fail "progress on stdout"
-[ -s talk ] || fail "--progress shows nothing"
+grep -q '100 %' talk || fail "--progress shows nothing"
 arrange room.glb "${placing[@]}" 2>talk | cmp - best.3dm || fail "another layout"
-[ ! -s talk ] || fail "talk without being asked: $(cat talk)"
+[ "$(wc -l <talk)" -eq 1 ] || fail "more than a line of talk: $(cat talk)"
+grep -q 'bound .* over .* candidates .* cells' talk || fail "it does not say what the bound is over"
+arrange room.glb "${placing[@]}" -q 2>talk | cmp - best.3dm || fail "another layout"
+[ ! -s talk ] || fail "talk in spite of -q: $(cat talk)"
 
 # ENV may be the source instead of the compiled form, or left to the layout.
 coverage "$scenes/ispace.env" best.3dm -o source.png >source.txt

@@ -26,6 +26,6 @@ grep -q '^fence' said || fail "$(cat said)"
 
 arrange="arrange '$data/room.env' --sensor laser --strategy grid -X 9 -Y 9 -o best.3dm"
 on_terminal 0 "$arrange"
-grep -q 'arrange: ' said || fail "no progress on a terminal"
-on_terminal 0 "$arrange --no-progress"
+grep -q '100 %' said || fail "no progress on a terminal"
+on_terminal 0 "$arrange --no-progress -q"
 [ ! -s said ] || fail "progress in spite of --no-progress: $(cat said)"

@@ -1,40 +1,352 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/options.h"
 
+#include <algorithm>
+#include <map>
+
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/scene_options.h"
+#include "record/schema.h"
 
 namespace ispace {
 
+namespace {
+
+/// As many as a room may ask for, and no slip of a digit.
+constexpr int kMostLines = 10000, kMostHeadings = 3600, kMostPlaces = 100000;
+constexpr double kLongest = 1e6;  // metres
+
+const std::map<std::string, Strategy> kStrategies = {
+    {"grid", Strategy::Grid},     {"random", Strategy::Random}, {"wall", Strategy::Wall},
+    {"medial", Strategy::Medial}, {"list", Strategy::List},     {"all", Strategy::All}};
+const std::map<std::string, Optimizer> kOptimizers = {
+    {"greedy", Optimizer::Greedy}, {"swap", Optimizer::Swap}, {"exact", Optimizer::Exact}};
+const std::map<std::string, MountOn> kMounts = {{"floor", MountOn::Floor},
+                                                {"wall", MountOn::Wall},
+                                                {"frame", MountOn::Frame},
+                                                {"ceiling", MountOn::Ceiling}};
+
+/// Numbers of a unit, parted by commas.
+Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t least,
+              std::size_t most, double lower, double upper) {
+    const KeySpec key{.name = name,
+                      .type = KeyType::Tuple,
+                      .unit = unit,
+                      .help = "",
+                      .min_count = least,
+                      .max_count = most,
+                      .lower = lower,
+                      .upper = upper};
+    return std::get<Tuple>(parseValue(key, text));
+}
+
+CandidateDensity readDensity(const std::string& text) {
+    const std::string wanted =
+        '`' + text + "` is not GRID,WALL,HEADINGS: two steps in metres and a whole number";
+    const auto last = text.rfind(',');
+    if (std::count(text.begin(), text.end(), ',') != 2) throw UsageError(wanted);
+    const auto headings = parseInteger(text.substr(last + 1));
+    if (!headings || *headings < 1 || *headings > kMostHeadings) throw UsageError(wanted);
+    const Tuple steps = numbers("steps", text.substr(0, last), Unit::Length, 2, 2, 0.001, kLongest);
+    return {steps[0], steps[1], static_cast<int>(*headings)};
+}
+
+double readNumber(const std::string& text, double lowest, double highest, const char* what) {
+    const auto number = parseDouble(text);
+    if (!number || !(*number >= lowest && *number <= highest))
+        throw UsageError('`' + text + "` is not " + what);
+    return *number;
+}
+
+double readShare(const std::string& text) {
+    const auto share = parseShare(text);
+    if (!share) throw UsageError('`' + text + "` is not a share like 95% or 0.95");
+    return *share;
+}
+
+/// "2G", "500M", "1.5 GB": bytes, by powers of 1024.
+std::size_t readBytes(const std::string& text) {
+    const auto end = text.find_first_not_of("0123456789.");
+    const auto number = parseDouble(text.substr(0, end));
+    std::string unit = end == std::string::npos ? "" : text.substr(end);
+    for (char& c : unit)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (unit.ends_with('B')) unit.pop_back();
+    const std::string known = "KMGT";
+    const auto power = unit.empty() ? std::string::npos : known.find(unit);
+    if (!number || *number <= 0 || (!unit.empty() && (unit.size() > 1 || power > known.size())))
+        throw UsageError('`' + text + "` is not a size like 500M or 2G");
+    double bytes = *number;
+    for (std::size_t i = 0; !unit.empty() && i <= power; ++i) bytes *= 1024;
+    constexpr double kMost = 1e15;
+    if (bytes > kMost) throw UsageError('`' + text + "` is more than any machine has");
+    return static_cast<std::size_t>(bytes);
+}
+
+template <typename T>
+std::vector<std::string> wordsOf(const std::map<std::string, T>& names) {
+    std::vector<std::string> words;
+    words.reserve(names.size());
+    for (const auto& [word, value] : names) words.push_back(word);
+    return words;
+}
+
+}  // namespace
+
+std::pair<std::string, double> splitWeight(const std::string& text) {
+    const auto equals = text.rfind('=');
+    const auto weight =
+        equals == std::string::npos ? std::nullopt : parseDouble(text.substr(equals + 1));
+    if (!weight || equals == 0 || !(*weight >= 0 && *weight <= 1e6))
+        throw UsageError("--weight: `" + text + "` is not ZONE=W with a number from 0 on");
+    return {text.substr(0, equals), *weight};
+}
+
 ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
-    : line_("arrange", "ENV [LAYOUT]",
+    : line_("arrange", "[ENV] [LAYOUT]",
             "Place sensors in a room: those of LAYOUT without a place, and those of --sensor. "
-            "Writes a layout (.3dm).") {
-    ArrangeToolOptions& o = options_;
-    line_.operands(o.operands, 2);
-    line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", o.sensors,
-                "place COUNT sensors of a device or a bare kind, e.g. urg-04lx:3 or "
-                "laser,range=4,fov=180:3",
+            "Writes a layout (.3dm) and says how near it is to the best there can be.") {
+    line_.operands(options_.operands, 2);
+    line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
+                "place COUNT sensors of a device or a bare kind (laser, ranger, ultrasound), e.g. "
+                "urg-04lx:3 or laser,range=4,fov=180:3",
                 Enters::History);
-    line_.choice("--strategy", o.strategy, {"grid"},
-                 "how places are searched; grid: crossings of X by Y lines over the limits",
-                 Enters::History);
-    constexpr int kMostLines = 10000, kMostHeadings = 3600;
-    line_.count("-X", "N", o.search.x, 1, kMostLines,
-                "interior grid lines across x (default: 5 per maximum range)", Enters::History);
-    line_.count("-Y", "N", o.search.y, 1, kMostLines,
-                "interior grid lines across y (default: 5 per maximum range)", Enters::History);
-    line_.count("--deg", "N", o.search.headings, 1, kMostHeadings,
-                "headings a place, 360/N degrees apart, the first 0", Enters::History);
-    addGridOption(line_, "--reso", o.search.columns, o.search.rows,
-                  "cells over the limits while searching");
-    addAnyEnvironmentOption(line_, o.any_environment);
-    addCommonOptions(line_, o.common, "write the layout there (default: stdout)");
+    line_.texts("--fixed", "ID", options_.fixed,
+                "only these sensors of LAYOUT stay where they are (globs allowed), the others are "
+                "placed anew; without it all that have a place stay",
+                Enters::History);
+    addPlaceOptions();
+    addMountOptions();
+    addGoalOptions();
+    addSearchOptions();
+    addFileOptions();
+    addAnyEnvironmentOption(line_, options_.any_environment);
+    addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
-    (void)outputFormat("", o.common.output, {"3dm"});  // refuses the suffix of another format
-    if (o.strategy.empty())
+    settle();
+}
+
+void ArrangeCommand::addPlaceOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.choice("--effort", words_.effort, {"low", "medium", "high"},
+                 "the thesis' time levels: random places; a grid with 8 headings; one with 16",
+                 Enters::History);
+    line_.choice("--strategy", words_.strategy, wordsOf(kStrategies),
+                 "how places are proposed: all (default: a lattice and along walls), the thesis' "
+                 "grid, random and wall, medial (axis of the free floor), list (--places)",
+                 Enters::History);
+    line_.parsed(
+        "--candidates", "GRID,WALL,HEADINGS",
+        [&how](const std::string& text) { how.density = readDensity(text); },
+        "of all: steps of the lattice and along walls, headings a place (default 0.25,0.25,16)",
+        Enters::History);
+    line_.text("--places", "FILE", options_.places_file,
+               "of list: lines X,Y[,HEADING] (CSV), - is stdin", Enters::BaseName);
+    line_.count("-X", "N", how.x, 1, kMostLines,
+                "of grid: interior lines across x (default: 5 per maximum range)", Enters::History);
+    line_.count("-Y", "N", how.y, 1, kMostLines,
+                "of grid: interior lines across y (default: 5 per maximum range)", Enters::History);
+    line_.count("--deg", "N", how.headings, 1, kMostHeadings,
+                "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
+                "(default 8; of wall the normals alone)",
+                Enters::History);
+    line_.count("--r1", "N", how.first_places, 1, kMostPlaces,
+                "of random: places tried first (default 20)", Enters::History);
+    line_.count("--r2", "N", how.more_places, 0, kMostPlaces,
+                "of random: places tried about the best of them, for each sensor (default 5)",
+                Enters::History);
+    line_.meters("--scope", how.scope, 0.001, kLongest,
+                 "of random: radius in which these lie (default: maximum range / 5)",
+                 Enters::History);
+    line_.meters("--dist", how.dist, 0.001, 1000, "of wall: distance from the wall (default 0.05)",
+                 Enters::History);
+    line_.count("--times", "N", how.times, 1, kMostPlaces, "of wall: places a wall (default 21)",
+                Enters::History);
+}
+
+void ArrangeCommand::addMountOptions() {
+    MountRules& mount = options_.how.mount;
+    line_.choice(
+        "--mount", words_.mount, wordsOf(kMounts),
+        "what sensors are fixed to: floor (default), wall (only places along walls), frame "
+        "(bars of infra), ceiling; on the last two rangers and ultrasound look down",
+        Enters::History);
+    line_.parsed(
+        "--z", "H[,H...]",
+        [&mount](const std::string& text) {
+            mount.heights = numbers("H", text, Unit::Length, 1, 100, 0, 1000);
+        },
+        "heights to choose from (default 0.15, or as the mount has it)", Enters::History);
+    line_.parsed(
+        "--tilt", "DEG[,DEG...]",
+        [&mount](const std::string& text) {
+            mount.tilts.clear();
+            for (const double tilt : numbers("DEG", text, Unit::Angle, 1, 100, -90, 90))
+                mount.tilts.push_back(Angle::degrees(tilt));
+        },
+        "tilts to choose from, for sensors that do not say theirs (default 0)", Enters::History);
+    line_.meters("--clearance", mount.clearance, 0, 1000,
+                 "least distance from walls and objects at that height (default 0)",
+                 Enters::History);
+    line_.texts("--keep-out", "ZONE", options_.zones.keep_out, "no sensor stands there",
+                Enters::History);
+    line_.texts("--keep-in", "ZONE", options_.zones.keep_in, "sensors stand only there",
+                Enters::History);
+}
+
+void ArrangeCommand::addGoalOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.texts("--zone", "ZONE", options_.zones.targets,
+                "cover this part of the floor alone: the id of a zone, rect:X,Y,X,Y or "
+                "poly:X,Y;X,Y;...",
+                Enters::History);
+    line_.texts("--weight", "ZONE=W", options_.zones.weights,
+                "floor there counts W times (elsewhere once)", Enters::History);
+    constexpr int kMostTimes = 100;
+    line_.count("--redundancy", "K", how.redundancy, 1, kMostTimes,
+                "floor counts if K sensors see it (default 1)", Enters::History);
+    line_.flag("--connected", how.is_connected,
+               "views must hang together: each shares a cell with another, and so all of them",
+               Enters::History);
+    line_.parsed(
+        "--target", "SHARE", [&how](const std::string& text) { how.target = readShare(text); },
+        "place the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
+        "is then the most; exit with 3 if it cannot be reached",
+        Enters::History);
+    line_.parsed(
+        "--budget", "COST",
+        [&how](const std::string& text) {
+            how.budget = readNumber(text, 0, 1e9, "a cost from 0 on");
+        },
+        "buy no more than this, at cost= each (default 1); COUNT is then the most",
+        Enters::History);
+    line_.meters("--plane", how.plane, 0, 1000,
+                 "height of the plane that rangers and ultrasound cover (default 0, the floor)",
+                 Enters::History);
+    addGridOption(line_, "--reso", how.columns, how.rows, "cells over the limits while searching");
+}
+
+void ArrangeCommand::addSearchOptions() {
+    ArrangeOptions& how = options_.how;
+    line_.choice("--optimize", words_.optimize, wordsOf(kOptimizers),
+                 "one after another (greedy), with moves from many starts (swap), or to the proven "
+                 "best (exact); default swap, greedy with grid, random and wall",
+                 Enters::History);
+    constexpr int kMostStarts = 100000;
+    line_.count("--starts", "N", how.search.swap.starts, 0, kMostStarts,
+                "random starts of swap (default 20)", Enters::History);
+    line_.parsed(
+        "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readShare(text); },
+        "end once value and bound are this near, e.g. 1%", Enters::History);
+    line_.parsed(
+        "--time-limit", "SECONDS",
+        [this](const std::string& text) {
+            options_.time_limit = readNumber(text, 0, 1e9, "a number of seconds from 0 on");
+        },
+        "end with the best so far after this time, marked complete=no", Enters::History);
+    line_.flag("--refine", how.refine,
+               "go on from the best in continuous place and heading, by exact area",
+               Enters::History);
+    line_.parsed(
+        "--max-memory", "SIZE",
+        [&how](const std::string& text) { how.most_bytes = readBytes(text); },
+        "what candidates may take, e.g. 2G (default 8G)", Enters::Nothing);
+}
+
+void ArrangeCommand::addFileOptions() {
+    line_.text("--curve", "FILE", options_.curve_file,
+               "also tell what 1, 2, ... sensors cover: print it, and write FILE (.csv, .png, .svg "
+               "or .pdf)",
+               Enters::Nothing);
+    line_.text("--trace", "FILE", options_.trace_file,
+               "write every candidate with its value as JSONL, for coverage --trace",
+               Enters::Nothing);
+    line_.text("--export-mps", "FILE", options_.mps_file,
+               "write the model for solvers of mixed-integer programs (glpsol, cbc)",
+               Enters::Nothing);
+}
+
+void ArrangeCommand::settle() {
+    ArrangeOptions& how = options_.how;
+    (void)outputFormat("", options_.common.output, {"3dm"});  // refuses another format's suffix
+    settleStrategy();
+    if (const auto mount = kMounts.find(words_.mount); mount != kMounts.end())
+        how.mount.on = mount->second;
+    if (how.mount.on == MountOn::Frame &&
+        (line_.given("--strategy") || line_.given("--effort") || line_.given("--z")))
         throw UsageError(
-            "no strategy given: this version has --strategy grid (see arrange --help)");
+            "--mount frame: the bars of the frame are the places; leave out "
+            "--strategy, --effort and --z");
+    if (how.target && how.budget)
+        throw UsageError("--target asks for the least cost: leave out --budget");
+    for (const std::string& weight : options_.zones.weights) (void)splitWeight(weight);
+    how.wants_curve = !options_.curve_file.empty();
+    how.wants_trace = !options_.trace_file.empty();
+    how.seed = options_.common.seed;
+    how.search.swap.seed = options_.common.seed;
+    settleFiles();
+}
+
+void ArrangeCommand::settleStrategy() {
+    ArrangeOptions& how = options_.how;
+    if (!words_.effort.empty()) {
+        for (const char* option : {"--strategy", "--deg", "--candidates", "--places"})
+            if (line_.given(option))
+                throw UsageError(std::string("--effort chooses places and headings itself: leave "
+                                             "out ") +
+                                 option);
+        how.strategy = words_.effort == "low" ? Strategy::Random : Strategy::Grid;
+        how.headings = words_.effort == "high" ? 16 : 8;
+    } else if (!words_.strategy.empty()) {
+        how.strategy = kStrategies.at(words_.strategy);
+    } else if (!options_.places_file.empty()) {
+        how.strategy = Strategy::List;
+    }
+    const auto only_with = [&](Strategy strategy, std::initializer_list<const char*> options) {
+        for (const char* option : options)
+            if (how.strategy != strategy && line_.given(option))
+                throw UsageError(std::string(option) + " is about --strategy " +
+                                 std::string(nameOf(strategy)) + ": give that, too");
+    };
+    only_with(Strategy::Grid, {"-X", "-Y"});
+    only_with(Strategy::Random, {"--r1", "--r2", "--scope"});
+    only_with(Strategy::List, {"--places"});
+    if (how.mount.on != MountOn::Wall && words_.mount != "wall")
+        only_with(Strategy::Wall, {"--dist"});
+    only_with(Strategy::Wall, {"--times"});
+    if (how.strategy == Strategy::List && options_.places_file.empty())
+        throw UsageError("--strategy list: give the list with --places FILE");
+    const bool is_thesis = how.strategy == Strategy::Grid || how.strategy == Strategy::Random ||
+                           how.strategy == Strategy::Wall;
+    if (is_thesis && line_.given("--candidates"))
+        throw UsageError(
+            "--candidates is about --strategy all: the thesis' strategies have their "
+            "own numbers");
+    how.search.optimizer = is_thesis ? Optimizer::Greedy : Optimizer::Swap;
+    if (!words_.optimize.empty()) how.search.optimizer = kOptimizers.at(words_.optimize);
+}
+
+void ArrangeCommand::settleFiles() const {
+    const std::pair<const char*, const std::string*> files[] = {
+        {"--output", &options_.common.output},
+        {"--curve", &options_.curve_file},
+        {"--trace", &options_.trace_file},
+        {"--export-mps", &options_.mps_file}};
+    for (const auto& [name, file] : files) {
+        if (file->empty()) {
+            if (line_.given(name)) throw UsageError(std::string(name) + ": an empty name is given");
+            continue;
+        }
+        if (name != files[0].first && *file == "-")
+            throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
+        for (const auto& [other, other_file] : files)
+            if (other != name && *other_file == *file && *file != "-")
+                throw UsageError(std::string(name) + " and " + other + " name the same file, " +
+                                 *file);
+    }
+    if (!options_.curve_file.empty())
+        (void)outputFormat("", options_.curve_file, {"csv", "png", "svg", "pdf"});
 }
 
 }  // namespace ispace

@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
-#include "place/arrangement.h"
+#include "place/arrange_options.h"
 
 namespace ispace {
+
+/// What names zones, which only the environment knows.
+struct ZoneWords {
+    std::vector<std::string> targets, keep_out, keep_in;
+    std::vector<std::string> weights;  ///< ZONE=W
+};
 
 struct ArrangeToolOptions {
     CommonOptions common;
     std::vector<std::string> operands;
     std::vector<std::string> sensors;  ///< MODEL[,KEY=VALUE…][:COUNT]
-    std::string strategy;
-    ArrangeOptions search;
+    std::vector<std::string> fixed;    ///< globs of ids; none: all that is placed stays
+    ArrangeOptions how;
+    ZoneWords zones;
+    std::string places_file;
+    std::string trace_file, curve_file, mps_file;
+    std::optional<double> time_limit;  ///< seconds
     bool any_environment = false;
 };
 
@@ -30,8 +41,25 @@ class ArrangeCommand {
     }
 
   private:
+    void addPlaceOptions();
+    void addMountOptions();
+    void addGoalOptions();
+    void addSearchOptions();
+    void addFileOptions();
+    void settle();
+    void settleStrategy();
+    void settleFiles() const;
+
+    /// Words of options that become something else once all are known.
+    struct Words {
+        std::string effort, strategy, optimize, mount;
+    };
     ArrangeToolOptions options_;
+    Words words_;
     CommandLine line_;
 };
+
+/// What `--weight ZONE=W` says. \throws UsageError
+std::pair<std::string, double> splitWeight(const std::string& text);
 
 }  // namespace ispace

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/any_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "cover/visible.h"
+
+namespace ispace {
+
+std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid) {
+    constexpr double kPi = std::numbers::pi;
+    const double range = std::visit([](const auto& figures) { return figures.max_range; }, device);
+    double area = kPi * range * range, outline = 2 * kPi * range;
+    const auto* const laser = std::get_if<Laser>(&device);
+    if (laser != nullptr && laser->sweep == SweepAxis::None) {  // seen from above, at most its fan
+        const double span = fanLimits(*laser, Angle()).span.radians();
+        // The sides of a fan count also where it goes all around but for a gap.
+        area = span / 2 * range * range;
+        outline = span * range + (span < 2 * kPi ? 2 * range : 0);
+    }
+    const double cell_x = grid.limits.width() / grid.columns,
+                 cell_y = grid.limits.depth() / grid.rows;
+    const double near = std::hypot(cell_x, cell_y) / 2 + 1e-6 * range;  // and what float32 rounds
+    const double cells = (area + outline * near + kPi * near * near) / grid.cellArea();
+    const auto all = static_cast<double>(grid.size());
+    return static_cast<std::uint64_t>(std::min(all, std::floor(cells) + 1));
+}
+
+std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
+                               std::span<const SensorDevice> devices, int unit) {
+    std::uint64_t value = 0, parts = 0;
+    for (const SensorDevice& device : devices) {
+        const auto share =
+            std::holds_alternative<Receiver>(device) ? 1U : static_cast<unsigned>(unit);
+        parts += share * mostCellsInView(device, grid);
+    }
+    /// What of a cell's demand is missing.
+    struct Missing {
+        std::uint32_t weight;
+        std::uint64_t parts;
+    };
+    std::vector<Missing> missing;
+    for (std::size_t i = 0; i < problem.cells(); ++i) {
+        const int met = problem.met.empty() ? 0 : problem.met[i];
+        if (met >= problem.demand)
+            value += problem.weights[i];
+        else if (problem.weights[i] > 0)
+            missing.push_back(
+                {problem.weights[i], static_cast<std::uint64_t>(problem.demand - met)});
+    }
+    // Those that give most for a part come first.
+    std::sort(missing.begin(), missing.end(), [](const Missing& a, const Missing& b) {
+        return a.weight * b.parts > b.weight * a.parts;
+    });
+    for (const Missing& cell : missing) {
+        if (parts == 0) break;
+        const std::uint64_t used = std::min(parts, cell.parts);
+        // The last one in part, as a fraction of a knapsack.
+        value += (cell.weight * used + cell.parts - 1) / cell.parts;
+        parts -= used;
+    }
+    return value;
+}
+
+}  // namespace ispace

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an arrangement is to reach: zones, weights, redundancy, targets, budgets; and refining.
+#include <gtest/gtest.h>
+
+#include "place/test_arrange.h"
+
+namespace ispace {
+namespace {
+
+TEST(ArrangeGoals, AZoneIsAllThatCounts) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3"});
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    options.worth.targets = {readZone("left", scene.environment)};
+    const Arrangement arrangement = arranged(scene, groups, options);
+    ASSERT_TRUE(arrangement.value);
+    EXPECT_LT(arrangement.sensors[0].pose.position.x, 0.5) << "it stands by what counts";
+    const CoverageReport report = reportOf(scene, groups, arrangement);
+    ASSERT_EQ(report.zones.size(), 1U);
+    EXPECT_NEAR(*arrangement.value, report.zones[0].coverage.grid.value_or(0), 1e-12);
+    EXPECT_EQ(*arrangement.value, arrangement.candidate_value);
+    EXPECT_GE(arrangement.bound, *arrangement.value);
+}
+
+TEST(ArrangeGoals, WeightsDraw) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=2.5"});
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    const NamedZone corner = readZone("rect:2,-3,4,-1", scene.environment);
+    options.worth.weights = {{corner, 20}};
+    const Arrangement drawn = arranged(scene, groups, options);
+    const Point3& place = drawn.sensors[0].pose.position;
+    EXPECT_GT(place.x, 0.5);
+    EXPECT_LT(place.y, 1);
+    options.worth.weights = {{corner, 0}};
+    options.worth.targets = {readZone("rect:0,-3,4,3", scene.environment)};
+    EXPECT_LE(arranged(scene, groups, options).value.value_or(2), 1);
+}
+
+TEST(ArrangeGoals, RedundancyCountsWhatSeveralSee) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=5:4"});
+    ArrangeOptions options = coarse();
+    options.redundancy = 2;
+    const Arrangement twice = arranged(scene, groups, options);
+    const auto share_of_two = [&](const Arrangement& arrangement) {
+        const CoverageReport report = reportOf(scene, groups, arrangement);
+        double share = 0;
+        for (std::size_t k = 2; k < report.redundancy.size(); ++k) share += report.redundancy[k];
+        return share;
+    };
+    EXPECT_NEAR(*twice.value, share_of_two(twice), 1e-12);
+    EXPECT_GE(twice.bound, *twice.value);
+    EXPECT_GT(share_of_two(twice), share_of_two(arranged(scene, groups, coarse())));
+}
+
+TEST(ArrangeGoals, ATargetIsReachedWithTheFewest) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    options.target = 0.9;
+    const auto groups = groupsOf(scene, {"laser,range=4"}, true);
+    EXPECT_EQ(groups[0].most, kMostOpen);
+    const Arrangement enough = arranged(scene, groups, options);
+    EXPECT_TRUE(enough.is_reached);
+    EXPECT_GE(enough.coverage, 0.9);
+    const auto count = static_cast<int>(enough.sensors.size());
+    ASSERT_TRUE(enough.least);
+    EXPECT_LE(*enough.least, count);
+    EXPECT_GE(*enough.least, 2);
+    // One less does not do, by any means of this search.
+    options.target.reset();
+    const std::string fewer = "laser,range=4:" + std::to_string(count - 1);
+    if (*enough.least == count) {
+        EXPECT_LT(arranged(scene, groupsOf(scene, {fewer.c_str()}), options).bound, 0.9);
+    }
+    // With a limit below, the best there is comes all the same.
+    options.target = 0.9;
+    const Arrangement short_of =
+        arranged(scene, groupsOf(scene, {"laser,range=4:1"}, true), options);
+    EXPECT_FALSE(short_of.is_reached);
+    EXPECT_EQ(short_of.sensors.size(), 1U);
+    EXPECT_FALSE(short_of.least);
+}
+
+TEST(ArrangeGoals, ABudgetBuysWhatIsWorthMost) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    options.budget = 5;
+    const auto groups =
+        groupsOf(scene, {"laser,range=2,cost=1.5", "laser,range=5,fov=270,cost=4"}, true);
+    const Arrangement bought = arranged(scene, groups, options);
+    EXPECT_LE(bought.cost, 5);
+    EXPECT_GT(bought.cost, 0);
+    EXPECT_GE(bought.bound, bought.coverage);
+    std::vector<std::string> ids;
+    for (const ArrangedSensor& sensor : bought.sensors) ids.push_back(sensor.id);
+    for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(ids[i], "laser" + std::to_string(i + 1));
+}
+
+TEST(ArrangeGoals, ConnectedViewsShareCells) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=2,fov=90:3"});
+    ArrangeOptions options = coarse();
+    options.is_connected = true;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    EXPECT_EQ(reportOf(scene, groups, arrangement).pieces, 1U);
+    EXPECT_LE(arrangement.coverage, arranged(scene, groups, coarse()).coverage);
+}
+
+TEST(ArrangeGoals, RefiningDoesNotLose) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=4:2"});
+    const ArrangeOptions plain = coarse();
+    ArrangeOptions options = plain;
+    options.refine = true;
+    const Arrangement before = arranged(scene, groups, plain);
+    const Arrangement after = arranged(scene, groups, options);
+    EXPECT_GT(after.refined_after, after.refined_before);
+    EXPECT_GE(after.coverage, before.coverage);
+    EXPECT_EQ(after.candidate_bound, before.bound);
+    EXPECT_GE(after.bound, after.coverage);
+    EXPECT_FALSE(after.is_bound_of_candidates);
+    const CoverageReport report = reportOf(scene, groups, after);
+    EXPECT_EQ(report.coverage.grid, after.coverage);
+}
+
+TEST(ArrangeGoals, ACurveRises) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3:4"});
+    ArrangeOptions options = coarse();
+    options.wants_curve = true;
+    options.wants_trace = true;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    ASSERT_EQ(arrangement.curve.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(arrangement.curve[i].sensors, static_cast<int>(i) + 1);
+        EXPECT_GE(arrangement.curve[i].bound, arrangement.curve[i].value);
+        if (i > 0) {
+            EXPECT_GE(arrangement.curve[i].value, arrangement.curve[i - 1].value);
+        }
+    }
+    EXPECT_EQ(arrangement.curve.back().value, arrangement.candidate_value);
+    ASSERT_EQ(arrangement.tried.size(), arrangement.candidates);
+    double best = 0;
+    std::size_t chosen = 0;
+    for (const TriedPose& tried : arrangement.tried) {
+        best = std::max(best, tried.value);
+        chosen += tried.is_chosen ? 1 : 0;
+    }
+    EXPECT_EQ(chosen, 4U);
+    EXPECT_NEAR(best, arrangement.curve.front().value, 1e-12);
+}
+
+}  // namespace
+}  // namespace ispace

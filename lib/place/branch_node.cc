@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/branch_node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "place/multiplier_search.h"
+#include "place/node_relaxation.h"
+
+namespace ispace {
+namespace {
+
+constexpr int kMostTrials = 40;
+constexpr int kTrialsBetweenLooks = 5;
+constexpr double kFewSets = 64;  // so many are tried one by one
+
+/// In how many ways the groups can choose, up to about kFewSets.
+double setsOf(const std::vector<BranchGroup>& groups, bool with_fewer) {
+    double all = 1;
+    for (const BranchGroup& group : groups) {
+        const std::size_t size = group.list.size(), count = std::min(group.count, size);
+        double ways = 1, up_to = 1;
+        for (std::size_t n = 0; n < count && up_to <= kFewSets * 1e6; ++n) {
+            ways *= static_cast<double>(size - n) / static_cast<double>(n + 1);
+            up_to += ways;
+        }
+        all *= with_fewer ? up_to : ways;
+        if (all > kFewSets * 1e6) break;
+    }
+    return all;
+}
+
+/// Tries all sets of choices of a node.
+class SetSearch {
+  public:
+    SetSearch(const Problem& problem, const BranchNode& node, const NodeRelaxation& relaxed,
+              std::uint64_t cut)
+        : problem_(problem),
+          reduced_(relaxed.problem()),
+          groups_(relaxed.groups()),
+          cut_(cut),
+          shares_(reduced_.cells(), 0),
+          chosen_(node.fixed) {}
+    /// The best that is worth more than the cut.
+    std::vector<Choice> best() {
+        if (groups_.empty())
+            look();
+        else
+            visit(0, 0, groups_[0].count);
+        return best_;
+    }
+
+  private:
+    void visit(std::size_t group, std::size_t first, std::size_t left) {
+        if (group == groups_.size()) {
+            look();
+            return;
+        }
+        const BranchGroup& own = groups_[group];
+        // Fewer than may be are worth less, but what hangs together may be less.
+        const bool is_full = left == 0 || first == own.list.size();
+        if (is_full || problem_.is_connected) {
+            const std::size_t next = group + 1;
+            visit(next, 0, next < groups_.size() ? groups_[next].count : 0);
+        }
+        if (is_full) return;
+        for (std::size_t i = first; i < own.list.size(); ++i) {
+            add(own.kind, own.list[i], 1);
+            visit(group, i + 1, left - 1);
+            add(own.kind, own.list[i], -1);
+            if (!problem_.is_connected && own.list.size() - i <= left) break;
+        }
+    }
+    void add(std::size_t kind, std::uint32_t candidate, int sign) {
+        const ReducedProblem::OfKind& own = reduced_.kinds[kind];
+        own.candidates->forEachRun(candidate, [&](const CellRun& run) {
+            for (std::uint32_t i = run.first; i < run.end; ++i) shares_[i] += sign * own.share;
+        });
+        if (sign > 0)
+            chosen_.push_back({kind, own.original[candidate]});
+        else
+            chosen_.pop_back();
+    }
+    void look() {
+        std::uint64_t value = reduced_.settled;
+        for (std::size_t i = 0; i < shares_.size(); ++i)
+            if (shares_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
+        if (value <= cut_ || (problem_.is_connected && !isFeasible(problem_, chosen_))) return;
+        cut_ = value;
+        best_ = chosen_;
+    }
+
+    const Problem& problem_;
+    const ReducedProblem& reduced_;
+    const std::vector<BranchGroup>& groups_;
+    std::uint64_t cut_;
+    std::vector<int> shares_;
+    std::vector<Choice> chosen_, best_;
+};
+
+/// Where a node is to be split.
+struct Split {
+    std::size_t group = 0;
+    std::vector<std::uint32_t> near, far;  ///< the places in the list of the group, in two
+};
+
+/// The group is split between candidates that are like the one chosen most often and the others,
+/// where by the relaxation about half a sensor too many is on one side.
+Split splitOf(NodeRelaxation& relaxed, const std::vector<std::uint32_t>& multipliers) {
+    Split split;
+    double best_score = -1;
+    for (std::size_t g = 0; g < relaxed.groups().size(); ++g) {
+        const BranchGroup& group = relaxed.groups()[g];
+        const std::vector<float>& shares = relaxed.shares()[g];
+        if (group.list.size() <= std::max<std::size_t>(group.count, 1)) continue;
+        const auto pivot = static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) -
+                                                    shares.begin());
+        const std::vector<float> like = relaxed.likeness(g, group.list[pivot], multipliers);
+        std::vector<std::uint32_t> order(group.list.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            if ((a == pivot) != (b == pivot)) return a == pivot;
+            return like[a] > like[b];
+        });
+        double sum = 0;
+        for (std::size_t n = 1; n < order.size(); ++n) {
+            sum += static_cast<double>(shares[order[n - 1]]);
+            const double odd = std::abs(sum - std::round(sum));
+            const double size = static_cast<double>(std::min(n, order.size() - n));
+            const double score = odd + 0.1 * size / static_cast<double>(order.size());
+            if (score <= best_score) continue;
+            best_score = score;
+            split.group = g;
+            split.near.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+            split.far.assign(order.begin() + static_cast<std::ptrdiff_t>(n), order.end());
+        }
+    }
+    std::sort(split.near.begin(), split.near.end());
+    std::sort(split.far.begin(), split.far.end());
+    return split;
+}
+
+/// The children of a node: so many of the group from one side and the rest from the other.
+std::vector<BranchNode> childrenOf(const BranchNode& base, const Split& split) {
+    std::vector<BranchNode> children;
+    const BranchGroup& group = base.groups[split.group];
+    const auto listOf = [&group](std::vector<std::uint32_t> places) {
+        for (std::uint32_t& i : places) i = group.list[i];
+        return places;
+    };
+    for (std::size_t near = 0; near <= group.count; ++near) {
+        const std::size_t far = group.count - near;
+        if (near > split.near.size() || far > split.far.size()) continue;
+        BranchNode child = base;
+        child.groups.erase(child.groups.begin() + static_cast<std::ptrdiff_t>(split.group));
+        if (near > 0) child.groups.push_back({group.kind, near, listOf(split.near)});
+        if (far > 0) child.groups.push_back({group.kind, far, listOf(split.far)});
+        children.push_back(std::move(child));
+    }
+    return children;
+}
+
+/// The node with what has been fixed, cut down to what is left.
+BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
+                   const std::vector<Choice>& forced, std::vector<std::uint32_t> multipliers) {
+    BranchNode now;
+    now.fixed = node.fixed;
+    for (const Choice& choice : forced)
+        now.fixed.push_back(
+            {choice.kind, relaxed.problem().kinds[choice.kind].original[choice.candidate]});
+    std::vector<std::vector<std::uint32_t>> kept(relaxed.problem().kinds.size());
+    for (const Choice& choice : forced)
+        kept[choice.kind].push_back(static_cast<std::uint32_t>(choice.candidate));
+    for (const BranchGroup& group : relaxed.groups())
+        kept[group.kind].insert(kept[group.kind].end(), group.list.begin(), group.list.end());
+    for (auto& list : kept) std::sort(list.begin(), list.end());
+    now.problem =
+        std::make_shared<const ReducedProblem>(reduce(relaxed.problem(), kept, multipliers));
+    now.multipliers = std::make_shared<const std::vector<std::uint32_t>>(std::move(multipliers));
+    const auto nameOf = [&kept](std::size_t kind, std::size_t candidate) {
+        return static_cast<std::uint32_t>(
+            std::lower_bound(kept[kind].begin(), kept[kind].end(), candidate) - kept[kind].begin());
+    };
+    for (const Choice& choice : forced)
+        now.pending.push_back({choice.kind, nameOf(choice.kind, choice.candidate)});
+    for (const BranchGroup& group : relaxed.groups()) {
+        if (group.list.empty()) continue;
+        now.groups.push_back(group);
+        for (std::uint32_t& i : now.groups.back().list) i = nameOf(group.kind, i);
+    }
+    return now;
+}
+
+/// The bound of a node after some trials; its candidates are ruled out on the way.
+std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::uint64_t bound,
+                      std::uint64_t cut) {
+    std::uint64_t last = bound;
+    for (int trial = 0; trial < kMostTrials && bound > cut; ++trial) {
+        const std::uint64_t now = relaxed.evaluate(search.trial());
+        if (now <= bound) {
+            bound = now;
+            relaxed.ruleOut(cut);
+        }
+        search.report(static_cast<double>(now), relaxed.cover());
+        relaxed.count(static_cast<float>(search.part()));
+        if (trial % kTrialsBetweenLooks != kTrialsBetweenLooks - 1) continue;
+        // As fast as this it would take too long.
+        if (bound > cut && (last - bound) * 3 < bound - cut) break;
+        last = bound;
+    }
+    return bound;
+}
+
+/// What the relaxation has chosen, if it is worth more than the cut.
+std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
+                            const NodeRelaxation& relaxed, std::uint64_t cut) {
+    std::uint64_t value = relaxed.problem().settled;
+    for (std::size_t i = 0; i < relaxed.cover().size(); ++i)
+        if (relaxed.cover()[i] > 0.9999F) value += relaxed.problem().weights[i];
+    if (value <= cut) return {};
+    std::vector<Choice> found = node.fixed;
+    for (const Choice& choice : relaxed.chosen())
+        found.push_back(
+            {choice.kind, relaxed.problem().kinds[choice.kind].original[choice.candidate]});
+    if (!isFeasible(problem, found)) return {};
+    return found;
+}
+
+}  // namespace
+
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut) {
+    BranchResult result;
+    result.bound = node.bound;
+    if (result.bound <= cut) return result;
+    NodeRelaxation relaxed(node);
+    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets) {
+        result.found = SetSearch(problem, node, relaxed, cut).best();
+        return result;
+    }
+    MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
+                            static_cast<double>(cut));
+    result.bound = boundOf(relaxed, search, node.bound, cut);
+    if (result.bound <= cut) return result;
+    result.bound = std::min(result.bound, relaxed.evaluate(search.best()));
+    if (result.bound <= cut) return result;
+    result.found = foundBy(problem, node, relaxed, cut);
+    relaxed.ruleOut(cut);
+    const std::vector<Choice> forced = relaxed.takeForced(cut);
+    BranchNode now = cutDown(node, relaxed, forced, search.best());
+    now.bound = result.bound;
+    if (!forced.empty() || setsOf(now.groups, problem.is_connected) <= kFewSets) {
+        result.children.push_back(std::move(now));
+        return result;
+    }
+    result.children = childrenOf(now, splitOf(relaxed, search.best()));
+    return result;
+}
+
+}  // namespace ispace

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/candidate_pool.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "place/candidate_views.h"
+
+namespace ispace {
+
+namespace {
+
+/// "seg" of eq. (4.1) and (4.2): by default R2 places lie within this part of the greatest range.
+constexpr double kSegments = 5;
+
+Angle writtenAngle(const Record& record, const char* key) { return record.angle(key); }
+
+bool looksDownWhenHung(const SensorDevice& device) {
+    return !std::holds_alternative<Laser>(device);
+}
+
+/// Sites at one height.
+struct Level {
+    double height = kScanHeight;
+    std::vector<Site> sites;
+};
+
+std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings) {
+    std::vector<Site> sites;
+    sites.reserve(places.size());
+    for (const Point2 place : places) sites.push_back({place, headings});
+    return sites;
+}
+
+}  // namespace
+
+std::string_view nameOf(Strategy strategy) {
+    switch (strategy) {
+        case Strategy::Grid:
+            return "grid";
+        case Strategy::Random:
+            return "random";
+        case Strategy::Wall:
+            return "wall";
+        case Strategy::Medial:
+            return "medial";
+        case Strategy::List:
+            return "list";
+        case Strategy::All:
+            break;
+    }
+    return "all";
+}
+
+std::string_view nameOf(Optimizer optimizer) {
+    switch (optimizer) {
+        case Optimizer::Greedy:
+            return "greedy";
+        case Optimizer::Swap:
+            return "swap";
+        case Optimizer::Exact:
+            break;
+    }
+    return "exact";
+}
+
+double maxRange(const SensorDevice& device) {
+    return std::visit([](const auto& figures) { return figures.max_range; }, device);
+}
+
+std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
+    std::vector<SensorKind> kinds;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const SensorGroup& group = groups[i];
+        const double cost = group.record.number("cost");
+        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorKind& kind) {
+            return kind.device == group.device && kind.cost == cost &&
+                   kind.record.angle("tilt") == group.record.angle("tilt") &&
+                   kind.record.angle("roll") == group.record.angle("roll");
+        });
+        if (same != kinds.end()) {
+            same->most += group.most;
+            same->groups.push_back(i);
+            continue;
+        }
+        std::string id = group.id;
+        if (id.empty()) {
+            id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
+            // Kinds that are called the same differ in figures: a number tells them apart.
+            const auto alike =
+                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorKind& kind) {
+                    return kind.id == id || kind.id.starts_with(id + '.');
+                });
+            if (alike > 0) id.append(".").append(std::to_string(alike + 1));
+        }
+        kinds.push_back({group.device, group.record, std::move(id), cost, group.most, {i}});
+    }
+    return kinds;
+}
+
+struct CandidatePool::Data {
+    const Environment& environment;
+    Worlds& worlds;
+    const Target& target;
+    CellWorth worth;
+    const ArrangeOptions& options;
+    Progress& progress;
+    SliceSights sights;
+    std::map<double, std::unique_ptr<SiteJudge>> judges = {};
+    std::size_t bytes = 0;  // of the sets made so far
+
+    const SiteJudge& judgeAt(double height) {
+        std::unique_ptr<SiteJudge>& judge = judges[height];
+        if (judge != nullptr) return *judge;
+        const MountRules& mount = options.mount;
+        SiteRules rules;
+        rules.height = height;
+        rules.clearance = mount.clearance;
+        for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
+        for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
+        if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
+        judge = std::make_unique<SiteJudge>(environment, std::move(rules));
+        return *judge;
+    }
+
+    [[nodiscard]] std::vector<Angle> headings() const {
+        const bool thesis =
+            options.strategy == Strategy::Grid || options.strategy == Strategy::Random;
+        return headingsAround(options.headings.value_or(thesis ? 8 : options.density.headings));
+    }
+
+    [[nodiscard]] std::vector<double> heights() const {
+        if (!options.mount.heights.empty()) return options.mount.heights;
+        if (options.mount.on == MountOn::Ceiling) return {environment.height() - kBelowCeiling};
+        return {kScanHeight};
+    }
+
+    [[nodiscard]] std::vector<Angle> tiltsOf(const SensorKind& kind) const {
+        if (kind.record.has("tilt")) return {writtenAngle(kind.record, "tilt")};
+        if (!options.mount.tilts.empty()) return options.mount.tilts;
+        const bool hangs =
+            options.mount.on == MountOn::Frame || options.mount.on == MountOn::Ceiling;
+        if (hangs && looksDownWhenHung(kind.device)) return {Angle::degrees(-90)};
+        return {Angle()};
+    }
+
+    [[nodiscard]] GridSearch gridFor(const SensorKind& kind) const {
+        GridSearch search = defaultGridSearch(environment.limits(), maxRange(kind.device));
+        search.x = options.x.value_or(search.x);
+        search.y = options.y.value_or(search.y);
+        constexpr std::int64_t kMostPlaces = 1000000;
+        if (std::int64_t{search.x} * search.y > kMostPlaces)
+            throw UsageError("a grid of " + std::to_string(search.x) + " x " +
+                             std::to_string(search.y) +
+                             " places is more than a million: use fewer lines (-X, -Y)");
+        return search;
+    }
+
+    [[nodiscard]] std::vector<Site> wallSitesAt(double height) const {
+        std::vector<Site> sites = wallSites(environment, height, options.dist, options.times);
+        if (options.headings)
+            for (Site& site : sites) {
+                const Angle normal = site.headings.front();
+                site.headings = headingsAround(*options.headings);
+                for (Angle& heading : site.headings) heading = wrapped(normal + heading);
+            }
+        return sites;
+    }
+
+    /// What the strategy proposes at one height; Random comes by itself.
+    [[nodiscard]] std::vector<Site> proposals(const SensorKind& kind, double height) const {
+        const CandidateDensity& density = options.density;
+        switch (options.strategy) {
+            case Strategy::Grid:
+                return sitesAt(gridPlaces(environment.limits(), gridFor(kind)), headings());
+            case Strategy::Wall:
+                return wallSitesAt(height);
+            case Strategy::Medial:
+                return sitesAt(medialPlaces(environment.freeFloor(height), density.lattice_step,
+                                            environment.slice(height).sheets),
+                               headings());
+            case Strategy::List:
+                return options.list;
+            case Strategy::Random:
+                return {};
+            case Strategy::All:
+                break;
+        }
+        std::vector<Site> sites =
+            sitesAt(latticePlaces(environment.limits(), density.lattice_step), headings());
+        std::vector<Site> along =
+            sitesAt(placesAlong(environment.freeFloor(height), density.wall_step, kOffWall,
+                                environment.slice(height).sheets),
+                    headings());
+        std::move(along.begin(), along.end(), std::back_inserter(sites));
+        return sites;
+    }
+
+    [[nodiscard]] std::vector<Level> frameLevels() const {
+        std::map<double, std::vector<Point2>> by_height;
+        for (const Point3& place : framePlaces(environment, options.density.lattice_step))
+            by_height[place.z].push_back(place.onFloor());
+        std::vector<Level> levels;
+        for (const auto& [height, places] : by_height)
+            levels.push_back({height, sitesAt(places, headings())});
+        return levels;
+    }
+
+    /// Sites at all heights, those that are not valid left out.
+    std::vector<Level> levelsFor(const SensorKind& kind) {
+        std::vector<Level> levels;
+        if (options.mount.on == MountOn::Frame)
+            levels = frameLevels();
+        else
+            for (const double height : heights())
+                levels.push_back({height, proposals(kind, height)});
+        std::size_t proposed = 0, valid = 0;
+        for (Level& level : levels) {
+            proposed += level.sites.size();
+            level.sites = validSites(judgeAt(level.height), level.sites, progress);
+            valid += level.sites.size();
+        }
+        if (valid == 0) throw UnmetError(noPlaceText(kind, proposed));
+        return levels;
+    }
+
+    [[nodiscard]] std::string noPlaceText(const SensorKind& kind, std::size_t proposed) const {
+        std::string text = "no place for " + kind.id + ": ";
+        if (options.mount.on == MountOn::Frame && proposed == 0)
+            return text + "the room has no frame to mount it on (a record `infra`)";
+        text += "of the places that strategy " + std::string(nameOf(options.strategy)) +
+                " proposes (" + std::to_string(proposed) +
+                ") none lies indoors and clear of objects at ";
+        const std::vector<double> all = heights();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            text.append(i == 0 ? "" : ", ").append(formatDouble(all[i]));
+        text += " m";
+        if (!options.mount.keep_out.empty() || !options.mount.keep_in.empty() ||
+            options.mount.clearance > 0 || options.mount.on != MountOn::Floor)
+            text += " within the rules for places";
+        if (options.strategy == Strategy::Grid) text += "; use more grid lines (-X, -Y)";
+        return text;
+    }
+
+    /// Candidates at these sites for each tilt; false if progress says stop.
+    bool addLevels(CandidateSet& set, const SensorKind& kind, const std::vector<Level>& levels) {
+        for (const Level& level : levels)
+            for (const Angle tilt : tiltsOf(kind)) {
+                if (level.sites.empty()) continue;
+                const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
+                const CandidateViews views(environment, worlds, target.grid, options.plane,
+                                           kind.device, mount, &worth.counted, &sights);
+                if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress))
+                    return false;
+            }
+        return true;
+    }
+
+    /// Valid random places; fewer where they are hard to find.
+    template <typename Draw>
+    std::vector<Level> randomLevels(int count, Draw draw) {
+        constexpr int kTries = 1000;  // a place
+        std::vector<Level> levels;
+        std::uint64_t k = 0;
+        for (const double height : heights()) {
+            const SiteJudge& judge = judgeAt(height);
+            std::vector<Point2> places;
+            for (int tries = count * kTries;
+                 tries > 0 && places.size() < static_cast<std::size_t>(count); --tries) {
+                const Point2 place = draw(k++);
+                if (judge.isValid(place)) places.push_back(place);
+            }
+            levels.push_back({height, sitesAt(places, headings())});
+        }
+        return levels;
+    }
+
+    /// Hierarchical Random: R1 places; for each sensor R2 more about the best one for it. Places
+    /// found for one sensor serve the others, too.
+    bool addRandom(CandidateSet& set, const SensorKind& kind) {
+        const std::vector<Level> first = randomLevels(options.first_places, [&](std::uint64_t k) {
+            return randomPlace(environment.limits(), options.seed, kind.id, k);
+        });
+        if (std::all_of(first.begin(), first.end(),
+                        [](const Level& level) { return level.sites.empty(); }))
+            throw UnmetError(
+                noPlaceText(kind, static_cast<std::size_t>(options.first_places) * first.size()));
+        if (!addLevels(set, kind, first)) return false;
+        const double scope = options.scope.value_or(maxRange(kind.device) / kSegments);
+        std::vector<std::uint32_t> worth_left = worth.left;
+        std::vector<std::uint32_t> values;
+        const auto best = [&] {
+            values.resize(set.size());
+            set.priceAll(CellPrices(worth_left), values);
+            return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
+                                            values.begin());
+        };
+        for (int sensor = 0; sensor < kind.most; ++sensor) {
+            const std::size_t start = best();
+            if (values[start] == 0) break;  // nothing is left to be seen
+            const Point2 center = set.pose(start).position.onFloor();
+            const std::vector<Level> more = randomLevels(options.more_places, [&](std::uint64_t k) {
+                return randomPlaceAbout(center, scope, options.seed, kind.id,
+                                        static_cast<std::uint64_t>(sensor), k);
+            });
+            if (!addLevels(set, kind, more)) return false;
+            set.forEachRun(best(), [&](const CellRun& run) {
+                std::fill(worth_left.begin() + run.first, worth_left.begin() + run.end, 0U);
+            });
+        }
+        return true;
+    }
+};
+
+CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
+                             CellWorth worth, const ArrangeOptions& options, Progress& progress)
+    : data_(new Data{environment, worlds, target, std::move(worth), options, progress,
+                     SliceSights(environment)}) {}
+
+CandidatePool::~CandidatePool() = default;
+
+CandidatePool::Made CandidatePool::make(const SensorKind& kind) {
+    Made made{std::make_unique<CandidateSet>(data_->target.grid.size())};
+    const bool is_random =
+        data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
+    made.is_complete = is_random ? data_->addRandom(*made.set, kind)
+                                 : data_->addLevels(*made.set, kind, data_->levelsFor(kind));
+    data_->bytes += made.set->bytes();
+    return made;
+}
+
+const SiteJudge& CandidatePool::judgeAt(double height) { return data_->judgeAt(height); }
+
+}  // namespace ispace

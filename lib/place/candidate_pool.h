@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cover/target.h"
+#include "place/arrange_options.h"
+#include "place/candidate_set.h"
+#include "place/sensor_group.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+/// Sensors that choose from the same candidates: equal figures, mounted alike.
+struct SensorKind {
+    SensorDevice device;
+    Record record;   ///< of the first of them
+    std::string id;  ///< names it in messages and seeds its random places
+    double cost = 1;
+    int most = 0;                          ///< of all its groups
+    std::vector<std::size_t> groups = {};  ///< in their order
+};
+
+/// The kinds of these groups, in the order in which they first come.
+std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups);
+
+/// Greatest distance at which a device sees.
+double maxRange(const SensorDevice& device);
+
+/// What cells are worth to who makes candidates.
+struct CellWorth {
+    CellSet counted;                  ///< cells that count at all
+    std::vector<std::uint32_t> left;  ///< weights of those that nobody covers yet, else 0
+};
+
+/// Makes candidates by the strategy and the mount rules of the options.
+class CandidatePool {
+  public:
+    /// Keeps references.
+    CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
+                  CellWorth worth, const ArrangeOptions& options, Progress& progress);
+    ~CandidatePool();
+    CandidatePool(const CandidatePool&) = delete;
+    CandidatePool& operator=(const CandidatePool&) = delete;
+
+    /// All candidates of a kind. False in `is_complete` where progress said to stop before.
+    /// \throws UnmetError if there is no valid place, UsageError for more memory than is allowed
+    struct Made {
+        std::unique_ptr<CandidateSet> set;
+        bool is_complete = true;
+    };
+    Made make(const SensorKind& kind);
+    /// The judge of the places that a sensor of this height may take.
+    const SiteJudge& judgeAt(double height);
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/candidate_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "place/candidate_views.h"
+#include "place/test_arrange.h"
+
+namespace ispace {
+namespace {
+
+/// The candidates of one sensor in a scene.
+struct Pooled {
+    Scene scene;
+    Worlds worlds;
+    Target target;
+    std::vector<SensorKind> kinds;
+    SilentProgress silent;
+    std::unique_ptr<CandidateSet> set;
+
+    Pooled(Scene made, const char* sensor, const ArrangeOptions& options)
+        : scene(std::move(made)),
+          worlds(scene.environment),
+          target(makeTarget(scene.environment, 50, 50, kScanHeight)),
+          kinds(kindsOf(groupsOf(scene, {sensor}))) {
+        CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
+        target.indoor.forEach([&](std::size_t cell) { worth.left[cell] = 1; });
+        CandidatePool pool(scene.environment, worlds, target, std::move(worth), options, silent);
+        set = pool.make(kinds.front()).set;
+    }
+};
+
+TEST(CandidatePool, GridHasACandidateForEachHeading) {
+    ArrangeOptions options;
+    options.strategy = Strategy::Grid;
+    options.x = 3;
+    options.y = 2;
+    options.headings = 4;
+    const Pooled pooled(roomScene("#env 1\nispace size=8,6\n"), "laser", options);
+    EXPECT_EQ(pooled.set->sites(), 6U);
+    EXPECT_EQ(pooled.set->size(), 24U);
+    EXPECT_EQ(pooled.set->pose(5).heading, Angle::degrees(90));
+    EXPECT_EQ(pooled.set->pose(0).position, (Point3{-2, -1, kScanHeight}));
+    // One that sees all around needs no second heading.
+    const Pooled round(roomScene("#env 1\nispace size=8,6\n"), "laser,fov=360", options);
+    EXPECT_EQ(round.set->size(), 6U);
+}
+
+TEST(CandidatePool, RandomTriesR1AndThenR2ASensor) {
+    ArrangeOptions options;
+    options.strategy = Strategy::Random;
+    options.first_places = 7;
+    options.more_places = 3;
+    options.headings = 2;
+    const Pooled pooled(roomScene(), "laser,range=2:2", options);
+    EXPECT_EQ(pooled.set->sites(), 7U + 2 * 3);
+    // Those of the first sensor lie about the best of the first seven.
+    const CellPrices ones(std::vector<std::uint32_t>(pooled.target.grid.size(), 1));
+    std::vector<std::uint32_t> values(pooled.set->size());
+    pooled.set->priceAll(ones, values);
+    const auto first_end = values.begin() + static_cast<std::ptrdiff_t>(pooled.set->firstOf(7));
+    const auto best =
+        static_cast<std::size_t>(std::max_element(values.begin(), first_end) - values.begin());
+    const Point2 center = pooled.set->pose(best).position.onFloor();
+    for (std::size_t site = 7; site < 10; ++site)
+        EXPECT_LE(distance(pooled.set->pose(pooled.set->firstOf(site)).position.onFloor(), center),
+                  2.0 / 5 + 1e-9);
+    options.seed = 1;
+    const Pooled other(roomScene(), "laser,range=2:2", options);
+    EXPECT_NE(other.set->pose(0).position, pooled.set->pose(0).position);
+}
+
+TEST(CandidatePool, RulesHold) {
+    ArrangeOptions options = coarse();
+    options.density.lattice_step = 0.25;
+    options.mount.keep_out = {readZone("left", roomScene().environment)};
+    options.mount.clearance = 0.4;
+    options.mount.heights = {0.15, 1};
+    const Pooled pooled(roomScene(), "laser", options);
+    std::set<double> heights;
+    for (std::size_t i = 0; i < pooled.set->size(); ++i) {
+        const Point3& place = pooled.set->pose(i).position;
+        heights.insert(place.z);
+        EXPECT_GT(place.x, 0);
+        EXPECT_LE(std::max(std::abs(place.x) - 4, std::abs(place.y) - 3), -0.4 + 1e-6);
+    }
+    EXPECT_EQ(heights, (std::set<double>{0.15, 1}));
+    options = coarse();
+    options.mount.on = MountOn::Wall;
+    const Pooled along(roomScene(), "laser", options);
+    for (std::size_t i = 0; i < along.set->size(); ++i) {
+        const Point3& place = along.set->pose(i).position;
+        EXPECT_GE(std::max(std::abs(place.x) - 4, std::abs(place.y) - 3), -0.0501);
+    }
+}
+
+TEST(CandidatePool, FramesCarryWhatLooksDown) {
+    ArrangeOptions options = coarse();
+    options.mount.on = MountOn::Frame;
+    const Pooled pooled(
+        roomScene("#env 1\nispace size=8,6\ninfra size=4,4 rows=2 cols=2 height=2\n"), "ranger",
+        options);
+    ASSERT_GT(pooled.set->size(), 0U);
+    EXPECT_EQ(pooled.set->pose(0).tilt, Angle::degrees(-90));
+    EXPECT_NEAR(pooled.set->pose(0).position.z, 2, 0.1);
+    EXPECT_LT(pooled.set->pose(0).position.z, 2);
+}
+
+// Fig. 4.8: without the Insider Judge the sensor would stand outside, facing the walls.
+TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
+    const Scene scene = roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
+    const Environment& room = scene.environment;
+    std::vector<Site> everywhere;
+    for (const Point2 place : gridPlaces(room.limits(), {9, 9}))
+        everywhere.push_back({place, headingsAround(8)});
+    SilentProgress silent;
+    const std::vector<Site> inside = validSites(SiteJudge(room, SiteRules()), everywhere, silent);
+    Worlds worlds(room);
+    const Target target = makeTarget(room, 100, 100, kScanHeight);
+    Laser laser;
+    laser.max_range = 4;
+    const CandidateViews views(room, worlds, target.grid, 0, laser,
+                               {{0, 0, kScanHeight}, {}, {}, {}});
+    // The thesis counts what lies within the limits, indoor or not.
+    const CellPrices ones(std::vector<std::uint32_t>(target.grid.size(), 1));
+    const auto best_of = [&](const std::vector<Site>& sites) {
+        CandidateSet set(target.grid.size());
+        addCandidates(set, views, sites, 1U << 30U, silent);
+        std::vector<std::uint32_t> values(set.size());
+        set.priceAll(ones, values);
+        const auto best = std::max_element(values.begin(), values.end());
+        const Pose3 pose = set.pose(static_cast<std::size_t>(best - values.begin()));
+        return std::pair{room.indoor().locate(pose.position.onFloor()), *best};
+    };
+    const auto kept = best_of(inside), misled = best_of(everywhere);
+    EXPECT_EQ(kept.first, Side::Inside);
+    EXPECT_EQ(misled.first, Side::Outside);
+    EXPECT_GT(misled.second, kept.second);
+}
+
+}  // namespace
+}  // namespace ispace

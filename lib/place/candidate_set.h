@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/place: candidates and optimisers that place sensors. Uses cover and below; TBB inside.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cover/sector_cells.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// What each cell is worth, summed up so that a run costs two reads. Sums wrap around at 2^32: only
+/// those of runs and candidates have to fit.
+class CellPrices {
+  public:
+    CellPrices() = default;
+    /// Takes one price a cell. O(cells)
+    explicit CellPrices(std::span<const std::uint32_t> prices) { assign(prices); }
+    void assign(std::span<const std::uint32_t> prices);
+    [[nodiscard]] std::uint32_t of(const CellRun& run) const {
+        return sums_[run.end] - sums_[run.first];
+    }
+    /// [i]: of the cells before i, for i from 0 to the number of cells.
+    [[nodiscard]] std::span<const std::uint32_t> sums() const { return sums_; }
+
+  private:
+    std::vector<std::uint32_t> sums_;
+};
+
+/// Poses that sensors of one kind may take, with the cells they would see there.
+///
+/// Candidates with one place share what can be seen from it: its cells in parts by direction, and
+/// each candidate a range of parts. Memory: 4 bytes a run of cells and a part and 20 a candidate, a
+/// fraction of a bitset each.
+class CandidateSet {
+  public:
+    /// The parts that a candidate sees: `count` of them from `begin` on, around the end of the
+    /// directed parts; and always the undirected one.
+    struct PartRange {
+        std::uint32_t begin = 0, count = 0;
+    };
+
+    /// \param cells of the grid, below 2^31
+    explicit CandidateSet(std::size_t cells);
+
+    /// Adds a site: `parts` are the directed ones and then one that every candidate sees (as of
+    /// cellsBySector). Candidate k has headings[k] and ranges[k]; no cell may be in two of the
+    /// parts that one candidate sees. \pre mount's heading is not used; headings.size() ==
+    /// ranges.size() > 0
+    void addSite(const Pose3& mount, std::span<const Angle> headings,
+                 std::span<const PartRange> ranges, const CellParts& parts);
+    /// A site with one candidate that sees this.
+    void addSite(const Pose3& pose, const CellSet& seen);
+
+    [[nodiscard]] std::size_t cells() const { return cells_; }
+    [[nodiscard]] std::size_t size() const { return headings_.size(); }
+    [[nodiscard]] std::size_t sites() const { return sites_.size(); }
+    /// The candidates of a site follow each other: [firstOf(site), firstOf(site + 1)).
+    [[nodiscard]] std::size_t firstOf(std::size_t site) const {
+        return site == sites_.size() ? headings_.size() : sites_[site].first_candidate;
+    }
+    [[nodiscard]] std::size_t siteOf(std::size_t candidate) const { return site_of_[candidate]; }
+    [[nodiscard]] Pose3 pose(std::size_t candidate) const;
+    /// Memory of what grows with sites.
+    [[nodiscard]] std::size_t bytes() const;
+    /// Those kept: what lies in two parts or is very long counts twice or more.
+    [[nodiscard]] std::size_t runs() const { return runs_; }
+
+    /// Calls visit(const CellRun&) for the disjoint runs of a candidate, in no special order.
+    template <typename Visit>
+    void forEachRun(std::size_t candidate, Visit visit) const;
+    [[nodiscard]] CellSet cellsOf(std::size_t candidate) const;
+    /// Adds the candidate's cells.
+    void addTo(CellSet& cells, std::size_t candidate) const;
+
+    [[nodiscard]] PartRange rangeOf(std::size_t candidate) const { return ranges_[candidate]; }
+    /// Directed parts of a site.
+    [[nodiscard]] std::size_t directedParts(std::size_t site) const {
+        return sites_[site].directed;
+    }
+    /// The runs of a part of a site; part directedParts() is the undirected one.
+    [[nodiscard]] std::vector<CellRun> runsOf(std::size_t site, std::size_t part) const;
+
+    /// What the candidates of a site see is worth: values[k] of candidate firstOf(site) + k.
+    /// O(runs and parts of the site + candidates). \pre each sum is below 2^32
+    void priceSite(std::size_t site, const CellPrices& prices,
+                   std::span<std::uint32_t> values) const;
+    [[nodiscard]] std::uint32_t price(std::size_t candidate, const CellPrices& prices) const;
+    /// The same of all candidates, shared out over all cores.
+    void priceAll(const CellPrices& prices, std::span<std::uint32_t> values) const;
+
+  private:
+    /// Runs are kept in 32 bits: the first cell above, the length (at least 1) below. All runs of a
+    /// site lie together, by parts, those of the undirected one last.
+    struct Site {
+        Pose3 mount;
+        std::size_t first_candidate = 0;
+        std::size_t first_part = 0;           ///< in part_runs_
+        std::uint32_t block = 0, offset = 0;  ///< its first run
+        std::uint32_t directed = 0;           ///< parts without the undirected one
+        std::uint32_t runs = 0;
+    };
+
+    void addRuns(const CellParts& parts, Site& site);
+    [[nodiscard]] const std::uint32_t* runsOf(const Site& site) const {
+        return blocks_[site.block].data() + site.offset;
+    }
+    /// [k]: the first run of part k, counted from the site's first.
+    [[nodiscard]] const std::uint32_t* partsOf(const Site& site) const {
+        return part_runs_.data() + site.first_part;
+    }
+    [[nodiscard]] CellRun unpacked(std::uint32_t run) const {
+        const std::uint32_t first = run >> length_bits_;
+        return {first, first + (run & ((std::uint32_t{1} << length_bits_) - 1))};
+    }
+
+    std::size_t cells_, runs_ = 0;
+    std::uint32_t length_bits_;
+    std::vector<Site> sites_;
+    std::vector<std::uint32_t> part_runs_;  // by site, by part
+    // By candidate:
+    std::vector<PartRange> ranges_;
+    std::vector<std::uint32_t> site_of_;
+    std::vector<Angle> headings_;
+    // Never moved as they grow: that would take twice the memory.
+    std::vector<std::vector<std::uint32_t>> blocks_;
+};
+
+template <typename Visit>
+void CandidateSet::forEachRun(std::size_t candidate, Visit visit) const {
+    const Site& site = sites_[site_of_[candidate]];
+    const std::uint32_t *runs = runsOf(site), *parts = partsOf(site);
+    const auto visit_all = [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) visit(unpacked(runs[i]));
+    };
+    const PartRange own = ranges_[candidate];
+    const std::uint32_t end = own.begin + own.count;
+    visit_all(parts[own.begin], parts[std::min(end, site.directed)]);
+    if (end > site.directed) visit_all(0, parts[end - site.directed]);
+    visit_all(parts[site.directed], site.runs);
+}
+
+}  // namespace ispace

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/candidate_views.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "cover/plane_view.h"
+#include "cover/sector_cells.h"
+#include "cover/visible.h"
+#include "env/solid_tree.h"
+#include "place/plane_candidates.h"
+
+namespace ispace {
+
+namespace {
+
+/// Directions nearer to each other than this, in degrees, are one limit of sectors.
+constexpr double kSameLimit = 1e-7;
+
+/// The fans of a level laser at one place: between which limits each heading sees.
+struct Fans {
+    std::vector<Angle> headings;
+    std::vector<Angle> limits;
+    std::vector<CandidateSet::PartRange> ranges;  // by heading
+
+    Fans(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
+        ranges.resize(headings.size());
+        if (headings.empty() || isWhole(laser)) return;
+        std::vector<double> degrees;
+        degrees.reserve(2 * headings.size());
+        for (const Angle heading : headings) {
+            const FanLimits fan = fanLimits(laser, heading);
+            degrees.push_back(turned(fan.first));
+            degrees.push_back(turned(fan.first + fan.span));
+        }
+        setLimits(degrees);
+        const auto directed = static_cast<std::uint32_t>(2 * limits.size());
+        for (std::size_t k = 0; k < headings.size(); ++k) {
+            const std::uint32_t begin = 2 * limitAt(degrees[2 * k]);
+            const std::uint32_t last = 2 * limitAt(degrees[2 * k + 1]);
+            ranges[k] = {begin, (last + directed - begin) % directed + 1};
+        }
+    }
+    /// True if it sees all around.
+    static bool isWhole(const Laser& laser) {
+        return fanLimits(laser, {}).span >= Angle::degrees(360 - kSameLimit);
+    }
+
+  private:
+    /// Within [0, 360).
+    static double turned(Angle direction) {
+        return std::fmod(std::fmod(direction.degrees(), 360) + 360, 360);
+    }
+    void setLimits(std::vector<double> degrees) {
+        std::sort(degrees.begin(), degrees.end());
+        limits.reserve(degrees.size());
+        for (const double value : degrees)
+            if (limits.empty() || value > limits.back().degrees() + kSameLimit)
+                limits.push_back(Angle::degrees(value));
+        if (limits.size() > 1 &&
+            limits.front().degrees() + 360 - limits.back().degrees() <= kSameLimit)
+            limits.pop_back();  // around the end, the first one again
+    }
+    [[nodiscard]] std::uint32_t limitAt(double degrees) const {
+        const auto beyond = std::upper_bound(limits.begin(), limits.end(), Angle::degrees(degrees));
+        if (beyond == limits.begin()) return 0;
+        const auto last = static_cast<std::uint32_t>(beyond - limits.begin() - 1);
+        const bool is_first = degrees > limits[last].degrees() + kSameLimit;
+        return is_first ? 0 : last;
+    }
+};
+
+/// Leaves out runs of cells that are not counted.
+class Counted {
+  public:
+    explicit Counted(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
+        const auto size = static_cast<std::uint32_t>(cells.size());
+        next_[size] = size;
+        for (std::uint32_t i = size; i-- > 0;) next_[i] = cells.test(i) ? i : next_[i + 1];
+        end_[0] = 0;
+        for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
+    }
+    /// Afterwards all runs begin and end with counted cells.
+    void keepIn(CellParts& parts) const {
+        std::uint32_t count = 0, begin = 0;
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const std::uint32_t end = parts.first[part + 1];
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const CellRun run{next_[parts.runs[i].first], end_[parts.runs[i].end]};
+                if (run.first < run.end) parts.runs[count++] = run;
+            }
+            begin = end;
+            parts.first[part + 1] = count;
+        }
+        parts.runs.resize(count);
+    }
+
+  private:
+    std::vector<std::uint32_t> next_;  // [i]: the first counted cell from i on
+    std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
+};
+
+/// True if what a device sees does not change as it turns about the vertical.
+bool looksRound(const SensorDevice& device, const Pose3& mount) {
+    if (std::holds_alternative<Receiver>(device)) {
+        const Frame3 frame(mount);
+        return frame.forward.x == 0 && frame.forward.y == 0;
+    }
+    if (const auto* ranger = std::get_if<Ranger>(&device))
+        return ranger->projection == Projection::Spherical &&
+               ranger->fov_x >= Angle::degrees(360) && mount.isLevel();
+    return scansSlice(PlacedLaser{"", std::get<Laser>(device), mount}) &&
+           Fans::isWhole(std::get<Laser>(device));
+}
+
+}  // namespace
+
+const SliceSight& SliceSights::at(double height) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = sights_.find(height);
+    if (found != sights_.end()) return found->second;
+    return sights_.emplace(height, SliceSight(environment_->slice(height))).first->second;
+}
+
+struct CandidateViews::Data {
+    const Grid& grid;
+    double plane;
+    SensorDevice device;
+    Pose3 mount;
+    bool is_round;
+    std::optional<Counted> counted = {};
+    // Of a laser that scans a slice:
+    std::unique_ptr<SliceSights> own_sights = {};
+    const SliceSight* sight = nullptr;
+    // Of all others:
+    const RayWorld* mesh = nullptr;
+    SolidTree solids = {};
+
+    [[nodiscard]] std::size_t headingsOf(const Site& site) const {
+        return is_round ? 1 : site.headings.size();
+    }
+    [[nodiscard]] bool looksInSlice() const { return sight != nullptr; }
+
+    [[nodiscard]] FieldOfView fieldOf(const Pose3& pose) const {
+        if (const auto* ranger = std::get_if<Ranger>(&device))
+            return FieldOfView(PlacedRanger{"", *ranger, pose});
+        return FieldOfView(PlacedReceiver{"", std::get<Receiver>(device), pose});
+    }
+    /// The cells of each heading, a part each, and an empty one that all see.
+    void lookThroughMesh(const Site& site, CellParts& parts) const {
+        parts.runs.clear();
+        parts.first.assign(headingsOf(site) + 2, 0);
+        if (solids.isInside(site.place, kContact)) return;
+        std::vector<Pose3> poses(headingsOf(site), mount);
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            poses[k].position = {site.place.x, site.place.y, mount.position.z};
+            poses[k].heading = site.headings[k];
+        }
+        if (const auto* laser = std::get_if<Laser>(&device)) {
+            parts.first.assign(1, 0);
+            for (const Pose3& pose : poses) {
+                const CellParts seen =
+                    partOf(cellsSeen(grid, *mesh, PlacedLaser{"", *laser, pose}, plane));
+                parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
+                parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+            }
+        } else {
+            std::vector<FieldOfView> fields;
+            fields.reserve(poses.size());
+            for (const Pose3& pose : poses) fields.push_back(fieldOf(pose));
+            cellsByView(grid, *mesh, fields, plane, parts);
+        }
+        parts.first.push_back(parts.first.back());
+    }
+};
+
+CandidateViews::CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid,
+                               double plane, const SensorDevice& device, const Pose3& mount,
+                               const CellSet* counted, SliceSights* sights) {
+    auto data = std::make_unique<Data>(Data{grid, plane, device, mount, looksRound(device, mount)});
+    const double height = mount.position.z;
+    if (counted != nullptr && counted->count() < counted->size()) data->counted.emplace(*counted);
+    const auto* laser = std::get_if<Laser>(&device);
+    if (laser != nullptr && scansSlice(PlacedLaser{"", *laser, mount})) {
+        if (sights == nullptr) {
+            data->own_sights = std::make_unique<SliceSights>(environment);
+            sights = data->own_sights.get();
+        }
+        data->sight = &sights->at(height);
+    } else {
+        worlds.prepareMesh();
+        data->mesh = &worlds.mesh();
+        data->solids = SolidTree(environment.slice(height).solids);
+    }
+    data_ = std::move(data);
+}
+
+CandidateViews::~CandidateViews() = default;
+
+bool CandidateViews::isRound() const { return data_->is_round; }
+
+namespace {
+
+/// Looks from some sites at a time and adds what is seen to the set.
+class Scanner {
+  public:
+    Scanner(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+            Progress& progress)
+        : set_(set), data_(views.data()), sites_(sites), progress_(progress) {}
+
+    bool run(std::size_t most_bytes) {
+        // What is looked through the mesh takes a while: one can stop in between.
+        const std::size_t at_once = data_.looksInSlice() ? 512 : 32;
+        for (begin_ = 0; begin_ < sites_.size(); begin_ += at_once) {
+            const std::size_t count = std::min(at_once, sites_.size() - begin_);
+            if (progress_.stopped() || !look(count)) return false;
+            for (std::size_t i = 0; i < count; ++i) {
+                add(i);
+                if (set_.bytes() > most_bytes) throw UsageError(tooLarge(most_bytes));
+            }
+            progress_.advance(static_cast<std::int64_t>(count));
+        }
+        return true;
+    }
+
+  private:
+    static std::string tooLarge(std::size_t most_bytes) {
+        const auto bytes = static_cast<double>(most_bytes);
+        const std::string size =
+            bytes < 1e9 ? formatFixed(bytes / 1e6, 1) + " MB" : formatFixed(bytes / 1e9, 1) + " GB";
+        return "the candidates take more than " + size +
+               ": use fewer places, headings or cells, or --max-memory";
+    }
+
+    /// Fills parts_ and, for slices, fans_ of the next `count` sites; false if it was stopped.
+    bool look(std::size_t count) {
+        if (parts_.size() < count) parts_.resize(count);
+        if (data_.looksInSlice()) findFans(count);
+        std::atomic<bool> is_stopped = false;
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            if (data_.looksInSlice()) {
+                lookFrom(i);
+            } else if (is_stopped.load(std::memory_order_relaxed) || progress_.stopped()) {
+                is_stopped = true;
+            } else {
+                // Whoever waits for rows of cells here does not begin with another site.
+                tbb::this_task_arena::isolate([&] { lookFrom(i); });
+            }
+        });
+        return !is_stopped;
+    }
+
+    /// Neighbours mostly have the same headings.
+    void findFans(std::size_t count) {
+        fans_.clear();
+        fan_of_.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::span<const Angle> headings = headingsOf(i);
+            if (fans_.empty() ||
+                !std::equal(headings.begin(), headings.end(), fans_.back().headings.begin(),
+                            fans_.back().headings.end()))
+                fans_.emplace_back(std::get<Laser>(data_.device), headings);
+            fan_of_.push_back(fans_.size() - 1);
+        }
+    }
+
+    [[nodiscard]] std::span<const Angle> headingsOf(std::size_t i) const {
+        const Site& site = sites_[begin_ + i];
+        return std::span(site.headings).first(data_.headingsOf(site));
+    }
+
+    void lookFrom(std::size_t i) {
+        const Site& site = sites_[begin_ + i];
+        assert(!site.headings.empty());
+        if (data_.looksInSlice())
+            cellsBySector(data_.grid, *data_.sight, site.place,
+                          std::get<Laser>(data_.device).max_range, fans_[fan_of_[i]].limits,
+                          parts_[i]);
+        else
+            data_.lookThroughMesh(site, parts_[i]);
+        if (data_.counted) data_.counted->keepIn(parts_[i]);
+    }
+
+    void add(std::size_t i) {
+        const Site& site = sites_[begin_ + i];
+        Pose3 mount = data_.mount;
+        mount.position = {site.place.x, site.place.y, mount.position.z};
+        const std::span<const Angle> headings = headingsOf(i);
+        if (data_.looksInSlice()) {
+            set_.addSite(mount, headings, fans_[fan_of_[i]].ranges, parts_[i]);
+            return;
+        }
+        ranges_.clear();
+        for (std::uint32_t k = 0; k < headings.size(); ++k) ranges_.push_back({k, 1});
+        set_.addSite(mount, headings, ranges_, parts_[i]);
+    }
+
+    CandidateSet& set_;
+    const CandidateViews::Data& data_;
+    std::span<const Site> sites_;
+    Progress& progress_;
+    // Of the sites at hand, which begin at begin_:
+    std::size_t begin_ = 0;
+    std::vector<CellParts> parts_;
+    std::vector<Fans> fans_;
+    std::vector<std::size_t> fan_of_;
+    std::vector<CandidateSet::PartRange> ranges_;
+};
+
+}  // namespace
+
+bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+                   std::size_t most_bytes, Progress& progress) {
+    assert(set.cells() == views.data().grid.size());
+    progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
+    const bool is_complete = Scanner(set, views, sites, progress).run(most_bytes);
+    progress.end();
+    return is_complete;
+}
+
+}  // namespace ispace

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "base/progress.h"
+#include "cover/grid.h"
+#include "cover/slice_sight.h"
+#include "env/environment.h"
+#include "layout/scene.h"
+#include "place/candidate_set.h"
+#include "place/sites.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+/// The sights of one environment by height, each made when it is first asked for. Thread-safe; a
+/// sight stays where it is until the end.
+class SliceSights {
+  public:
+    explicit SliceSights(const Environment& environment) : environment_(&environment) {}
+    const SliceSight& at(double height);
+
+  private:
+    const Environment* environment_;
+    std::mutex mutex_;
+    std::map<double, SliceSight> sights_;
+};
+
+/// What a kind of sensor sees of the cells of a grid from anywhere, mounted at one height with one
+/// tilt and roll: the same cells as measureCoverage() finds for a sensor there. Thread-safe once
+/// built.
+class CandidateViews {
+  public:
+    /// \param plane height of what rangers and receivers cover
+    /// \param mount its height, tilt and roll count, its place and heading do not
+    /// \param counted cells that are worth something, if not all are: candidates then see these as
+    ///        they should, and others or not as it comes, which makes them smaller
+    /// \param sights shared with other views, if not null; all references are kept
+    CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid, double plane,
+                   const SensorDevice& device, const Pose3& mount, const CellSet* counted = nullptr,
+                   SliceSights* sights = nullptr);
+    ~CandidateViews();
+    CandidateViews(const CandidateViews&) = delete;
+    CandidateViews& operator=(const CandidateViews&) = delete;
+
+    /// True if what it sees does not depend on its heading: a laser that looks all around, a cone
+    /// that looks straight down. Only the first heading of a site is then worth a candidate.
+    [[nodiscard]] bool isRound() const;
+
+    struct Data;
+    [[nodiscard]] const Data& data() const { return *data_; }
+
+  private:
+    std::unique_ptr<const Data> data_;
+};
+
+/// Appends the candidates of all sites, in order: of each its headings (only the first if
+/// views.isRound()) are the candidates of one site of the set. The work is shared out over all
+/// cores, some sites at a time, so that no more memory is needed than the set takes; the result
+/// does not depend on the number of threads. False if progress said to stop: then the first sites,
+/// as many as were done, are there. \throws UsageError once set.bytes() is more than most_bytes
+bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+                   std::size_t most_bytes, Progress& progress);
+
+}  // namespace ispace

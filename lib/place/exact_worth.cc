@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/exact_worth.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/error.h"
+#include "cover/plane_view.h"
+#include "cover/visible.h"
+#include "env/solid_tree.h"
+#include "geom/layers.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+namespace {
+
+/// What a counted layer adds to LayerLabel::numbers: lasers and rangers count in the low digits,
+/// receivers in the high ones.
+constexpr std::int64_t kOneSet = 1, kOneReceiver = std::int64_t{1} << 32;
+constexpr std::uint64_t kNearMark = std::uint64_t{1} << 63;
+
+/// Floor of one weight.
+struct Floor {
+    double weight = 1;
+    std::vector<Curve> curves;
+    Box2 box;
+};
+
+Box2 boxOf(std::span<const Curve> curves) {
+    Box2 box;
+    for (const Curve& curve : curves) {
+        const Box2 own = bounds(curve);
+        box.add(own.low);
+        box.add(own.high);
+    }
+    return box;
+}
+
+bool meet(const Box2& a, const Box2& b) {
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
+Box2 common(const Box2& a, const Box2& b) {
+    return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+}
+
+bool isVoid(const Box2& box) { return box.low.x > box.high.x || box.low.y > box.high.y; }
+
+/// An empty box is in every one.
+bool holds(const Box2& outer, const Box2& inner) {
+    return isVoid(inner) || (outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
+                             outer.low.y <= inner.low.y && inner.high.y <= outer.high.y);
+}
+
+Box2 grown(const Box2& box, double by) {
+    return {{box.low.x - by, box.low.y - by}, {box.high.x + by, box.high.y + by}};
+}
+
+Polygon cornersOf(const Box2& box) {
+    return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+}
+
+Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
+    return {.curves = std::move(curves), .counts = false, .marks = marks};
+}
+
+/// The indoor floor that counts, parted by its weight; what weighs nothing is left out.
+std::vector<Floor> floorsOf(const Environment& environment, const Worth& worth) {
+    std::vector<Floor> floors;
+    if (worth.isUniform()) {
+        floors.push_back({1, curvesWithArcs(environment.indoor()), {}});
+    } else {
+        constexpr std::uint64_t kIndoor = 1;
+        constexpr std::size_t kFirstWeight = 1;
+        std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoor)};
+        layers.reserve(1 + worth.targets.size() + worth.weights.size());
+        for (const NamedZone& zone : worth.targets)
+            layers.push_back({.curves = {curveOf(zone.outline)}});
+        std::set<double> weights = {1};
+        for (std::size_t i = 0; i < worth.weights.size(); ++i) {
+            layers.push_back(markLayer({curveOf(worth.weights[i].first.outline)},
+                                       std::uint64_t{1} << (kFirstWeight + i)));
+            weights.insert(worth.weights[i].second);
+        }
+        const auto weight_of = [&](const LayerLabel& label) {
+            if ((label.marks & kIndoor) == 0) return 0.0;
+            if (label.count == 0 && !worth.targets.empty()) return 0.0;
+            for (std::size_t i = worth.weights.size(); i > 0; --i)
+                if ((label.marks >> (kFirstWeight + i - 1) & 1U) != 0)
+                    return worth.weights[i - 1].second;
+            return 1.0;
+        };
+        const LayerOverlay overlay(layers);
+        for (const double weight : weights) {
+            if (weight <= 0) continue;
+            const auto weighs = [&](const LayerLabel& label) { return weight_of(label) == weight; };
+            floors.push_back({weight, overlay.curves(weighs), {}});
+        }
+    }
+    for (Floor& floor : floors) floor.box = boxOf(floor.curves);
+    return floors;
+}
+
+/// The heights of level lasers, and the shadows for all others.
+class Sights {
+  public:
+    explicit Sights(const Environment& environment) : environment_(environment) {}
+
+    /// To be called for each sensor before regionOf(): that may then be called from any thread.
+    void prepare(const SensorDevice& device, const Pose3& pose) {
+        const double height = pose.position.z;
+        if (slicing(device, pose)) {
+            slices_.try_emplace(height, environment_.slice(height));
+        } else {
+            solids_.try_emplace(height, environment_.slice(height).solids);
+            if (!shadows_) shadows_.emplace(environment_);
+        }
+    }
+
+    /// What it sees there; nothing if that is not known. A sensor inside a solid sees nothing.
+    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const SensorDevice& device,
+                                                             const Pose3& pose,
+                                                             double plane) const {
+        if (slicing(device, pose))
+            return regionSeen(slices_.at(pose.position.z),
+                              PlacedLaser{{}, std::get<Laser>(device), pose});
+        if (const auto* laser = std::get_if<Laser>(&device)) {
+            auto region = shadows_->regionSeen(PlacedLaser{{}, *laser, pose});
+            if (region && isBuried(pose)) region->clear();
+            return region;
+        }
+        if (isBuried(pose)) return std::vector<Curve>();
+        if (const auto* ranger = std::get_if<Ranger>(&device))
+            return shadows_->regionSeen(PlacedRanger{{}, *ranger, pose}, plane);
+        return shadows_->regionHeard(PlacedReceiver{{}, std::get<Receiver>(device), pose}, plane);
+    }
+
+  private:
+    static bool slicing(const SensorDevice& device, const Pose3& pose) {
+        const auto* laser = std::get_if<Laser>(&device);
+        return laser != nullptr && scansSlice({{}, *laser, pose});
+    }
+    [[nodiscard]] bool isBuried(const Pose3& pose) const {
+        return solids_.at(pose.position.z).isInside(pose.position.onFloor(), kSightContact);
+    }
+
+    const Environment& environment_;
+    std::map<double, SliceSight> slices_;
+    std::map<double, SolidTree> solids_;
+    std::optional<ShadowCaster> shadows_;
+};
+
+/// A sensor's region as a layer.
+struct View {
+    Layer layer;
+    Box2 box;
+
+    View(std::vector<Curve> curves, bool is_receiver)
+        : layer{.curves = std::move(curves), .number = is_receiver ? kOneReceiver : kOneSet} {
+        box = boxOf(layer.curves);
+    }
+};
+
+}  // namespace
+
+struct ExactWorth::Data {
+    std::span<const Movable> movables;
+    RefineOptions options;
+    Sights sights;
+    std::vector<Floor> floors = {};
+    Box2 floor_box = {};
+    std::vector<View> standing = {}, moving = {};
+
+    /// The sensor in hand: the floor where it is the one that is still missing, within `near`.
+    std::size_t in_hand = 0;
+    Box2 near = {};
+    std::vector<Layer> missing = {};  // marks 1 << i: of floors[i]
+    /// The floors within a wider box about each movable; made when they are wanted.
+    struct Surroundings {
+        Box2 box;
+        std::vector<Floor> floors;
+    };
+    std::vector<Surroundings> around = {};
+
+    [[nodiscard]] View viewOf(const std::string& id, const SensorDevice& device,
+                              const Pose3& pose) const {
+        auto region = sights.regionOf(device, pose, options.plane);
+        if (!region) throw UsageError(id + " cannot be refined: its exact region is not known");
+        return {std::move(*region), std::holds_alternative<Receiver>(device)};
+    }
+    [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
+        return viewOf(movables[sensor].id, movables[sensor].device, pose);
+    }
+
+    template <typename Placed, typename Device>
+    void addStanding(const std::vector<Placed>& sensors, Device Placed::*device) {
+        for (const Placed& sensor : sensors) {
+            const auto is_same = [&](const Movable& m) { return m.id == sensor.id; };
+            if (std::any_of(movables.begin(), movables.end(), is_same)) continue;
+            sights.prepare(sensor.*device, sensor.pose);
+            standing.push_back(viewOf(sensor.id, sensor.*device, sensor.pose));
+        }
+    }
+
+    [[nodiscard]] static std::int64_t setsAt(const LayerLabel& label) {
+        const bool heard =
+            label.numbers / kOneReceiver >= static_cast<std::int64_t>(kLeastReceivers);
+        return label.numbers % kOneReceiver + (heard ? 1 : 0);
+    }
+    /// True where one more sensor of this kind makes the floor count.
+    [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
+        if (setsAt(label) != options.demand - 1) return false;
+        return !is_receiver ||
+               label.numbers / kOneReceiver == static_cast<std::int64_t>(kLeastReceivers) - 1;
+    }
+
+    static void addFloors(const std::vector<Floor>& floors, std::vector<Layer>& layers) {
+        for (std::size_t i = 0; i < floors.size(); ++i)
+            if (!floors[i].curves.empty())
+                layers.push_back(markLayer(floors[i].curves, std::uint64_t{1} << i));
+    }
+
+    /// The floors in a box about the sensor in hand that holds `near`.
+    const std::vector<Floor>& floorsNear() {
+        constexpr double kReach = 3;  // metres that a sensor is let go before they are made anew
+        Surroundings& own = around[in_hand];
+        if (!own.floors.empty() && holds(own.box, near)) return own.floors;
+        own.box = grown(near, kReach);
+        if (holds(own.box, floor_box)) {
+            own.floors = floors;
+            return own.floors;
+        }
+        own.floors.assign(floors.size(), {});
+        for (std::size_t i = 0; i < floors.size(); ++i) {
+            own.floors[i].weight = floors[i].weight;
+            if (!meet(floors[i].box, own.box)) continue;
+            const std::vector<Layer> layers = {markLayer(floors[i].curves, 1),
+                                               {.curves = {curveOf(cornersOf(own.box))}}};
+            own.floors[i].curves = LayerOverlay(layers).curves(
+                [](const LayerLabel& label) { return label.marks == 1 && label.count == 1; });
+        }
+        return own.floors;
+    }
+
+    /// Makes `missing` for a sensor in hand whose region lies in this box, which may hold nothing.
+    void look(const Box2& region) {
+        constexpr double kReach = 0.6;  // metres; steps reach farther at times
+        missing.clear();
+        near = {};
+        if (isVoid(region)) return;
+        near = grown(region, kReach);
+        std::vector<Layer> layers = {markLayer({curveOf(cornersOf(near))}, kNearMark)};
+        addFloors(floorsNear(), layers);
+        for (const View& view : standing)
+            if (meet(view.box, near)) layers.push_back(view.layer);
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
+        const LayerOverlay overlay(layers);
+        const bool is_receiver = std::holds_alternative<Receiver>(movables[in_hand].device);
+        for (std::size_t i = 0; i < floors.size(); ++i) {
+            const std::uint64_t mark = std::uint64_t{1} << i;
+            std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
+                return label.marks == (mark | kNearMark) && lacksOne(label, is_receiver);
+            });
+            if (!curves.empty()) missing.push_back(markLayer(std::move(curves), mark));
+        }
+    }
+
+    [[nodiscard]] double weightOf(std::uint64_t marks) const {
+        return marks == 0 ? 0 : floors[static_cast<std::size_t>(std::countr_zero(marks))].weight;
+    }
+
+    [[nodiscard]] double gainOf(const View& view) const {
+        if (view.layer.curves.empty() || missing.empty()) return 0;
+        std::vector<Layer> layers = missing;
+        layers.push_back(view.layer);
+        double gain = 0;
+        LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+            if (label.count > 0) gain += weightOf(label.marks) * area;
+        });
+        return gain;
+    }
+};
+
+ExactWorth::ExactWorth(const Scene& scene, std::span<const Movable> movables, const Worth& worth,
+                       const RefineOptions& options)
+    : data_(std::make_unique<Data>(Data{movables, options, Sights(scene.environment)})) {
+    if (worth.weights.size() > kMostZones)
+        throw UsageError("sensors cannot be refined for " + std::to_string(worth.weights.size()) +
+                         " weighted zones, wanted at most " + std::to_string(kMostZones));
+    data_->floors = floorsOf(scene.environment, worth);
+    for (const Floor& floor : data_->floors) {
+        if (floor.box.empty()) continue;
+        data_->floor_box.add(floor.box.low);
+        data_->floor_box.add(floor.box.high);
+    }
+    data_->addStanding(scene.lasers, &PlacedLaser::laser);
+    data_->addStanding(scene.rangers, &PlacedRanger::ranger);
+    data_->addStanding(scene.receivers, &PlacedReceiver::receiver);
+    data_->moving.reserve(movables.size());
+    for (std::size_t i = 0; i < movables.size(); ++i) {
+        data_->sights.prepare(movables[i].device, movables[i].pose);
+        data_->moving.push_back(data_->viewOf(i, movables[i].pose));
+    }
+    data_->around.resize(movables.size());
+}
+ExactWorth::~ExactWorth() = default;
+
+double ExactWorth::total() const {
+    double sum = 0;
+    for (const Floor& floor : data_->floors) sum += floor.weight * signedArea(floor.curves);
+    return sum;
+}
+
+double ExactWorth::value() const {
+    std::vector<Layer> layers;
+    Data::addFloors(data_->floors, layers);
+    for (const View& view : data_->standing) layers.push_back(view.layer);
+    for (const View& view : data_->moving) layers.push_back(view.layer);
+    double value = 0;
+    LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+        if (Data::setsAt(label) >= data_->options.demand)
+            value += data_->weightOf(label.marks) * area;
+    });
+    return std::max(0.0, value);
+}
+
+void ExactWorth::take(std::size_t sensor) {
+    data_->in_hand = sensor;
+    data_->look(common(data_->moving[sensor].box, data_->floor_box));
+}
+
+std::vector<double> ExactWorth::gains(std::span<const Pose3> poses) {
+    std::vector<std::optional<View>> views(poses.size());
+    tbb::parallel_for(std::size_t{0}, poses.size(),
+                      [&](std::size_t i) { views[i] = data_->viewOf(data_->in_hand, poses[i]); });
+    Box2 all;
+    for (const auto& view : views) {
+        const Box2 box = common(view->box, data_->floor_box);
+        if (holds(data_->near, box)) continue;
+        all.add(box.low);
+        all.add(box.high);
+    }
+    if (!all.empty()) {
+        // What was found before stays comparable: gains are of whole regions.
+        if (!data_->near.empty()) {
+            all.add(data_->near.low);
+            all.add(data_->near.high);
+        }
+        data_->look(all);
+    }
+    std::vector<double> gains(poses.size());
+    tbb::parallel_for(std::size_t{0}, poses.size(),
+                      [&](std::size_t i) { gains[i] = data_->gainOf(*views[i]); });
+    return gains;
+}
+
+void ExactWorth::put(const Pose3& pose) {
+    data_->moving[data_->in_hand] = data_->viewOf(data_->in_hand, pose);
+}
+
+bool ExactWorth::turns(std::size_t sensor) const {
+    const Movable& movable = data_->movables[sensor];
+    const bool level = movable.pose.isLevel();
+    if (const auto* laser = std::get_if<Laser>(&movable.device))
+        return !level || fanLimits(*laser, Angle()).span < Angle::degrees(360);
+    if (const auto* ranger = std::get_if<Ranger>(&movable.device))
+        return !level || ranger->projection != Projection::Spherical ||
+               ranger->fov_x < Angle::degrees(360);
+    const Angle tilt = wrapped(movable.pose.tilt);
+    return tilt != Angle::degrees(90) && tilt != Angle::degrees(-90);
+}
+
+}  // namespace ispace

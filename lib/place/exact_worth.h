@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "place/refine.h"
+
+namespace ispace {
+
+/// What at least `demand` sensors see is worth, exactly: its area in closed form (LayerOverlay)
+/// times the weight that it has. Lasers and rangers count one by one, all ultrasonic receivers
+/// together as one, where enough of them hear.
+///
+/// What stands in the scene does not move: its regions, and the floor by its weights, are made
+/// once. Movables take the place of what has their id in the scene.
+class ExactWorth {
+  public:
+    /// All movables stand at their poses.
+    /// \throws UsageError for sensors without an exact region and for more than kMostZones weights
+    ExactWorth(const Scene& scene, std::span<const Movable> movables, const Worth& worth,
+               const RefineOptions& options);
+    ~ExactWorth();
+    ExactWorth(const ExactWorth&) = delete;
+    ExactWorth& operator=(const ExactWorth&) = delete;
+
+    static constexpr std::size_t kMostZones = 60;
+
+    /// Worth of all floor that counts, m2 times weight.
+    [[nodiscard]] double total() const;
+    /// Worth of what is seen as all stand now. O(n log n) in all regions and walls.
+    [[nodiscard]] double value() const;
+
+    /// From here on this sensor moves and all others stay.
+    void take(std::size_t sensor);
+    /// What the sensor in hand would add to the others at each of these poses, worked out on all
+    /// cores. Only what lies near it is looked at: O(n log n) in its region and those it meets.
+    /// \pre take() was called
+    [[nodiscard]] std::vector<double> gains(std::span<const Pose3> poses);
+    /// Puts the sensor in hand there.
+    void put(const Pose3& pose);
+
+    /// False for a sensor that sees the same at every heading.
+    [[nodiscard]] bool turns(std::size_t sensor) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace ispace

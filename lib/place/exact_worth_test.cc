@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/exact_worth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "base/error.h"
+#include "cover/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+const char* const kRoom =
+    "ispace size=8,6\ndesk at=2,1 heading=30 size=1.2,0.8,0.7\ncube at=-2,-1 size=0.6,0.6,1\n"
+    "cylinder at=0,2 size=0.8,0.8,1\n";
+
+Laser laserOfRange(double range, double fov = 180) {
+    Laser laser;
+    laser.max_range = range;
+    laser.first = Angle::degrees(-fov / 2);
+    laser.beams = static_cast<int>(fov) + 1;
+    return laser;
+}
+
+Movable at(const std::string& id, const SensorDevice& device, double x, double y, double heading,
+           double z = kScanHeight, double tilt = 0) {
+    return {id, device, {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), {}}, nullptr};
+}
+
+NamedZone zoneOf(const Polygon& outline) { return {"z", outline, interiorPoint({outline, {}})}; }
+
+NamedZone box(double x, double y, double to_x, double to_y) {
+    return zoneOf({{x, y}, {to_x, y}, {to_x, to_y}, {x, to_y}});
+}
+
+/// The same scene with the movables standing in it, as coverage sees it.
+CoverageReport reportOf(Scene scene, const std::vector<Movable>& movables) {
+    for (const Movable& m : movables) {
+        if (const auto* laser = std::get_if<Laser>(&m.device))
+            scene.lasers.push_back({m.id, *laser, m.pose});
+        if (const auto* ranger = std::get_if<Ranger>(&m.device))
+            scene.rangers.push_back({m.id, *ranger, m.pose});
+        if (const auto* receiver = std::get_if<Receiver>(&m.device))
+            scene.receivers.push_back({m.id, *receiver, m.pose});
+    }
+    return coverageOf(scene, 10, 10).report;
+}
+
+double seenByAtLeast(const CoverageReport& report, std::size_t times) {
+    double share = 0;
+    for (std::size_t k = times; k < report.redundancy_exact->size(); ++k)
+        share += (*report.redundancy_exact)[k];
+    return share * report.indoor_area;
+}
+
+std::vector<Movable> threeLasers() {
+    return {at("a", laserOfRange(4), -3, 2, -40), at("b", laserOfRange(3, 270), 1, -1, 70),
+            at("c", laserOfRange(5, 360), 3, 2.5, 0)};
+}
+
+TEST(ExactWorth, IsWhatCoverageMeasures) {
+    const Scene scene = sceneOf(kRoom);
+    const std::vector<Movable> movables = threeLasers();
+    const CoverageReport report = reportOf(scene, movables);
+    for (const int demand : {1, 2, 3}) {
+        const ExactWorth worth(scene, movables, {}, {.demand = demand});
+        EXPECT_NEAR(worth.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
+        EXPECT_NEAR(worth.total(), 48, 1e-9);
+    }
+    EXPECT_GT(seenByAtLeast(report, 3), 0.5);
+}
+
+TEST(ExactWorth, SensorsThatStandCountUnlessTheyMove) {
+    const Scene scene = sceneOf(std::string(kRoom) + "laser id=b at=1,-1 heading=70 range=3\n");
+    const std::vector<Movable> one = {at("a", laserOfRange(4), -3, 2, -40)};
+    EXPECT_NEAR(ExactWorth(scene, one, {}, {}).value(), seenByAtLeast(reportOf(scene, one), 1),
+                1e-5);
+    std::vector<Movable> both = one;
+    both.push_back(at("b", laserOfRange(3), 1, -1, -70));
+    EXPECT_NEAR(ExactWorth(scene, both, {}, {}).value(),
+                seenByAtLeast(reportOf(sceneOf(kRoom), both), 1), 1e-5);
+}
+
+TEST(ExactWorth, TargetsAndWeightsOfWhichTheLastDecides) {
+    const Scene scene = sceneOf("ispace size=8,8\n");
+    const std::vector<Movable> whole = {at("a", laserOfRange(20, 360), 0, 0, 0),
+                                        at("b", laserOfRange(20, 360), 1, 0, 180)};
+    Worth worth;
+    worth.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
+    // 64 of which 4 weigh 5, 3 weigh 3, 1 nothing.
+    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).total(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 56 + 20 + 9, 1e-5);
+    worth.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1
+    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 3 + 9 + 5, 1e-5);
+    worth.weights.clear();
+    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 7, 1e-5);
+    worth.targets = {box(7, 7, 8, 8)};  // outside
+    EXPECT_EQ(ExactWorth(scene, whole, worth, {}).value(), 0);
+    EXPECT_EQ(ExactWorth(scene, whole, worth, {}).total(), 0);
+}
+
+TEST(ExactWorth, SixtyWeightsAndNoMore) {
+    const Scene scene = sceneOf("ispace size=80,8\n");
+    const std::vector<Movable> one = {at("a", laserOfRange(100, 360), 0, 0, 0),
+                                      at("b", laserOfRange(100, 360), 1, 0, 180)};
+    Worth worth;
+    double wanted = 640;
+    for (int i = 0; i < 60; ++i) {
+        worth.weights.emplace_back(box(-39 + i, -1, -38 + i, 1), 2 + i);
+        wanted += 2 * (1 + i);
+    }
+    EXPECT_NEAR(ExactWorth(scene, one, worth, {}).value(), wanted, 1e-3);
+    worth.weights.emplace_back(box(-39, -1, -38, 1), 2);
+    EXPECT_THROW(ExactWorth(scene, one, worth, {}), UsageError);
+}
+
+TEST(ExactWorth, GainsAreDifferencesOfValues) {
+    const Scene scene = sceneOf(std::string(kRoom) + "laser at=3.5,-2.5 heading=120 range=2\n");
+    Worth worth;
+    worth.weights = {{box(-2, -2, 3, 1), 4}, {box(0, 0, 4, 3), 0.5}};
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
+    for (const int demand : {1, 2}) {
+        std::vector<Movable> movables = threeLasers();
+        for (int i = 0; i < 20; ++i) {
+            const auto which = static_cast<std::size_t>(i) % 3;
+            std::vector<double> values, gains;
+            std::vector<Pose3> poses;
+            ExactWorth moving(scene, movables, worth, {.demand = demand});
+            for (int k = 0; k < 2; ++k) {
+                Movable& own = movables[which];
+                own.pose.position.x = x(random);
+                own.pose.position.y = y(random);
+                own.pose.heading = Angle::degrees(h(random));
+                poses.push_back(own.pose);
+                values.push_back(ExactWorth(scene, movables, worth, {.demand = demand}).value());
+            }
+            moving.take(which);
+            gains = moving.gains(poses);
+            EXPECT_NEAR(gains[1] - gains[0], values[1] - values[0], 1e-5);
+            moving.put(poses[0]);
+            EXPECT_NEAR(moving.value(), values[0], 1e-5);
+        }
+    }
+}
+
+TEST(ExactWorth, FourReceiversAreOneSensor) {
+    const Scene scene = sceneOf("ispace size=8,8 height=3\n");
+    Receiver receiver;
+    std::vector<Movable> movables;
+    for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+            movables.push_back(
+                at("u" + std::to_string(movables.size()), receiver, x, y, 0, 2.5, -90));
+    movables.push_back(at("u4", receiver, 0.5, 0.2, 0, 2.5, -90));
+    movables.push_back(at("a", laserOfRange(3), 2, 0, 30));
+    const CoverageReport report = reportOf(scene, movables);
+    for (const int demand : {1, 2})
+        EXPECT_NEAR(ExactWorth(scene, movables, {}, {.demand = demand}).value(),
+                    seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
+    ExactWorth worth(scene, movables, {}, {});
+    const double before = worth.value();
+    Pose3 moved = movables[1].pose;
+    moved.position.y = 0.3;
+    worth.take(1);
+    const std::vector<double> gains = worth.gains(std::vector<Pose3>{movables[1].pose, moved});
+    worth.put(moved);
+    EXPECT_NEAR(worth.value() - before, gains[1] - gains[0], 1e-5);
+    EXPECT_GT(std::abs(gains[1] - gains[0]), 0.1);
+    EXPECT_FALSE(worth.turns(0));
+    EXPECT_TRUE(worth.turns(5));
+}
+
+TEST(ExactWorth, RangersAndTiltedLasersCoverThePlane) {
+    const Scene scene = sceneOf(kRoom);
+    const std::vector<Movable> movables = {at("r", Ranger(), -3, 0, 10, 1.5, -30),
+                                           at("t", laserOfRange(6), 3, -2, 140, 1.2, -20),
+                                           at("buried", Ranger(), -2, -1, 0, 0.5, -30)};
+    const double value = ExactWorth(scene, movables, {}, {}).value();
+    EXPECT_NEAR(value, seenByAtLeast(reportOf(scene, movables), 1), 1e-5);
+    EXPECT_GT(value, 2);
+}
+
+TEST(ExactWorth, UnknownRegionsAreRefused) {
+    Laser sweeping = laserOfRange(4);
+    sweeping.sweep = SweepAxis::Tilt;
+    sweeping.sweep_span = Angle::degrees(30);
+    const std::vector<Movable> movables = {at("n", sweeping, 0, 0, 0, 1, -20)};
+    try {
+        const ExactWorth worth(sceneOf(kRoom), movables, {}, {});
+        FAIL();
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(), "n cannot be refined: its exact region is not known");
+    }
+}
+
+TEST(ExactWorth, WholeTurnsDoNotTurn) {
+    Laser whole = laserOfRange(4, 360);
+    Ranger head;
+    head.projection = Projection::Spherical;
+    head.fov_x = Angle::degrees(360);
+    const std::vector<Movable> movables = {at("w", whole, 0, 0, 0), at("v", whole, 0, 0, 0, 1, -20),
+                                           at("h", laserOfRange(4, 359), 0, 0, 0),
+                                           at("r", head, 1, 1, 0, 1),
+                                           at("p", Ranger(), 1, 1, 0, 2, -90)};
+    const ExactWorth worth(sceneOf(kRoom), movables, {}, {});
+    const std::vector<bool> turns = {false, true, true, false, true};
+    for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(worth.turns(i), turns[i]) << i;
+}
+
+}  // namespace
+}  // namespace ispace

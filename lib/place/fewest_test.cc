@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "place/search.h"
+#include "place/test_variety.h"
+
+namespace ispace {
+namespace {
+
+/// The least cost of what is worth so much; infinite if nothing is.
+double leastCost(const Problem& problem, std::uint64_t wanted) {
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<Choice> chosen;
+    test_problems::forEachSet(problem, chosen, 0, 0, problem.kinds[0].most,
+                              [&](const std::vector<Choice>& set) {
+                                  if (isFeasible(problem, set) && valueOf(problem, set) >= wanted)
+                                      least = std::min(least, costOf(problem, set));
+                              });
+    return least;
+}
+
+TEST(PlaceFewest, EqualsBruteForce) {
+    SilentProgress progress;
+    int reached = 0;
+    for (std::uint64_t round = 0; round < 60; ++round) {
+        RandomProblem random = variedProblem(round);
+        Problem& problem = random.problem;
+        if (round % 3 == 2) problem.kinds[1].cost = round % 2 == 0 ? 1.5 : 0.4;
+        const std::uint64_t best = bestByBruteForce(problem).value;
+        for (const std::uint64_t wanted : {best / 2, best * 9 / 10, best, best + 1}) {
+            const double least = leastCost(problem, wanted);
+            for (const Optimizer optimizer :
+                 {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact}) {
+                SearchOptions options;
+                options.optimizer = optimizer;
+                options.swap.starts = 3;
+                const Fewest fewest = placeFewest(problem, wanted, options, progress);
+                ASSERT_TRUE(isFeasible(problem, fewest.result.best.chosen));
+                ASSERT_EQ(valueOf(problem, fewest.result.best.chosen), fewest.result.best.value);
+                ASSERT_DOUBLE_EQ(costOf(problem, fewest.result.best.chosen), fewest.cost);
+                ASSERT_LE(fewest.least_cost, least + 1e-9) << round << ' ' << wanted;
+                if (fewest.is_reached) {
+                    ++reached;
+                    ASSERT_GE(fewest.result.best.value, wanted);
+                    ASSERT_GE(fewest.cost, least - 1e-9);
+                } else {
+                    ASSERT_TRUE(optimizer != Optimizer::Exact || least > 1e9) << round;
+                }
+                if (optimizer != Optimizer::Exact || !fewest.is_reached) continue;
+                ASSERT_NEAR(fewest.cost, least, 1e-9) << round << ' ' << wanted;
+                ASSERT_NEAR(fewest.least_cost, least, 1e-9) << round << ' ' << wanted;
+            }
+        }
+    }
+    EXPECT_GT(reached, 400);
+}
+
+TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {
+    RandomProblemOptions options;
+    options.columns = 24;
+    options.rows = 20;
+    options.sites = 60;
+    options.most = 5000;
+    const RandomProblem random = randomProblem(2, options);
+    SilentProgress progress;
+    const std::uint64_t wanted = random.problem.totalWeight() * 6 / 10;
+    const Fewest fewest = placeFewest(random.problem, wanted, {}, progress);
+    EXPECT_TRUE(fewest.is_reached);
+    EXPECT_GE(fewest.result.best.value, wanted);
+    EXPECT_LT(fewest.cost, 30);
+    EXPECT_GE(fewest.cost, fewest.least_cost);
+    EXPECT_GE(fewest.least_cost, fewest.cost * 0.6);
+}
+
+TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {
+    CandidateSet set(10);
+    for (std::size_t first = 0; first < 6; first += 2) {
+        CellSet seen(10);
+        for (std::size_t i = first; i < first + 3; ++i) seen.set(i);
+        set.addSite(Pose3(), seen);
+        set.addSite(Pose3(), seen);
+    }
+    Problem problem;
+    problem.weights.assign(10, 1);
+    problem.kinds = {{&set, 1000, 2, 1}};
+    SilentProgress progress;
+    const Fewest fewest = placeFewest(problem, 10, {}, progress);
+    EXPECT_FALSE(fewest.is_reached);
+    EXPECT_EQ(fewest.result.best.value, 7U);
+    EXPECT_EQ(fewest.result.best.chosen.size(), 3U);
+    EXPECT_EQ(fewest.result.bound, 7U);
+    EXPECT_DOUBLE_EQ(fewest.cost, 6);
+}
+
+TEST(PlaceFewest, WhatStandsMayBeEnough) {
+    CandidateSet set(2);
+    Problem problem;
+    problem.weights = {1, 1};
+    problem.met = {1, 0};
+    problem.kinds = {{&set, 5, 1, 1}};
+    SilentProgress progress;
+    const Fewest fewest = placeFewest(problem, 1, {}, progress);
+    EXPECT_TRUE(fewest.is_reached);
+    EXPECT_TRUE(fewest.result.best.chosen.empty());
+    EXPECT_EQ(fewest.least_cost, 0);
+}
+
+}  // namespace
+}  // namespace ispace

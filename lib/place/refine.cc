@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/refine.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "base/number.h"
+#include "place/exact_worth.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kLeastStep = 0.001, kLeastTurn = 0.05;  // metres, degrees
+/// Steps lead to whole multiples of these: layouts are read by people.
+constexpr double kPerMetre = 1e4, kPerDegree = 1e3;
+/// Of all that counts: a step that gains no more is rounding.
+constexpr double kLeastGain = 1e-9;
+/// At one length of steps; a guard against rounding, which would have to win every time.
+constexpr std::size_t kMostRounds = 200;
+
+/// A step of one length along some of the axes.
+struct Way {
+    int x = 0, y = 0, turn = 0;
+
+    [[nodiscard]] int axes() const { return std::abs(x) + std::abs(y) + std::abs(turn); }
+};
+
+/// All ways, those along one axis first, then along two and three.
+std::vector<Way> waysFor(bool turns) {
+    std::vector<Way> ways;
+    ways.reserve(26);
+    for (int axes = 1; axes <= 3; ++axes)
+        for (const int turn : {0, 1, -1})
+            for (const int y : {0, 1, -1})
+                for (const int x : {0, 1, -1})
+                    if (const Way way{x, y, turn}; way.axes() == axes && (turns || turn == 0))
+                        ways.push_back(way);
+    return ways;
+}
+
+/// Length of a step.
+struct Stride {
+    double metres, degrees;
+};
+
+std::vector<Stride> stridesOf(const RefineOptions& options) {
+    std::vector<Stride> strides;
+    double step = options.step, turn = options.turn.degrees();
+    for (;;) {
+        strides.push_back({std::max(step, kLeastStep), std::max(turn, kLeastTurn)});
+        if (step <= kLeastStep && turn <= kLeastTurn) return strides;
+        step /= 2;
+        turn /= 2;
+    }
+}
+
+double onLattice(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+
+Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
+    Pose3 next = pose;
+    next.position.x = onLattice(pose.position.x + way.x * stride.metres, kPerMetre);
+    next.position.y = onLattice(pose.position.y + way.y * stride.metres, kPerMetre);
+    const double heading = pose.heading.degrees() + way.turn * stride.degrees;
+    next.heading =
+        Angle::degrees(onLattice(wrapped(Angle::degrees(heading)).degrees(), kPerDegree));
+    return next;
+}
+
+class Search {
+  public:
+    Search(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
+           const RefineOptions& options,
+           const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress)
+        : sensors_(sensors),
+          accept_(accept),
+          progress_(progress),
+          strides_(stridesOf(options)),
+          worth_(scene, sensors, worth, options),
+          total_(worth_.total()) {
+        poses_.reserve(sensors.size());
+        for (const Movable& sensor : sensors) poses_.push_back(sensor.pose);
+    }
+
+    Refined run() {
+        const std::vector<Pose3> start = poses_;
+        const double before = worth_.value();
+        ++evaluations_;
+        value_ = before;
+        progress_.begin("refining", static_cast<std::int64_t>(strides_.size()));
+        for (const Stride& stride : strides_) {
+            settle(stride);
+            progress_.advance(1);
+        }
+        progress_.end();
+        const double after = worth_.value();
+        ++evaluations_;
+        // Gains were those of single sensors: all together have the last word.
+        if (after < before) return {start, before, before, evaluations_};
+        return {poses_, before, after, evaluations_};
+    }
+
+  private:
+    /// Steps of this length, sensor after sensor, until none helps any more.
+    void settle(const Stride& stride) {
+        const std::size_t count = sensors_.size();
+        std::size_t idle = 0;  // sensors in a row that stay where they are
+        for (std::size_t turn = 0; idle < count && turn < kMostRounds * count; ++turn)
+            idle = improve(turn % count, stride) ? 1 : idle + 1;
+    }
+
+    /// Steps of one sensor as long as they help; false if none did.
+    bool improve(std::size_t sensor, const Stride& stride) {
+        if (progress_.stopped()) return false;
+        worth_.take(sensor);
+        const std::vector<Way> ways = waysFor(worth_.turns(sensor));
+        double gain = worth_.gains(std::span(&poses_[sensor], 1))[0];
+        ++evaluations_;
+        const double first = gain;
+        while (const auto way = bestWay(sensor, ways, stride, gain)) {
+            // On along it as far as it helps.
+            while (bestWay(sensor, std::span(&*way, 1), stride, gain)) continue;
+        }
+        if (gain == first) return false;
+        worth_.put(poses_[sensor]);
+        value_ += gain - first;
+        if (total_ > 0)
+            progress_.note("exact coverage " + formatFixed(100 * value_ / total_, 2) + " %");
+        return true;
+    }
+
+    /// Takes the best step, of those along few axes if one helps; nothing if none does.
+    std::optional<Way> bestWay(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
+                               double& gain) {
+        for (std::size_t begin = 0; begin < ways.size();) {
+            std::size_t end = begin;
+            while (end < ways.size() && ways[end].axes() == ways[begin].axes()) ++end;
+            const auto group = ways.subspan(begin, end - begin);
+            if (const auto way = bestOf(sensor, group, stride, gain)) return way;
+            begin = end;
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Way> bestOf(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
+                              double& gain) {
+        if (progress_.stopped()) return std::nullopt;
+        const SiteJudge* const judge = sensors_[sensor].judge;
+        std::vector<Pose3> trials;
+        std::vector<Way> taken;
+        trials.reserve(ways.size());
+        taken.reserve(ways.size());
+        for (const Way& way : ways) {
+            const Pose3 trial = stepped(poses_[sensor], way, stride);
+            const bool moves = trial.position != poses_[sensor].position;
+            if (moves && judge != nullptr && !judge->isValid(trial.position.onFloor())) continue;
+            trials.push_back(trial);
+            taken.push_back(way);
+        }
+        if (trials.empty()) return std::nullopt;
+        const std::vector<double> gains = worth_.gains(trials);
+        evaluations_ += gains.size();
+        std::optional<std::size_t> best;
+        double most = gain + kLeastGain * total_;
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            if (!(gains[i] > most) || !isAccepted(sensor, trials[i])) continue;
+            most = gains[i];
+            best = i;
+        }
+        if (!best) return std::nullopt;
+        gain = most;
+        poses_[sensor] = trials[*best];
+        return taken[*best];
+    }
+
+    bool isAccepted(std::size_t sensor, const Pose3& trial) {
+        if (!accept_) return true;
+        std::vector<Pose3> poses = poses_;
+        poses[sensor] = trial;
+        return accept_(poses);
+    }
+
+    std::span<const Movable> sensors_;
+    const std::function<bool(const std::vector<Pose3>&)>& accept_;
+    Progress& progress_;
+    std::vector<Stride> strides_;
+    ExactWorth worth_;
+    double total_;
+    double value_ = 0;
+    std::vector<Pose3> poses_;
+    std::size_t evaluations_ = 0;
+};
+
+}  // namespace
+
+Refined refine(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
+               const RefineOptions& options,
+               const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress) {
+    return Search(scene, sensors, worth, options, accept, progress).run();
+}
+
+}  // namespace ispace

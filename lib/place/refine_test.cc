@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/refine.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "base/error.h"
+#include "cover/test_scenes.h"
+#include "place/exact_worth.h"
+
+namespace ispace {
+namespace {
+
+Laser laserOfRange(double range, double fov = 180) {
+    Laser laser;
+    laser.max_range = range;
+    laser.first = Angle::degrees(-fov / 2);
+    laser.beams = static_cast<int>(fov) + 1;
+    return laser;
+}
+
+Pose3 poseAt(double x, double y, double heading = 0) {
+    return {{x, y, kScanHeight}, Angle::degrees(heading), {}, {}};
+}
+
+Refined refined(const Scene& scene, const std::vector<Movable>& movables, const Worth& worth = {},
+                const RefineOptions& options = {},
+                const std::function<bool(const std::vector<Pose3>&)>& accept = {}) {
+    SilentProgress progress;
+    return refine(scene, movables, worth, options, accept, progress);
+}
+
+NamedZone box(double x, double y, double to_x, double to_y) {
+    return {"z", {{x, y}, {to_x, y}, {to_x, to_y}, {x, to_y}}, {(x + to_x) / 2, (y + to_y) / 2}};
+}
+
+bool isOnLattice(double value, double per_unit) {
+    return std::abs(value * per_unit - std::round(value * per_unit)) < 1e-6;
+}
+
+TEST(Refine, ADiscComesOutOfItsCorner) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    const SiteJudge judge(scene.environment, {});
+    const std::vector<Movable> one = {
+        {"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.91234567), &judge}};
+    const Refined result = refined(scene, one);
+    EXPECT_LT(result.before, 0.4 * result.after);
+    EXPECT_NEAR(result.after, std::numbers::pi * 1.5 * 1.5, 1e-4);
+    const Point3 place = result.poses[0].position;
+    EXPECT_LE(std::abs(place.x), 2.505);
+    EXPECT_LE(std::abs(place.y), 1.505);
+    EXPECT_TRUE(isOnLattice(place.x, 1e4) && isOnLattice(place.y, 1e4));
+    EXPECT_EQ(place.z, kScanHeight);
+    EXPECT_EQ(result.poses[0].heading, Angle());
+    EXPECT_LT(result.evaluations, 600U);
+}
+
+TEST(Refine, HalfATurnTurnsToItsBestHeading) {
+    const Scene scene = sceneOf("ispace size=4,4\n");
+    // In a corner with steps of place refused: only towards the room all of it is seen.
+    const std::vector<Movable> one = {
+        {"a", laserOfRange(10, 90), poseAt(-1.99, -1.99, 80), nullptr}};
+    const auto stays = [](const std::vector<Pose3>& poses) {
+        return poses[0].position == poseAt(-1.99, -1.99).position;
+    };
+    const Refined result = refined(scene, one, {}, {}, stays);
+    EXPECT_NEAR(result.poses[0].heading.degrees(), 45, 0.1);
+    EXPECT_NEAR(result.after, 3.99 * 3.99, 0.01);
+    // Half a turn on a wall sees all once it looks away from it; a place free to move finds one.
+    const Pose3 on_wall = poseAt(0, -1.9995, 33.3);
+    const std::vector<Movable> half = {{"a", laserOfRange(10), on_wall, nullptr}};
+    const Refined turned = refined(scene, half, {}, {}, [&](const std::vector<Pose3>& poses) {
+        return poses[0].position == on_wall.position;
+    });
+    EXPECT_NEAR(turned.after, 16, 0.01);
+    EXPECT_NEAR(turned.poses[0].heading.degrees(), 90, 0.1);
+    EXPECT_NEAR(refined(scene, half).after, 16, 0.01);
+}
+
+TEST(Refine, NeverWorseAndEachStepHelped) {
+    const Scene scene = sceneOf(
+        "ispace size=8,6\ndesk at=2,1 heading=30 size=1.2,0.8,0.7\ncube at=-2,-1 size=0.6,0.6,1\n");
+    const SiteJudge judge(scene.environment, {});
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
+    for (int round = 0; round < 6; ++round) {
+        std::vector<Movable> movables;
+        while (movables.size() < 2) {
+            const Pose3 pose = poseAt(x(random), y(random), h(random));
+            if (judge.isValid(pose.position.onFloor()))
+                movables.push_back(
+                    {std::to_string(movables.size()), laserOfRange(3), pose, &judge});
+        }
+        const Refined result = refined(scene, movables);
+        EXPECT_GE(result.after, result.before);
+        EXPECT_NEAR(result.before, ExactWorth(scene, movables, {}, {}).value(), 1e-9);
+        for (std::size_t i = 0; i < movables.size(); ++i) {
+            movables[i].pose = result.poses[i];
+            EXPECT_TRUE(judge.isValid(result.poses[i].position.onFloor()));
+            EXPECT_LE(std::abs(result.poses[i].heading.degrees()), 180);
+        }
+        EXPECT_NEAR(result.after, ExactWorth(scene, movables, {}, {}).value(), 1e-9);
+        // From there on next to nothing is left.
+        EXPECT_NEAR(
+            refined(scene, movables, {}, {.step = 0.001, .turn = Angle::degrees(0.05)}).after,
+            result.after, 1e-4);
+    }
+}
+
+TEST(Refine, StaysWhereNothingHelps) {
+    const Scene scene = sceneOf("ispace size=8,8\n");
+    const Pose3 pose = poseAt(0.123456789, -0.5, 12.3456789);
+    const std::vector<Movable> one = {{"a", laserOfRange(2, 360), pose, nullptr}};
+    const Refined result = refined(scene, one);
+    EXPECT_EQ(result.poses[0], pose);  // not even rounded
+    EXPECT_EQ(result.after, result.before);
+}
+
+TEST(Refine, SameForAnyNumberOfThreads) {
+    const Scene scene = sceneOf("ispace size=8,6\ncube at=-2,-1 size=0.6,0.6,1\n");
+    const std::vector<Movable> two = {{"a", laserOfRange(4), poseAt(-3, 2, 10), nullptr},
+                                      {"b", laserOfRange(3), poseAt(2, -2, 200), nullptr}};
+    const Refined many = refined(scene, two);
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    const Refined one = refined(scene, two);
+    EXPECT_EQ(many.poses, one.poses);
+    EXPECT_EQ(many.after, one.after);
+    EXPECT_EQ(many.evaluations, one.evaluations);
+}
+
+TEST(Refine, AllSensorsTakeTheirTurns) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    const std::vector<Movable> three = {{"a", laserOfRange(1, 360), poseAt(-3.9, -2.9), nullptr},
+                                        {"b", laserOfRange(1, 360), poseAt(3.9, -2.9), nullptr},
+                                        {"c", laserOfRange(1, 360), poseAt(3.9, 2.9), nullptr}};
+    EXPECT_NEAR(refined(scene, three).after, 3 * std::numbers::pi, 1e-4);
+}
+
+TEST(Refine, AcceptMayRefuse) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), nullptr}};
+    const auto nothing = [](const std::vector<Pose3>&) { return false; };
+    EXPECT_EQ(refined(scene, one, {}, {}, nothing).poses[0], one[0].pose);
+    const auto left_half = [](const std::vector<Pose3>& poses) {
+        return poses[0].position.x <= -3.5;
+    };
+    const Refined result = refined(scene, one, {}, {}, left_half);
+    EXPECT_NEAR(result.poses[0].position.x, -3.5, 0.002);
+    EXPECT_GT(result.after, result.before);
+}
+
+TEST(Refine, InvalidPlacesAreNeverTaken) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    SiteRules rules;
+    rules.keep_out = {{{-3.5, -3}, {4, -3}, {4, 3}, {-3.5, 3}}};
+    const SiteJudge judge(scene.environment, std::move(rules));
+    const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), &judge}};
+    const Refined result = refined(scene, one);
+    EXPECT_LT(result.poses[0].position.x, -3.5);
+    EXPECT_NEAR(result.poses[0].position.x, -3.5, 0.002);
+    EXPECT_GT(std::abs(result.poses[0].position.y), -1.51);
+}
+
+TEST(Refine, GoesWhereItIsWorthMore) {
+    const Scene scene = sceneOf("ispace size=12,6\n");
+    const std::vector<Movable> one = {{"a", laserOfRange(1, 360), poseAt(0.5, 0), nullptr}};
+    Worth worth;
+    worth.weights = {{box(1, -2, 5, 2), 3}};
+    const Refined weighted = refined(scene, one, worth);
+    EXPECT_NEAR(weighted.after, 3 * std::numbers::pi, 1e-4);
+    worth = {};
+    worth.targets = {box(-5, -2, 0, 2)};
+    const Refined targeted = refined(scene, one, worth);
+    EXPECT_NEAR(targeted.after, std::numbers::pi, 1e-4);
+    EXPECT_LE(targeted.poses[0].position.x, -0.99);
+}
+
+TEST(Refine, DemandDrawsTogetherWhatElsePartsFromEachOther) {
+    const Scene scene = sceneOf("ispace size=12,6\nlaser id=s at=0,0 range=1 fov=359\n");
+    const std::vector<Movable> one = {{"a", laserOfRange(1, 360), poseAt(1, 0.3), nullptr}};
+    const Refined apart = refined(scene, one);
+    EXPECT_NEAR(apart.after, 2 * std::numbers::pi, 0.02);
+    EXPECT_GE(length(apart.poses[0].position.onFloor() - Point2{}), 1.98);
+    const Refined together = refined(scene, one, {}, {.demand = 2});
+    EXPECT_NEAR(together.after, std::numbers::pi, 0.02);
+    EXPECT_LE(length(together.poses[0].position.onFloor() - Point2{}), 0.03);
+}
+
+/// Says stop from the start on.
+class Stopped final : public Progress {
+  public:
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++begun; }
+    void advance(std::int64_t /*count*/) override {}
+    void end() override { ++ended; }
+    [[nodiscard]] bool stopped() const override { return true; }
+    int begun = 0, ended = 0;
+};
+
+TEST(Refine, EndsWhenItIsToldTo) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), nullptr}};
+    Stopped progress;
+    const Refined result = refine(scene, one, {}, {}, {}, progress);
+    EXPECT_EQ(result.poses[0], one[0].pose);
+    EXPECT_EQ(progress.begun, 1);
+    EXPECT_EQ(progress.ended, 1);
+    EXPECT_TRUE(refined(scene, {}).poses.empty());
+}
+
+}  // namespace
+}  // namespace ispace

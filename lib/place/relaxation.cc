@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/relaxation.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+namespace ispace {
+namespace {
+
+constexpr std::size_t kMostWays = 20'000;
+// Costs are decimal numbers: three of 0.1 are within a budget of 0.3. A bound may let in too much.
+constexpr double kBudgetSlack = 1e-9;
+
+}  // namespace
+
+RelaxedCells::RelaxedCells(const Problem& problem)
+    : weights(problem.cells()), needs(problem.cells(), 1) {
+    const std::uint64_t total = std::max<std::uint64_t>(problem.totalWeight(), 1);
+    scale = static_cast<std::uint32_t>(
+        std::max<std::uint64_t>(std::numeric_limits<std::uint32_t>::max() / total, 1));
+    int common = 0;
+    for (const Kind& kind : problem.kinds) common = std::gcd(common, kind.share);
+    common = std::max(common, 1);
+    shares.reserve(problem.kinds.size());
+    for (const Kind& kind : problem.kinds)
+        shares.push_back(static_cast<std::uint16_t>(kind.share / common));
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const int met = problem.met.empty() ? 0 : problem.met[i];
+        const std::uint32_t weight = problem.weights[i] * scale;
+        if (met >= problem.demand) {
+            settled += weight;
+            continue;
+        }
+        weights[i] = weight;
+        needs[i] = static_cast<std::uint16_t>((problem.demand - met + common - 1) / common);
+    }
+}
+
+CountChoice::CountChoice(const Problem& problem, std::span<const std::size_t> limits) {
+    if (problem.budget) budget_ = *problem.budget * (1 + kBudgetSlack);
+    const std::size_t kinds = problem.kinds.size();
+    costs_.reserve(kinds);
+    most_.reserve(kinds);
+    for (std::size_t k = 0; k < kinds; ++k) {
+        costs_.push_back(problem.kinds[k].cost);
+        most_.push_back(
+            std::min(static_cast<std::size_t>(std::max(problem.kinds[k].most, 0)), limits[k]));
+        most_[k] = fitting(k, budget_);
+    }
+    double cost = 0;
+    for (std::size_t k = 0; k < kinds; ++k) cost += costs_[k] * static_cast<double>(most_[k]);
+    if (cost <= budget_) {
+        ways_ = {most_};
+        total_ = std::accumulate(most_.begin(), most_.end(), std::size_t{0});
+        return;
+    }
+    std::vector<std::size_t> counts(kinds, 0);
+    list(counts, 0, budget_);
+    // The cheapest first gives the most sensors.
+    std::vector<std::size_t> order(kinds);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return costs_[a] < costs_[b]; });
+    double left = budget_;
+    for (const std::size_t kind : order) {
+        const std::size_t count = fitting(kind, left);
+        left -= static_cast<double>(count) * costs_[kind];
+        total_ += count;
+    }
+    if (!is_listed_) ways_.clear();
+}
+
+std::size_t CountChoice::fitting(std::size_t kind, double left) const {
+    if (std::isinf(left)) return most_[kind];
+    const double count = std::floor(std::max(left, 0.0) / costs_[kind] * (1 + kBudgetSlack));
+    return count < static_cast<double>(most_[kind]) ? static_cast<std::size_t>(count) : most_[kind];
+}
+
+void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, double left) {
+    if (!is_listed_) return;
+    const std::size_t most = fitting(kind, left);
+    if (kind + 1 == counts.size()) {
+        counts[kind] = most;
+        ways_.push_back(counts);
+        is_listed_ = ways_.size() <= kMostWays;
+        return;
+    }
+    for (std::size_t n = most + 1; n-- > 0;) {
+        counts[kind] = n;
+        list(counts, kind + 1, left - static_cast<double>(n) * costs_[kind]);
+    }
+}
+
+CountChoice::Best CountChoice::best(std::span<const std::vector<std::uint64_t>> sums) const {
+    const std::size_t kinds = sums.size();
+    Best best;
+    best.with.assign(kinds, 0);
+    best.may.assign(kinds, 0);
+    const auto upTo = [&sums](std::size_t kind, std::size_t count) {
+        return sums[kind][std::min(count, sums[kind].size() - 1)];
+    };
+    if (!is_listed_) {
+        best.value = knapsack(sums, best.counts);
+        for (std::size_t k = 0; k < kinds; ++k) best.may[k] = most_[k] > 0;
+        best.with.assign(kinds, best.value);
+        return best;
+    }
+    for (const auto& way : ways_) {
+        std::uint64_t value = 0;
+        for (std::size_t k = 0; k < kinds; ++k) value += upTo(k, way[k]);
+        if (best.counts.empty() || value > best.value) {
+            best.value = value;
+            best.counts = way;
+        }
+        for (std::size_t k = 0; k < kinds; ++k) {
+            if (way[k] == 0) continue;
+            best.may[k] = 1;
+            best.with[k] = std::max(best.with[k], value - upTo(k, way[k]) + upTo(k, way[k] - 1));
+        }
+    }
+    for (std::size_t k = 0; k < kinds; ++k)
+        best.counts[k] = std::min(best.counts[k], sums[k].size() - 1);
+    return best;
+}
+
+std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> sums,
+                                    std::vector<std::size_t>& counts) const {
+    struct Item {
+        double per_cost, price;
+        std::size_t kind;
+    };
+    std::vector<Item> items;
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        for (std::size_t n = 1; n < sums[k].size(); ++n) {
+            const auto price = static_cast<double>(sums[k][n] - sums[k][n - 1]);
+            items.push_back({price / costs_[k], price, k});
+        }
+    std::stable_sort(items.begin(), items.end(),
+                     [](const Item& a, const Item& b) { return a.per_cost > b.per_cost; });
+    counts.assign(sums.size(), 0);
+    double left = budget_, value = 0;
+    for (const Item& item : items) {
+        const double cost = costs_[item.kind];
+        value += item.price * std::min(1.0, left / cost);
+        if (cost > left) break;
+        left -= cost;
+        ++counts[item.kind];
+    }
+    // Rounding errors are far below a millionth of a sum below 2^53.
+    return static_cast<std::uint64_t>(std::ceil(value * (1 + 1e-9))) + 1;
+}
+
+void CountChoice::lowerByCount(std::span<const std::vector<std::uint64_t>> sums,
+                               std::uint64_t settled, std::span<std::uint64_t> bounds) const {
+    assert(bounds.size() == total_ + 1);
+    // Within `most` alone: prices of a kind fall, so the best of all are the best prefixes.
+    std::vector<std::uint64_t> prices;
+    for (const auto& of_kind : sums)
+        for (std::size_t n = 1; n < of_kind.size(); ++n)
+            prices.push_back(of_kind[n] - of_kind[n - 1]);
+    std::sort(prices.begin(), prices.end(), std::greater<>());
+    std::uint64_t value = settled;
+    const std::uint64_t all = settled + best(sums).value;
+    for (std::size_t n = 0; n < bounds.size(); ++n) {
+        if (n > 0 && n <= prices.size()) value += prices[n - 1];
+        bounds[n] = std::min({bounds[n], value, all});
+    }
+}
+
+}  // namespace ispace

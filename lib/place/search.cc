@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/search.h"
+
+#include <algorithm>
+
+#include "place/exact.h"
+#include "place/lagrange.h"
+#include "place/search_notes.h"
+
+namespace ispace {
+namespace {
+
+// A bound that is to be quick, and one that is to be good.
+constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
+constexpr double kSmallGap = 0.001;
+
+LagrangeLimits limitsOf(const SearchOptions& options) {
+    LagrangeLimits limits;
+    switch (options.optimizer) {
+        case Optimizer::Greedy:
+            limits = kQuick;
+            limits.gap = std::max(limits.gap, options.gap);
+            break;
+        case Optimizer::Swap:
+            limits.gap = std::max(kSmallGap, options.gap);
+            break;
+        case Optimizer::Exact:
+            limits.gap = options.gap;
+            break;
+    }
+    return limits;
+}
+
+}  // namespace
+
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
+    SearchResult result;
+    result.bound = problem.totalWeight();
+    result.best = placeGreedily(problem, progress);
+    if (!isFeasible(problem, result.best.chosen)) result.best = {{}, valueOf(problem, {})};
+    noteProgress(problem, result, progress);
+    if (options.optimizer != Optimizer::Greedy && !progress.stopped())
+        result.best = improveBySwaps(problem, result.best, options.swap, progress);
+    if (!progress.stopped()) {
+        LagrangeLimits limits = limitsOf(options);
+        limits.cut = result.best.value;
+        const Bound bound = boundWithin(problem, result.best.chosen, limits, progress);
+        result.bound = bound.value;
+        result.bound_by_count = bound.by_count;
+        noteProgress(problem, result, progress);
+        if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
+            result.best.value < result.bound)
+            result = branchAndBound(problem, bound, std::move(result), options.gap, progress);
+    }
+    if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
+    if (!result.bound_by_count.empty())
+        for (std::uint64_t& count : result.bound_by_count) count = std::min(count, result.bound);
+    return result;
+}
+
+}  // namespace ispace

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/progress.h"
+#include "place/problem.h"
+
+namespace ispace {
+
+/// Places one sensor after another, each on the candidate that adds most to those before it (thesis
+/// section 4.6), among equals on the first; in problem.order if there is one, else the sensor that
+/// adds most, with a budget: most for its cost (and then the better of that and of plain gain).
+/// With a demand above 1 what counts while searching is by how much the demand is met: of each cell
+/// min(met, demand) parts, so that the first sensor gains, too. Places all that fit, also those
+/// that add nothing. Lazy (Minoux 1978): a place is looked at again only while what it added before
+/// is more than the best so far. Without demand and budget its value is at least 1 - 1/e of the
+/// best.
+///
+/// With is_connected each sensor after the first sees a cell that those before it see, if there is
+/// such a candidate.
+Solution placeGreedily(const Problem& problem, Progress& progress);
+
+struct SwapOptions {
+    int starts = 20;  ///< from greedy and from so many others
+    std::uint64_t seed = 0;
+};
+
+/// Local search: while it helps, one sensor is moved to the candidate that is best for it given the
+/// others (and sensors of another kind are bought instead, where there is a budget); from the
+/// greedy solution and from random ones, each from its own random numbers, in parallel. The best
+/// result, the one of the first start among equals: the same for any number of threads. Never worse
+/// than `start`. \pre start is feasible
+Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
+                        Progress& progress);
+
+/// An upper bound, and the multipliers that prove it.
+struct Bound {
+    std::uint64_t value = 0;  ///< no feasible set of choices is worth more
+    /// Lagrange multipliers of the cells, in units of 1 / scale of those of weights; each at most
+    /// its cell's weight.
+    std::vector<std::uint32_t> multipliers;
+    std::uint32_t scale = 1;
+    /// Per kind, the candidates that may be part of something worth more than `cut`, ascending; the
+    /// others are ruled out.
+    std::vector<std::vector<std::uint32_t>> survivors;
+    std::uint64_t cut = 0;
+    /// bounds[n]: no n sensors (of any kinds, within the budget) are worth more; n from 0 to the
+    /// number of sensors. Never decreases.
+    std::vector<std::uint64_t> by_count;
+};
+
+/// Lagrangian relaxation: of max sum w_i y_i, demand y_i <= met_i + sum_j share_j a_ij x_j, 0 <= y
+/// <= 1, the rows of the cells; multipliers by a subgradient method that ends where bound and
+/// `best` are within `gap` (a fraction of the bound; 0: equal) or nothing moves any more. The
+/// arithmetic is in whole numbers: the bound holds exactly. The same for any number of threads.
+Bound boundByLagrange(const Problem& problem, const Solution& best, double gap, Progress& progress);
+
+/// What a search found and how good it is.
+struct SearchResult {
+    Solution best;
+    std::uint64_t bound = 0;                    ///< no feasible set of choices is worth more
+    std::vector<std::uint64_t> bound_by_count;  ///< as Bound::by_count; empty if not computed
+    bool is_complete = true;                    ///< false if the search was stopped
+};
+
+enum class Optimizer { Greedy, Swap, Exact };
+
+struct SearchOptions {
+    Optimizer optimizer = Optimizer::Swap;
+    double gap = 0;  ///< of value to bound, as a fraction of the bound, that is good enough
+    SwapOptions swap = SwapOptions();
+};
+
+/// Greedy, then by options: with swaps, with the bound of Lagrange for all three (for Greedy a
+/// quick one), and for Exact with branch and bound until value and bound are within the gap.
+/// Candidates that the bound rules out (their reduced value) are dropped first, cells that the same
+/// remaining candidates see are merged, then the tree is searched. Ends early, is_complete = false,
+/// where progress says so. The same for any number of threads unless it is stopped.
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
+
+/// The least that reaches a value.
+struct Fewest {
+    /// The cheapest found that reaches the value, with the bound of what costs no more; else the
+    /// best there is, without sensors that add nothing.
+    SearchResult result;
+    bool is_reached = false;
+    double cost = 0;        ///< of result
+    double least_cost = 0;  ///< nothing cheaper reaches it
+};
+
+/// The fewest sensors, or the cheapest where costs differ, that are worth at least `wanted`: greedy
+/// until it is reached, then searches with less and less (with the optimiser asked for), while the
+/// bounds for less rise to meet it. Kinds without limit have a `most` of some thousands.
+Fewest placeFewest(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
+                   Progress& progress);
+
+}  // namespace ispace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "layout/scene.h"
+#include "layout/sensor_spec.h"
+
+namespace ispace {
+
+/// The keywords of what can be placed.
+constexpr std::string_view kArrangedKinds[] = {"laser", "ranger", "ultrasound"};
+
+/// Most sensors of a group whose number is for the search to find.
+constexpr int kMostOpen = 1000;
+
+/// Sensors that are alike, to be placed: one of the scene without a place, or those of one
+/// --sensor.
+struct SensorGroup {
+    Record record;  ///< without place
+    SensorDevice device;
+    std::string id;           ///< of one that has one; else the next free ones of its keyword
+    bool is_pending = false;  ///< of the scene; else new
+    int most = 1;
+};
+
+/// All sensors to be placed: those the scene has without place, then `added`. `open`: of an added
+/// one without count the search finds the number, up to kMostOpen.
+/// \throws UsageError if an added record has a place or an id that is taken, FormatError as laserOf
+std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
+                                       const DeviceCatalogue& devices, bool open);
+
+/// The layout with the places of its sensors taken away, but for those that one of the globs names
+/// and for those that ride on something: so they are placed anew.
+/// \throws UsageError for a glob that names no sensor with a place
+Document withoutPlaces(const Document& layout, std::span<const std::string> fixed);
+
+}  // namespace ispace

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "env/environment.h"
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// A place with the headings to try there, all different, the order of preference among equals.
+struct Site {
+    Point2 place;
+    std::vector<Angle> headings;
+    friend bool operator==(const Site&, const Site&) = default;
+};
+
+/// `count` headings 360 / count apart, the first 0.
+std::vector<Angle> headingsAround(int count);
+
+// ---- Strategies of the thesis
+
+/// Density of the thesis' Ordinary Grid (section 4.4.2).
+struct GridSearch {
+    int x = 1, y = 1;  ///< interior grid lines along x and y
+    int headings = 8;  ///< 360/headings apart, the first 0
+};
+
+/// Eq. (4.1) and (4.2) with seg = 5, rounded down, at least 1; 8 headings.
+GridSearch defaultGridSearch(const Box2& limits, double max_range);
+
+/// The x * y crossings x_i = xmin + i (xmax - xmin) / (X + 1), i = 1..X, likewise y; y runs
+/// slowest.
+std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
+
+/// Along Wall (section 4.4.5): on every wall of the indoor region `times` places at equal distances
+/// (the first and last half a distance from its ends), `dist` from it along the inner normal, which
+/// is their heading. Walls are the lines of its outline and holes, from corner to corner: pieces
+/// that go straight on, as where another wall ends on one, are one wall.
+///
+/// "At the end of the wall line vector, concavity environment may ask for more candidates of
+/// orientation", says the thesis, and not which: the first and the last place of a wall also have
+/// the heading halfway to the neighbouring wall's normal and that normal. Around a corner that juts
+/// into the room a part of it lies behind the wall's line, where a sensor of 180 degrees that faces
+/// the normal does not look; in a corner of the room one with less than 180 degrees sees more
+/// across it. Valid or not: a place may lie beyond another wall. O(n times) for n lines
+/// \pre times >= 0
+std::vector<Site> wallSites(const Region& indoor, double dist, int times);
+/// The same along all walls that a sensor at this height can hang on: also on both sides of those
+/// that stand within the indoor region, as between rooms that open doors join; along the faces of
+/// thick ones; and not across open doors, but where they lead out. O((n + times) log n)
+std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times);
+
+/// Hierarchical Random (section 4.4.3): place k of a sequence, anywhere within limits, or in the
+/// disc of radius `scope` about `center`, both evenly over the area. Draws from (seed, id of the
+/// sensor, stage): the same for any number of threads. Places that are not valid are drawn anew by
+/// the caller, who counts k on. \pre k < 2^54, stage < 2^32 - 1
+Point2 randomPlace(const Box2& limits, std::uint64_t seed, const std::string& id, std::uint64_t k);
+Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const std::string& id,
+                        std::uint64_t stage, std::uint64_t k);
+
+// ---- Denser candidates
+
+/// Points of a lattice with this step that begins step / 2 inside the limits' lower corner, below
+/// the upper one; y runs slowest. \pre step > 0 \throws UsageError for more than a million
+std::vector<Point2> latticePlaces(const Box2& limits, double step);
+
+/// About every `step` along the walls of the indoor region and the objects that touch or stand in
+/// it at this height, `off` from them on the free side: outline and holes of the free floor, edges
+/// in order. Over a line of at least `step` places are spread evenly, half a distance from its
+/// ends; shorter ones that follow each other, of round and ragged things, share theirs. Places may
+/// lie beyond another wall. Also on both sides of those `sheets` that stand in the free floor, of
+/// which it does not know: walls without thickness, as between rooms that open doors join.
+/// \pre step > 0 \throws UsageError for more than a million
+std::vector<Point2> placesAlong(const std::vector<Region>& free_floor, double step, double off,
+                                std::span<const Segment2> sheets = {});
+
+/// Along the medial axis of the free floor, one about every `step`: where the nearest walls lie on
+/// different sides, seen at least about 90 degrees apart (a right-angled corner of a room still
+/// counts), and no nearer than step / 3.
+///
+/// Voronoi vertices of samples of the boundary, step / 3 apart, of which those whose samples are
+/// seen at a wide angle are near the axis (Dey and Zhao, Approximating the medial axis from the
+/// Voronoi diagram with a convergence guarantee, 2004); one in each square of a lattice of `step`,
+/// the farthest from all walls; `sheets` in the free floor are walls too. The squares row by row
+/// from the lower left. A moved plan has the same places, moved. O(n log n) for n samples.
+/// \pre step > 0 \throws UsageError for more than some million samples
+std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double step,
+                                 std::span<const Segment2> sheets = {});
+
+/// Sensors under a bar hang this far below it, in metres: bars are closed.
+constexpr double kUnderBar = 0.01;
+/// Under the bars of all `infra` frames, about every `step` of each bar, kUnderBar below it. In the
+/// order of the records, rows before columns. \pre step > 0
+std::vector<Point3> framePlaces(const Environment& environment, double step);
+
+// ---- Which places are valid
+
+/// Where sensors must not or only may stand. Distances are kept to within a micrometre
+/// (kWeldDistance), in the place's favour: what lies just as far off as is asked for is valid.
+struct SiteRules {
+    double height = kScanHeight;
+    double clearance = 0;           ///< least distance from walls and objects at this height
+    std::vector<Polygon> keep_out;  ///< closed
+    std::vector<Polygon> keep_in;   ///< closed; if any: in one of them
+    /// Places must be this near to the boundary of the indoor region or a wall at this height
+    /// (mounted on a wall).
+    std::optional<double> wall_within;
+};
+
+/// Judges places against rules. Thread-safe once built. O(log n) typically.
+class SiteJudge {
+  public:
+    SiteJudge(const Environment& environment, SiteRules rules);
+    ~SiteJudge();
+    SiteJudge(const SiteJudge&) = delete;
+    SiteJudge& operator=(const SiteJudge&) = delete;
+    /// Strictly indoors (Insider Judge), in no solid and on no wall at the height, and within the
+    /// rules. But for distances, exact.
+    [[nodiscard]] bool isValid(Point2 place) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<const Data> data_;
+};
+
+/// Those that are valid, in their order; shared out over all cores. Each place once, where it comes
+/// first, with the headings of all.
+std::vector<Site> validSites(const SiteJudge& judge, const std::vector<Site>& sites,
+                             Progress& progress);
+
+/// A list of candidates from a CSV text: `x,y` or `x,y,heading` a line, in metres and degrees; `#`
+/// begins a comment, a header line `x,y…` before them is passed over. Lines without heading get
+/// `headings`; places with several lines are one site, where they come first.
+/// \throws FormatError with line and column of all that is wrong
+std::vector<Site> readSites(const std::string& text, const std::string& name,
+                            const std::vector<Angle>& headings);
+
+}  // namespace ispace

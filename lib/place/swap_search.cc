@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <mutex>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "base/random.h"
+#include "place/connection.h"
+#include "place/local_search.h"
+#include "place/search.h"
+
+namespace ispace {
+
+namespace {
+
+/// Tells the best value so far.
+class Herald {
+  public:
+    Herald(const Problem& problem, Progress& progress)
+        : total_(std::max<std::uint64_t>(1, problem.totalWeight())), progress_(progress) {}
+    void tell(std::uint64_t value) {
+        const std::lock_guard lock(mutex_);
+        if (value <= best_) return;
+        best_ = value;
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "best %.1f %%",
+                      100.0 * static_cast<double>(value) / static_cast<double>(total_));
+        progress_.note(text.data());
+    }
+
+  private:
+    std::uint64_t total_, best_ = 0;
+    Progress& progress_;
+    std::mutex mutex_;
+};
+
+/// Draws candidates, the more often the more they add alone.
+class RandomPlaces {
+  public:
+    explicit RandomPlaces(const SearchBasis& basis) {
+        sums_.reserve(basis.alone.size());
+        for (const std::vector<std::uint32_t>& alone : basis.alone) {
+            std::vector<double>& sums = sums_.emplace_back();
+            sums.reserve(alone.size());
+            double sum = 0;
+            for (const std::uint32_t parts : alone) sums.push_back(sum += parts);
+        }
+    }
+    /// By a number in [0, 1).
+    [[nodiscard]] std::size_t candidate(std::size_t kind, float where) const {
+        const std::vector<double>& sums = sums_[kind];
+        const auto found = std::upper_bound(sums.begin(), sums.end(), sums.back() * double{where});
+        return std::min(static_cast<std::size_t>(found - sums.begin()), sums.size() - 1);
+    }
+
+  private:
+    std::vector<std::vector<double>> sums_;  // per kind: what candidates up to each add
+};
+
+/// Sensors of a start that are random; greedy placement adds the others.
+constexpr std::size_t kRandomSensors = 8;
+/// The best end of each so many starts is searched about: so often two of its sensors are taken
+/// away, one is put elsewhere by chance and one where it is best. Measured with 3 to 12 sensors:
+/// this halves what 20 starts lose, for as much time again.
+constexpr std::size_t kStartsPerKicked = 5;
+constexpr std::uint64_t kKicks = 10;
+
+/// Where a start has come to.
+struct End {
+    std::size_t start = 0;
+    std::uint64_t value = 0, parts = 0;
+    double cost = std::numeric_limits<double>::infinity();
+    std::vector<Choice> chosen;
+
+    End() = default;
+    End(std::size_t from, const CoverageState& state)
+        : start(from),
+          value(state.value()),
+          parts(state.parts()),
+          cost(state.problem().budget ? state.cost() : 0),
+          chosen(state.chosen()) {}
+    [[nodiscard]] bool isBetterThan(const End& other) const {
+        return std::tuple(value, parts, -cost) > std::tuple(other.value, other.parts, -other.cost);
+    }
+};
+
+/// The searches from all starts.
+class SwapSearch {
+  public:
+    SwapSearch(const Problem& problem, std::uint64_t seed, Progress& progress)
+        : basis_(problem),
+          places_(basis_),
+          seed_(seed),
+          progress_(progress),
+          herald_(problem, progress) {}
+
+    /// From what is given (start 0) or from random sensors.
+    End searchFrom(std::size_t start, const std::vector<Choice>& given) {
+        CoverageState state = basis_.emptyState();
+        LocalSearch search(basis_, cache_, progress_);
+        if (start == 0) {
+            for (const Choice& choice : given) state.add(choice);
+        } else {
+            std::array<float, 2 * kRandomSensors> draws{};
+            draw({seed_, Purpose::Placement, 0, start}, 0, {.uniform = draws});
+            for (std::size_t i = 0; i < kRandomSensors; ++i)
+                addRandom(state, draws[2 * i], draws[2 * i + 1]);
+            if (basis_.problem.demand == 1)
+                search.fill(state);
+            else
+                placeRest(basis_, false, state, progress_);
+        }
+        search.improve(state);
+        herald_.tell(state.value());
+        return {start, state};
+    }
+
+    /// From an end on, by chance.
+    End searchAbout(const End& end) {
+        CoverageState state = basis_.emptyState();
+        for (const Choice& choice : end.chosen) state.add(choice);
+        LocalSearch search(basis_, cache_, progress_);
+        End best = end;
+        for (std::uint64_t kick = 1; kick <= kKicks && !progress_.stopped(); ++kick) {
+            const std::vector<Choice> before = state.chosen();
+            kickOut(state, {seed_, Purpose::Placement, kick, end.start});
+            search.fill(state);
+            // What is left may be in parts that no candidate joins.
+            if (isFeasible(basis_.problem, state.chosen())) {
+                search.improve(state);
+                End next(end.start, state);
+                if (!best.isBetterThan(next)) {
+                    best = std::move(next);
+                    continue;
+                }
+            }
+            state.clear();
+            for (const Choice& choice : before) state.add(choice);
+        }
+        herald_.tell(best.value);
+        return best;
+    }
+
+  private:
+    /// Adds a sensor of any kind that may be added, somewhere; not if it does not hang together
+    /// with the others and has to. Both numbers are in [0, 1).
+    void addRandom(CoverageState& state, float which, float where) const {
+        std::vector<std::size_t> kinds;
+        kinds.reserve(basis_.limits.size());
+        for (std::size_t kind = 0; kind < basis_.limits.size(); ++kind)
+            if (state.canTake(kind, basis_.limits[kind])) kinds.push_back(kind);
+        if (kinds.empty()) return;
+        const std::size_t kind = kinds[indexOf(which, kinds.size())];
+        const Choice choice{kind, places_.candidate(kind, where)};
+        const bool is_joined = !basis_.problem.is_connected ||
+                               Connection(basis_.problem, state.chosen()).isJoinedBy(choice);
+        if (is_joined) state.add(choice);
+    }
+
+    void kickOut(CoverageState& state, const RandomKey& key) const {
+        std::array<float, 4> draws{};
+        draw(key, 0, {.uniform = draws});
+        for (std::size_t i = 0; i < 2 && !state.chosen().empty(); ++i)
+            state.removeAt(indexOf(draws[i], state.chosen().size()));
+        addRandom(state, draws[2], draws[3]);
+    }
+
+    static std::size_t indexOf(float number, std::size_t size) {
+        return std::min(static_cast<std::size_t>(number * static_cast<float>(size)), size - 1);
+    }
+
+    SearchBasis basis_;
+    RandomPlaces places_;
+    std::uint64_t seed_;
+    Progress& progress_;
+    Herald herald_;
+    ResponseCache cache_;
+};
+
+/// Those from which to search on: the best, each set of choices once.
+std::vector<End> bestOf(std::vector<End> ends, std::size_t count) {
+    std::stable_sort(ends.begin(), ends.end(),
+                     [](const End& a, const End& b) { return a.isBetterThan(b); });
+    std::vector<End> best;
+    std::set<std::vector<Choice>> seen;
+    for (End& end : ends) {
+        std::vector<Choice> chosen = end.chosen;
+        std::sort(chosen.begin(), chosen.end());
+        if (best.size() < count && seen.insert(std::move(chosen)).second)
+            best.push_back(std::move(end));
+    }
+    return best;
+}
+
+/// The choices in the order of kinds that the problem asks for.
+std::vector<Choice> inOrder(const Problem& problem, std::vector<Choice> chosen) {
+    std::vector<Choice> ordered;
+    ordered.reserve(chosen.size());
+    for (const std::size_t kind : problem.order) {
+        const auto found = std::find_if(chosen.begin(), chosen.end(), [kind](const Choice& choice) {
+            return choice.kind == kind;
+        });
+        if (found == chosen.end()) continue;
+        ordered.push_back(*found);
+        chosen.erase(found);
+    }
+    ordered.insert(ordered.end(), chosen.begin(), chosen.end());
+    return ordered;
+}
+
+}  // namespace
+
+Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
+                        Progress& progress) {
+    const auto starts = static_cast<std::size_t>(std::max(0, options.starts));
+    const std::size_t kicked = (starts + kStartsPerKicked - 1) / kStartsPerKicked;
+    progress.begin("improving", static_cast<std::int64_t>(1 + starts + kicked));
+    SwapSearch search(problem, options.seed, progress);
+    std::vector<End> ends(starts + 1);
+    tbb::parallel_for(std::size_t{0}, starts + 1, [&](std::size_t i) {
+        if (i == 0 || !progress.stopped()) ends[i] = search.searchFrom(i, start.chosen);
+        progress.advance(1);
+    });
+    const auto best_of = [](const std::vector<End>& some) {
+        return *std::min_element(some.begin(), some.end(),
+                                 [](const End& a, const End& b) { return a.isBetterThan(b); });
+    };
+    End best = best_of(ends);
+    if (kicked > 0 && best.chosen.size() > 1) {
+        std::vector<End> more = bestOf(std::move(ends), kicked);
+        tbb::parallel_for(std::size_t{0}, more.size(),
+                          [&](std::size_t i) { more[i] = search.searchAbout(more[i]); });
+        const End other = best_of(more);
+        if (other.isBetterThan(best)) best = other;
+    }
+    progress.advance(static_cast<std::int64_t>(kicked));
+    progress.end();
+    return {inOrder(problem, std::move(best.chosen)), best.value};
+}
+
+}  // namespace ispace

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The candidates of the thesis: Ordinary Grid, Along Wall, Hierarchical Random.
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "base/random.h"
+#include "geom/boolean.h"
+#include "place/sites.h"
+#include "place/wall_curves.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kSegments = 5;  // "seg" of eq. (4.1) and (4.2)
+
+int linesAlong(double extent, double max_range) {
+    constexpr double kMost = 10000;
+    const double lines = std::floor(extent / max_range * kSegments - 1);
+    return static_cast<int>(std::clamp(lines, 1.0, kMost));
+}
+
+}  // namespace
+
+std::vector<Angle> headingsAround(int count) {
+    std::vector<Angle> headings;
+    headings.reserve(static_cast<std::size_t>(std::max(0, count)));
+    for (int i = 0; i < count; ++i) headings.push_back(Angle::degrees(360.0 * i / count));
+    return headings;
+}
+
+GridSearch defaultGridSearch(const Box2& limits, double max_range) {
+    return {linesAlong(limits.width(), max_range), linesAlong(limits.depth(), max_range), 8};
+}
+
+std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {
+    std::vector<Point2> places;
+    places.reserve(static_cast<std::size_t>(search.x) * static_cast<std::size_t>(search.y));
+    for (int j = 1; j <= search.y; ++j)
+        for (int i = 1; i <= search.x; ++i)
+            places.push_back({limits.low.x + i * limits.width() / (search.x + 1),
+                              limits.low.y + j * limits.depth() / (search.y + 1)});
+    return places;
+}
+
+namespace {
+
+/// Adds the headings at an end of a wall, for the sensor that shall see around the corner.
+/// `turn` leads from the wall's normal to the neighbour's, on the side of the room.
+void addTurned(Site& site, Angle normal, Angle turn) {
+    for (const Angle heading : {wrapped(normal + 0.5 * turn), wrapped(normal + turn)})
+        if (std::find(site.headings.begin(), site.headings.end(), heading) == site.headings.end())
+            site.headings.push_back(heading);
+}
+
+/// From one normal to the next of a curve; where a sheet ends, around that end.
+Angle turnBetween(Angle normal, Angle next) {
+    const Angle turn = wrapped(next - normal);
+    return turn == Angle::degrees(180) ? -turn : turn;
+}
+
+void addWallSites(const Polygon& curve, double dist, int times, std::vector<Site>& sites) {
+    const Polygon corners = wallCorners(curve);
+    const std::size_t n = corners.size();
+    if (n < 2) return;
+    std::vector<Angle> normals;
+    normals.reserve(n);
+    forEachEdge(corners, [&](const Segment2& wall) {
+        const Vec2 inner = perpendicular(wall.b - wall.a);
+        normals.push_back(directionOf(inner.x, inner.y));
+    });
+    for (std::size_t i = 0; i < n; ++i) {
+        const Point2 from = corners[i];
+        const Vec2 along = corners[(i + 1) % n] - from;
+        const Vec2 off = (dist / length(along)) * perpendicular(along);
+        const Angle normal = normals[i];
+        for (int k = 0; k < times; ++k) {
+            Site site{from + ((k + 0.5) / times) * along + off, {normal}};
+            if (k == 0) addTurned(site, normal, -turnBetween(normals[(i + n - 1) % n], normal));
+            if (k + 1 == times) addTurned(site, normal, turnBetween(normal, normals[(i + 1) % n]));
+            sites.push_back(std::move(site));
+        }
+    }
+}
+
+std::vector<Site> sitesAlong(const std::vector<Polygon>& curves, double dist, int times) {
+    assert(times >= 0);
+    std::size_t walls = 0;
+    for (const Polygon& curve : curves) walls += curve.size();
+    std::vector<Site> sites;
+    sites.reserve(walls * static_cast<std::size_t>(times));
+    for (const Polygon& curve : curves) addWallSites(curve, dist, times, sites);
+    return sites;
+}
+
+}  // namespace
+
+std::vector<Site> wallSites(const Region& indoor, double dist, int times) {
+    // The inside lies to the left of the edges, of holes too.
+    return sitesAlong(curvesOf(indoor), dist, times);
+}
+
+std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times) {
+    const Slice walls = wallSlice(environment, height);
+    std::vector<Region> floor{environment.indoor()};
+    if (!walls.solids.empty()) floor = difference(environment.indoor(), walls.solids);
+    return sitesAlong(wallCurves(floor, walls.sheets), dist, times);
+}
+
+namespace {
+
+/// Two numbers in [0, 1) of their own for each place of a sequence.
+std::array<double, 2> drawPair(std::uint64_t seed, const std::string& id, std::uint64_t sequence,
+                               std::uint64_t k) {
+    // A place takes four elements of 24 bits. What does not fit into their number goes on in
+    // further sequences.
+    constexpr unsigned kPlaceBits = 30, kSequenceBits = 32;
+    const RandomKey key{.seed = seed,
+                        .purpose = Purpose::Candidates,
+                        .sensor = hashOf(id),
+                        .frame = (k >> kPlaceBits) << kSequenceBits | sequence};
+    std::array<float, 4> parts{};
+    draw(key, static_cast<std::uint32_t>(k << 2U), {.uniform = parts});
+    const auto joined = [](float high, float low) {
+        return static_cast<double>(high) + 0x1p-24 * static_cast<double>(low);
+    };
+    return {joined(parts[0], parts[1]), joined(parts[2], parts[3])};
+}
+
+}  // namespace
+
+Point2 randomPlace(const Box2& limits, std::uint64_t seed, const std::string& id, std::uint64_t k) {
+    const auto [x, y] = drawPair(seed, id, 0, k);
+    return {limits.low.x + x * limits.width(), limits.low.y + y * limits.depth()};
+}
+
+Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const std::string& id,
+                        std::uint64_t stage, std::uint64_t k) {
+    const auto [share, turn] = drawPair(seed, id, stage + 1, k);
+    // The disc within a share of its radius has the square of that share of its area.
+    return center + scope * std::sqrt(share) * unitVector(Angle::degrees(360 * turn));
+}
+
+}  // namespace ispace

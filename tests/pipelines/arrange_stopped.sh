@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A long search that time or a signal ends has its best layout written, marked complete=no.
+. "$(dirname "$0")/common.sh"
+
+envc "$scenes/facilities.env" -o room.glb
+# No machine proves the best of this in the time given.
+long=(room.glb --sensor laser,range=4,fov=180:9 --candidates 0.15,0.15,32 --optimize exact --no-progress)
+
+# is_whole FILE: nine lasers, a result that is what coverage measures and no more than its bound.
+is_whole() {
+    [ "$(grep -c '^laser ' "$1")" -eq 9 ] || fail "$1 has not nine lasers: $(cat "$1")"
+    grep -q '^result .*complete=no' "$1" || fail "$1 is not marked: $(tail -n 1 "$1")"
+    coverage room.glb "$1" --json >report.json
+    python3 - "$1" <<'END' || fail "its result is not what coverage measures"
+import json, re, sys
+result = dict(re.findall(r"(\w+)=(\S+)", open(sys.argv[1]).read().splitlines()[-1]))
+share = lambda key: float(result[key].rstrip("%")) / 100
+assert abs(share("coverage") - json.load(open("report.json"))["coverage"]["grid"]) < 1e-12, result
+assert share("coverage") <= share("bound") <= 1, result
+END
+}
+
+expect_status 0 arrange "${long[@]}" --time-limit 2 -o limited.3dm
+is_whole limited.3dm
+grep -q 'cut short' err || fail "nobody says that time ended it: $(cat err)"
+
+for signal in INT TERM; do
+    echo old >best.3dm
+    set -m  # a background job ignores INT unless it has job control
+    arrange "${long[@]}" -o best.3dm 2>err &
+    job=$!
+    set +m
+    sleep 3
+    kill -0 "$job" || fail "the job is over too soon to be interrupted: $(cat err)"
+    kill -"$signal" "$job"
+    status=0
+    wait "$job" || status=$?
+    [ "$status" -eq $((128 + $(kill -l "$signal"))) ] || fail "status $status after SIG$signal"
+    is_whole best.3dm
+done
+
+# At once: what there is is written, or nothing.
+for delay in 0.02 0.1 0.2; do
+    echo old >best.3dm
+    set -m
+    arrange "${long[@]}" -o best.3dm 2>err &
+    job=$!
+    set +m
+    sleep "$delay"
+    kill -TERM "$job"
+    status=0
+    wait "$job" || status=$?
+    [ "$status" -eq 143 ] || fail "status $status after SIGTERM: $(cat err)"
+    [ "$(cat best.3dm)" = old ] || is_whole best.3dm
+    ls best.3dm* | grep -v '^best.3dm$' && fail "left behind"
+done
+exit 0

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/report.h"
+
+#include "base/file.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+std::string percent(double share) { return formatFixed(share * 100, 2) + "%"; }
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
+std::string gapText(double value, double bound) {
+    const double gap = bound > 0 ? (bound - value) / bound : 0;
+    return gap <= 0 ? "proven best" : "gap " + percent(gap);
+}
+
+std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
+           std::string(nameOf(how.strategy)) + ") on " + std::to_string(how.columns) + " x " +
+           std::to_string(how.rows) + " cells";
+}
+
+}  // namespace
+
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement, int verbose) {
+    std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                       ", coverage " + percent(arrangement.coverage);
+    // The bound is about what was maximised, before what was refined.
+    const char* const name = arrangement.value ? "value" : "coverage";
+    text += "; " + std::string(name) + " " + percent(arrangement.candidate_value) + ", bound " +
+            percent(arrangement.candidate_bound) + " (" +
+            gapText(arrangement.candidate_value, arrangement.candidate_bound) + ") " +
+            overText(how, arrangement);
+    if (!arrangement.is_complete) text += ", cut short";
+    text += '\n';
+    if (how.refine) {
+        text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
+                formatFixed(arrangement.refined_after, 3) +
+                " m2 by exact area; bound over all places " + percent(arrangement.bound) + '\n';
+    }
+    if (arrangement.least) {
+        const bool is_cost = arrangement.cost != static_cast<double>(arrangement.sensors.size());
+        text += "arrange: target " + percent(*how.target) + " reached " +
+                (is_cost ? "at a cost of " + formatDouble(arrangement.cost) +
+                               "; nothing cheaper than " + formatDouble(*arrangement.least)
+                         : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                               "; none fewer than " + formatDouble(*arrangement.least)) +
+                " of these candidates can\n";
+    }
+    if (how.budget)
+        text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
+                formatDouble(*how.budget) + '\n';
+    if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
+    if (verbose > 0)
+        text += "arrange: candidates took " +
+                formatFixed(static_cast<double>(arrangement.bytes) / 1e6, 1) + " MB of " +
+                formatFixed(static_cast<double>(how.most_bytes) / 1e6, 0) + " MB allowed\n";
+    return text;
+}
+
+std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
+                       " is not reached: " +
+                       counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +
+                       percent(arrangement.candidate_value);
+    if (arrangement.candidate_bound < how.target.value_or(1))
+        text += ", and no layout of these candidates covers more than " +
+                percent(arrangement.candidate_bound);
+    return text + "; allow more sensors (:COUNT), or denser candidates";
+}
+
+void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve) {
+    const std::string& file = options.curve_file;
+    const std::string format = outputFormat("", file, {"csv", "png", "svg", "pdf"});
+    if (format == "csv") {
+        writeAll(file, curveCsv(curve));
+        return;
+    }
+    CurveFormat picture = CurveFormat::Png;
+    if (format == "svg") picture = CurveFormat::Svg;
+    if (format == "pdf") picture = CurveFormat::Pdf;
+    constexpr int kWidth = 900;
+    writeAll(file, drawCurve(curve, "Coverage by number of sensors", picture, kWidth));
+}
+
+}  // namespace ispace

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "arrange/options.h"
+#include "place/arrangement.h"
+
+namespace ispace {
+
+/// What came out, how near it is to the bound, and what the bound is over: a line or some, for
+/// stderr. \param verbose how often -v was given
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement, int verbose);
+
+/// Why a target was not reached, as a sentence without end.
+std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
+
+/// Writes --curve's file in the format of its suffix.
+void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve);
+
+}  // namespace ispace
