@@ -74,6 +74,8 @@ TriedPose readTried(JsonLine& line) {
             tried.pose = readPose(line);
         else if (key == "value")
             tried.value = line.number();
+        else if (key == "slice_area")
+            tried.slice_area = line.number();
         else if (key == "chosen")
             tried.is_chosen = line.boolean();
         else
@@ -99,6 +101,7 @@ std::string writeTrace(const TraceFile& trace) {
               pose.tilt.degrees(), pose.roll.degrees()})
             json.value(number);
         json.endArray().key("value").value(tried.value);
+        if (tried.slice_area) json.key("slice_area").value(*tried.slice_area);
         if (tried.is_chosen) json.key("chosen").value(true);
         json.endObject();
         text.append(json.text()).push_back('\n');

@@ -17,12 +17,13 @@ struct TriedPose {
     Pose3 pose;
     double value = 0;  ///< share of what counts that it would add to what stands already
     bool is_chosen = false;
+    std::optional<double> slice_area = {};  ///< of a laser, eq. (4.4), m2
 };
 
 /// The "assist info" of the thesis' Sensor Arranger as JSONL: a header object
 /// {"schema":"ispace-trace/1","history":[...]}, then a line a pose,
-/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"} with "chosen":true where a sensor was
-/// placed. Degrees, as in layouts.
+/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, of lasers with "slice_area", and with
+/// "chosen":true where a sensor was placed. Degrees, as in layouts.
 struct TraceFile {
     History history;
     std::vector<TriedPose> poses;

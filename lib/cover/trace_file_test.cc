@@ -25,12 +25,13 @@ std::string errorOf(const std::string& text) {
 TEST(TraceFile, IsWhatTheFormatSays) {
     TraceFile trace;
     trace.history = {"arrange room.glb --sensor laser:1"};
-    trace.poses = {{"l1", {{1.5, -2, 0.15}, Angle::degrees(-90), {}, {}}, 0.25, false},
-                   {"l1", {{0, 0, 2}, {}, Angle::degrees(-30), Angle::degrees(5)}, 0.5, true}};
+    trace.poses = {{"l1", {{1.5, -2, 0.15}, Angle::degrees(-90), {}, {}}, 0.25, false, 3.5},
+                   {"l1", {{0, 0, 2}, {}, Angle::degrees(-30), Angle::degrees(5)}, 0.5, true, {}}};
     EXPECT_EQ(
         writeTrace(trace),
         "{\"schema\":\"ispace-trace/1\",\"history\":[\"arrange room.glb --sensor laser:1\"]}\n"
-        "{\"sensor\":\"l1\",\"pose\":[1.5,-2,0.15,-90,0,0],\"value\":0.25}\n"
+        "{\"sensor\":\"l1\",\"pose\":[1.5,-2,0.15,-90,0,0],\"value\":0.25,"
+        "\"slice_area\":3.5}\n"
         "{\"sensor\":\"l1\",\"pose\":[0,0,2,0,-30,5],\"value\":0.5,\"chosen\":true}\n");
 }
 
@@ -46,7 +47,8 @@ TEST(TraceFile, ReadsWhatItWrites) {
                                 Angle::degrees(any(random)),
                                 Angle::degrees(any(random))},
                                any(random) / 1e6,
-                               i % 7 == 0});
+                               i % 7 == 0,
+                               i % 3 == 0 ? std::optional(any(random)) : std::nullopt});
     const TraceFile again = readTrace(writeTrace(trace), "t");
     EXPECT_EQ(again.history, trace.history);
     ASSERT_EQ(again.poses.size(), trace.poses.size());
@@ -55,6 +57,7 @@ TEST(TraceFile, ReadsWhatItWrites) {
         EXPECT_EQ(again.poses[i].pose, trace.poses[i].pose);
         EXPECT_EQ(again.poses[i].value, trace.poses[i].value);
         EXPECT_EQ(again.poses[i].is_chosen, trace.poses[i].is_chosen);
+        EXPECT_EQ(again.poses[i].slice_area, trace.poses[i].slice_area);
     }
     EXPECT_EQ(writeTrace(again), writeTrace(trace));
 }

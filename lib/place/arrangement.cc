@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/arrangement.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
+#include <span>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -13,6 +15,7 @@
 #include "place/candidate_pool.h"
 #include "place/model_file.h"
 #include "place/refine.h"
+#include "sense/scan.h"
 #include "sense/ultrasound.h"
 #include "trace/worlds.h"
 
@@ -281,8 +284,17 @@ class Job {
         return curve;
     }
 
+    /// By the thesis' scan of each pose.
+    void addSliceAreas(const Laser& laser, std::span<TriedPose> poses) {
+        for (const TriedPose& tried : poses) worlds_.prepare(tried.pose);
+        tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+            const PlacedLaser placed{"", laser, poses[i].pose};
+            poses[i].slice_area = sliceArea(laser, castBeams(worlds_.at(placed.pose), placed));
+        });
+    }
+
     /// Every candidate with what it would add to what stands.
-    [[nodiscard]] std::vector<TriedPose> tried(const std::vector<Choice>& chosen) const {
+    [[nodiscard]] std::vector<TriedPose> tried(const std::vector<Choice>& chosen) {
         const CellPrices prices(weightsLeft());
         std::vector<TriedPose> all;
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -296,6 +308,8 @@ class Job {
                 all.push_back({kinds_[k].id, set.pose(i), part * share(values[i]), false});
             for (const Choice& choice : chosen)
                 if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+            if (const auto* laser = std::get_if<Laser>(&kinds_[k].device))
+                addSliceAreas(*laser, std::span(all).subspan(first));
         }
         return all;
     }

@@ -30,10 +30,12 @@ std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement, int verbose) {
     std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
                        ", coverage " + percent(arrangement.coverage);
-    // The bound is about what was maximised, before what was refined.
-    const char* const name = arrangement.value ? "value" : "coverage";
-    text += "; " + std::string(name) + " " + percent(arrangement.candidate_value) + ", bound " +
-            percent(arrangement.candidate_bound) + " (" +
+    // The bound is about what was maximised, before it was refined.
+    if (arrangement.value)
+        text += "; value " + percent(arrangement.candidate_value);
+    else if (how.refine)
+        text += "; before it was refined " + percent(arrangement.candidate_value);
+    text += ", bound " + percent(arrangement.candidate_bound) + " (" +
             gapText(arrangement.candidate_value, arrangement.candidate_bound) + ") " +
             overText(how, arrangement);
     if (!arrangement.is_complete) text += ", cut short";
