@@ -205,6 +205,14 @@ void OutputFile::commit() {
     s.temporary.clear();
 }
 
+void mustBeWritable(const std::string& target) {
+    struct stat info {};
+    const bool is_special =
+        target == "-" || target.empty() ||
+        (::stat(target.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
+    if (!is_special) static_cast<void>(OutputFile(target));
+}
+
 void writeAll(const std::string& target, std::string_view bytes) {
     OutputFile file(target);
     file.write(bytes);

@@ -51,6 +51,10 @@ class OutputFile {
     std::unique_ptr<State> state_;
 };
 
+/// Tells early what would fail late: that a file can be made there. Leaves nothing behind; streams,
+/// devices and pipes are left alone. \throws std::system_error as OutputFile
+void mustBeWritable(const std::string& target);
+
 /// OutputFile for a product that is whole in memory.
 void writeAll(const std::string& target, std::string_view bytes);
 

@@ -177,5 +177,21 @@ TEST_F(FileTest, ReadsEverything) {
     EXPECT_EQ(errorOf([&] { (void)readAll(folder_); }, folder_), EISDIR);
 }
 
+TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {
+    const std::string folder = ::testing::TempDir();
+    mustBeWritable("-");
+    mustBeWritable("");
+    mustBeWritable("/dev/null");
+    const std::string file = folder + "must_be_writable.txt";
+    mustBeWritable(file);
+    EXPECT_FALSE(std::filesystem::exists(file)) << "nothing is left behind";
+    writeAll(file, "old");
+    mustBeWritable(file);
+    EXPECT_EQ(readAll(file), "old");
+    std::filesystem::remove(file);
+    EXPECT_THROW(mustBeWritable(folder + "missing/folder/out"), std::system_error);
+    EXPECT_THROW(mustBeWritable(folder), std::system_error);
+}
+
 }  // namespace
 }  // namespace ispace

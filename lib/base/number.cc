@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/number.h"
 
+#include <iterator>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -94,6 +96,16 @@ std::string formatFixed(double value, int decimals) {
     if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos)
         text.erase(0, 1);
     return text;
+}
+
+std::string formatBytes(std::size_t bytes) {
+    constexpr const char* kUnits[] = {" bytes", " kB", " MB", " GB", " TB"};
+    auto number = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    for (; number >= 1024 && unit + 1 < std::size(kUnits); ++unit) number /= 1024;
+    std::string text = formatFixed(number, unit == 0 ? 0 : 1);
+    if (text.ends_with(".0")) text.resize(text.size() - 2);
+    return text + kUnits[unit];
 }
 
 std::string formatPercent(double fraction) {

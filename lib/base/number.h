@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ void appendFloat(std::string& out, float value);
 
 /// Fixed number of decimals; a result of minus zero is written without sign.
 std::string formatFixed(double value, int decimals);
+
+/// A size of memory for people, by powers of 1024: "812 bytes", "19.5 MB", "8 GB".
+std::string formatBytes(std::size_t bytes);
 
 /// Shortest percentage that parseShare reads back as the same fraction: 0.974 is "97.4%".
 /// \pre fraction is finite

@@ -161,5 +161,14 @@ TEST(ParseShare, WantsAFractionOrAPerCentSign) {
         EXPECT_FALSE(parseShare(bad)) << bad;
 }
 
+TEST(NumberTest, SizesForPeople) {
+    EXPECT_EQ(formatBytes(0), "0 bytes");
+    EXPECT_EQ(formatBytes(1023), "1023 bytes");
+    EXPECT_EQ(formatBytes(10240), "10 kB");
+    EXPECT_EQ(formatBytes(1536 * 1024), "1.5 MB");
+    EXPECT_EQ(formatBytes(std::size_t{8} << 30U), "8 GB");
+    EXPECT_EQ(formatBytes(std::size_t{5000} << 40U), "5000 TB");
+}
+
 }  // namespace
 }  // namespace ispace

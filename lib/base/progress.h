@@ -11,7 +11,7 @@ namespace ispace {
 class Progress {
   public:
     virtual ~Progress() = default;
-    /// A new phase of `total` units begins.
+    /// A new phase of `total` units begins; 0: nobody knows how many.
     virtual void begin(std::string_view phase, std::int64_t total) = 0;
     /// `count` more units are done. May be called from any thread.
     virtual void advance(std::int64_t count) = 0;

@@ -15,7 +15,7 @@ namespace ispace {
 namespace {
 
 constexpr std::int64_t kDrawEvery = 100000;  // microseconds
-constexpr int kBarWidth = 24;
+constexpr std::size_t kBarWidth = 24;
 
 std::string rateText(double per_second) {
     if (per_second >= 1e6) return formatFixed(per_second / 1e6, 1) + " M/s";
@@ -39,7 +39,7 @@ void ProgressBar::begin(std::string_view phase, std::int64_t total) {
     end();
     phase_ = phase;
     note_.clear();
-    total_ = std::max<std::int64_t>(total, 1);
+    total_ = std::max<std::int64_t>(total, 0);
     done_ = 0;
     next_draw_ = 0;
     start_ = Clock::now();
@@ -65,16 +65,20 @@ void ProgressBar::note(std::string_view text) {
 
 void ProgressBar::draw(std::int64_t done, bool last) {
     const std::lock_guard<std::mutex> lock(drawing_);
-    const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-    const int filled = static_cast<int>(share * kBarWidth);
-    std::string line = "\r" + tool_ + ": " + phase_ + " [" +
-                       std::string(static_cast<std::size_t>(filled), '#') +
-                       std::string(static_cast<std::size_t>(kBarWidth - filled), ' ') + "] " +
-                       formatFixed(share * 100, 0) + " %";
-    if (elapsed > 0.2 && done > 0) {
-        line += ", " + rateText(static_cast<double>(done) / elapsed);
-        if (!last) line += ", " + timeText(elapsed / share - elapsed) + " left";
+    std::string line = "\r" + tool_ + ": " + phase_;
+    if (total_ > 0) {
+        const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+        const auto filled = static_cast<std::size_t>(share * kBarWidth);
+        line.append(" [").append(filled, '#').append(kBarWidth - filled, ' ').append("] ");
+        line.append(formatFixed(share * 100, 0)).append(" %");
+        if (elapsed > 0.2 && done > 0) {
+            line.append(", ").append(rateText(static_cast<double>(done) / elapsed));
+            if (!last)
+                line.append(", ").append(timeText(elapsed / share - elapsed)).append(" left");
+        }
+    } else {
+        line.append(", ").append(timeText(elapsed));
     }
     if (!note_.empty()) line.append(", ").append(note_);
     std::cerr << line << "\x1b[K" << std::flush;

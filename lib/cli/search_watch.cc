@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
+#include <string>
 #include <utility>
 
 namespace ispace {
@@ -15,6 +17,14 @@ SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> 
     if (limit)
         end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                   std::chrono::duration<double>(std::min(*limit, kLongest)));
+}
+
+void SearchWatch::note(std::string_view text) {
+    if (!end_) return shown_->note(text);
+    const auto left = std::chrono::duration_cast<std::chrono::seconds>(*end_ - Clock::now());
+    std::string all(text);
+    all.append(", limit in ").append(std::to_string(std::max<std::int64_t>(left.count(), 0)));
+    shown_->note(all.append(" s"));
 }
 
 bool SearchWatch::stopped() const { return signal_ != 0 || (end_ && Clock::now() >= *end_); }

@@ -19,7 +19,8 @@ class SearchWatch final : public Progress {
 
     void begin(std::string_view phase, std::int64_t total) override { shown_->begin(phase, total); }
     void advance(std::int64_t count) override { shown_->advance(count); }
-    void note(std::string_view text) override { shown_->note(text); }
+    /// With a limit also says how much time is left.
+    void note(std::string_view text) override;
     void end() override { shown_->end(); }
     [[nodiscard]] bool stopped() const override;
 

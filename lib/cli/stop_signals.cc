@@ -14,6 +14,7 @@ namespace ispace {
 
 namespace {
 
+constexpr int kSignals[] = {SIGTERM, SIGINT};
 constexpr char kQuit = 0;  ///< no signal has this number
 /// Where the handler tells the listener; a handler reaches nothing but what is global.
 std::atomic<int> write_end = -1;
@@ -57,11 +58,13 @@ StopSignals::StopSignals(std::function<void(int)> stop) {
     listener_ = std::thread([fd = read_end_, stop = std::move(stop)] {
         for (char signal = nextWord(fd); signal != kQuit; signal = nextWord(fd)) stop(signal);
     });
-    for (const int signal : {SIGTERM, SIGINT}) handle(signal, onSignal);
+    // Also where they were ignored, as shells do for INT in the background: what is asked of this
+    // process is meant.
+    for (const int signal : kSignals) handle(signal, onSignal);
 }
 
 StopSignals::~StopSignals() {
-    for (const int signal : {SIGTERM, SIGINT}) handle(signal, SIG_IGN);
+    for (const int signal : kSignals) handle(signal, SIG_IGN);
     // Waits, unlike a handler: without this word the listener would not end.
     ::fcntl(write_end, F_SETFL, 0);
     tell(kQuit);

@@ -7,8 +7,8 @@
 namespace ispace {
 
 /// Turns TERM and INT into a request to end. While it lives neither ends the process by itself, but
-/// for a second INT; after it both are ignored: what is left to do then is to exit. One at a time
-/// in a process.
+/// for a second INT; after it both are ignored: what is left
+/// to do then is to exit. One at a time in a process.
 class StopSignals {
   public:
     /// `stop` is called from another thread with the signal's number, at each. \throws

@@ -15,6 +15,7 @@ namespace {
 
 TEST(StopSignals, AskToEndAndAreIgnoredAfterwards) {
     for (int round = 0; round < 2; ++round) {
+        for (const int signal : {SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
         std::atomic<int> asked = 0, last = 0;
         {
             const StopSignals signals([&asked, &last](int signal) {

@@ -65,6 +65,12 @@ Pose3 readPose(JsonLine& line) {
             Angle::degrees(numbers[5])};
 }
 
+double readShare(JsonLine& line) {
+    const double value = line.number();
+    if (!(value >= 0 && value <= 1)) line.fail("a value is a share from 0 to 1");
+    return value;
+}
+
 TriedPose readTried(JsonLine& line) {
     TriedPose tried;
     readObject(line, {"sensor", "pose", "value"}, [&](const std::string& key) {
@@ -73,7 +79,7 @@ TriedPose readTried(JsonLine& line) {
         else if (key == "pose")
             tried.pose = readPose(line);
         else if (key == "value")
-            tried.value = line.number();
+            tried.value = readShare(line);
         else if (key == "slice_area")
             tried.slice_area = line.number();
         else if (key == "chosen")

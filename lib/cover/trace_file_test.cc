@@ -46,7 +46,7 @@ TEST(TraceFile, ReadsWhatItWrites) {
                                 Angle::degrees(any(random)),
                                 Angle::degrees(any(random)),
                                 Angle::degrees(any(random))},
-                               any(random) / 1e6,
+                               std::abs(any(random)) / 100,
                                i % 7 == 0,
                                i % 3 == 0 ? std::optional(any(random)) : std::nullopt});
     const TraceFile again = readTrace(writeTrace(trace), "t");

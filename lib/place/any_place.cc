@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "cover/visible.h"
 
@@ -29,14 +30,41 @@ std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid) {
     return static_cast<std::uint64_t>(std::min(all, std::floor(cells) + 1));
 }
 
-std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
-                               std::span<const SensorDevice> devices, int unit) {
-    std::uint64_t value = 0, parts = 0;
-    for (const SensorDevice& device : devices) {
-        const auto share =
-            std::holds_alternative<Receiver>(device) ? 1U : static_cast<unsigned>(unit);
-        parts += share * mostCellsInView(device, grid);
+namespace {
+
+/// Shares of cells that sensors at any places can meet together.
+std::uint64_t mostParts(const Problem& problem, const Grid& grid,
+                        std::span<const SensorDevice> devices, std::span<const int> most,
+                        int unit) {
+    struct Offer {
+        double parts, cost;
+        int most;
+    };
+    std::vector<Offer> offers;
+    offers.reserve(devices.size());
+    for (std::size_t k = 0; k < devices.size(); ++k) {
+        const int share = std::holds_alternative<Receiver>(devices[k]) ? 1 : unit;
+        offers.push_back({share * static_cast<double>(mostCellsInView(devices[k], grid)),
+                          problem.kinds[k].cost, most[k]});
     }
+    std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
+        return a.parts * b.cost > b.parts * a.cost;
+    });
+    double parts = 0, left = problem.budget.value_or(std::numeric_limits<double>::infinity());
+    for (const Offer& offer : offers) {
+        const double number = std::min(static_cast<double>(offer.most), left / offer.cost);
+        parts += number * offer.parts;
+        left -= number * offer.cost;
+    }
+    return static_cast<std::uint64_t>(std::floor(parts + 1e-6));  // no part is seen in part
+}
+
+}  // namespace
+
+std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
+                               std::span<const SensorDevice> devices, std::span<const int> most,
+                               int unit) {
+    std::uint64_t value = 0, parts = mostParts(problem, grid, devices, most, unit);
     /// What of a cell's demand is missing.
     struct Missing {
         std::uint32_t weight;

@@ -68,14 +68,38 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     const std::uint64_t cells = mostCellsInView(small, grid);
     ASSERT_GE(cells, 1U);
     ASSERT_LT(cells, 10U);
-    EXPECT_EQ(mostFromAnyPlace(problem, grid, {}, 1), 10U) << "what is met already";
-    const SensorDevice devices[] = {small};
-    EXPECT_EQ(mostFromAnyPlace(problem, grid, devices, 1), 10 + 50 + (cells - 1));
-    const std::vector<SensorDevice> many(200, small);
-    EXPECT_EQ(mostFromAnyPlace(problem, grid, many, 1), problem.totalWeight());
+    const auto most_of = [&](int number) {
+        const SensorDevice devices[] = {small};
+        const int most[] = {number};
+        problem.kinds = {Kind{}};
+        return mostFromAnyPlace(problem, grid, devices, most, 1);
+    };
+    EXPECT_EQ(most_of(0), 10U) << "what is met already";
+    EXPECT_EQ(most_of(1), 10 + 50 + (cells - 1));
+    EXPECT_EQ(most_of(200), problem.totalWeight());
     // Twice as much is asked of each cell.
     problem.demand = 2;
-    EXPECT_LE(mostFromAnyPlace(problem, grid, devices, 1), 10 + 50 + cells);
+    EXPECT_LE(most_of(1), 10 + 50 + cells);
+}
+
+TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
+    const Grid grid{{{0, 0}, {100, 100}}, 100, 100};
+    Problem problem;
+    problem.weights.assign(grid.size(), 1);
+    problem.met.assign(grid.size(), 0);
+    const SensorDevice devices[] = {receiver(2), receiver(4)};
+    const std::uint64_t few = mostCellsInView(devices[0], grid),
+                        many = mostCellsInView(devices[1], grid);
+    ASSERT_GT(many, 2 * few);
+    problem.kinds = {Kind{}, Kind{}};
+    problem.kinds[1].cost = 2;
+    const int most[] = {10, 10};
+    problem.budget = 5;
+    const std::uint64_t bought = mostFromAnyPlace(problem, grid, devices, most, 1);
+    EXPECT_GE(bought, 2 * many + few);
+    EXPECT_LE(bought, 5 * many / 2 + 1);
+    problem.budget.reset();
+    EXPECT_EQ(mostFromAnyPlace(problem, grid, devices, most, 1), 10 * (many + few));
 }
 
 }  // namespace

@@ -119,7 +119,6 @@ TEST(ArrangeGoals, RefiningDoesNotLose) {
     EXPECT_GE(after.coverage, before.coverage);
     EXPECT_EQ(after.candidate_bound, before.bound);
     EXPECT_GE(after.bound, after.coverage);
-    EXPECT_FALSE(after.is_bound_of_candidates);
     const CoverageReport report = reportOf(scene, groups, after);
     EXPECT_EQ(report.coverage.grid, after.coverage);
 }

@@ -37,7 +37,7 @@ struct CandidateDensity {
 
 /// How far candidates along walls keep from them, metres.
 constexpr double kOffWall = 0.02;
-/// How far below the ceiling or a frame's bar a sensor hangs.
+/// How far below the ceiling a sensor hangs.
 constexpr double kBelowCeiling = 0.05;
 
 struct MountRules {

@@ -15,6 +15,7 @@
 #include "place/candidate_pool.h"
 #include "place/model_file.h"
 #include "place/refine.h"
+#include "place/scene_value.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
 #include "trace/worlds.h"
@@ -44,6 +45,13 @@ std::vector<std::uint32_t> wholeUnits(const std::vector<double>& worth) {
     return units;
 }
 
+std::vector<SensorDevice> devicesOf(const std::vector<SensorKind>& kinds) {
+    std::vector<SensorDevice> devices;
+    devices.reserve(kinds.size());
+    for (const SensorKind& kind : kinds) devices.push_back(kind.device);
+    return devices;
+}
+
 bool isReceiver(const SensorDevice& device) { return std::holds_alternative<Receiver>(device); }
 
 /// What is asked for, as numbers for the search, and the way back from what it finds.
@@ -58,6 +66,7 @@ class Job {
           worlds_(scene.environment),
           kinds_(kindsOf(groups)) {
         checkBudget();
+        if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.worth);
         const Coverage before = measureCoverage(scene, worlds_, searching());
         target_ = before.target;
         problem_.weights = wholeUnits(worthOfCells(target_, options.worth));
@@ -82,10 +91,18 @@ class Job {
             result.candidates += set->size();
             result.bytes += set->bytes();
         }
-        if (mps != nullptr) writeMps(problem_, names(), *mps);
+        if (mps != nullptr) {
+            mustFitInModel();
+            writeMps(problem_, names(), *mps);
+        }
         const SearchResult found = find(result);
         result.is_complete = result.is_complete && found.is_complete;
-        result.cost = costOf(problem_, found.best.chosen);
+        constexpr double kPerUnit = 1e6;  // of money: sums of decimals round
+        result.cost = std::round(costOf(problem_, found.best.chosen) * kPerUnit) / kPerUnit;
+        result.has_costs = std::any_of(kinds_.begin(), kinds_.end(),
+                                       [](const SensorKind& kind) { return kind.cost != 1; });
+        if (!options_.target && !options_.budget)
+            result.unplaced = problem_.order.size() - found.best.chosen.size();
         result.candidate_value = share(found.best.value);
         result.candidate_bound = is_complete_ ? share(found.bound) : 1;
         result.bound = result.candidate_bound;
@@ -178,6 +195,22 @@ class Job {
         return names;
     }
 
+    /// A row for each cell that a candidate sees: some 30 bytes each.
+    void mustFitInModel() const {
+        constexpr double kMostEntries = 1e8;
+        double entries = 0;
+        const std::vector<std::uint32_t> ones(problem_.cells(), 1);
+        for (const auto& set : sets_) {
+            std::vector<std::uint32_t> counts(set->size());
+            set->priceAll(CellPrices(ones), counts);
+            for (const std::uint32_t count : counts) entries += count;
+        }
+        if (entries > kMostEntries)
+            throw UsageError("--export-mps: the model has " + formatFixed(entries / 1e6, 0) +
+                             " million entries, more than " + formatFixed(kMostEntries / 1e6, 0) +
+                             ": use fewer candidates (--candidates) or cells (--reso)");
+    }
+
     SearchResult find(Arrangement& result) {
         if (!options_.target) return search(problem_, options_.search, progress_);
         const auto wanted = static_cast<std::uint64_t>(
@@ -212,23 +245,28 @@ class Job {
         return sensors;
     }
 
-    /// Worth of what the whole scene sees, in units.
-    std::uint64_t valueOfScene(const std::vector<ArrangedSensor>& sensors) {
-        const Coverage coverage =
-            measureCoverage(withArranged(scene_, groups_, sensors), worlds_, searching());
-        std::vector<int> met(target_.grid.size());
-        for (const SensorView& view : coverage.sensors) {
-            const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
-            view.cells.forEach([&](std::size_t cell) { met[cell] += part; });
-        }
-        std::uint64_t value = 0;
-        for (std::size_t i = 0; i < met.size(); ++i)
-            if (met[i] >= problem_.demand) value += problem_.weights[i];
-        return value;
+    /// On the grid of the search.
+    [[nodiscard]] Coverage coverageOf(const std::vector<ArrangedSensor>& sensors) {
+        return measureCoverage(withArranged(scene_, groups_, sensors), worlds_, searching());
+    }
+
+    /// Sensors that were apart stay so by this much, metres: no two are built in one place.
+    static constexpr double kApart = 0.05;
+
+    [[nodiscard]] static bool areApart(const std::vector<ArrangedSensor>& before,
+                                       const std::vector<Pose3>& poses) {
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k) {
+                const double least =
+                    std::min(kApart, length(before[i].pose.position - before[k].pose.position));
+                if (length(poses[i].position - poses[k].position) < least) return false;
+            }
+        return true;
     }
 
     void refineIn(Arrangement& result, std::uint64_t before) {
         std::vector<Movable> movables;
+        movables.reserve(result.sensors.size());
         for (const ArrangedSensor& sensor : result.sensors)
             movables.push_back({sensor.id, groups_[sensor.group].device, sensor.pose,
                                 &pool_->judgeAt(sensor.pose.position.z)});
@@ -237,25 +275,36 @@ class Job {
             for (std::size_t i = 0; i < sensors.size(); ++i) sensors[i].pose = poses[i];
             return sensors;
         };
+        const auto is_kept = [&](const std::vector<Pose3>& poses) {
+            const Coverage coverage = coverageOf(with(poses));
+            return valueOf(problem_, coverage, unit_) >= before &&
+                   (!options_.is_connected || isConnected(problem_, coverage, scene_));
+        };
         const RefineOptions refining{.demand = options_.redundancy, .plane = options_.plane};
-        Refined refined = ispace::refine(scene_, movables, options_.worth, refining, {}, progress_);
-        // What is best in truth may be a cell less on the grid by which results are compared.
-        if (valueOfScene(with(refined.poses)) < before)
+        const auto apart = [&](const std::vector<Pose3>& poses) {
+            return areApart(result.sensors, poses);
+        };
+        Refined refined =
+            ispace::refine(scene_, movables, options_.worth, refining, apart, progress_);
+        // What is best in truth may be a cell less on the grid by which results are compared, or
+        // hang together no more: then each step is judged by that.
+        if (!is_kept(refined.poses))
             refined = ispace::refine(
                 scene_, movables, options_.worth, refining,
-                [&](const std::vector<Pose3>& poses) {
-                    return valueOfScene(with(poses)) >= before;
-                },
+                [&](const std::vector<Pose3>& poses) { return apart(poses) && is_kept(poses); },
                 progress_);
         result.sensors = with(refined.poses);
         result.refined_before = refined.before;
         result.refined_after = refined.after;
         result.is_complete = result.is_complete && !progress_.stopped();
-        result.is_bound_of_candidates = false;
-        std::vector<SensorDevice> devices;
-        for (const ArrangedSensor& sensor : result.sensors)
-            devices.push_back(groups_[sensor.group].device);
-        result.bound = share(mostFromAnyPlace(problem_, target_.grid, devices, unit_));
+        // A budget might have bought others; else there are as many as there are.
+        std::vector<int> most(kinds_.size());
+        for (std::size_t k = 0; k < kinds_.size(); ++k)
+            if (options_.budget) most[k] = kinds_[k].most;
+        if (!options_.budget)
+            for (const ArrangedSensor& sensor : result.sensors) ++most[kindOf(sensor.group)];
+        result.bound =
+            share(mostFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most, unit_));
     }
 
     void measure(Arrangement& result) {
@@ -266,21 +315,23 @@ class Job {
         result.area = report.total_effective_area.grid.value_or(0);
         const bool is_coverage = options_.worth.isUniform() && options_.redundancy == 1 &&
                                  options_.columns == usual.columns && options_.rows == usual.rows;
-        if (!is_coverage) result.value = share(valueOfScene(result.sensors));
+        if (!is_coverage)
+            result.value = share(valueOf(problem_, coverageOf(result.sensors), unit_));
     }
 
+    /// Of 1, 2, ... sensors of these kinds, whatever they cost.
     [[nodiscard]] std::vector<CurvePoint> curveTo(const SearchResult& found) {
         const auto last = static_cast<int>(found.best.chosen.size());
         std::vector<CurvePoint> curve;
         Problem fewer = problem_;
         fewer.order.clear();
         for (Kind& kind : fewer.kinds) kind.cost = 1;
-        for (int n = 1; n < last && !progress_.stopped(); ++n) {
+        for (int n = 1; n <= last && !progress_.stopped(); ++n) {
             fewer.budget = n;
-            const SearchResult best = search(fewer, options_.search, progress_);
+            const bool is_found = n == last && !options_.budget && !options_.target;
+            const SearchResult best = is_found ? found : search(fewer, options_.search, progress_);
             curve.push_back({n, share(best.best.value), share(best.bound)});
         }
-        curve.push_back({last, share(found.best.value), share(found.bound)});
         return curve;
     }
 
@@ -341,7 +392,7 @@ Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
     const Point3& p = sensor.pose.position;
     record.set("id", Value(sensor.id));
     record.set("at", Value(Tuple{p.x, p.y, p.z}));
-    record.set("heading", Value(sensor.pose.heading.degrees()));
+    record.set("heading", Value(wrapped(sensor.pose.heading).degrees()));
     if (!(record.angle("tilt") == sensor.pose.tilt))
         record.set("tilt", Value(sensor.pose.tilt.degrees()));
     return record;

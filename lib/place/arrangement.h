@@ -33,13 +33,14 @@ struct Arrangement {
     std::optional<double> value;
     double bound =
         1;  ///< nothing that the search could choose is worth more; of `value` or coverage
-    /// What the bound is over: these candidates, or, of a refined layout, every place there is.
-    bool is_bound_of_candidates = true;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     bool is_complete = true;                          ///< false: cut by time or a signal
 
-    double cost = 0;  ///< of the sensors placed
+    /// Sensors that were to be placed and are not: views cannot hang together there.
+    std::size_t unplaced = 0;
+    double cost = 0;         ///< of the sensors placed
+    bool has_costs = false;  ///< they differ from 1
     /// With a target: whether it is reached, and that nothing of less cost (fewer sensors, where
     /// costs are equal) reaches it.
     bool is_reached = true;

@@ -36,11 +36,9 @@ struct PlacePrices {
 class PlaceFinder {
   public:
     /// The best candidate that `allows` accepts (missing: any), the first among equals.
-    /// \param bounds per site, no first price of its candidates is more; those looked at become
-    /// exact \param known a candidate to begin with, allowed, or none; with one the result is the
-    /// same,
-    ///     but found earlier
     /// Once progress says stop, what is found first is taken.
+    /// \param bounds per site, no first price of its candidates is more; those looked at get exact
+    /// \param known a candidate to begin with, allowed, or none; with one the same is found earlier
     BestPlace find(const PlacePrices& prices, std::span<std::uint32_t> bounds,
                    const BestPlace& known, const std::function<bool(std::size_t)>& allows,
                    const Progress& progress);

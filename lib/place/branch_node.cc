@@ -2,6 +2,7 @@
 #include "place/branch_node.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -16,9 +17,9 @@ constexpr int kTrialsBetweenLooks = 5;
 constexpr double kFewSets = 64;  // so many are tried one by one
 
 /// In how many ways the groups can choose, up to about kFewSets.
-double setsOf(const std::vector<BranchGroup>& groups, bool with_fewer) {
+double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
     double all = 1;
-    for (const BranchGroup& group : groups) {
+    for (const OpenGroup& group : groups) {
         const std::size_t size = group.list.size(), count = std::min(group.count, size);
         double ways = 1, up_to = 1;
         for (std::size_t n = 0; n < count && up_to <= kFewSets * 1e6; ++n) {
@@ -43,12 +44,12 @@ class SetSearch {
           shares_(reduced_.cells(), 0),
           chosen_(node.fixed) {}
     /// The best that is worth more than the cut.
-    std::vector<Choice> best() {
+    BranchResult search() {
         if (groups_.empty())
             look();
         else
             visit(0, 0, groups_[0].count);
-        return best_;
+        return std::move(result_);
     }
 
   private:
@@ -57,7 +58,7 @@ class SetSearch {
             look();
             return;
         }
-        const BranchGroup& own = groups_[group];
+        const OpenGroup& own = groups_[group];
         // Fewer than may be are worth less, but what hangs together may be less.
         const bool is_full = left == 0 || first == own.list.size();
         if (is_full || problem_.is_connected) {
@@ -86,20 +87,26 @@ class SetSearch {
         std::uint64_t value = reduced_.settled;
         for (std::size_t i = 0; i < shares_.size(); ++i)
             if (shares_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
-        if (value <= cut_ || (problem_.is_connected && !isFeasible(problem_, chosen_))) return;
+        if (value <= cut_) {
+            // Once something is found, its value is above the others'.
+            if (result_.found.empty()) result_.closed = std::max(result_.closed, value);
+            return;
+        }
+        if (problem_.is_connected && !isFeasible(problem_, chosen_)) return;
         cut_ = value;
-        best_ = chosen_;
+        result_.found = chosen_;
     }
 
     const Problem& problem_;
     const ReducedProblem& reduced_;
-    const std::vector<BranchGroup>& groups_;
+    const std::vector<OpenGroup>& groups_;
     std::uint64_t cut_;
     std::vector<int> shares_;
-    std::vector<Choice> chosen_, best_;
+    std::vector<Choice> chosen_;
+    BranchResult result_;
 };
 
-/// Where a node is to be split.
+/// Where a node is to be split; one of the sides is empty if there is no such place.
 struct Split {
     std::size_t group = 0;
     std::vector<std::uint32_t> near, far;  ///< the places in the list of the group, in two
@@ -111,7 +118,7 @@ Split splitOf(NodeRelaxation& relaxed, const std::vector<std::uint32_t>& multipl
     Split split;
     double best_score = -1;
     for (std::size_t g = 0; g < relaxed.groups().size(); ++g) {
-        const BranchGroup& group = relaxed.groups()[g];
+        const OpenGroup& group = relaxed.groups()[g];
         const std::vector<float>& shares = relaxed.shares()[g];
         if (group.list.size() <= std::max<std::size_t>(group.count, 1)) continue;
         const auto pivot = static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) -
@@ -146,19 +153,45 @@ std::vector<BranchNode> childrenOf(const BranchNode& base, const Split& split) {
     std::vector<BranchNode> children;
     const BranchGroup& group = base.groups[split.group];
     const auto listOf = [&group](std::vector<std::uint32_t> places) {
-        for (std::uint32_t& i : places) i = group.list[i];
-        return places;
+        for (std::uint32_t& i : places) i = (*group.list)[i];
+        return std::make_shared<const std::vector<std::uint32_t>>(std::move(places));
     };
+    const auto near_list = listOf(split.near), far_list = listOf(split.far);
+    children.reserve(group.count + 1);
     for (std::size_t near = 0; near <= group.count; ++near) {
         const std::size_t far = group.count - near;
         if (near > split.near.size() || far > split.far.size()) continue;
         BranchNode child = base;
         child.groups.erase(child.groups.begin() + static_cast<std::ptrdiff_t>(split.group));
-        if (near > 0) child.groups.push_back({group.kind, near, listOf(split.near)});
-        if (far > 0) child.groups.push_back({group.kind, far, listOf(split.far)});
+        if (near > 0) child.groups.push_back({group.kind, near, near_list});
+        if (far > 0) child.groups.push_back({group.kind, far, far_list});
         children.push_back(std::move(child));
     }
     return children;
+}
+
+/// The children of a node whose groups may choose all they have, where it is fewer that may be
+/// feasible: with one candidate and without it.
+std::vector<BranchNode> withAndWithout(const BranchNode& base) {
+    const auto larger = std::max_element(
+        base.groups.begin(), base.groups.end(),
+        [](const BranchGroup& a, const BranchGroup& b) { return a.list->size() < b.list->size(); });
+    assert(larger != base.groups.end() && !larger->list->empty());
+    std::vector<std::uint32_t> rest = *larger->list;
+    const std::uint32_t candidate = rest.back();
+    rest.pop_back();
+    BranchNode without = base;
+    const auto group = without.groups.begin() + (larger - base.groups.begin());
+    if (rest.empty()) {
+        without.groups.erase(group);
+    } else {
+        group->count = std::min(group->count - 1, rest.size());
+        group->list = std::make_shared<const std::vector<std::uint32_t>>(std::move(rest));
+    }
+    BranchNode with = without;
+    with.fixed.push_back({larger->kind, base.problem->kinds[larger->kind].original[candidate]});
+    with.pending.push_back({larger->kind, candidate});
+    return {std::move(with), std::move(without)};
 }
 
 /// The node with what has been fixed, cut down to what is left.
@@ -170,33 +203,46 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
         now.fixed.push_back(
             {choice.kind, relaxed.problem().kinds[choice.kind].original[choice.candidate]});
     std::vector<std::vector<std::uint32_t>> kept(relaxed.problem().kinds.size());
+    std::size_t left = forced.size();
     for (const Choice& choice : forced)
         kept[choice.kind].push_back(static_cast<std::uint32_t>(choice.candidate));
-    for (const BranchGroup& group : relaxed.groups())
+    for (const OpenGroup& group : relaxed.groups()) {
         kept[group.kind].insert(kept[group.kind].end(), group.list.begin(), group.list.end());
-    for (auto& list : kept) std::sort(list.begin(), list.end());
-    now.problem =
-        std::make_shared<const ReducedProblem>(reduce(relaxed.problem(), kept, multipliers));
+        left += group.list.size();
+    }
+    // Where little has gone the problem stays as it is: memory is for what differs.
+    const bool is_same = left * 5 > node.problem->candidates() * 4;
+    if (is_same) {
+        now.problem = node.problem;
+        now.pending = node.pending;
+    } else {
+        for (auto& list : kept) std::sort(list.begin(), list.end());
+        now.problem =
+            std::make_shared<const ReducedProblem>(reduce(relaxed.problem(), kept, multipliers));
+    }
     now.multipliers = std::make_shared<const std::vector<std::uint32_t>>(std::move(multipliers));
-    const auto nameOf = [&kept](std::size_t kind, std::size_t candidate) {
+    const auto nameOf = [&](std::size_t kind, std::size_t candidate) {
+        if (is_same) return static_cast<std::uint32_t>(candidate);
         return static_cast<std::uint32_t>(
             std::lower_bound(kept[kind].begin(), kept[kind].end(), candidate) - kept[kind].begin());
     };
     for (const Choice& choice : forced)
         now.pending.push_back({choice.kind, nameOf(choice.kind, choice.candidate)});
-    for (const BranchGroup& group : relaxed.groups()) {
+    for (const OpenGroup& group : relaxed.groups()) {
         if (group.list.empty()) continue;
-        now.groups.push_back(group);
-        for (std::uint32_t& i : now.groups.back().list) i = nameOf(group.kind, i);
+        std::vector<std::uint32_t> list = group.list;
+        for (std::uint32_t& i : list) i = nameOf(group.kind, i);
+        now.groups.push_back({group.kind, group.count,
+                              std::make_shared<const std::vector<std::uint32_t>>(std::move(list))});
     }
     return now;
 }
 
 /// The bound of a node after some trials; its candidates are ruled out on the way.
 std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::uint64_t bound,
-                      std::uint64_t cut) {
+                      std::uint64_t cut, const Progress& progress) {
     std::uint64_t last = bound;
-    for (int trial = 0; trial < kMostTrials && bound > cut; ++trial) {
+    for (int trial = 0; trial < kMostTrials && bound > cut && !progress.stopped(); ++trial) {
         const std::uint64_t now = relaxed.evaluate(search.trial());
         if (now <= bound) {
             bound = now;
@@ -227,33 +273,51 @@ std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
     return found;
 }
 
+/// Nothing of a node that is worth at most this is open any more.
+BranchResult closedAt(std::uint64_t bound) {
+    BranchResult result;
+    result.closed = bound;
+    return result;
+}
+
+BranchResult unchanged(const BranchNode& node, std::uint64_t bound) {
+    BranchResult result;
+    result.children = {node};
+    result.children[0].bound = bound;
+    return result;
+}
+
 }  // namespace
 
-BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut) {
-    BranchResult result;
-    result.bound = node.bound;
-    if (result.bound <= cut) return result;
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
+                    const Progress& progress) {
+    if (node.bound <= cut) return closedAt(node.bound);
+    if (progress.stopped()) return unchanged(node, node.bound);
     NodeRelaxation relaxed(node);
-    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets) {
-        result.found = SetSearch(problem, node, relaxed, cut).best();
-        return result;
-    }
+    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets)
+        return SetSearch(problem, node, relaxed, cut).search();
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
                             static_cast<double>(cut));
-    result.bound = boundOf(relaxed, search, node.bound, cut);
-    if (result.bound <= cut) return result;
-    result.bound = std::min(result.bound, relaxed.evaluate(search.best()));
-    if (result.bound <= cut) return result;
+    std::uint64_t bound = boundOf(relaxed, search, node.bound, cut, progress);
+    if (bound > cut && !progress.stopped())
+        bound = std::min(bound, relaxed.evaluate(search.best()));
+    if (bound <= cut) return closedAt(std::max(bound, relaxed.ruledOut()));
+    if (progress.stopped()) return unchanged(node, bound);
+    BranchResult result;
     result.found = foundBy(problem, node, relaxed, cut);
     relaxed.ruleOut(cut);
     const std::vector<Choice> forced = relaxed.takeForced(cut);
+    result.closed = relaxed.ruledOut();
     BranchNode now = cutDown(node, relaxed, forced, search.best());
-    now.bound = result.bound;
-    if (!forced.empty() || setsOf(now.groups, problem.is_connected) <= kFewSets) {
+    now.bound = bound;
+    if (!forced.empty() || setsOf(relaxed.groups(), problem.is_connected) <= kFewSets ||
+        progress.stopped()) {
         result.children.push_back(std::move(now));
         return result;
     }
-    result.children = childrenOf(now, splitOf(relaxed, search.best()));
+    const Split split = splitOf(relaxed, search.best());
+    result.children = split.near.empty() ? withAndWithout(now) : childrenOf(now, split);
+    assert(!result.children.empty());
     return result;
 }
 

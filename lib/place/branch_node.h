@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/progress.h"
 #include "place/reduced_problem.h"
 
 namespace ispace {
@@ -15,7 +16,8 @@ namespace ispace {
 struct BranchGroup {
     std::size_t kind = 0;
     std::size_t count = 0;
-    std::vector<std::uint32_t> list;  ///< candidates of the reduced problem, ascending
+    /// Candidates of the reduced problem, ascending; nodes share lists.
+    std::shared_ptr<const std::vector<std::uint32_t>> list;
 };
 
 /// A part of all sets of choices: the fixed ones and from each group so many (or fewer).
@@ -31,13 +33,17 @@ struct BranchNode {
 
 /// What came of a node.
 struct BranchResult {
-    std::uint64_t bound = 0;           ///< of the node, fine
     std::vector<BranchNode> children;  ///< all of it that may be worth more than the cut
     std::vector<Choice> found;         ///< feasible choices worth more than the cut, else empty
+    /// What is in no child is worth no more than this (fine, at most the cut) or than what was
+    /// found.
+    std::uint64_t closed = 0;
 };
 
 /// Bounds a node, fixes what it can, and splits what is left. What is worth at most `cut` (fine) is
-/// of no interest. The result depends on the arguments alone.
-BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut);
+/// of no interest. The result depends on the arguments alone, unless progress says stop: then the
+/// node is its own only child.
+BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
+                    const Progress& progress);
 
 }  // namespace ispace

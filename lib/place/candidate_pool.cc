@@ -2,6 +2,7 @@
 #include "place/candidate_pool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/error.h"
@@ -14,6 +15,12 @@ namespace {
 
 /// "seg" of eq. (4.1) and (4.2): by default R2 places lie within this part of the greatest range.
 constexpr double kSegments = 5;
+/// Places are whole nanometres: layouts are read by people, and what a sum leaves behind is noise.
+double tidy(double metres) {
+    constexpr double kPerMetre = 1e9;
+    return std::round(metres * kPerMetre) / kPerMetre;
+}
+Point2 tidy(Point2 place) { return {tidy(place.x), tidy(place.y)}; }
 
 Angle writtenAngle(const Record& record, const char* key) { return record.angle(key); }
 
@@ -133,7 +140,8 @@ struct CandidatePool::Data {
 
     [[nodiscard]] std::vector<double> heights() const {
         if (!options.mount.heights.empty()) return options.mount.heights;
-        if (options.mount.on == MountOn::Ceiling) return {environment.height() - kBelowCeiling};
+        if (options.mount.on == MountOn::Ceiling)
+            return {tidy(environment.height() - kBelowCeiling)};
         return {kScanHeight};
     }
 
@@ -201,7 +209,7 @@ struct CandidatePool::Data {
     [[nodiscard]] std::vector<Level> frameLevels() const {
         std::map<double, std::vector<Point2>> by_height;
         for (const Point3& place : framePlaces(environment, options.density.lattice_step))
-            by_height[place.z].push_back(place.onFloor());
+            by_height[tidy(place.z)].push_back(place.onFloor());
         std::vector<Level> levels;
         for (const auto& [height, places] : by_height)
             levels.push_back({height, sitesAt(places, headings())});
@@ -219,6 +227,7 @@ struct CandidatePool::Data {
         std::size_t proposed = 0, valid = 0;
         for (Level& level : levels) {
             proposed += level.sites.size();
+            for (Site& site : level.sites) site.place = tidy(site.place);
             level.sites = validSites(judgeAt(level.height), level.sites, progress);
             valid += level.sites.size();
         }
@@ -227,20 +236,30 @@ struct CandidatePool::Data {
     }
 
     [[nodiscard]] std::string noPlaceText(const SensorKind& kind, std::size_t proposed) const {
+        const MountRules& mount = options.mount;
+        const bool on_frame = mount.on == MountOn::Frame;
         std::string text = "no place for " + kind.id + ": ";
-        if (options.mount.on == MountOn::Frame && proposed == 0)
+        if (on_frame && proposed == 0)
             return text + "the room has no frame to mount it on (a record `infra`)";
-        text += "of the places that strategy " + std::string(nameOf(options.strategy)) +
-                " proposes (" + std::to_string(proposed) +
-                ") none lies indoors and clear of objects at ";
-        const std::vector<double> all = heights();
-        for (std::size_t i = 0; i < all.size(); ++i)
-            text.append(i == 0 ? "" : ", ").append(formatDouble(all[i]));
-        text += " m";
-        if (!options.mount.keep_out.empty() || !options.mount.keep_in.empty() ||
-            options.mount.clearance > 0 || options.mount.on != MountOn::Floor)
-            text += " within the rules for places";
-        if (options.strategy == Strategy::Grid) text += "; use more grid lines (-X, -Y)";
+        if (options.strategy == Strategy::List && proposed == 0)
+            return text + "the list of places is empty";
+        text +=
+            "of the places " +
+            (on_frame ? "under the frame"
+                      : "that strategy " + std::string(nameOf(options.strategy)) + " proposes") +
+            " (" + std::to_string(proposed) + ") none lies indoors and clear of objects";
+        if (!on_frame) {
+            text += " at ";
+            const std::vector<double> all = heights();
+            for (std::size_t i = 0; i < all.size(); ++i)
+                text.append(i == 0 ? "" : ", ").append(formatDouble(all[i]));
+            text += " m";
+        }
+        if (!mount.keep_out.empty() || !mount.keep_in.empty() || mount.clearance > 0 ||
+            mount.on == MountOn::Wall)
+            text += " within the rules for places (--keep-out, --keep-in, --clearance, --mount)";
+        if (options.strategy == Strategy::Grid && !on_frame)
+            text += "; use more grid lines (-X, -Y)";
         return text;
     }
 
@@ -269,7 +288,7 @@ struct CandidatePool::Data {
             std::vector<Point2> places;
             for (int tries = count * kTries;
                  tries > 0 && places.size() < static_cast<std::size_t>(count); --tries) {
-                const Point2 place = draw(k++);
+                const Point2 place = tidy(draw(k++));
                 if (judge.isValid(place)) places.push_back(place);
             }
             levels.push_back({height, sitesAt(places, headings())});

@@ -222,35 +222,44 @@ class Scanner {
         // What is looked through the mesh takes a while: one can stop in between.
         const std::size_t at_once = data_.looksInSlice() ? 512 : 32;
         for (begin_ = 0; begin_ < sites_.size(); begin_ += at_once) {
-            const std::size_t count = std::min(at_once, sites_.size() - begin_);
-            if (progress_.stopped() || !look(count)) return false;
+            std::size_t count = std::min(at_once, sites_.size() - begin_);
+            // Something to choose from there is, however early one stops.
+            const bool is_first = set_.sites() == 0;
+            if (progress_.stopped()) {
+                if (!is_first) return false;
+                count = 1;
+            }
+            if (!look(count, is_first)) {
+                if (!is_first) return false;
+                count = 1;
+            }
             for (std::size_t i = 0; i < count; ++i) {
                 add(i);
                 if (set_.bytes() > most_bytes) throw UsageError(tooLarge(most_bytes));
             }
             progress_.advance(static_cast<std::int64_t>(count));
+            if (count < at_once && begin_ + count < sites_.size()) return false;
         }
         return true;
     }
 
   private:
     static std::string tooLarge(std::size_t most_bytes) {
-        const auto bytes = static_cast<double>(most_bytes);
-        const std::string size =
-            bytes < 1e9 ? formatFixed(bytes / 1e6, 1) + " MB" : formatFixed(bytes / 1e9, 1) + " GB";
-        return "the candidates take more than " + size +
+        return "the candidates take more than " + formatBytes(most_bytes) +
                ": use fewer places, headings or cells, or --max-memory";
     }
 
-    /// Fills parts_ and, for slices, fans_ of the next `count` sites; false if it was stopped.
-    bool look(std::size_t count) {
+    /// Fills parts_ and, for slices, fans_ of the next `count` sites; false if it was stopped, then
+    /// after the first one if that must be.
+    bool look(std::size_t count, bool first_must_be) {
         if (parts_.size() < count) parts_.resize(count);
         if (data_.looksInSlice()) findFans(count);
         std::atomic<bool> is_stopped = false;
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             if (data_.looksInSlice()) {
                 lookFrom(i);
-            } else if (is_stopped.load(std::memory_order_relaxed) || progress_.stopped()) {
+            } else if ((i > 0 || !first_must_be) &&
+                       (is_stopped.load(std::memory_order_relaxed) || progress_.stopped())) {
                 is_stopped = true;
             } else {
                 // Whoever waits for rows of cells here does not begin with another site.

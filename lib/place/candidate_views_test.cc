@@ -277,7 +277,7 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
         FAIL() << "200 kB are not enough";
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(),
-                     "the candidates take more than 0.2 MB: use fewer places, headings or cells, "
+                     "the candidates take more than 195.3 kB: use fewer places, headings or cells, "
                      "or --max-memory");
     }
     EXPECT_GT(large.bytes(), 200'000U);

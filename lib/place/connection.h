@@ -23,7 +23,7 @@ class Connection {
   private:
     const Problem* problem_;
     std::size_t parts_ = 0;
-    std::vector<std::size_t> part_of_cell_;          // parts_: of none
+    std::vector<std::size_t> part_of_cell_;          // kNobody: of none
     mutable std::vector<CellPrices> cells_of_part_;  // 1 for its cells; made when first asked for
 };
 

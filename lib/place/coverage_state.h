@@ -40,8 +40,6 @@ class CoverageState {
     [[nodiscard]] std::uint64_t value() const { return value_; }
     /// Sum of part weight * min(load, demand).
     [[nodiscard]] std::uint64_t parts() const { return parts_; }
-    /// Sensors of a kind.
-    [[nodiscard]] int countOf(std::size_t kind) const { return counts_[kind]; }
     [[nodiscard]] double cost() const;
 
     /// True if one more of this kind is within `limit` and the budget.

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
+#include <limits>
+
 #include "place/lagrange.h"
 #include "place/reduced_problem.h"
 #include "place/test_variety.h"
@@ -12,13 +15,15 @@ namespace ispace {
 namespace {
 
 /// From nothing known, with a bound that has hardly begun, so that the tree has work to do.
-SearchResult searchTree(const Problem& problem, double gap, Progress& progress) {
+SearchResult searchTree(const Problem& problem, double gap, Progress& progress,
+                        std::size_t most_bytes = kMostTreeBytes) {
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
     const Bound bound = boundWithin(
         problem, {}, {.cut = known.best.value, .rounds = 1, .has_counts = false}, progress);
     known.bound = bound.value;
-    return branchAndBound(problem, bound, known, gap, progress);
+    return branchAndBound(problem, bound, known, gap, progress,
+                          std::numeric_limits<std::uint64_t>::max(), most_bytes);
 }
 
 TEST(BranchAndBound, EqualsBruteForce) {
@@ -74,16 +79,71 @@ TEST(BranchAndBound, KeepsTheGap) {
     }
 }
 
+TEST(BranchAndBound, WithAGapTheBoundIsTheBestKnown) {
+    SilentProgress progress;
+    std::size_t lower = 0;  // than the gap would let it be
+    for (std::uint64_t round = 0; round < 200; ++round) {
+        const RandomProblem random = variedProblem(round);
+        const std::uint64_t best = bestByBruteForce(random.problem).value;
+        for (const double gap : {0.03, 0.2, 0.5}) {
+            const SearchResult near = searchTree(random.problem, gap, progress);
+            ASSERT_GE(near.bound, best) << round;
+            ASSERT_LE(near.best.value, best) << round;
+            const auto value = static_cast<double>(near.best.value);
+            ASSERT_LE(static_cast<double>(near.bound) * (1 - gap), value) << round;
+            if (static_cast<double>(near.bound + 1) * (1 - gap) <= value) ++lower;
+        }
+    }
+    EXPECT_GT(lower, 100U);
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        const RandomProblem random = largerProblem(seed);
+        const std::uint64_t best = searchTree(random.problem, 0, progress).best.value;
+        // Something less is known, and the best is ruled out by the gap.
+        for (const std::uint64_t less : {best / 50, best / 20, best / 10}) {
+            SearchResult known;
+            known.best = {{}, best - less};
+            const Bound bound =
+                boundWithin(random.problem, {},
+                            {.cut = best - less, .rounds = 1, .has_counts = false}, progress);
+            known.bound = bound.value;
+            const double gap = static_cast<double>(less + 1) / static_cast<double>(best);
+            ASSERT_GE(branchAndBound(random.problem, bound, known, gap, progress).bound, best);
+        }
+    }
+}
+
+TEST(BranchAndBound, LittleMemoryIsEnough) {
+    SilentProgress progress;
+    for (std::uint64_t round = 0; round < 60; ++round) {
+        const RandomProblem random = variedProblem(round);
+        const std::uint64_t best = bestByBruteForce(random.problem).value;
+        const SearchResult result = searchTree(random.problem, 0, progress, 1);
+        ASSERT_EQ(result.best.value, best) << round;
+        ASSERT_EQ(result.bound, best) << round;
+    }
+    const RandomProblem random = largerProblem(5);
+    const SearchResult much = searchTree(random.problem, 0, progress);
+    for (const std::size_t most_bytes : {1U, 30'000U}) {
+        const SearchResult little = searchTree(random.problem, 0, progress, most_bytes);
+        EXPECT_EQ(little.best.value, much.best.value);
+        EXPECT_EQ(little.bound, much.bound);
+    }
+}
+
 TEST(BranchAndBound, IsTheSameForAnyNumberOfThreads) {
     const RandomProblem random = largerProblem(11);
     SilentProgress progress;
-    const auto searched = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return searchTree(random.problem, 0, progress);
-    };
-    const SearchResult one = searched(1), two = searched(2);
-    EXPECT_EQ(one.best.chosen, two.best.chosen);
-    EXPECT_EQ(one.bound, two.bound);
+    for (const std::size_t most_bytes : {kMostTreeBytes, std::size_t{20'000}})
+        for (const double gap : {0.0, 0.02}) {
+            const auto searched = [&](std::size_t threads) {
+                const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                                  threads);
+                return searchTree(random.problem, gap, progress, most_bytes);
+            };
+            const SearchResult one = searched(1), two = searched(2);
+            EXPECT_EQ(one.best.chosen, two.best.chosen);
+            EXPECT_EQ(one.bound, two.bound);
+        }
 }
 
 class StopsAfter final : public Progress {
@@ -109,6 +169,35 @@ TEST(BranchAndBound, StoppedItStillBounds) {
         EXPECT_LE(result.best.value, exact.best.value);
         EXPECT_TRUE(!result.is_complete || result.best.value == exact.best.value);
     }
+}
+
+/// Stops after so many questions, in the midst of a node.
+class StopsWhenAsked final : public Progress {
+  public:
+    explicit StopsWhenAsked(int left) : left_(left) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return --left_ <= 0; }
+
+  private:
+    mutable std::atomic<int> left_;
+};
+
+TEST(BranchAndBound, StoppedInTheMidstOfANodeItStillBounds) {
+    SilentProgress silent;
+    const RandomProblem random = largerProblem(5);
+    const SearchResult exact = searchTree(random.problem, 0, silent);
+    std::size_t stopped = 0;
+    for (int asked = 1; asked < 900; asked += 1 + asked / 20) {
+        StopsWhenAsked progress(asked);
+        const SearchResult result = searchTree(random.problem, 0, progress);
+        ASSERT_GE(result.bound, exact.best.value) << asked;
+        ASSERT_EQ(valueOf(random.problem, result.best.chosen), result.best.value) << asked;
+        ASSERT_TRUE(!result.is_complete || result.bound == result.best.value) << asked;
+        if (!result.is_complete) ++stopped;
+    }
+    EXPECT_GT(stopped, 30U);
 }
 
 TEST(BranchAndBound, EndsWhenItHasEnough) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
 
+#include "place/coverage_state.h"
 #include "place/exact.h"
 #include "place/lagrange.h"
 #include "place/search.h"
@@ -11,6 +15,8 @@ namespace {
 
 constexpr double kCostSlack = 1e-9;  // costs nearer than this fraction are the same
 constexpr std::size_t kMostLevels = 4'000;
+constexpr int kQuickRounds = 8;  // of a bound
+constexpr int kFewStarts = 4;    // of swaps
 
 bool isLess(double cost, double than) { return cost < than * (1 - kCostSlack); }
 
@@ -69,6 +75,8 @@ class FewestSearch {
                  Progress& progress)
         : problem_(problem), wanted_(wanted), options_(options), progress_(progress) {
         problem_.order.clear();
+        part_weights_ = weightsOfParts(problem_);
+        bound_ = problem_.totalWeight();
     }
     Fewest run() {
         const Solution nothing{{}, valueOf(problem_, {})};
@@ -81,14 +89,21 @@ class FewestSearch {
   private:
     [[nodiscard]] Problem within(double cost) const;
     [[nodiscard]] Solution reachGreedily();
+    [[nodiscard]] Solution placed(const Problem& cheaper);
     [[nodiscard]] Solution trimmed(const Solution& solution, std::uint64_t value) const;
+    [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
     [[nodiscard]] Fewest unreached(const Solution& greedy);
     [[nodiscard]] Fewest cheapen(Solution best);
-    [[nodiscard]] Solution reach(const Problem& cheaper, const Solution& best, const Bound& bound,
-                                 bool& is_proven);
-    [[nodiscard]] Bound boundOf(const Problem& cheaper, const Solution& best) {
-        return boundWithin(cheaper, best.chosen, {.cut = wanted_ - 1, .has_counts = false},
-                           progress_);
+    void raiseProven(const CostLevels& levels, const Solution& best, int rounds);
+    void descend(const CostLevels& levels, Solution& best);
+    void stepDown(const CostLevels& levels, Solution& best);
+    bool take(const Solution& found, Solution& best) const;
+    [[nodiscard]] Solution reach(const Problem& cheaper, const Solution& best, int starts);
+    [[nodiscard]] Solution reachExactly(const Problem& cheaper, const Solution& best,
+                                        bool& is_proven);
+    [[nodiscard]] Bound boundOf(const Problem& cheaper, const Solution& best, int rounds) {
+        return boundWithin(cheaper, best.chosen,
+                           {.cut = wanted_ - 1, .rounds = rounds, .has_counts = false}, progress_);
     }
     [[nodiscard]] Fewest reached(const Solution& best, double least_cost);
 
@@ -96,7 +111,10 @@ class FewestSearch {
     std::uint64_t wanted_;
     const SearchOptions& options_;
     Progress& progress_;
-    bool is_all_ = false;  // there is nothing worth more than what was placed greedily
+    std::vector<std::uint32_t> part_weights_;
+    bool is_all_ = false;      // there is nothing worth more than what was placed greedily
+    std::uint64_t bound_ = 0;  // nothing that costs no more than the best is worth more
+    std::size_t proven_ = 0;   // of this level nothing is worth enough
 };
 
 /// The problem with no more to spend.
@@ -126,44 +144,87 @@ Solution FewestSearch::reachGreedily() {
     Solution solution;
     for (double limit = 4 * dearest;; limit *= 2) {
         const bool is_last = limit >= cost || progress_.stopped();
-        solution = placeGreedily(is_last ? problem_ : within(limit), progress_);
-        if (!isFeasible(problem_, solution.chosen)) solution = {{}, valueOf(problem_, {})};
+        solution = placed(is_last ? problem_ : within(limit));
         is_all_ = solution.value == most;
         if (solution.value >= wanted_) return trimmed(solution, wanted_);
         if (is_last || is_all_) return solution;
     }
 }
 
+/// Greedily; nothing where that has no way on.
+Solution FewestSearch::placed(const Problem& cheaper) {
+    Solution solution = placeGreedily(cheaper, progress_);
+    if (!isFeasible(cheaper, solution.chosen)) solution = {{}, valueOf(cheaper, {})};
+    return solution;
+}
+
 /// The first of the sensors that are worth so much, without those that are not needed for it.
 Solution FewestSearch::trimmed(const Solution& solution, std::uint64_t value) const {
+    CoverageState state(problem_, part_weights_);
     const auto& chosen = solution.chosen;
-    const auto firstOf = [&chosen](std::size_t n) {
-        return std::vector<Choice>(chosen.begin(), chosen.begin() + static_cast<long>(n));
-    };
-    const auto isEnough = [&](const std::vector<Choice>& some) {
-        return valueOf(problem_, some) >= value && isFeasible(problem_, some);
-    };
-    std::size_t low = 0, high = chosen.size();
-    while (low < high) {
-        const std::size_t middle = (low + high) / 2;
-        if (valueOf(problem_, firstOf(middle)) >= value)
-            high = middle;
-        else
-            low = middle + 1;
+    for (std::size_t i = 0; i < chosen.size() && state.value() < value; ++i) state.add(chosen[i]);
+    if (!isFeasible(problem_, state.chosen())) {
+        state.clear();
+        for (const Choice& choice : chosen) state.add(choice);
     }
-    std::vector<Choice> kept = firstOf(high);
-    if (!isFeasible(problem_, kept)) kept = chosen;
     // Dear ones go first, and among equals the last.
-    std::vector<Choice> order(kept.rbegin(), kept.rend());
+    std::vector<Choice> order(state.chosen().rbegin(), state.chosen().rend());
     std::stable_sort(order.begin(), order.end(), [this](const Choice& a, const Choice& b) {
         return problem_.kinds[a.kind].cost > problem_.kinds[b.kind].cost;
     });
     for (const Choice& choice : order) {
-        std::vector<Choice> without = kept;
-        without.erase(std::find(without.begin(), without.end(), choice));
-        if (isEnough(without)) kept = std::move(without);
+        // Whether views hang together takes a look at all of them.
+        if (problem_.is_connected && progress_.stopped()) break;
+        const auto& now = state.chosen();
+        const auto position =
+            static_cast<std::size_t>(std::find(now.begin(), now.end(), choice) - now.begin());
+        state.removeAt(position);
+        const bool is_enough = state.value() >= value &&
+                               (!problem_.is_connected || isFeasible(problem_, state.chosen()));
+        if (!is_enough) state.insert(position, choice);
     }
-    return {kept, valueOf(problem_, kept)};
+    return {state.chosen(), state.value()};
+}
+
+/// Without the sensors that are worth least for what they cost, until the others are cheap enough;
+/// nothing if those are not feasible.
+Solution FewestSearch::reduced(const Problem& cheaper, const Solution& solution) const {
+    CoverageState state(problem_, part_weights_);
+    for (const Choice& choice : solution.chosen) state.add(choice);
+    const auto position_of = [&state](const Choice& choice) {
+        const auto& now = state.chosen();
+        return static_cast<std::size_t>(std::find(now.begin(), now.end(), choice) - now.begin());
+    };
+    using Loss = std::tuple<double, double, Choice>;  // of value, of parts; for what it costs
+    const auto loss_of = [&](const Choice& choice) {
+        const std::uint64_t value = state.value(), parts = state.parts();
+        const std::size_t position = position_of(choice);
+        state.removeAt(position);
+        const double cost = problem_.kinds[choice.kind].cost;
+        const Loss loss(static_cast<double>(value - state.value()) / cost,
+                        static_cast<double>(parts - state.parts()) / cost, choice);
+        state.insert(position, choice);
+        return loss;
+    };
+    // Lazily: with fewer others a sensor is worth more, or nearly always.
+    std::priority_queue<Loss, std::vector<Loss>, std::greater<>> losses;
+    for (const Choice& choice : solution.chosen) losses.push(loss_of(choice));
+    const auto is_dear = [&] {
+        if (cheaper.kinds.size() == 1)
+            return state.chosen().size() > static_cast<std::size_t>(cheaper.kinds[0].most);
+        return !isAffordable(cheaper, state.cost());
+    };
+    while (!losses.empty() && is_dear()) {
+        const Choice choice = std::get<Choice>(losses.top());
+        losses.pop();
+        const Loss now = loss_of(choice);
+        if (!losses.empty() && losses.top() < now)
+            losses.push(now);
+        else
+            state.removeAt(position_of(choice));
+    }
+    if (!isFeasible(cheaper, state.chosen())) return {{}, valueOf(problem_, {})};
+    return {state.chosen(), state.value()};
 }
 
 Fewest FewestSearch::unreached(const Solution& greedy) {
@@ -173,8 +234,12 @@ Fewest FewestSearch::unreached(const Solution& greedy) {
         fewest.result.bound = is_all_ ? greedy.value : problem_.totalWeight();
         fewest.result.is_complete = is_all_;
     } else {
-        fewest.result = search(problem_, options_, progress_);
-        if (fewest.result.best.value >= wanted_) return cheapen(fewest.result.best);
+        SearchOptions options = options_;
+        options.swap.enough = wanted_;
+        fewest.result = search(problem_, options, progress_);
+        bound_ = fewest.result.bound;
+        if (fewest.result.best.value >= wanted_)
+            return cheapen(trimmed(fewest.result.best, wanted_));
     }
     fewest.result.best = trimmed(fewest.result.best, fewest.result.best.value);
     fewest.cost = costOf(problem_, fewest.result.best.chosen);
@@ -186,46 +251,107 @@ Fewest FewestSearch::unreached(const Solution& greedy) {
 }
 
 /// Something cheaper that is worth enough, or choices that are worth less.
-Solution FewestSearch::reach(const Problem& cheaper, const Solution& best, const Bound& bound,
-                             bool& is_proven) {
-    is_proven = bound.value < wanted_;
+Solution FewestSearch::reach(const Problem& cheaper, const Solution& best, int starts) {
+    Solution solution{{}, 0};
+    if (options_.optimizer != Optimizer::Greedy) solution = reduced(cheaper, best);
+    // Of one kind greedy placement is what it was, but for fewer.
+    if (cheaper.kinds.size() > 1 || cheaper.is_connected || solution.chosen.empty()) {
+        const Solution greedy = placed(cheaper);
+        if (greedy.value > solution.value || solution.chosen.empty()) solution = greedy;
+    }
+    if (options_.optimizer == Optimizer::Greedy) return solution;
+    SwapOptions swap = options_.swap;
+    swap.starts = std::min(swap.starts, starts);
+    swap.enough = wanted_;
+    return improveBySwaps(cheaper, solution, swap, progress_);
+}
+
+/// As reach(), for Exact by branch and bound if need be. \param is_proven there is nothing
+Solution FewestSearch::reachExactly(const Problem& cheaper, const Solution& best, bool& is_proven) {
+    const bool is_greedy = options_.optimizer == Optimizer::Greedy;
+    Bound bound;
+    if (!is_greedy) {
+        bound = boundOf(cheaper, best, LagrangeLimits().rounds);
+        is_proven = bound.value < wanted_;
+    }
     if (is_proven || progress_.stopped()) return {};
-    Solution solution = placeGreedily(cheaper, progress_);
-    if (!isFeasible(cheaper, solution.chosen)) solution = {{}, valueOf(cheaper, {})};
-    if (solution.value >= wanted_ || options_.optimizer == Optimizer::Greedy) return solution;
-    solution = improveBySwaps(cheaper, solution, options_.swap, progress_);
+    Solution solution = reach(cheaper, best, options_.swap.starts);
     if (solution.value >= wanted_ || options_.optimizer != Optimizer::Exact) return solution;
     SearchResult known;
     known.best = {{}, wanted_ - 1};
     known.bound = bound.value;
     known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_);
     is_proven = known.bound < wanted_;
-    return known.best.value >= wanted_ ? known.best : best;
+    return known.best.value >= wanted_ ? known.best : Solution();
 }
 
-Fewest FewestSearch::cheapen(Solution best) {
-    const CostLevels levels(problem_, costOf(problem_, best.chosen));
-    std::size_t proven = 0;  // of this level nothing is worth enough
-    std::size_t open = 0;    // nor has anything been found of this one
-    while (true) {
-        open = levels.below(costOf(problem_, best.chosen));
-        if (open <= proven || progress_.stopped()) break;
-        const Problem cheaper = within(levels.at(open));
-        bool is_proven = false;
-        const Solution found = reach(cheaper, best, boundOf(cheaper, best), is_proven);
-        if (is_proven) proven = open;
-        const Solution trim = found.value >= wanted_ ? trimmed(found, wanted_) : best;
-        if (!isLess(costOf(problem_, trim.chosen), costOf(problem_, best.chosen))) break;
-        best = trim;
-    }
-    while (proven + 1 < open && !progress_.stopped()) {
-        const std::size_t middle = (proven + open) / 2;
-        if (boundOf(within(levels.at(middle)), best).value < wanted_)
-            proven = middle;
+/// True if what was found is better.
+bool FewestSearch::take(const Solution& found, Solution& best) const {
+    if (found.value < wanted_) return false;
+    Solution trim = trimmed(found, wanted_);
+    if (!isLess(costOf(problem_, trim.chosen), costOf(problem_, best.chosen))) return false;
+    best = std::move(trim);
+    return true;
+}
+
+/// Bounds, by halves, between what is proven and the best.
+void FewestSearch::raiseProven(const CostLevels& levels, const Solution& best, int rounds) {
+    std::size_t open = levels.below(costOf(problem_, best.chosen)) + 1;
+    while (proven_ + 1 < open && !progress_.stopped()) {
+        const std::size_t middle = (proven_ + open) / 2;
+        if (boundOf(within(levels.at(middle)), best, rounds).value < wanted_)
+            proven_ = middle;
         else
             open = middle;
     }
-    return reached(best, levels.above(proven, costOf(problem_, best.chosen)));
+}
+
+/// Searches with few starts: in longer and longer steps down from the best, and once nothing is
+/// found by halves.
+void FewestSearch::descend(const CostLevels& levels, Solution& best) {
+    std::size_t tried = proven_;
+    std::size_t step = 0;  // 0: by halves
+    for (bool is_first = true; !progress_.stopped(); is_first = false) {
+        const std::size_t open = levels.below(costOf(problem_, best.chosen));
+        if (open <= tried) return;
+        if (is_first) step = 1 + open / 64;
+        const std::size_t middle = (tried + open + 1) / 2;
+        const std::size_t level =
+            step > 0 && step <= open ? std::max(middle, open + 1 - step) : middle;
+        if (take(reach(within(levels.at(level)), best, kFewStarts), best)) {
+            step *= 2;
+        } else {
+            step = 0;
+            tried = level;
+        }
+    }
+}
+
+/// Searches for the next cheaper, again and again, as well as the options say.
+void FewestSearch::stepDown(const CostLevels& levels, Solution& best) {
+    while (!progress_.stopped()) {
+        const std::size_t open = levels.below(costOf(problem_, best.chosen));
+        if (open <= proven_) return;
+        bool is_proven = false;
+        const Solution found = reachExactly(within(levels.at(open)), best, is_proven);
+        if (is_proven) proven_ = open;
+        if (!take(found, best)) return;
+    }
+}
+
+Fewest FewestSearch::cheapen(Solution best) {
+    const double most = costOf(problem_, best.chosen);
+    const CostLevels levels(problem_, most);
+    // Quick bounds first: if there is no time for more, there are these.
+    const LagrangeLimits limits = {
+        .cut = best.value, .gap = 0.01, .rounds = 2, .has_counts = false};
+    const Bound bound = boundWithin(within(most), best.chosen, limits, progress_);
+    bound_ = std::min(bound_, bound.value);
+    raiseProven(levels, best, kQuickRounds);
+    if (options_.optimizer != Optimizer::Greedy) descend(levels, best);
+    stepDown(levels, best);
+    if (options_.optimizer != Optimizer::Greedy) raiseProven(levels, best, LagrangeLimits().rounds);
+    return reached(best, levels.above(proven_, costOf(problem_, best.chosen)));
 }
 
 Fewest FewestSearch::reached(const Solution& best, double least_cost) {
@@ -234,13 +360,17 @@ Fewest FewestSearch::reached(const Solution& best, double least_cost) {
     fewest.cost = costOf(problem_, best.chosen);
     fewest.least_cost = std::min(least_cost, fewest.cost);
     fewest.result.best = best;
-    fewest.result.bound = problem_.totalWeight();
+    fewest.result.bound = bound_;
     fewest.result.is_complete = !progress_.stopped();
     if (progress_.stopped()) return fewest;
-    const Bound bound =
-        boundWithin(within(fewest.cost), best.chosen, {.cut = best.value, .gap = 0.001}, progress_);
-    fewest.result.bound = bound.value;
+    LagrangeLimits limits = {.cut = best.value, .gap = 0.001};
+    if (options_.optimizer == Optimizer::Greedy) limits = {best.value, 0.01, kQuickRounds};
+    const Bound bound = boundWithin(within(fewest.cost), best.chosen, limits, progress_);
+    fewest.result.bound = std::min(bound_, bound.value);
     fewest.result.bound_by_count = bound.by_count;
+    for (std::uint64_t& count : fewest.result.bound_by_count)
+        count = std::min(count, fewest.result.bound);
+    fewest.result.is_complete = !progress_.stopped();
     return fewest;
 }
 

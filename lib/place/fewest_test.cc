@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <limits>
+#include <string_view>
 
 #include "place/search.h"
 #include "place/test_variety.h"
@@ -72,6 +74,53 @@ TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {
     EXPECT_LT(fewest.cost, 30);
     EXPECT_GE(fewest.cost, fewest.least_cost);
     EXPECT_GE(fewest.least_cost, fewest.cost * 0.6);
+}
+
+/// Says stop once swaps begin.
+class StopAtSwaps final : public Progress {
+  public:
+    void begin(std::string_view phase, std::int64_t /*total*/) override {
+        is_over_ = is_over_ || phase == "improving";
+    }
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return is_over_; }
+
+  private:
+    std::atomic<bool> is_over_ = false;
+};
+
+TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
+    RandomProblemOptions options;
+    options.columns = 50;
+    options.rows = 50;
+    options.sites = 120;
+    options.max_range = 12;
+    options.most = 1000;
+    int stopped = 0;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        const RandomProblem random = randomProblem(seed, options);
+        const std::uint64_t total = random.problem.totalWeight();
+        StopAtSwaps progress;
+        const Fewest fewest = placeFewest(random.problem, total * 7 / 10, {}, progress);
+        ASSERT_TRUE(fewest.is_reached);
+        EXPECT_EQ(fewest.result.is_complete, !progress.stopped());
+        EXPECT_GE(fewest.least_cost, 0.8 * fewest.cost);
+        EXPECT_LT(fewest.result.bound, total * 9 / 10);
+        if (progress.stopped()) ++stopped;
+    }
+    EXPECT_GE(stopped, 1);
+}
+
+TEST(PlaceFewest, GreedilyRunsNoSwaps) {
+    const RandomProblem random = randomProblem(5);
+    StopAtSwaps progress;
+    SearchOptions options;
+    options.optimizer = Optimizer::Greedy;
+    const std::uint64_t wanted = random.problem.totalWeight() / 10;
+    const Fewest fewest = placeFewest(random.problem, wanted, options, progress);
+    EXPECT_TRUE(fewest.is_reached);
+    EXPECT_FALSE(progress.stopped());
 }
 
 TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {

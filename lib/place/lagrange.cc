@@ -5,6 +5,7 @@
 
 #include "place/multiplier_search.h"
 #include "place/root_relaxation.h"
+#include "place/search_notes.h"
 
 namespace ispace {
 namespace {
@@ -72,6 +73,7 @@ Bound boundWithin(const Problem& problem, const std::vector<Choice>& near,
         bound.value = std::min(bound.value, std::max(limits.cut, cells.whole(leasts.back())));
         root.ruleOut(cut);
         progress.advance(1);
+        noteProgress(problem, limits.cut, bound.value, progress);
         if (isGood(bound, limits) || round == limits.rounds) break;
         // Slower than this it leads nowhere.
         const std::size_t done = leasts.size();

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/local_search.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "place/connection.h"
 
@@ -10,8 +13,14 @@ namespace ispace {
 
 namespace {
 
-/// Sensors whose bounds are kept apart: some 50 kB each.
+/// Sensors whose bounds are kept apart, and the bytes that these may take on all threads together:
+/// 4 a cell and a site of each kind.
 constexpr std::size_t kMostSlots = 64;
+constexpr std::size_t kMostSlotBytes = 256'000'000;
+constexpr std::size_t kMostResponses = 100'000;
+/// Pairs are made of so many sensors, and so many pairs are tried.
+constexpr std::size_t kPairSensors = 16;
+constexpr int kMostPairs = 400;
 
 /// What a local search makes better: more value, then more parts, then less cost.
 using Rank = std::tuple<std::uint64_t, std::uint64_t, double>;
@@ -21,7 +30,35 @@ Rank rankOf(const CoverageState& state) {
     return {state.value(), state.parts(), -cost};
 }
 
+std::size_t slotsFor(const SearchBasis& basis) {
+    std::size_t words = 1;
+    for (const auto& sites : basis.site_met) words += basis.problem.cells() + sites.size();
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    return std::clamp<std::size_t>(kMostSlotBytes / (4 * words * threads), 1, kMostSlots);
+}
+
+bool haveCostsThatDiffer(const Problem& problem) {
+    return std::any_of(problem.kinds.begin(), problem.kinds.end(),
+                       [&](const Kind& kind) { return kind.cost != problem.kinds.front().cost; });
+}
+
+/// Mixes all bits (the finaliser of SplitMix64).
+std::uint64_t mixed(std::uint64_t bits) {
+    bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+    bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+    return bits ^ (bits >> 31U);
+}
+
 }  // namespace
+
+ResponseCache::Key::Key(const std::vector<Choice>& chosen) {
+    // Sums: in any order, and a choice that is there twice does not cancel out.
+    for (const Choice& choice : chosen) {
+        const std::uint64_t bits = mixed(mixed(choice.kind + 1) + choice.candidate);
+        first += bits;
+        second += mixed(bits + 0x9e3779b97f4a7c15U);
+    }
+}
 
 std::optional<Response> ResponseCache::find(const Key& others) const {
     const std::lock_guard lock(mutex_);
@@ -32,11 +69,20 @@ std::optional<Response> ResponseCache::find(const Key& others) const {
 
 void ResponseCache::store(const Key& others, const Response& response) {
     const std::lock_guard lock(mutex_);
-    responses_.emplace(others, response);
+    if (responses_.size() < kMostResponses) responses_.emplace(others, response);
 }
 
+LocalSearch::LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::uint64_t enough,
+                         const Progress& progress)
+    : basis_(basis),
+      cache_(cache),
+      enough_(enough),
+      progress_(progress),
+      is_by_cost_(basis.problem.budget && haveCostsThatDiffer(basis.problem)),
+      most_slots_(slotsFor(basis)) {}
+
 LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
-    const std::size_t index = std::min(position, kMostSlots - 1);
+    const std::size_t index = std::min(position, most_slots_ - 1);
     while (slots_.size() <= index) {
         if (!slots_.empty()) {
             // What is known of the sensors before holds in part for the next one, too.
@@ -92,8 +138,7 @@ BestPlace LocalSearch::bestOf(const CoverageState& others, std::size_t kind, Sit
 
 Response LocalSearch::respond(const CoverageState& others, Slot& slot,
                               const std::optional<Response>& known) {
-    ResponseCache::Key key = others.chosen();
-    std::sort(key.begin(), key.end());
+    const ResponseCache::Key key(others.chosen());
     if (const auto response = cache_.find(key)) return *response;
     const std::vector<Kind>& kinds = basis_.problem.kinds;
     Response best;
@@ -169,30 +214,60 @@ bool LocalSearch::rebuyWithout(CoverageState& state, const std::vector<std::size
     return false;
 }
 
-bool LocalSearch::rebuy(CoverageState& state) {
-    const std::size_t count = state.chosen().size();
-    for (std::size_t a = 0; a < count; ++a) {
-        if (progress_.stopped()) return false;
-        if (rebuyWithout(state, {a})) return true;
-        for (std::size_t b = a + 1; b < count; ++b)
-            if (rebuyWithout(state, {a, b})) return true;
-    }
+bool LocalSearch::rebuyOne(CoverageState& state) {
+    for (std::size_t i = 0; i < state.chosen().size() && !isOver(state); ++i)
+        if (rebuyWithout(state, {i})) return true;
     return false;
 }
 
+/// Positions of the sensors without which least is lost for what they cost, ascending.
+std::vector<std::size_t> LocalSearch::leastUseful(const CoverageState& state) const {
+    std::vector<std::pair<double, std::size_t>> losses;
+    losses.reserve(state.chosen().size());
+    CoverageState rest = state;
+    for (std::size_t i = 0; i < state.chosen().size(); ++i) {
+        const Choice choice = state.chosen()[i];
+        rest.removeAt(i);
+        const auto loss = static_cast<double>(state.value() - rest.value());
+        losses.emplace_back(loss / basis_.problem.kinds[choice.kind].cost, i);
+        rest.insert(i, choice);
+    }
+    std::sort(losses.begin(), losses.end());
+    std::vector<std::size_t> least;
+    least.reserve(kPairSensors);
+    for (std::size_t i = 0; i < std::min(losses.size(), kPairSensors); ++i)
+        least.push_back(losses[i].second);
+    std::sort(least.begin(), least.end());
+    return least;
+}
+
+bool LocalSearch::rebuyTwo(CoverageState& state, int& tries) {
+    const std::vector<std::size_t> positions = leastUseful(state);
+    for (std::size_t a = 0; a < positions.size(); ++a)
+        for (std::size_t b = a + 1; b < positions.size(); ++b) {
+            if (tries-- <= 0 || isOver(state)) return false;
+            if (rebuyWithout(state, {positions[a], positions[b]})) return true;
+        }
+    return false;
+}
+
+void LocalSearch::moveAll(CoverageState& state) {
+    add(state);
+    std::size_t unmoved = 0;  // since the last move
+    for (std::size_t i = 0; unmoved < state.chosen().size() && !isOver(state); ++i)
+        unmoved = move(state, i % state.chosen().size()) ? 0 : unmoved + 1;
+}
+
 void LocalSearch::improve(CoverageState& state) {
-    const std::vector<Kind>& kinds = basis_.problem.kinds;
-    const bool is_by_cost = basis_.problem.budget && !kinds.empty() &&
-                            std::any_of(kinds.begin(), kinds.end(), [&](const Kind& kind) {
-                                return kind.cost != kinds.front().cost;
-                            });
-    do {
-        add(state);
-        std::size_t unmoved = 0;  // since the last move
-        for (std::size_t i = 0; unmoved < state.chosen().size() && !progress_.stopped(); ++i)
-            unmoved = move(state, i % state.chosen().size()) ? 0 : unmoved + 1;
-    } while (is_by_cost && rebuy(state));
+    do moveAll(state);
+    while (is_by_cost_ && rebuyOne(state));
     fill(state);
+}
+
+void LocalSearch::improveByPairs(CoverageState& state) {
+    int tries = is_by_cost_ ? kMostPairs : 0;
+    do improve(state);
+    while (rebuyTwo(state, tries));
 }
 
 }  // namespace ispace

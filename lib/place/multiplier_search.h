@@ -22,7 +22,6 @@ class MultiplierSearch {
 
     [[nodiscard]] const std::vector<std::uint32_t>& trial() const { return trial_; }
     [[nodiscard]] const std::vector<std::uint32_t>& best() const { return best_; }
-    [[nodiscard]] double bound() const { return bound_; }
     /// What the trial gave, and the next trial.
     /// \param cover how far the sensors that are best at these prices meet each cell: 1 is just met
     void report(double bound, std::span<const float> cover);
@@ -31,8 +30,6 @@ class MultiplierSearch {
     void restart(double bound, std::span<const float> cover);
     /// The part that the last trial has in the average.
     [[nodiscard]] double part() const { return part_; }
-    /// Steps have become too small to be of use.
-    [[nodiscard]] bool isStuck() const { return factor_ < 1e-3; }
 
   private:
     void step();

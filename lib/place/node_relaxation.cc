@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/node_relaxation.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace ispace {
 
 NodeRelaxation::NodeRelaxation(const BranchNode& node)
-    : problem_(*node.problem), groups_(node.groups), cover_(problem_.cells()) {
+    : problem_(*node.problem), cover_(problem_.cells()) {
+    groups_.reserve(node.groups.size());
+    for (const BranchGroup& group : node.groups)
+        groups_.push_back({group.kind, group.count, *group.list});
     settle(node.pending);
     prices_.reserve(problem_.kinds.size());
     for (const auto& kind : problem_.kinds) prices_.emplace_back(kind.candidates->size(), 0U);
     top_.resize(groups_.size());
     shares_.reserve(groups_.size());
-    for (const BranchGroup& group : groups_) shares_.emplace_back(group.list.size(), 0.0F);
+    for (const OpenGroup& group : groups_) shares_.emplace_back(group.list.size(), 0.0F);
     findSites();
 }
 
@@ -35,7 +41,7 @@ void NodeRelaxation::settle(const std::vector<Choice>& chosen) {
 
 void NodeRelaxation::findSites() {
     sites_.assign(problem_.kinds.size(), {});
-    for (const BranchGroup& group : groups_) {
+    for (const OpenGroup& group : groups_) {
         const CandidateSet& set = *problem_.kinds[group.kind].candidates;
         auto& sites = sites_[group.kind];
         for (const std::uint32_t i : group.list)
@@ -67,12 +73,19 @@ void NodeRelaxation::price(const std::vector<std::uint32_t>& multipliers) {
             prices.assign(cell_prices_);
             last_share = kind.share;
         }
-        for (const std::uint32_t site : sites_[k]) {
-            const std::size_t first = kind.candidates->firstOf(site);
-            const std::size_t end = kind.candidates->firstOf(site + 1);
-            kind.candidates->priceSite(site, prices,
-                                       std::span(prices_[k]).subspan(first, end - first));
-        }
+        // The node's own work is shared out, too: there may be few nodes, but large ones.
+        constexpr std::size_t kGrain = 256;
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites_[k].size(), kGrain),
+                          [&](const tbb::blocked_range<std::size_t>& some) {
+                              for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                                  const std::uint32_t site = sites_[k][i];
+                                  const std::size_t first = kind.candidates->firstOf(site);
+                                  const std::size_t end = kind.candidates->firstOf(site + 1);
+                                  kind.candidates->priceSite(
+                                      site, prices,
+                                      std::span(prices_[k]).subspan(first, end - first));
+                              }
+                          });
     }
 }
 
@@ -82,7 +95,7 @@ std::uint64_t NodeRelaxation::evaluate(const std::vector<std::uint32_t>& multipl
     for (std::size_t i = 0; i < multipliers.size(); ++i)
         bound_ += problem_.weights[i] - multipliers[i];
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        const BranchGroup& group = groups_[g];
+        const OpenGroup& group = groups_[g];
         const std::vector<std::uint32_t>& prices = prices_[group.kind];
         const auto is_better = [&prices](std::uint32_t a, std::uint32_t b) {
             return prices[a] != prices[b] ? prices[a] > prices[b] : a < b;
@@ -119,7 +132,7 @@ std::vector<Choice> NodeRelaxation::chosen() const {
 void NodeRelaxation::ruleOut(std::uint64_t cut) {
     bool is_any = false;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        BranchGroup& group = groups_[g];
+        OpenGroup& group = groups_[g];
         if (group.list.size() <= group.count) continue;
         // With one that is not among the best, the last of those has to go.
         const std::vector<std::uint32_t>& prices = prices_[group.kind];
@@ -130,7 +143,10 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
             const std::uint32_t candidate = group.list[i];
             const bool is_best =
                 std::find(top_[g].begin(), top_[g].end() - 1, candidate) != top_[g].end() - 1;
-            if (!is_best && without + prices[candidate] <= cut) continue;
+            if (!is_best && without + prices[candidate] <= cut) {
+                ruled_out_ = std::max(ruled_out_, without + prices[candidate]);
+                continue;
+            }
             group.list[kept] = candidate;
             shares_[g][kept++] = shares_[g][i];
         }
@@ -144,13 +160,15 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
 std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
     std::vector<Choice> forced;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        BranchGroup& group = groups_[g];
+        OpenGroup& group = groups_[g];
         const std::vector<std::uint32_t>& prices = prices_[group.kind];
         const std::size_t best = std::min(group.count, top_[g].size());
         const std::uint64_t next = top_[g].size() > best ? prices[top_[g][best]] : 0;
         for (std::size_t n = 0; n < best; ++n) {
             const std::uint32_t candidate = top_[g][n];
-            if (bound_ - prices[candidate] + next > cut) continue;
+            const std::uint64_t without = bound_ - prices[candidate] + next;
+            if (without > cut) continue;
+            ruled_out_ = std::max(ruled_out_, without);
             forced.push_back({group.kind, candidate});
             --group.count;
             const auto at = std::lower_bound(group.list.begin(), group.list.end(), candidate);
@@ -179,7 +197,7 @@ void NodeRelaxation::count(float part) {
 
 std::vector<float> NodeRelaxation::likeness(std::size_t group, std::uint32_t pivot,
                                             const std::vector<std::uint32_t>& multipliers) {
-    const BranchGroup& own = groups_[group];
+    const OpenGroup& own = groups_[group];
     price(multipliers);
     const std::vector<std::uint32_t> sizes = prices_[own.kind];
     std::vector<std::uint32_t> seen(multipliers.size(), 0);

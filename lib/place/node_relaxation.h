@@ -9,6 +9,13 @@
 
 namespace ispace {
 
+/// What is left of a group of a node.
+struct OpenGroup {
+    std::size_t kind = 0;
+    std::size_t count = 0;
+    std::vector<std::uint32_t> list;  ///< candidates of the reduced problem, ascending
+};
+
 /// The Lagrangian relaxation of a node of the search tree: from each group its best candidates.
 class NodeRelaxation {
   public:
@@ -16,7 +23,7 @@ class NodeRelaxation {
 
     /// The cells with what the fixed sensors leave of them.
     [[nodiscard]] const ReducedProblem& problem() const { return problem_; }
-    [[nodiscard]] const std::vector<BranchGroup>& groups() const { return groups_; }
+    [[nodiscard]] const std::vector<OpenGroup>& groups() const { return groups_; }
     /// Cut to the weights that are left.
     [[nodiscard]] std::vector<std::uint32_t> start(const BranchNode& node) const;
 
@@ -30,6 +37,8 @@ class NodeRelaxation {
     /// Candidates without which nothing is worth more than `cut`, as named in the reduced problem;
     /// their groups have one to choose less.
     std::vector<Choice> takeForced(std::uint64_t cut);
+    /// Nothing that the two have left out is worth more than this, which is at most their cut.
+    [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
 
     /// Running shares of how often each candidate was chosen.
     void count(float part);
@@ -46,14 +55,14 @@ class NodeRelaxation {
     void setCover();
 
     ReducedProblem problem_;
-    std::vector<BranchGroup> groups_;
+    std::vector<OpenGroup> groups_;
     std::vector<std::vector<std::uint32_t>> sites_;   // per kind, to be priced
     std::vector<std::vector<std::uint32_t>> prices_;  // per kind and candidate
     std::vector<std::vector<std::uint32_t>> top_;     // per group: the best, one more than wanted
     std::vector<std::vector<float>> shares_;          // per group, beside its list
     std::vector<std::uint32_t> cell_prices_;
     std::vector<float> cover_;
-    std::uint64_t bound_ = 0;
+    std::uint64_t bound_ = 0, ruled_out_ = 0;
 };
 
 }  // namespace ispace

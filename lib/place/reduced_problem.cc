@@ -194,6 +194,13 @@ std::size_t ReducedProblem::candidates() const {
     return count;
 }
 
+std::size_t ReducedProblem::bytes() const {
+    std::size_t bytes = weights.size() * sizeof(weights[0]) + needs.size() * sizeof(needs[0]);
+    for (const OfKind& kind : kinds)
+        bytes += kind.candidates->bytes() + kind.original.size() * sizeof(kind.original[0]);
+    return bytes;
+}
+
 ReducedProblem wholeProblem(const Problem& problem, const RelaxedCells& cells) {
     ReducedProblem whole;
     whole.settled = cells.settled;
@@ -224,7 +231,10 @@ ReducedProblem reduce(const ReducedProblem& from,
         std::vector<std::uint32_t> original;
         original.reserve(kept[k].size());
         for (const std::uint32_t i : kept[k]) original.push_back(names.empty() ? i : names[i]);
-        to.kinds.push_back({std::move(sets[k]), std::move(original), from.kinds[k].share});
+        // A copy takes no more memory than it needs; a set that still grows does.
+        auto set = std::make_shared<const CandidateSet>(*sets[k]);
+        sets[k].reset();
+        to.kinds.push_back({std::move(set), std::move(original), from.kinds[k].share});
     }
     return to;
 }

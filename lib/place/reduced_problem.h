@@ -25,6 +25,7 @@ struct ReducedProblem {
 
     [[nodiscard]] std::size_t cells() const { return weights.size(); }
     [[nodiscard]] std::size_t candidates() const;
+    [[nodiscard]] std::size_t bytes() const;
 };
 
 /// The whole of a problem; original is left empty.

@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <optional>
 
+#include "base/error.h"
 #include "base/number.h"
+#include "cover/visible.h"
 #include "place/exact_worth.h"
 
 namespace ispace {
@@ -195,6 +197,23 @@ class Search {
 };
 
 }  // namespace
+
+void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices,
+                     const Worth& worth) {
+    if (worth.weights.size() > ExactWorth::kMostZones)
+        throw UsageError("--refine knows at most " + std::to_string(ExactWorth::kMostZones) +
+                         " weights");
+    const auto refuse = [](const std::string& whose) {
+        throw UsageError("--refine: the exact region of " + whose +
+                         " is not known: it sweeps, and not level about the vertical");
+    };
+    for (const PlacedLaser& laser : scene.lasers)
+        if (laser.laser.sweep != SweepAxis::None && !scansSlice(laser)) refuse(laser.id);
+    for (const SensorDevice& device : devices)
+        if (const auto* laser = std::get_if<Laser>(&device))
+            if (laser->sweep != SweepAxis::None && laser->sweep != SweepAxis::Heading)
+                refuse(laser->model.empty() ? "a laser" : laser->model);
+}
 
 Refined refine(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
                const RefineOptions& options,

@@ -35,6 +35,11 @@ struct Refined {
     std::size_t evaluations = 0;
 };
 
+/// \throws UsageError for what refine() cannot do, before anything is searched: sweeping lasers
+/// whose
+///         exact region is not known (among `devices` and the scene's), more weights than it knows
+void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices, const Worth& worth);
+
 /// Goes on from a layout in continuous x, y and heading: sensor after sensor, a pattern search
 /// (Hooke and Jeeves 1961: steps along the axes and their pattern, halved where none helps) on the
 /// exact worth of what at least `demand` sensors see, in closed form (LayerOverlay), with all that

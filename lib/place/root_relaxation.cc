@@ -162,7 +162,8 @@ void RootRelaxation::setCover() {
     }
 }
 
-void RootRelaxation::ruleOut(std::uint64_t cut) {
+std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
+    std::uint64_t ruled_out = 0;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         OfKind& own = kinds_[k];
         // With a price of at most this it is in nothing that is worth more.
@@ -175,12 +176,16 @@ void RootRelaxation::ruleOut(std::uint64_t cut) {
             for (std::size_t i = own.candidates->firstOf(site),
                              end = own.candidates->firstOf(site + 1);
                  i < end; ++i) {
-                if (best_.may[k] == 0 || own.prices[i] <= most) own.is_out[i] = 1;
+                if (own.is_out[i] == 0 && (best_.may[k] == 0 || own.prices[i] <= most)) {
+                    own.is_out[i] = 1;
+                    if (best_.may[k] != 0) ruled_out = std::max(ruled_out, with + own.prices[i]);
+                }
                 is_empty = is_empty && own.is_out[i] != 0;
             }
             return is_empty;
         });
     }
+    return ruled_out;
 }
 
 void RootRelaxation::widen(std::size_t count) {
@@ -206,13 +211,6 @@ std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
         for (std::size_t i = 0; i < kinds_[k].is_out.size(); ++i)
             if (kinds_[k].is_out[i] == 0) left[k].push_back(static_cast<std::uint32_t>(i));
     return left;
-}
-
-std::size_t RootRelaxation::left() const {
-    std::size_t count = 0;
-    for (const OfKind& kind : kinds_)
-        count += static_cast<std::size_t>(std::count(kind.is_out.begin(), kind.is_out.end(), 0));
-    return count;
 }
 
 }  // namespace ispace

@@ -26,10 +26,10 @@ class RootRelaxation {
     std::uint64_t evaluate(const std::vector<std::uint32_t>& multipliers, bool is_all);
     /// How far the sensors that were best meet each cell.
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
-    [[nodiscard]] const std::vector<Choice>& chosen() const { return chosen_; }
 
     /// After evaluate() of all: rules out what cannot be in anything worth more than `cut` (fine).
-    void ruleOut(std::uint64_t cut);
+    /// \return nothing that has one of those now ruled out is worth more than this, at most cut
+    std::uint64_t ruleOut(std::uint64_t cut);
     /// After evaluate() of all: the working set is the sites with the `count` best prices of each
     /// kind, and what it was before.
     void widen(std::size_t count);
@@ -41,7 +41,6 @@ class RootRelaxation {
 
     /// Per kind, those not ruled out.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> survivors() const;
-    [[nodiscard]] std::size_t left() const;
 
   private:
     struct OfKind {

@@ -2,6 +2,7 @@
 #include "place/search.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "place/exact.h"
 #include "place/lagrange.h"
@@ -31,6 +32,14 @@ LagrangeLimits limitsOf(const SearchOptions& options) {
     return limits;
 }
 
+/// What need not be made better.
+std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) {
+    // Swaps also look for what costs less and is worth the same.
+    if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
+    return bound -
+           static_cast<std::uint64_t>(std::clamp(gap, 0.0, 1.0) * static_cast<double>(bound));
+}
+
 }  // namespace
 
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
@@ -39,13 +48,23 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
     result.best = placeGreedily(problem, progress);
     if (!isFeasible(problem, result.best.chosen)) result.best = {{}, valueOf(problem, {})};
     noteProgress(problem, result, progress);
-    if (options.optimizer != Optimizer::Greedy && !progress.stopped())
-        result.best = improveBySwaps(problem, result.best, options.swap, progress);
+    if (options.optimizer != Optimizer::Greedy && !progress.stopped()) {
+        // Swaps may take long: if there is no time for more, this is the bound.
+        LagrangeLimits quick = kQuick;
+        quick.cut = result.best.value;
+        quick.gap = std::min(quick.gap, limitsOf(options).gap);
+        quick.has_counts = false;
+        result.bound = boundWithin(problem, result.best.chosen, quick, progress).value;
+        noteProgress(problem, result, progress);
+        SwapOptions swap = options.swap;
+        swap.enough = std::min(swap.enough, enoughOf(problem, result.bound, options.gap));
+        result.best = improveBySwaps(problem, result.best, swap, progress);
+    }
     if (!progress.stopped()) {
         LagrangeLimits limits = limitsOf(options);
         limits.cut = result.best.value;
         const Bound bound = boundWithin(problem, result.best.chosen, limits, progress);
-        result.bound = bound.value;
+        result.bound = std::min(result.bound, bound.value);
         result.bound_by_count = bound.by_count;
         noteProgress(problem, result, progress);
         if (options.optimizer == Optimizer::Exact && !progress.stopped() &&

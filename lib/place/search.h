@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/progress.h"
@@ -25,13 +26,15 @@ Solution placeGreedily(const Problem& problem, Progress& progress);
 struct SwapOptions {
     int starts = 20;  ///< from greedy and from so many others
     std::uint64_t seed = 0;
+    /// Once something is worth so much, nothing better is looked for.
+    std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Local search: while it helps, one sensor is moved to the candidate that is best for it given the
 /// others (and sensors of another kind are bought instead, where there is a budget); from the
 /// greedy solution and from random ones, each from its own random numbers, in parallel. The best
-/// result, the one of the first start among equals: the same for any number of threads. Never worse
-/// than `start`. \pre start is feasible
+/// result, the one of the first start among equals; or that of the first start that is worth
+/// enough: the same for any number of threads. Never worse than `start`. \pre start is feasible
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
                         Progress& progress);
 
@@ -73,11 +76,14 @@ struct SearchOptions {
     SwapOptions swap = SwapOptions();
 };
 
-/// Greedy, then by options: with swaps, with the bound of Lagrange for all three (for Greedy a
-/// quick one), and for Exact with branch and bound until value and bound are within the gap.
-/// Candidates that the bound rules out (their reduced value) are dropped first, cells that the same
-/// remaining candidates see are merged, then the tree is searched. Ends early, is_complete = false,
-/// where progress says so. The same for any number of threads unless it is stopped.
+/// Greedy, then by options: with swaps, with the bound of Lagrange for all three (a quick one
+/// before the swaps, so that there is one if time runs out, and for Greedy no other), and for Exact
+/// with branch and bound until value and bound are within the gap. Candidates that the bound rules
+/// out (their reduced value) are dropped first, cells that the same remaining candidates see are
+/// merged, then the tree is searched; where a budget can be shared out among the kinds in more than
+/// 20'000 ways there is no tree and the bound of Lagrange is all there is: it need not meet the
+/// value. Ends early, is_complete = false, where progress says so. The same for any number of
+/// threads unless it is stopped.
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
 
 /// The least that reaches a value.
@@ -91,8 +97,9 @@ struct Fewest {
 };
 
 /// The fewest sensors, or the cheapest where costs differ, that are worth at least `wanted`: greedy
-/// until it is reached, then searches with less and less (with the optimiser asked for), while the
-/// bounds for less rise to meet it. Kinds without limit have a `most` of some thousands.
+/// until it is reached; quick bounds tell how much less cannot be enough; then what lies between is
+/// searched with the optimiser asked for, with long steps and few starts first; then better bounds,
+/// but not for Greedy. Kinds without limit have a `most` of about a thousand.
 Fewest placeFewest(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
                    Progress& progress);
 

@@ -6,12 +6,13 @@
 
 namespace ispace {
 
-void noteProgress(const Problem& problem, const SearchResult& result, Progress& progress) {
+void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
+                  Progress& progress) {
     const double total = static_cast<double>(std::max<std::uint64_t>(problem.totalWeight(), 1));
     char text[80];
     const int length = std::snprintf(text, sizeof text, "best %.1f %%, at most %.1f %%",
-                                     100 * static_cast<double>(result.best.value) / total,
-                                     100 * static_cast<double>(result.bound) / total);
+                                     100 * static_cast<double>(value) / total,
+                                     100 * static_cast<double>(bound) / total);
     progress.note({text, static_cast<std::size_t>(length)});
 }
 

@@ -15,8 +15,10 @@ namespace {
 /// Ends after so many steps, and keeps what was said.
 class Watch final : public Progress {
   public:
-    explicit Watch(int left = 1'000'000'000) : left_(left) {}
+    explicit Watch(int left = 1'000'000'000, std::string_view last = {})
+        : left_(left), last_(last) {}
     void begin(std::string_view phase, std::int64_t /*total*/) override {
+        if (phase == last_) left_ = 0;
         phases += phase;
         phases += ' ';
     }
@@ -29,6 +31,7 @@ class Watch final : public Progress {
 
   private:
     std::atomic<int> left_;
+    std::string_view last_;  // ends where this phase begins
 };
 
 TEST(Search, ValueIsBelowTheBestAndBoundAbove) {
@@ -86,6 +89,20 @@ TEST(Search, StoppedAnywhereGivesTheBestSoFar) {
     const SearchResult nothing = search(random.problem, {}, at_once);
     EXPECT_FALSE(nothing.is_complete);
     EXPECT_EQ(nothing.bound, random.problem.totalWeight());
+}
+
+TEST(Search, HasABoundBeforeTheSwaps) {
+    RandomProblemOptions options;
+    options.columns = 50;
+    options.rows = 50;
+    options.sites = 120;
+    options.max_range = 12;
+    options.most = 12;
+    const RandomProblem random = randomProblem(3, options);
+    Watch watch(1'000'000'000, "improving");
+    const SearchResult result = search(random.problem, {}, watch);
+    EXPECT_FALSE(result.is_complete);
+    EXPECT_LT(result.bound, result.best.value * 12 / 10);
 }
 
 TEST(Search, IsTheSameForAnyNumberOfThreads) {

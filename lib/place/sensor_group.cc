@@ -57,8 +57,9 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     std::vector<bool> is_used(fixed.size());
     for (std::size_t i = 0; i < freed.records.size(); ++i) {
         Record& record = freed.records[i];
-        if (!isArranged(record) || !record.has("at") || record.has("on")) continue;
-        bool stays = false;
+        const bool rides = record.has("on");
+        if (!isArranged(record) || (!record.has("at") && !rides)) continue;
+        bool stays = rides;
         for (std::size_t k = 0; k < fixed.size(); ++k) {
             if (::fnmatch(fixed[k].c_str(), ids[i].c_str(), 0) != 0) continue;
             is_used[k] = true;

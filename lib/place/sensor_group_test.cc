@@ -41,6 +41,8 @@ TEST(SensorGroups, FixedSensorsStayAndOthersAreFreed) {
     EXPECT_EQ(freed.records[4], layout.records[4]);
     const std::string globs[] = {"?", "laser*"};
     EXPECT_TRUE(withoutPlaces(layout, globs).records[2].has("at"));
+    const std::string riding[] = {"top", "a"};
+    EXPECT_EQ(withoutPlaces(layout, riding).records[3], layout.records[3]);
     const std::string unknown[] = {"b"};
     EXPECT_THROW(withoutPlaces(layout, unknown), UsageError);
 }

@@ -63,6 +63,13 @@ class PolygonFinder {
     BoxTree boxes_;
 };
 
+/// What stands at one height.
+std::vector<Segment2> linesOf(const Slice& slice) {
+    std::vector<Segment2> lines;
+    slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
+    return lines;
+}
+
 /// The boundary of the indoor region, whatever the height, and what stands at one.
 std::vector<Segment2> linesOf(const Region& indoor, const Slice& slice) {
     std::vector<Segment2> lines;
@@ -78,7 +85,7 @@ struct SiteJudge::Data {
         : rules(std::move(wanted)),
           indoor({environment.indoor()}),
           obstacles(linesOf(environment.indoor(), slice)),
-          walls(linesOf(environment.indoor(), wallSlice(environment, slice.height))),
+          walls(linesOf(wallSlice(environment, slice.height))),
           sheets(std::move(slice.sheets)),
           solids(std::move(slice.solids)),
           keep_out(rules.keep_out),

@@ -48,12 +48,18 @@ class SiteReader {
     void readLine(std::string_view line) {
         ++line_;
         const char* const begin = line.data();
+        constexpr std::string_view kMark = "\xef\xbb\xbf";  // as some editors begin a file
+        if (line_ == 1 && line.starts_with(kMark)) line.remove_prefix(kMark.size());
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) return;
         const std::vector<std::string_view> fields = fieldsOf(line);
         const bool is_first = is_first_;
         is_first_ = false;
-        if (is_first && fields.size() >= 2 && fields[0] == "x" && fields[1] == "y") return;
+        const auto is_name = [](std::string_view field, char small) {
+            return field.size() == 1 && (field[0] == small || field[0] == small - 'a' + 'A');
+        };
+        if (is_first && fields.size() >= 2 && is_name(fields[0], 'x') && is_name(fields[1], 'y'))
+            return;
         if (fields.size() < 2 || fields.size() > kNames.size())
             return refuse(fields.size() < 2 ? line.data() - begin : fields[3].data() - begin,
                           std::to_string(fields.size()) +

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <limits>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -70,6 +72,9 @@ constexpr std::size_t kRandomSensors = 8;
 /// this halves what 20 starts lose, for as much time again.
 constexpr std::size_t kStartsPerKicked = 5;
 constexpr std::uint64_t kKicks = 10;
+/// Ends about which others are bought for two sensors, where costs differ.
+constexpr std::size_t kMostBuyers = 6;
+constexpr std::size_t kStartsPerBuyer = 4;
 
 /// Where a start has come to.
 struct End {
@@ -90,44 +95,70 @@ struct End {
     }
 };
 
+/// Of the search from one start, which says nothing of how far it is: it ends with the whole search
+/// and once a start before it is worth enough.
+class StartProgress final : public Progress {
+  public:
+    StartProgress(const Progress& whole, const std::atomic<std::size_t>& first, std::size_t start)
+        : whole_(whole), first_(first), start_(start) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return first_ < start_ || whole_.stopped(); }
+
+  private:
+    const Progress& whole_;
+    const std::atomic<std::size_t>& first_;
+    std::size_t start_;
+};
+
 /// The searches from all starts.
 class SwapSearch {
   public:
-    SwapSearch(const Problem& problem, std::uint64_t seed, Progress& progress)
+    SwapSearch(const Problem& problem, const SwapOptions& options, Progress& progress)
         : basis_(problem),
           places_(basis_),
-          seed_(seed),
+          seed_(options.seed),
+          enough_(options.enough),
           progress_(progress),
           herald_(problem, progress) {}
 
-    /// From what is given (start 0) or from random sensors.
-    End searchFrom(std::size_t start, const std::vector<Choice>& given) {
-        CoverageState state = basis_.emptyState();
-        LocalSearch search(basis_, cache_, progress_);
-        if (start == 0) {
-            for (const Choice& choice : given) state.add(choice);
-        } else {
-            std::array<float, 2 * kRandomSensors> draws{};
-            draw({seed_, Purpose::Placement, 0, start}, 0, {.uniform = draws});
-            for (std::size_t i = 0; i < kRandomSensors; ++i)
-                addRandom(state, draws[2 * i], draws[2 * i + 1]);
-            if (basis_.problem.demand == 1)
-                search.fill(state);
-            else
-                placeRest(basis_, false, state, progress_);
-        }
-        search.improve(state);
-        herald_.tell(state.value());
-        return {start, state};
+    /// From what is given (start 0) and from random sensors. The ends up to the first that is worth
+    /// enough are the same for any number of threads; those after it are worth nothing.
+    std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
+        std::vector<End> ends(starts);
+        // Starts in ascending order, whichever thread takes them.
+        std::atomic<std::size_t> next = 0, first = starts;
+        tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t) {
+            const std::size_t i = next++;
+            if (i == 0 || (i < first && !progress_.stopped())) {
+                StartProgress progress(progress_, first, i);
+                ends[i] = searchFrom(i, given, progress);
+                std::size_t before = first;
+                while (ends[i].value >= enough_ && i < before &&
+                       !first.compare_exchange_weak(before, i)) {
+                }
+            }
+            progress_.advance(1);
+        });
+        for (std::size_t i = first + 1; i < starts; ++i) ends[i] = End();
+        return ends;
     }
 
+    /// Where sensors cost more and less: buys others for two, from an end on.
+    End searchByPairs(const End& end) {
+        CoverageState state = stateOf(end);
+        LocalSearch(basis_, cache_, enough_, progress_).improveByPairs(state);
+        herald_.tell(state.value());
+        End next(end.start, state);
+        return end.isBetterThan(next) ? end : next;
+    }
     /// From an end on, by chance.
     End searchAbout(const End& end) {
-        CoverageState state = basis_.emptyState();
-        for (const Choice& choice : end.chosen) state.add(choice);
-        LocalSearch search(basis_, cache_, progress_);
+        CoverageState state = stateOf(end);
+        LocalSearch search(basis_, cache_, enough_, progress_);
         End best = end;
-        for (std::uint64_t kick = 1; kick <= kKicks && !progress_.stopped(); ++kick) {
+        for (std::uint64_t kick = 1; kick <= kKicks && !isOver(best); ++kick) {
             const std::vector<Choice> before = state.chosen();
             kickOut(state, {seed_, Purpose::Placement, kick, end.start});
             search.fill(state);
@@ -147,7 +178,37 @@ class SwapSearch {
         return best;
     }
 
+    [[nodiscard]] bool isOver(const End& end) const {
+        return end.value >= enough_ || progress_.stopped();
+    }
+
   private:
+    End searchFrom(std::size_t start, const std::vector<Choice>& given, Progress& progress) {
+        CoverageState state = basis_.emptyState();
+        LocalSearch search(basis_, cache_, enough_, progress);
+        if (start == 0) {
+            for (const Choice& choice : given) state.add(choice);
+        } else {
+            std::array<float, 2 * kRandomSensors> draws{};
+            draw({seed_, Purpose::Placement, 0, start}, 0, {.uniform = draws});
+            for (std::size_t i = 0; i < kRandomSensors; ++i)
+                addRandom(state, draws[2 * i], draws[2 * i + 1]);
+            if (basis_.problem.demand == 1)
+                search.fill(state);
+            else
+                placeRest(basis_, false, state, progress);
+        }
+        search.improve(state);
+        herald_.tell(state.value());
+        return {start, state};
+    }
+
+    [[nodiscard]] CoverageState stateOf(const End& end) const {
+        CoverageState state = basis_.emptyState();
+        for (const Choice& choice : end.chosen) state.add(choice);
+        return state;
+    }
+
     /// Adds a sensor of any kind that may be added, somewhere; not if it does not hang together
     /// with the others and has to. Both numbers are in [0, 1).
     void addRandom(CoverageState& state, float which, float where) const {
@@ -177,7 +238,7 @@ class SwapSearch {
 
     SearchBasis basis_;
     RandomPlaces places_;
-    std::uint64_t seed_;
+    std::uint64_t seed_, enough_;
     Progress& progress_;
     Herald herald_;
     ResponseCache cache_;
@@ -218,28 +279,28 @@ std::vector<Choice> inOrder(const Problem& problem, std::vector<Choice> chosen) 
 
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
                         Progress& progress) {
+    if (start.value >= options.enough) return start;
     const auto starts = static_cast<std::size_t>(std::max(0, options.starts));
     const std::size_t kicked = (starts + kStartsPerKicked - 1) / kStartsPerKicked;
-    progress.begin("improving", static_cast<std::int64_t>(1 + starts + kicked));
-    SwapSearch search(problem, options.seed, progress);
-    std::vector<End> ends(starts + 1);
-    tbb::parallel_for(std::size_t{0}, starts + 1, [&](std::size_t i) {
-        if (i == 0 || !progress.stopped()) ends[i] = search.searchFrom(i, start.chosen);
-        progress.advance(1);
-    });
-    const auto best_of = [](const std::vector<End>& some) {
-        return *std::min_element(some.begin(), some.end(),
-                                 [](const End& a, const End& b) { return a.isBetterThan(b); });
+    const std::size_t buyers =
+        problem.budget ? std::min(1 + starts / kStartsPerBuyer, kMostBuyers) : 0;
+    progress.begin("improving", static_cast<std::int64_t>(1 + starts + buyers + kicked));
+    SwapSearch search(problem, options, progress);
+    std::vector<End> ends = search.searchFromAll(starts + 1, start.chosen);
+    End best = bestOf(ends, 1).front();
+    // From the best so far on.
+    const auto go_on = [&](std::size_t count, End (SwapSearch::*how)(const End&)) {
+        if (count > 0 && best.chosen.size() > 1 && !search.isOver(best)) {
+            std::vector<End> more = bestOf(ends, count);
+            tbb::parallel_for(std::size_t{0}, more.size(),
+                              [&](std::size_t i) { more[i] = (search.*how)(more[i]); });
+            ends.insert(ends.end(), more.begin(), more.end());
+            best = bestOf(ends, 1).front();
+        }
+        progress.advance(static_cast<std::int64_t>(count));
     };
-    End best = best_of(ends);
-    if (kicked > 0 && best.chosen.size() > 1) {
-        std::vector<End> more = bestOf(std::move(ends), kicked);
-        tbb::parallel_for(std::size_t{0}, more.size(),
-                          [&](std::size_t i) { more[i] = search.searchAbout(more[i]); });
-        const End other = best_of(more);
-        if (other.isBetterThan(best)) best = other;
-    }
-    progress.advance(static_cast<std::int64_t>(kicked));
+    go_on(buyers, &SwapSearch::searchByPairs);
+    go_on(kicked, &SwapSearch::searchAbout);
     progress.end();
     return {inOrder(problem, std::move(best.chosen)), best.value};
 }

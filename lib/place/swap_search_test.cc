@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "place/local_search.h"
 #include "place/search.h"
 #include "place/test_problems.h"
 
@@ -241,13 +242,69 @@ TEST(SwapSearch, StoppedItKeepsWhatItHas) {
 }
 
 TEST(SwapSearch, TellsHowFarItIs) {
-    const RandomProblem made = randomProblem(2);
-    StopAfter progress(1 << 30);
-    improveBySwaps(made.problem, {}, {}, progress);
-    EXPECT_EQ(progress.phase_, "improving");
-    EXPECT_EQ(progress.total_, 25);
-    EXPECT_EQ(progress.done_, 25);
-    EXPECT_EQ(progress.note_.substr(0, 5), "best ");
+    for (const int demand : {1, 2}) {
+        RandomProblemOptions options;
+        options.demand = demand;
+        options.max_met = demand - 1;
+        options.most = demand == 1 ? 3 : 12;  // more than are random: placed greedily
+        const RandomProblem made = randomProblem(2, options);
+        StopAfter progress(1 << 30);
+        improveBySwaps(made.problem, {}, {}, progress);
+        EXPECT_EQ(progress.phase_, "improving");
+        EXPECT_EQ(progress.total_, 25);
+        EXPECT_EQ(progress.done_, progress.total_);
+        EXPECT_EQ(progress.note_.substr(0, 5), "best ");
+    }
+}
+
+TEST(SwapSearch, EndsWhereItIsEnough) {
+    RandomProblemOptions options;
+    options.sites = 60;
+    options.columns = 40;
+    options.rows = 30;
+    options.max_range = 10;
+    options.most = 10;
+    int less = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        const RandomProblem made = randomProblem(seed, options);
+        SilentProgress progress;
+        const std::uint64_t most = improved(made.problem).value;
+        for (const std::uint64_t enough : {most * 8 / 10, most * 97 / 100, most, most + 1}) {
+            Solution found[2];
+            for (const std::size_t threads : {1U, 8U}) {
+                const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                                  threads);
+                found[threads / 8] = improveBySwaps(made.problem, {}, {20, 0, enough}, progress);
+            }
+            EXPECT_EQ(found[0].chosen, found[1].chosen) << seed;
+            EXPECT_EQ(found[0].value, found[1].value) << seed;
+            EXPECT_GE(found[0].value, std::min(enough, most * 98 / 100)) << seed;
+            if (found[0].value < most) ++less;
+        }
+        // What is enough already stays as it is.
+        const Solution start = placeGreedily(made.problem, progress);
+        EXPECT_EQ(improveBySwaps(made.problem, start, {20, 0, start.value}, progress).chosen,
+                  start.chosen);
+    }
+    EXPECT_GT(less, 4);
+}
+
+TEST(ResponseCache, KnowsChoicesInAnyOrder) {
+    using Key = ResponseCache::Key;
+    EXPECT_EQ(Key({{0, 1}, {1, 0}}), Key({{1, 0}, {0, 1}}));
+    EXPECT_FALSE(Key({{0, 1}}) == Key({{1, 0}}));
+    EXPECT_FALSE(Key({{0, 1}, {0, 1}}) == Key(std::vector<Choice>()));
+    ResponseCache cache;
+    const std::size_t stored = 200'000;
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < stored; ++i) cache.store(Key({{0, i}}), {{0, i}, i, true});
+    for (std::size_t i = 0; i < stored; ++i) {
+        const auto response = cache.find(Key({{0, i}}));
+        if (!response) continue;
+        ++found;
+        ASSERT_EQ(response->choice.candidate, i);
+    }
+    EXPECT_EQ(found, 100'000U);
 }
 
 }  // namespace

@@ -18,7 +18,9 @@ constexpr double kSegments = 5;  // "seg" of eq. (4.1) and (4.2)
 
 int linesAlong(double extent, double max_range) {
     constexpr double kMost = 10000;
-    const double lines = std::floor(extent / max_range * kSegments - 1);
+    // A room that is moved is no smaller because its corners round.
+    constexpr double kSlack = 1e-9;
+    const double lines = std::floor(extent / max_range * kSegments - 1 + kSlack);
     return static_cast<int>(std::clamp(lines, 1.0, kMost));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // arrange: places sensors in a room and writes the layout.
+#include <algorithm>
 #include <iostream>
 
 #include "arrange/options.h"
@@ -16,6 +17,7 @@
 #include "layout/schemas.h"
 #include "place/layout_document.h"
 #include "record/text.h"
+#include "sense/ultrasound.h"
 
 namespace {
 
@@ -38,9 +40,9 @@ NamedZone zoneOf(const ArrangeToolOptions& options, const std::string& text,
     NamedZone zone = readZone(text, environment);
     if (zone.is_center_outside)
         warn(options, "the centre of gravity of " + zone.name +
-                          " lies outside of it; its inside is told by (" +
+                          " lies outside of it; a point inside is (" +
                           formatFixed(zone.inside.x, 2) + ", " + formatFixed(zone.inside.y, 2) +
-                          ") instead");
+                          "): is it the zone that is meant?");
     return zone;
 }
 
@@ -80,6 +82,8 @@ Work read(const ArrangeToolOptions& options) {
     work.files = filesOf(input);
     if (!options.places_file.empty()) {
         const bool reads_stdin = options.places_file == "-";
+        if (reads_stdin && std::count(input.named.begin(), input.named.end(), "-") > 0)
+            throw UsageError("stdin cannot be read twice: only one operand can be -");
         work.how.list =
             readSites(reads_stdin ? readStdin() : readAll(options.places_file), options.places_file,
                       headingsAround(work.how.headings.value_or(work.how.density.headings)));
@@ -105,11 +109,35 @@ void writeLayout(const ArrangeCommand& command, const Work& work, const Arrangem
     writeDependencies(options.common, work.files);
 }
 
+/// What cannot be met with this many sensors is worth a word.
+void warnOfTooFew(const ArrangeToolOptions& options, const Work& work,
+                  const Arrangement& arrangement) {
+    const Scene whole = withArranged(work.input.scene, work.groups, arrangement.sensors);
+    const std::size_t sensors =
+        whole.lasers.size() + whole.rangers.size() + whole.receivers.size() / kLeastReceivers;
+    if (const auto times = static_cast<std::size_t>(work.how.redundancy);
+        times > 1 && sensors < times)
+        warn(options, "nothing counts: floor has to be seen by " + std::to_string(times) +
+                          " sensors, and there are " + std::to_string(sensors));
+}
+
+/// As coverage does: fewer receivers than it takes see nothing together.
+void warnOfDeafness(const ArrangeToolOptions& options, const Work& work,
+                    const Arrangement& arrangement) {
+    const Scene whole = withArranged(work.input.scene, work.groups, arrangement.sensors);
+    if (const std::size_t count = whole.receivers.size(); count > 0 && count < kLeastReceivers)
+        warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
+                          " receivers have to hear a tag, here are " + std::to_string(count));
+}
+
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
     const ThreadLimit threads(options.common.threads);
     const Work work = read(options);
     refuseReplacing(work.files, {options.trace_file, options.curve_file, options.mps_file});
+    for (const std::string* file :
+         {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
+        mustBeWritable(*file);
     int signal = 0;
     Arrangement arrangement;
     {
@@ -121,17 +149,24 @@ void arrangeSensors(const ArrangeCommand& command) {
             arrangement = arrange(work.input.scene, work.groups, work.how, watch,
                                   mps ? &mps->stream() : nullptr);
         } catch (const UnmetError&) {
-            if (watch.signal() != 0) endBySignal(watch.signal());
-            throw;
+            if (watch.signal() == 0) throw;
+            if (!options.common.quiet)
+                std::cerr << "arrange: stopped before there was a layout: nothing is written\n";
+            endBySignal(watch.signal());
         }
         if (mps) mps->commit();
         writeLayout(command, work, arrangement);
         signal = watch.signal();
     }
-    if (!options.common.quiet)
-        std::cerr << reportText(work.how, arrangement, options.common.verbose);
+    if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
     if (signal != 0) endBySignal(signal);
+    warnOfDeafness(options, work, arrangement);
+    warnOfTooFew(options, work, arrangement);
     if (!arrangement.is_reached) throw UnmetError(shortfallText(work.how, arrangement));
+    if (arrangement.unplaced > 0)
+        throw UnmetError(std::to_string(arrangement.unplaced) +
+                         " of the sensors have no place from which their views hang together with "
+                         "the others' (--connected)");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "arrange/options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "base/error.h"
@@ -147,21 +148,21 @@ void ArrangeCommand::addPlaceOptions() {
                 "of grid: interior lines across x (default: 5 per maximum range)", Enters::History);
     line_.count("-Y", "N", how.y, 1, kMostLines,
                 "of grid: interior lines across y (default: 5 per maximum range)", Enters::History);
-    line_.count("--deg", "N", how.headings, 1, kMostHeadings,
-                "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
-                "(default 8; of wall the normals alone)",
+    line_.count(
+        "--deg", "N", how.headings, 1, kMostHeadings,
+        "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
+        "(default 8 of grid and random, else those of --candidates; of wall the normals alone)",
+        Enters::History);
+    line_.count("--r1", "N", how.first_places, 1, kMostPlaces, "of random: places tried first",
                 Enters::History);
-    line_.count("--r1", "N", how.first_places, 1, kMostPlaces,
-                "of random: places tried first (default 20)", Enters::History);
     line_.count("--r2", "N", how.more_places, 0, kMostPlaces,
-                "of random: places tried about the best of them, for each sensor (default 5)",
-                Enters::History);
+                "of random: places tried about the best of them, for each sensor", Enters::History);
     line_.meters("--scope", how.scope, 0.001, kLongest,
                  "of random: radius in which these lie (default: maximum range / 5)",
                  Enters::History);
-    line_.meters("--dist", how.dist, 0.001, 1000, "of wall: distance from the wall (default 0.05)",
+    line_.meters("--dist", how.dist, 0.001, 1000, "of wall: distance from the wall",
                  Enters::History);
-    line_.count("--times", "N", how.times, 1, kMostPlaces, "of wall: places a wall (default 21)",
+    line_.count("--times", "N", how.times, 1, kMostPlaces, "of wall: places a wall",
                 Enters::History);
 }
 
@@ -187,8 +188,7 @@ void ArrangeCommand::addMountOptions() {
         },
         "tilts to choose from, for sensors that do not say theirs (default 0)", Enters::History);
     line_.meters("--clearance", mount.clearance, 0, 1000,
-                 "least distance from walls and objects at that height (default 0)",
-                 Enters::History);
+                 "least distance from walls and objects at that height", Enters::History);
     line_.texts("--keep-out", "ZONE", options_.zones.keep_out, "no sensor stands there",
                 Enters::History);
     line_.texts("--keep-in", "ZONE", options_.zones.keep_in, "sensors stand only there",
@@ -205,7 +205,7 @@ void ArrangeCommand::addGoalOptions() {
                 "floor there counts W times (elsewhere once)", Enters::History);
     constexpr int kMostTimes = 100;
     line_.count("--redundancy", "K", how.redundancy, 1, kMostTimes,
-                "floor counts if K sensors see it (default 1)", Enters::History);
+                "floor counts if K sensors see it", Enters::History);
     line_.flag("--connected", how.is_connected,
                "views must hang together: each shares a cell with another, and so all of them",
                Enters::History);
@@ -222,7 +222,7 @@ void ArrangeCommand::addGoalOptions() {
         "buy no more than this, at cost= each (default 1); COUNT is then the most",
         Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
-                 "height of the plane that rangers and ultrasound cover (default 0, the floor)",
+                 "height of the plane that rangers and ultrasound cover, 0 is the floor",
                  Enters::History);
     addGridOption(line_, "--reso", how.columns, how.rows, "cells over the limits while searching");
 }
@@ -234,8 +234,8 @@ void ArrangeCommand::addSearchOptions() {
                  "best (exact); default swap, greedy with grid, random and wall",
                  Enters::History);
     constexpr int kMostStarts = 100000;
-    line_.count("--starts", "N", how.search.swap.starts, 0, kMostStarts,
-                "random starts of swap (default 20)", Enters::History);
+    line_.count("--starts", "N", how.search.swap.starts, 0, kMostStarts, "random starts of swap",
+                Enters::History);
     line_.parsed(
         "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readShare(text); },
         "end once value and bound are this near, e.g. 1%", Enters::History);
@@ -278,6 +278,15 @@ void ArrangeCommand::settle() {
         throw UsageError(
             "--mount frame: the bars of the frame are the places; leave out "
             "--strategy, --effort and --z");
+    if (how.refine && how.mount.on == MountOn::Frame)
+        throw UsageError(
+            "--refine moves sensors anywhere, and bars of a frame are few: leave out "
+            "one of --refine and --mount frame");
+    if (how.search.optimizer == Optimizer::Greedy)
+        for (const char* option : {"--starts", "--gap"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) +
+                                 " is about --optimize swap or exact: give one of them, too");
     if (how.target && how.budget)
         throw UsageError("--target asks for the least cost: leave out --budget");
     for (const std::string& weight : options_.zones.weights) (void)splitWeight(weight);
@@ -332,18 +341,23 @@ void ArrangeCommand::settleFiles() const {
         {"--output", &options_.common.output},
         {"--curve", &options_.curve_file},
         {"--trace", &options_.trace_file},
-        {"--export-mps", &options_.mps_file}};
+        {"--export-mps", &options_.mps_file},
+        {"--MF", &options_.common.dependencies.file}};
+    std::map<std::filesystem::path, const char*> names;
     for (const auto& [name, file] : files) {
         if (file->empty()) {
             if (line_.given(name)) throw UsageError(std::string(name) + ": an empty name is given");
             continue;
         }
-        if (name != files[0].first && *file == "-")
+        const bool is_layout = file == &options_.common.output;
+        if (!is_layout && *file == "-")
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
-        for (const auto& [other, other_file] : files)
-            if (other != name && *other_file == *file && *file != "-")
-                throw UsageError(std::string(name) + " and " + other + " name the same file, " +
-                                 *file);
+        if (is_layout && isStream(*file)) continue;
+        const auto [other, is_new] =
+            names.emplace(std::filesystem::absolute(*file).lexically_normal(), name);
+        if (!is_new)
+            throw UsageError(std::string(name) + " and " + other->second + " name the same file, " +
+                             *file);
     }
     if (!options_.curve_file.empty())
         (void)outputFormat("", options_.curve_file, {"csv", "png", "svg", "pdf"});

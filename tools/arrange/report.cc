@@ -21,13 +21,13 @@ std::string gapText(double value, double bound) {
 
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
     return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
-           std::string(nameOf(how.strategy)) + ") on " + std::to_string(how.columns) + " x " +
-           std::to_string(how.rows) + " cells";
+           std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
+           std::to_string(how.columns) + " x " + std::to_string(how.rows) + " cells";
 }
 
 }  // namespace
 
-std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement, int verbose) {
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
     std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
                        ", coverage " + percent(arrangement.coverage);
     // The bound is about what was maximised, before it was refined.
@@ -46,22 +46,18 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                 " m2 by exact area; bound over all places " + percent(arrangement.bound) + '\n';
     }
     if (arrangement.least) {
-        const bool is_cost = arrangement.cost != static_cast<double>(arrangement.sensors.size());
         text += "arrange: target " + percent(*how.target) + " reached " +
-                (is_cost ? "at a cost of " + formatDouble(arrangement.cost) +
-                               "; nothing cheaper than " + formatDouble(*arrangement.least)
-                         : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
-                               "; none fewer than " + formatDouble(*arrangement.least)) +
+                (arrangement.has_costs
+                     ? "at a cost of " + formatDouble(arrangement.cost) +
+                           "; nothing cheaper than " + formatDouble(*arrangement.least)
+                     : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                           "; none fewer than " + formatDouble(*arrangement.least)) +
                 " of these candidates can\n";
     }
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';
     if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
-    if (verbose > 0)
-        text += "arrange: candidates took " +
-                formatFixed(static_cast<double>(arrangement.bytes) / 1e6, 1) + " MB of " +
-                formatFixed(static_cast<double>(how.most_bytes) / 1e6, 0) + " MB allowed\n";
     return text;
 }
 

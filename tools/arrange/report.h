@@ -9,8 +9,8 @@
 namespace ispace {
 
 /// What came out, how near it is to the bound, and what the bound is over: a line or some, for
-/// stderr. \param verbose how often -v was given
-std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement, int verbose);
+/// stderr.
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement);
 
 /// Why a target was not reached, as a sentence without end.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);

@@ -77,15 +77,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
     return readTrace(readStdin(), displayName(options.trace)).poses;
 }
 
-/// Nobody means to replace what was read by a map of it.
-void mustNotBeRead(const std::string& output, const std::vector<std::string>& files) {
-    for (const std::string& file : files) {
-        std::error_code ignored;
-        if (std::filesystem::equivalent(output, file, ignored))
-            throw UsageError(output + " is read by this command: write the map to another file");
-    }
-}
-
 void writeProduct(const CoverageToolOptions& options, const Scene& scene,
                   const Measured& measured) {
     const std::string& output = options.common.output;
@@ -127,8 +118,9 @@ void coverage(CoverageToolOptions options) {
         options.map.trace = readTried(options, input);
         files.push_back(options.trace);
     }
-    if (!options.format.empty()) mustNotBeRead(options.common.output, files);
-    if (options.format == "ros") mustNotBeRead(withSuffix(options.common.output, ".pgm"), files);
+    if (!options.format.empty()) refuseReplacing(files, {options.common.output});
+    if (options.format == "ros")
+        refuseReplacing(files, {withSuffix(options.common.output, ".pgm")});
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
     warnOfDoubts(options, input.scene);
