@@ -152,11 +152,11 @@ Split splitOf(NodeRelaxation& relaxed, const std::vector<std::uint32_t>& multipl
 std::vector<BranchNode> childrenOf(const BranchNode& base, const Split& split) {
     std::vector<BranchNode> children;
     const BranchGroup& group = base.groups[split.group];
-    const auto listOf = [&group](std::vector<std::uint32_t> places) {
+    const auto list_of = [&group](std::vector<std::uint32_t> places) {
         for (std::uint32_t& i : places) i = (*group.list)[i];
         return std::make_shared<const std::vector<std::uint32_t>>(std::move(places));
     };
-    const auto near_list = listOf(split.near), far_list = listOf(split.far);
+    const auto near_list = list_of(split.near), far_list = list_of(split.far);
     children.reserve(group.count + 1);
     for (std::size_t near = 0; near <= group.count; ++near) {
         const std::size_t far = group.count - near;
@@ -221,17 +221,17 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
             std::make_shared<const ReducedProblem>(reduce(relaxed.problem(), kept, multipliers));
     }
     now.multipliers = std::make_shared<const std::vector<std::uint32_t>>(std::move(multipliers));
-    const auto nameOf = [&](std::size_t kind, std::size_t candidate) {
+    const auto name_of = [&](std::size_t kind, std::size_t candidate) {
         if (is_same) return static_cast<std::uint32_t>(candidate);
         return static_cast<std::uint32_t>(
             std::lower_bound(kept[kind].begin(), kept[kind].end(), candidate) - kept[kind].begin());
     };
     for (const Choice& choice : forced)
-        now.pending.push_back({choice.kind, nameOf(choice.kind, choice.candidate)});
+        now.pending.push_back({choice.kind, name_of(choice.kind, choice.candidate)});
     for (const OpenGroup& group : relaxed.groups()) {
         if (group.list.empty()) continue;
         std::vector<std::uint32_t> list = group.list;
-        for (std::uint32_t& i : list) i = nameOf(group.kind, i);
+        for (std::uint32_t& i : list) i = name_of(group.kind, i);
         now.groups.push_back({group.kind, group.count,
                               std::make_shared<const std::vector<std::uint32_t>>(std::move(list))});
     }

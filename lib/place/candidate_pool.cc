@@ -211,6 +211,7 @@ struct CandidatePool::Data {
         for (const Point3& place : framePlaces(environment, options.density.lattice_step))
             by_height[tidy(place.z)].push_back(place.onFloor());
         std::vector<Level> levels;
+        levels.reserve(by_height.size());
         for (const auto& [height, places] : by_height)
             levels.push_back({height, sitesAt(places, headings())});
         return levels;

@@ -63,7 +63,7 @@ KeptSite siteOf(const CandidateSet& set, std::size_t kind,
     std::sort(limits.begin(), limits.end());
     limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
     const auto parts = static_cast<std::uint32_t>(limits.size() - 1);
-    const auto partAt = [&limits](std::uint32_t part) {
+    const auto part_at = [&limits](std::uint32_t part) {
         return static_cast<std::uint32_t>(std::lower_bound(limits.begin(), limits.end(), part) -
                                           limits.begin());
     };
@@ -72,20 +72,20 @@ KeptSite siteOf(const CandidateSet& set, std::size_t kind,
     for (const std::uint32_t candidate : candidates) {
         const CandidateSet::PartRange range = set.rangeOf(candidate);
         const std::uint32_t last = range.begin + range.count;
-        const std::uint32_t begin = partAt(range.begin);
-        const std::uint32_t end = partAt(within(last)) + (last > directed ? parts : 0);
+        const std::uint32_t begin = part_at(range.begin);
+        const std::uint32_t end = part_at(within(last)) + (last > directed ? parts : 0);
         kept.ranges.push_back({begin, end - begin});
         for (std::uint32_t part = begin; part < end; ++part) is_seen[part % parts] = 1;
     }
     kept.parts.resize(parts + 1);
-    const auto addTo = [&](std::vector<CellRun>& runs, std::size_t part) {
+    const auto add_to = [&](std::vector<CellRun>& runs, std::size_t part) {
         const std::vector<CellRun> more = set.runsOf(site, part);
         runs.insert(runs.end(), more.begin(), more.end());
     };
     for (std::uint32_t part = 0; part < parts; ++part)
         for (std::uint32_t i = limits[part]; is_seen[part] != 0 && i < limits[part + 1]; ++i)
-            addTo(kept.parts[part], i);
-    addTo(kept.parts[parts], directed);
+            add_to(kept.parts[part], i);
+    add_to(kept.parts[parts], directed);
     return kept;
 }
 

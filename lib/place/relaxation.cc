@@ -97,18 +97,18 @@ CountChoice::Best CountChoice::best(std::span<const std::vector<std::uint64_t>> 
     Best best;
     best.with.assign(kinds, 0);
     best.may.assign(kinds, 0);
-    const auto upTo = [&sums](std::size_t kind, std::size_t count) {
+    const auto up_to = [&sums](std::size_t kind, std::size_t count) {
         return sums[kind][std::min(count, sums[kind].size() - 1)];
     };
     if (!is_listed_) {
         best.value = knapsack(sums, best.counts);
-        for (std::size_t k = 0; k < kinds; ++k) best.may[k] = most_[k] > 0;
+        for (std::size_t k = 0; k < kinds; ++k) best.may[k] = most_[k] > 0 ? 1 : 0;
         best.with.assign(kinds, best.value);
         return best;
     }
     for (const auto& way : ways_) {
         std::uint64_t value = 0;
-        for (std::size_t k = 0; k < kinds; ++k) value += upTo(k, way[k]);
+        for (std::size_t k = 0; k < kinds; ++k) value += up_to(k, way[k]);
         if (best.counts.empty() || value > best.value) {
             best.value = value;
             best.counts = way;
@@ -116,7 +116,7 @@ CountChoice::Best CountChoice::best(std::span<const std::vector<std::uint64_t>> 
         for (std::size_t k = 0; k < kinds; ++k) {
             if (way[k] == 0) continue;
             best.may[k] = 1;
-            best.with[k] = std::max(best.with[k], value - upTo(k, way[k]) + upTo(k, way[k] - 1));
+            best.with[k] = std::max(best.with[k], value - up_to(k, way[k]) + up_to(k, way[k] - 1));
         }
     }
     for (std::size_t k = 0; k < kinds; ++k)
