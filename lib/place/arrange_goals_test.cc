@@ -123,6 +123,45 @@ TEST(ArrangeGoals, RefiningDoesNotLose) {
     EXPECT_EQ(report.coverage.grid, after.coverage);
 }
 
+TEST(ArrangeGoals, RefinedViewsStillHangTogether) {
+    const Scene scene = roomScene("#env 1\nispace size=20,8\n");
+    const auto groups = groupsOf(scene, {"laser,range=2,fov=360:3"});
+    ArrangeOptions options = coarse();
+    options.density = {0.3, 0.3, 1};
+    options.is_connected = true;
+    options.refine = true;
+    const Arrangement together = arranged(scene, groups, options);
+    EXPECT_EQ(reportOf(scene, groups, together).pieces, 1U);
+    EXPECT_GT(together.refined_after, together.refined_before);
+    options.is_connected = false;
+    EXPECT_GT(reportOf(scene, groups, arranged(scene, groups, options)).pieces, 1U)
+        << "else they go apart";
+}
+
+TEST(ArrangeGoals, RefinedReceiversKeepApart) {
+    const Scene scene = roomScene("#env 1\nispace size=6,5\n");
+    const auto groups = groupsOf(scene, {"ultrasound,range=3,fov=90:4"});
+    ArrangeOptions options = coarse();
+    options.mount.on = MountOn::Ceiling;
+    options.refine = true;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            EXPECT_GE(
+                length(arrangement.sensors[i].pose.position - arrangement.sensors[k].pose.position),
+                0.05 - 1e-9);
+}
+
+TEST(ArrangeGoals, WhatCannotHangTogetherIsLeftOut) {
+    const Scene scene = roomScene("#env 1\nispace size=16,6\n");
+    const auto groups = groupsOf(scene, {"laser,range=0.2,fov=360:2"});
+    ArrangeOptions options = coarse();
+    options.is_connected = true;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    EXPECT_EQ(arrangement.sensors.size() + arrangement.unplaced, 2U);
+    EXPECT_GE(arrangement.unplaced, 1U);
+}
+
 TEST(ArrangeGoals, ACurveRises) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:4"});

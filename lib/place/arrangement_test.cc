@@ -192,6 +192,27 @@ TEST(Arrangement, StopsWithTheBestSoFar) {
     EXPECT_FALSE(layout.records.back().flag("complete"));
 }
 
+TEST(Arrangement, ThereIsALayoutHoweverEarlyOneStops) {
+    class Hasty final : public Progress {
+      public:
+        void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+        void advance(std::int64_t /*count*/) override {}
+        void end() override {}
+        [[nodiscard]] bool stopped() const override { return true; }
+    };
+    const Scene scene = roomScene();
+    Hasty progress;
+    for (const Optimizer optimizer : {Optimizer::Greedy, Optimizer::Exact}) {
+        ArrangeOptions options = coarse(optimizer);
+        options.mount.heights = {1.2};
+        const auto groups = groupsOf(scene, {"laser:2", "ranger,tilt=-30"});
+        const Arrangement arrangement = arrange(scene, groups, options, progress);
+        EXPECT_EQ(arrangement.sensors.size(), 3U);
+        EXPECT_FALSE(arrangement.is_complete);
+        EXPECT_EQ(arrangement.bound, 1);
+    }
+}
+
 TEST(Arrangement, WhatCannotBeIsSaid) {
     const Scene full = roomScene("#env 1\nispace size=4,4\ncube size=3,3,1\ninside at=1.8,1.8\n");
     ArrangeOptions options = coarse();
