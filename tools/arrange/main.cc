@@ -159,6 +159,9 @@ void arrangeSensors(const ArrangeCommand& command) {
         signal = watch.signal();
     }
     if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
+    talk(options.common, "arrange",
+         "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
+             formatDouble(arrangement.cost));
     if (signal != 0) endBySignal(signal);
     warnOfDeafness(options, work, arrangement);
     warnOfTooFew(options, work, arrangement);
