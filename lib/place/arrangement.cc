@@ -89,7 +89,10 @@ class Job {
         result.sensors = sensorsOf(found.best.chosen);
         if (options_.refine) refineIn(result, found.best.value);
         measure(result);
-        if (options_.wants_curve) result.curve = curveTo(found);
+        if (options_.wants_curve) {
+            result.curve = curveTo(found);
+            result.is_complete = result.is_complete && !progress_.stopped();
+        }
         if (options_.wants_trace) result.tried = tried(found.best.chosen);
         return result;
     }
@@ -312,6 +315,10 @@ class Job {
             const SearchResult best = is_found ? found : search(fewer, options_.search, progress_);
             curve.push_back({n, share(best.best.value), share(best.bound)});
         }
+        // What is known anyway.
+        const bool is_cut = curve.size() < found.best.chosen.size();
+        if (is_cut && !options_.budget && !options_.target)
+            curve.push_back({last, share(found.best.value), share(found.bound)});
         return curve;
     }
 
@@ -339,6 +346,8 @@ class Job {
                 all.push_back({kinds_[k].id, set.pose(i), part * share(values[i]), false});
             for (const Choice& choice : chosen)
                 if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+            for (TriedPose& pose : std::span(all).subspan(first))
+                pose.pose.heading = wrapped(pose.pose.heading);
             if (const auto* laser = std::get_if<Laser>(&kinds_[k].device))
                 addSliceAreas(*laser, std::span(all).subspan(first));
         }

@@ -32,6 +32,13 @@ cp room.glb kept.glb
 expect_error 2 arrange room.glb --sensor laser --trace room.glb -o out.3dm
 expect_error 2 arrange room.glb --sensor laser --trace same --curve same -o out.3dm
 expect_error 2 arrange room.glb --sensor laser --places places.csv --export-mps places.csv
+echo old >out.3dm
+ln -s out.3dm link.3dm
+expect_error 2 arrange room.glb --sensor laser --trace ./out.3dm -o out.3dm
+expect_error 2 arrange room.glb --sensor laser --trace link.3dm -o out.3dm
+expect_error 2 arrange room.glb --sensor laser --trace /dev/stdout
+expect_error 2 arrange - --sensor laser --places - </dev/null
+expect_error 1 arrange room.glb --sensor laser -o missing/out.3dm
 cmp room.glb kept.glb || fail "the room was written over"
 
 # Placing one's own layout anew: only what is named stays.

@@ -62,6 +62,9 @@ void readZones(const ArrangeToolOptions& options, const Environment& environment
 }
 
 Work read(const ArrangeToolOptions& options) {
+    const bool lists_stdin = options.places_file == "-";
+    if (lists_stdin && std::any_of(options.operands.begin(), options.operands.end(), isStream))
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
     const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
     std::vector<SensorSpec> added;
     added.reserve(options.sensors.size());
@@ -81,11 +84,8 @@ Work read(const ArrangeToolOptions& options) {
     readZones(options, input.scene.environment, work.how);
     work.files = filesOf(input);
     if (!options.places_file.empty()) {
-        const bool reads_stdin = options.places_file == "-";
-        if (reads_stdin && std::count(input.named.begin(), input.named.end(), "-") > 0)
-            throw UsageError("stdin cannot be read twice: only one operand can be -");
         work.how.list =
-            readSites(reads_stdin ? readStdin() : readAll(options.places_file), options.places_file,
+            readSites(lists_stdin ? readStdin() : readAll(options.places_file), options.places_file,
                       headingsAround(work.how.headings.value_or(work.how.density.headings)));
         work.files.push_back(options.places_file);
     }

@@ -350,11 +350,12 @@ void ArrangeCommand::settleFiles() const {
             continue;
         }
         const bool is_layout = file == &options_.common.output;
-        if (!is_layout && *file == "-")
+        const bool is_stdout = *file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1";
+        if (!is_layout && is_stdout)
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
         if (is_layout && isStream(*file)) continue;
-        const auto [other, is_new] =
-            names.emplace(std::filesystem::absolute(*file).lexically_normal(), name);
+        const auto [other, is_new] = names.emplace(
+            std::filesystem::weakly_canonical(std::filesystem::absolute(*file)), name);
         if (!is_new)
             throw UsageError(std::string(name) + " and " + other->second + " name the same file, " +
                              *file);

@@ -69,6 +69,7 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
     if (arrangement.candidate_bound < how.target.value_or(1))
         text += ", and no layout of these candidates covers more than " +
                 percent(arrangement.candidate_bound);
+    if (!arrangement.is_complete) return text + "; the search was cut short";
     return text + "; allow more sensors (:COUNT), or denser candidates";
 }
 

@@ -33,7 +33,7 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
     line.meters("--height", measure.height, 0, 1000, "height at which free floor is judged",
                 Enters::History);
     line.meters("--plane", measure.plane, 0, 1000,
-                "height of the plane that rangers and ultrasound cover (default 0, the floor)",
+                "height of the plane that rangers and ultrasound cover, 0 is the floor",
                 Enters::History);
 }
 
