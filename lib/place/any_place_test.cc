@@ -48,6 +48,17 @@ TEST(MostCellsInView, HoldsAnywhereAndIsNearWhereNothingHides) {
     }
 }
 
+TEST(MostCellsInView, ANarrowFanMayRunAlongARowOfCenters) {
+    const Grid grid{hall().environment.limits(), 100, 100};
+    Laser laser;
+    laser.max_range = 4;
+    laser.first = Angle::degrees(-0.5);
+    laser.beams = 2;
+    const std::size_t seen = cellsSeenFrom({0.1, 0.1}, 0, laser, grid);
+    EXPECT_GE(seen, 20U);
+    EXPECT_LE(seen, mostCellsInView(laser, grid));
+}
+
 TEST(MostCellsInView, IsAtMostAllCells) {
     const Grid grid{hall().environment.limits(), 10, 10};
     Laser laser;
