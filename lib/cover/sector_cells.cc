@@ -222,7 +222,7 @@ void SectorRaster::cutAtRange() {
 /// Those in which directions come so near to 0 or 180 degrees that limits there matter.
 void SectorRaster::findLevelRows() {
     double reach = 0;
-    if (scan_.columns() > 0)
+    if (!dy_.empty() && scan_.columns() > 0)
         reach = std::max(std::abs(offsetOf(0, 0).x), std::abs(offsetOf(0, scan_.columns() - 1).x));
     const double most = 8 * kNearLimit * reach;
     const auto begin = std::lower_bound(dy_.begin(), dy_.end(), -most);
