@@ -197,10 +197,7 @@ SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchRe
         known.is_complete = false;
         return known;
     }
-    std::vector<std::size_t> limits;
-    limits.reserve(problem.kinds.size());
-    for (const Kind& kind : problem.kinds) limits.push_back(kind.candidates->size());
-    if (!CountChoice(problem, limits).isListed()) return known;
+    if (!CountChoice(problem).isListed()) return known;
     return Tree(problem, bound, std::move(known), gap, enough, most_bytes).search(progress);
 }
 

@@ -14,8 +14,7 @@ SearchResult searchTree(const Problem& problem) {
     SilentProgress progress;
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
-    const Bound bound = boundWithin(
-        problem, {}, {.cut = known.best.value, .rounds = 1, .has_counts = false}, progress);
+    const Bound bound = boundWithin(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
     known.bound = bound.value;
     return branchAndBound(problem, bound, known, 0, progress);
 }

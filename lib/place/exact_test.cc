@@ -19,8 +19,7 @@ SearchResult searchTree(const Problem& problem, double gap, Progress& progress,
                         std::size_t most_bytes = kMostTreeBytes) {
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
-    const Bound bound = boundWithin(
-        problem, {}, {.cut = known.best.value, .rounds = 1, .has_counts = false}, progress);
+    const Bound bound = boundWithin(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
     known.bound = bound.value;
     return branchAndBound(problem, bound, known, gap, progress,
                           std::numeric_limits<std::uint64_t>::max(), most_bytes);
@@ -103,8 +102,7 @@ TEST(BranchAndBound, WithAGapTheBoundIsTheBestKnown) {
             SearchResult known;
             known.best = {{}, best - less};
             const Bound bound =
-                boundWithin(random.problem, {},
-                            {.cut = best - less, .rounds = 1, .has_counts = false}, progress);
+                boundWithin(random.problem, {}, {.cut = best - less, .rounds = 1}, progress);
             known.bound = bound.value;
             const double gap = static_cast<double>(less + 1) / static_cast<double>(best);
             ASSERT_GE(branchAndBound(random.problem, bound, known, gap, progress).bound, best);

@@ -102,8 +102,7 @@ class FewestSearch {
     [[nodiscard]] Solution reachExactly(const Problem& cheaper, const Solution& best,
                                         bool& is_proven);
     [[nodiscard]] Bound boundOf(const Problem& cheaper, const Solution& best, int rounds) {
-        return boundWithin(cheaper, best.chosen,
-                           {.cut = wanted_ - 1, .rounds = rounds, .has_counts = false}, progress_);
+        return boundWithin(cheaper, best.chosen, {.cut = wanted_ - 1, .rounds = rounds}, progress_);
     }
     [[nodiscard]] Fewest reached(const Solution& best, double least_cost);
 
@@ -343,8 +342,7 @@ Fewest FewestSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_, most);
     // Quick bounds first: if there is no time for more, there are these.
-    const LagrangeLimits limits = {
-        .cut = best.value, .gap = 0.01, .rounds = 2, .has_counts = false};
+    const LagrangeLimits limits = {.cut = best.value, .gap = 0.01, .rounds = 2};
     const Bound bound = boundWithin(within(most), best.chosen, limits, progress_);
     bound_ = std::min(bound_, bound.value);
     raiseProven(levels, best, kQuickRounds);
@@ -367,9 +365,6 @@ Fewest FewestSearch::reached(const Solution& best, double least_cost) {
     if (options_.optimizer == Optimizer::Greedy) limits = {best.value, 0.01, kQuickRounds};
     const Bound bound = boundWithin(within(fewest.cost), best.chosen, limits, progress_);
     fewest.result.bound = std::min(bound_, bound.value);
-    fewest.result.bound_by_count = bound.by_count;
-    for (std::uint64_t& count : fewest.result.bound_by_count)
-        count = std::min(count, fewest.result.bound);
     fewest.result.is_complete = !progress_.stopped();
     return fewest;
 }

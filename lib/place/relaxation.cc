@@ -2,7 +2,6 @@
 #include "place/relaxation.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -38,15 +37,15 @@ RelaxedCells::RelaxedCells(const Problem& problem)
     }
 }
 
-CountChoice::CountChoice(const Problem& problem, std::span<const std::size_t> limits) {
+CountChoice::CountChoice(const Problem& problem) {
     if (problem.budget) budget_ = *problem.budget * (1 + kBudgetSlack);
     const std::size_t kinds = problem.kinds.size();
     costs_.reserve(kinds);
     most_.reserve(kinds);
     for (std::size_t k = 0; k < kinds; ++k) {
         costs_.push_back(problem.kinds[k].cost);
-        most_.push_back(
-            std::min(static_cast<std::size_t>(std::max(problem.kinds[k].most, 0)), limits[k]));
+        most_.push_back(std::min(static_cast<std::size_t>(std::max(problem.kinds[k].most, 0)),
+                                 problem.kinds[k].candidates->size()));
         most_[k] = fitting(k, budget_);
     }
     double cost = 0;
@@ -149,23 +148,6 @@ std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> 
     }
     // Rounding errors are far below a millionth of a sum below 2^53.
     return static_cast<std::uint64_t>(std::ceil(value * (1 + 1e-9))) + 1;
-}
-
-void CountChoice::lowerByCount(std::span<const std::vector<std::uint64_t>> sums,
-                               std::uint64_t settled, std::span<std::uint64_t> bounds) const {
-    assert(bounds.size() == total_ + 1);
-    // Within `most` alone: prices of a kind fall, so the best of all are the best prefixes.
-    std::vector<std::uint64_t> prices;
-    for (const auto& of_kind : sums)
-        for (std::size_t n = 1; n < of_kind.size(); ++n)
-            prices.push_back(of_kind[n] - of_kind[n - 1]);
-    std::sort(prices.begin(), prices.end(), std::greater<>());
-    std::uint64_t value = settled;
-    const std::uint64_t all = settled + best(sums).value;
-    for (std::size_t n = 0; n < bounds.size(); ++n) {
-        if (n > 0 && n <= prices.size()) value += prices[n - 1];
-        bounds[n] = std::min({bounds[n], value, all});
-    }
 }
 
 }  // namespace ispace

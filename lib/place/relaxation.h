@@ -45,12 +45,11 @@ inline float partOf(std::uint32_t share, std::uint32_t need) {
     return share >= need ? 1.0F : static_cast<float>(share) / static_cast<float>(need);
 }
 
-/// How many sensors of each kind there may be: all ways that stay within `most` and the budget and
-/// leave no room for one more of the last kind.
+/// How many sensors of each kind there may be, each on a candidate of its own: all ways that stay
+/// within `most` and the budget and leave no room for one more of the last kind.
 class CountChoice {
   public:
-    /// \param limits how many candidates each kind has
-    CountChoice(const Problem& problem, std::span<const std::size_t> limits);
+    explicit CountChoice(const Problem& problem);
 
     /// The most that may be placed of a kind, whatever is of the others.
     [[nodiscard]] std::size_t most(std::size_t kind) const { return most_[kind]; }
@@ -72,9 +71,6 @@ class CountChoice {
     };
     /// \param sums sums[k][n]: the n best prices of kind k together, n up to most(k)
     [[nodiscard]] Best best(std::span<const std::vector<std::uint64_t>> sums) const;
-    /// Lowers bounds[n] to `settled` and the best of n sensors. \pre bounds.size() == total() + 1
-    void lowerByCount(std::span<const std::vector<std::uint64_t>> sums, std::uint64_t settled,
-                      std::span<std::uint64_t> bounds) const;
 
   private:
     void list(std::vector<std::size_t>& counts, std::size_t kind, double left);

@@ -8,19 +8,8 @@
 #include <numeric>
 
 namespace ispace {
-namespace {
-
-std::vector<std::size_t> sizesOf(const Problem& problem) {
-    std::vector<std::size_t> sizes;
-    sizes.reserve(problem.kinds.size());
-    for (const Kind& kind : problem.kinds) sizes.push_back(kind.candidates->size());
-    return sizes;
-}
-
-}  // namespace
-
 RootRelaxation::RootRelaxation(const Problem& problem)
-    : problem_(problem), cells_(problem), counts_(problem, sizesOf(problem)) {
+    : problem_(problem), cells_(problem), counts_(problem) {
     const std::size_t kinds = problem.kinds.size();
     kinds_.resize(kinds);
     sums_.resize(kinds);
@@ -28,21 +17,15 @@ RootRelaxation::RootRelaxation(const Problem& problem)
         kinds_[k].candidates = problem.kinds[k].candidates;
         kinds_[k].prices.assign(kinds_[k].candidates->size(), 0);
         kinds_[k].is_working.assign(kinds_[k].candidates->sites(), 0);
+        kinds_[k].is_out.assign(kinds_[k].candidates->size(), 0);
+        kinds_[k].sites.resize(kinds_[k].candidates->sites());
+        std::iota(kinds_[k].sites.begin(), kinds_[k].sites.end(), 0U);
         const auto same = std::find(cells_.shares.begin(), cells_.shares.end(), cells_.shares[k]);
         const auto first = static_cast<std::size_t>(same - cells_.shares.begin());
         prices_of_.push_back(first == k ? prices_.size() : prices_of_[first]);
         if (first == k) prices_.emplace_back();
     }
-    readmitAll();
     cover_.resize(problem.cells());
-}
-
-void RootRelaxation::readmitAll() {
-    for (OfKind& kind : kinds_) {
-        kind.is_out.assign(kind.candidates->size(), 0);
-        kind.sites.resize(kind.candidates->sites());
-        std::iota(kind.sites.begin(), kind.sites.end(), 0U);
-    }
 }
 
 void RootRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& kept) {
@@ -199,10 +182,6 @@ void RootRelaxation::widen(std::size_t count) {
         for (const std::uint32_t site : own.sites)
             if (own.is_working[site] != 0) own.working.push_back(site);
     }
-}
-
-void RootRelaxation::lowerByCount(std::vector<std::uint64_t>& bounds) const {
-    counts_.lowerByCount(sums_, free_, bounds);
 }
 
 std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {

@@ -33,9 +33,6 @@ class RootRelaxation {
     /// After evaluate() of all: the working set is the sites with the `count` best prices of each
     /// kind, and what it was before.
     void widen(std::size_t count);
-    /// After evaluate() of all.
-    void lowerByCount(std::vector<std::uint64_t>& bounds) const;
-    void readmitAll();
     /// Rules out all others. \param kept per kind, ascending
     void keepOnly(const std::vector<std::vector<std::uint32_t>>& kept);
 

@@ -53,7 +53,6 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         LagrangeLimits quick = kQuick;
         quick.cut = result.best.value;
         quick.gap = std::min(quick.gap, limitsOf(options).gap);
-        quick.has_counts = false;
         result.bound = boundWithin(problem, result.best.chosen, quick, progress).value;
         noteProgress(problem, result, progress);
         SwapOptions swap = options.swap;
@@ -65,15 +64,12 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         limits.cut = result.best.value;
         const Bound bound = boundWithin(problem, result.best.chosen, limits, progress);
         result.bound = std::min(result.bound, bound.value);
-        result.bound_by_count = bound.by_count;
         noteProgress(problem, result, progress);
         if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
             result.best.value < result.bound)
             result = branchAndBound(problem, bound, std::move(result), options.gap, progress);
     }
     if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
-    if (!result.bound_by_count.empty())
-        for (std::uint64_t& count : result.bound_by_count) count = std::min(count, result.bound);
     return result;
 }
 

@@ -49,9 +49,6 @@ struct Bound {
     /// others are ruled out.
     std::vector<std::vector<std::uint32_t>> survivors;
     std::uint64_t cut = 0;
-    /// bounds[n]: no n sensors (of any kinds, within the budget) are worth more; n from 0 to the
-    /// number of sensors. Never decreases.
-    std::vector<std::uint64_t> by_count;
 };
 
 /// Lagrangian relaxation: of max sum w_i y_i, demand y_i <= met_i + sum_j share_j a_ij x_j, 0 <= y
@@ -63,9 +60,8 @@ Bound boundByLagrange(const Problem& problem, const Solution& best, double gap, 
 /// What a search found and how good it is.
 struct SearchResult {
     Solution best;
-    std::uint64_t bound = 0;                    ///< no feasible set of choices is worth more
-    std::vector<std::uint64_t> bound_by_count;  ///< as Bound::by_count; empty if not computed
-    bool is_complete = true;                    ///< false if the search was stopped
+    std::uint64_t bound = 0;  ///< no feasible set of choices is worth more
+    bool is_complete = true;  ///< false if the search was stopped
 };
 
 enum class Optimizer { Greedy, Swap, Exact };

@@ -120,7 +120,6 @@ TEST(Search, IsTheSameForAnyNumberOfThreads) {
     const SearchResult one = searched(1), two = searched(2);
     EXPECT_EQ(one.best.chosen, two.best.chosen);
     EXPECT_EQ(one.bound, two.bound);
-    EXPECT_EQ(one.bound_by_count, two.bound_by_count);
 }
 
 TEST(Search, NothingToPlace) {
