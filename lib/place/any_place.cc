@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "cover/visible.h"
+#include "place/sensor_group.h"
 
 namespace ispace {
 
 std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid) {
     constexpr double kPi = std::numbers::pi;
-    const double range = std::visit([](const auto& figures) { return figures.max_range; }, device);
+    const double range = maxRange(device);
     double area = kPi * range * range, outline = 2 * kPi * range;
     const auto* const laser = std::get_if<Laser>(&device);
     if (laser != nullptr && laser->sweep == SweepAxis::None) {  // seen from above, at most its fan

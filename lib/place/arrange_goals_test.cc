@@ -162,6 +162,20 @@ TEST(ArrangeGoals, WhatCannotHangTogetherIsLeftOut) {
     EXPECT_GE(arrangement.unplaced, 1U);
 }
 
+TEST(ArrangeGoals, NoTwoSensorsStandOnOneCandidate) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser:3"});
+    ArrangeOptions options;
+    options.strategy = Strategy::List;
+    options.list = {{{0, 0}, {Angle::degrees(0), Angle::degrees(90)}}};
+    options.redundancy = 2;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    EXPECT_EQ(arrangement.sensors.size(), 2U);
+    EXPECT_EQ(arrangement.unplaced, 1U);
+    EXPECT_EQ(arrangement.value, arrangement.candidate_value);
+    EXPECT_GE(arrangement.bound, arrangement.value.value_or(2));
+}
+
 TEST(ArrangeGoals, ACurveRises) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:4"});

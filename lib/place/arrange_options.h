@@ -23,11 +23,17 @@ enum class Strategy {
     List,    ///< places that somebody gives
     All,     ///< a lattice, and along everything that stands
 };
+constexpr Strategy kStrategies[] = {Strategy::All,  Strategy::Grid,   Strategy::Random,
+                                    Strategy::Wall, Strategy::Medial, Strategy::List};
+constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
+/// The words of the command line and of results.
 std::string_view nameOf(Strategy strategy);
 std::string_view nameOf(Optimizer optimizer);
 
 /// What a sensor is fixed to.
 enum class MountOn { Floor, Wall, Frame, Ceiling };
+constexpr MountOn kMounts[] = {MountOn::Floor, MountOn::Wall, MountOn::Frame, MountOn::Ceiling};
+std::string_view nameOf(MountOn mount);
 
 /// Density of the candidates of Strategy::All, of the medial axis and of frames.
 struct CandidateDensity {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <span>
 
 #include "base/error.h"
@@ -75,7 +76,8 @@ class Job {
             mustFitInModel();
             writeMps(problem_, names(), *mps);
         }
-        const SearchResult found = find(result);
+        SearchResult found = find(result);
+        takeEachOnce(found.best.chosen);
         result.is_complete = result.is_complete && found.is_complete;
         constexpr double kPerUnit = 1e6;  // of money: sums of decimals round
         result.cost = std::round(costOf(problem_, found.best.chosen) * kPerUnit) / kPerUnit;
@@ -202,6 +204,14 @@ class Job {
         result.is_reached = fewest.is_reached;
         if (fewest.is_reached) result.least = fewest.least_cost;
         return fewest.result;
+    }
+
+    /// Where there are fewer candidates than sensors a search chooses some again, which counts for
+    /// nothing; two sensors cannot stand in one another.
+    static void takeEachOnce(std::vector<Choice>& chosen) {
+        std::set<Choice> taken;
+        std::erase_if(chosen,
+                      [&taken](const Choice& choice) { return !taken.insert(choice).second; });
     }
 
     /// The chosen of a kind go to its groups, in their order.
@@ -346,8 +356,6 @@ class Job {
                 all.push_back({kinds_[k].id, set.pose(i), part * share(values[i]), false});
             for (const Choice& choice : chosen)
                 if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
-            for (TriedPose& pose : std::span(all).subspan(first))
-                pose.pose.heading = wrapped(pose.pose.heading);
             if (const auto* laser = std::get_if<Laser>(&kinds_[k].device))
                 addSliceAreas(*laser, std::span(all).subspan(first));
         }
@@ -381,7 +389,7 @@ Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
     const Point3& p = sensor.pose.position;
     record.set("id", Value(sensor.id));
     record.set("at", Value(Tuple{p.x, p.y, p.z}));
-    record.set("heading", Value(wrapped(sensor.pose.heading).degrees()));
+    record.set("heading", Value(sensor.pose.heading.degrees()));
     if (!(record.angle("tilt") == sensor.pose.tilt))
         record.set("tilt", Value(sensor.pose.tilt.degrees()));
     return record;

@@ -37,7 +37,8 @@ struct Arrangement {
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     bool is_complete = true;                          ///< false: cut by time or a signal
 
-    /// Sensors that were to be placed and are not: views cannot hang together there.
+    /// Sensors that were to be placed and are not: there are fewer candidates, or none from which
+    /// views hang together.
     std::size_t unplaced = 0;
     double cost = 0;         ///< of the sensors placed
     bool has_costs = false;  ///< they differ from 1

@@ -22,10 +22,12 @@ double tidy(double metres) {
 }
 Point2 tidy(Point2 place) { return {tidy(place.x), tidy(place.y)}; }
 
-Angle writtenAngle(const Record& record, const char* key) { return record.angle(key); }
-
-bool looksDownWhenHung(const SensorDevice& device) {
-    return !std::holds_alternative<Laser>(device);
+std::vector<Site> tidy(std::vector<Site> sites) {
+    for (Site& site : sites) {
+        site.place = tidy(site.place);
+        for (Angle& heading : site.headings) heading = wrapped(heading);
+    }
+    return sites;
 }
 
 /// Sites at one height.
@@ -38,74 +40,10 @@ std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<A
     std::vector<Site> sites;
     sites.reserve(places.size());
     for (const Point2 place : places) sites.push_back({place, headings});
-    return sites;
+    return tidy(std::move(sites));
 }
 
 }  // namespace
-
-std::string_view nameOf(Strategy strategy) {
-    switch (strategy) {
-        case Strategy::Grid:
-            return "grid";
-        case Strategy::Random:
-            return "random";
-        case Strategy::Wall:
-            return "wall";
-        case Strategy::Medial:
-            return "medial";
-        case Strategy::List:
-            return "list";
-        case Strategy::All:
-            break;
-    }
-    return "all";
-}
-
-std::string_view nameOf(Optimizer optimizer) {
-    switch (optimizer) {
-        case Optimizer::Greedy:
-            return "greedy";
-        case Optimizer::Swap:
-            return "swap";
-        case Optimizer::Exact:
-            break;
-    }
-    return "exact";
-}
-
-double maxRange(const SensorDevice& device) {
-    return std::visit([](const auto& figures) { return figures.max_range; }, device);
-}
-
-std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
-    std::vector<SensorKind> kinds;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        const SensorGroup& group = groups[i];
-        const double cost = group.record.number("cost");
-        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorKind& kind) {
-            return kind.device == group.device && kind.cost == cost &&
-                   kind.record.angle("tilt") == group.record.angle("tilt") &&
-                   kind.record.angle("roll") == group.record.angle("roll");
-        });
-        if (same != kinds.end()) {
-            same->most += group.most;
-            same->groups.push_back(i);
-            continue;
-        }
-        std::string id = group.id;
-        if (id.empty()) {
-            id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
-            // Kinds that are called the same differ in figures: a number tells them apart.
-            const auto alike =
-                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorKind& kind) {
-                    return kind.id == id || kind.id.starts_with(id + '.');
-                });
-            if (alike > 0) id.append(".").append(std::to_string(alike + 1));
-        }
-        kinds.push_back({group.device, group.record, std::move(id), cost, group.most, {i}});
-    }
-    return kinds;
-}
 
 struct CandidatePool::Data {
     const Environment& environment;
@@ -146,11 +84,11 @@ struct CandidatePool::Data {
     }
 
     [[nodiscard]] std::vector<Angle> tiltsOf(const SensorKind& kind) const {
-        if (kind.record.has("tilt")) return {writtenAngle(kind.record, "tilt")};
+        if (kind.record.has("tilt")) return {kind.record.angle("tilt")};
         if (!options.mount.tilts.empty()) return options.mount.tilts;
         const bool hangs =
             options.mount.on == MountOn::Frame || options.mount.on == MountOn::Ceiling;
-        if (hangs && looksDownWhenHung(kind.device)) return {Angle::degrees(-90)};
+        if (hangs && !std::holds_alternative<Laser>(kind.device)) return {Angle::degrees(-90)};
         return {Angle()};
     }
 
@@ -172,7 +110,7 @@ struct CandidatePool::Data {
             for (Site& site : sites) {
                 const Angle normal = site.headings.front();
                 site.headings = headingsAround(*options.headings);
-                for (Angle& heading : site.headings) heading = wrapped(normal + heading);
+                for (Angle& heading : site.headings) heading = normal + heading;
             }
         return sites;
     }
@@ -184,13 +122,13 @@ struct CandidatePool::Data {
             case Strategy::Grid:
                 return sitesAt(gridPlaces(environment.limits(), gridFor(kind)), headings());
             case Strategy::Wall:
-                return wallSitesAt(height);
+                return tidy(wallSitesAt(height));
             case Strategy::Medial:
                 return sitesAt(medialPlaces(environment.freeFloor(height), density.lattice_step,
                                             environment.slice(height).sheets),
                                headings());
             case Strategy::List:
-                return options.list;
+                return tidy(options.list);
             case Strategy::Random:
                 return {};
             case Strategy::All:
@@ -228,7 +166,6 @@ struct CandidatePool::Data {
         std::size_t proposed = 0, valid = 0;
         for (Level& level : levels) {
             proposed += level.sites.size();
-            for (Site& site : level.sites) site.place = tidy(site.place);
             level.sites = validSites(judgeAt(level.height), level.sites, progress);
             valid += level.sites.size();
         }

@@ -13,22 +13,6 @@
 
 namespace ispace {
 
-/// Sensors that choose from the same candidates: equal figures, mounted alike.
-struct SensorKind {
-    SensorDevice device;
-    Record record;   ///< of the first of them
-    std::string id;  ///< names it in messages and seeds its random places
-    double cost = 1;
-    int most = 0;                          ///< of all its groups
-    std::vector<std::size_t> groups = {};  ///< in their order
-};
-
-/// The kinds of these groups, in the order in which they first come.
-std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups);
-
-/// Greatest distance at which a device sees.
-double maxRange(const SensorDevice& device);
-
 /// What cells are worth to who makes candidates.
 struct CellWorth {
     CellSet counted;                  ///< cells that count at all

@@ -78,4 +78,38 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     return freed;
 }
 
+double maxRange(const SensorDevice& device) {
+    return std::visit([](const auto& figures) { return figures.max_range; }, device);
+}
+
+std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
+    std::vector<SensorKind> kinds;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const SensorGroup& group = groups[i];
+        const double cost = group.record.number("cost");
+        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorKind& kind) {
+            return kind.device == group.device && kind.cost == cost &&
+                   kind.record.angle("tilt") == group.record.angle("tilt") &&
+                   kind.record.angle("roll") == group.record.angle("roll");
+        });
+        if (same != kinds.end()) {
+            same->most += group.most;
+            same->groups.push_back(i);
+            continue;
+        }
+        std::string id = group.id;
+        if (id.empty()) {
+            id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
+            // Kinds that are called the same differ in figures: a number tells them apart.
+            const auto alike =
+                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorKind& kind) {
+                    return kind.id == id || kind.id.starts_with(id + '.');
+                });
+            if (alike > 0) id.append(".").append(std::to_string(alike + 1));
+        }
+        kinds.push_back({group.device, group.record, std::move(id), cost, group.most, {i}});
+    }
+    return kinds;
+}
+
 }  // namespace ispace

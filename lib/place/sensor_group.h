@@ -38,4 +38,20 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
 /// \throws UsageError for a glob that names no sensor with a place
 Document withoutPlaces(const Document& layout, std::span<const std::string> fixed);
 
+/// Sensors that choose from the same candidates: equal figures, mounted alike.
+struct SensorKind {
+    SensorDevice device;
+    Record record;   ///< of the first of them
+    std::string id;  ///< names it in messages and seeds its random places
+    double cost = 1;
+    int most = 0;                          ///< of all its groups
+    std::vector<std::size_t> groups = {};  ///< in their order
+};
+
+/// The kinds of these groups, in the order in which they first come.
+std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups);
+
+/// Greatest distance at which a device sees.
+double maxRange(const SensorDevice& device);
+
 }  // namespace ispace

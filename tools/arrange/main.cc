@@ -168,8 +168,10 @@ void arrangeSensors(const ArrangeCommand& command) {
     if (!arrangement.is_reached) throw UnmetError(shortfallText(work.how, arrangement));
     if (arrangement.unplaced > 0)
         throw UnmetError(std::to_string(arrangement.unplaced) +
-                         " of the sensors have no place from which their views hang together with "
-                         "the others' (--connected)");
+                         " of the sensors are not placed: there are " +
+                         (work.how.is_connected
+                              ? "no candidates left from which views hang together (--connected)"
+                              : "fewer candidates than sensors"));
 }
 
 }  // namespace

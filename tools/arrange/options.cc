@@ -18,16 +18,6 @@ namespace {
 constexpr int kMostLines = 10000, kMostHeadings = 3600, kMostPlaces = 100000;
 constexpr double kLongest = 1e6;  // metres
 
-const std::map<std::string, Strategy> kStrategies = {
-    {"grid", Strategy::Grid},     {"random", Strategy::Random}, {"wall", Strategy::Wall},
-    {"medial", Strategy::Medial}, {"list", Strategy::List},     {"all", Strategy::All}};
-const std::map<std::string, Optimizer> kOptimizers = {
-    {"greedy", Optimizer::Greedy}, {"swap", Optimizer::Swap}, {"exact", Optimizer::Exact}};
-const std::map<std::string, MountOn> kMounts = {{"floor", MountOn::Floor},
-                                                {"wall", MountOn::Wall},
-                                                {"frame", MountOn::Frame},
-                                                {"ceiling", MountOn::Ceiling}};
-
 /// Numbers of a unit, parted by commas.
 Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t least,
               std::size_t most, double lower, double upper) {
@@ -85,12 +75,19 @@ std::size_t readBytes(const std::string& text) {
     return static_cast<std::size_t>(bytes);
 }
 
-template <typename T>
-std::vector<std::string> wordsOf(const std::map<std::string, T>& names) {
+template <typename Value, std::size_t count>
+std::vector<std::string> wordsOf(const Value (&values)[count]) {
     std::vector<std::string> words;
-    words.reserve(names.size());
-    for (const auto& [word, value] : names) words.push_back(word);
+    words.reserve(count);
+    for (const Value value : values) words.emplace_back(nameOf(value));
     return words;
+}
+
+/// \pre it is the word of one of them
+template <typename Value, std::size_t count>
+Value valueOf(const std::string& word, const Value (&values)[count]) {
+    return *std::find_if(std::begin(values), std::end(values),
+                         [&word](Value value) { return nameOf(value) == word; });
 }
 
 }  // namespace
@@ -271,8 +268,7 @@ void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     (void)outputFormat("", options_.common.output, {"3dm"});  // refuses another format's suffix
     settleStrategy();
-    if (const auto mount = kMounts.find(words_.mount); mount != kMounts.end())
-        how.mount.on = mount->second;
+    if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     if (how.mount.on == MountOn::Frame &&
         (line_.given("--strategy") || line_.given("--effort") || line_.given("--z")))
         throw UsageError(
@@ -308,7 +304,7 @@ void ArrangeCommand::settleStrategy() {
         how.strategy = words_.effort == "low" ? Strategy::Random : Strategy::Grid;
         how.headings = words_.effort == "high" ? 16 : 8;
     } else if (!words_.strategy.empty()) {
-        how.strategy = kStrategies.at(words_.strategy);
+        how.strategy = valueOf(words_.strategy, kStrategies);
     } else if (!options_.places_file.empty()) {
         how.strategy = Strategy::List;
     }
@@ -333,7 +329,7 @@ void ArrangeCommand::settleStrategy() {
             "--candidates is about --strategy all: the thesis' strategies have their "
             "own numbers");
     how.search.optimizer = is_thesis ? Optimizer::Greedy : Optimizer::Swap;
-    if (!words_.optimize.empty()) how.search.optimizer = kOptimizers.at(words_.optimize);
+    if (!words_.optimize.empty()) how.search.optimizer = valueOf(words_.optimize, kOptimizers);
 }
 
 void ArrangeCommand::settleFiles() const {
