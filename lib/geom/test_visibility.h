@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tests of visibility regions have in common.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "geom/predicates.h"
+#include "geom/visibility.h"
+
+namespace ispace::test {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline VisibleRegion look(const std::vector<Segment2>& lines, Point2 viewpoint, double range) {
+    return VisibilityMap(lines).look(viewpoint, range);
+}
+
+inline double areaSeen(const std::vector<Segment2>& lines, Point2 viewpoint, double range) {
+    return area(look(lines, viewpoint, range));
+}
+
+/// What the header says of every region; `slack` radians for directions that rounding moves.
+inline void expectSound(const VisibleRegion& region, double slack = 1e-9) {
+    const Point2 v = region.viewpoint;
+    double turned = 0;
+    for (std::size_t i = 0; i < region.ends.size(); ++i) {
+        const SightEnd& end = region.ends[i];
+        const Vec2 from = end.from - v, to = end.to - v;
+        EXPECT_GT(cross(from, to), 0);
+        turned += std::atan2(cross(from, to), dot(from, to));
+        if (end.line == SightEnd::kArc) {
+            EXPECT_GE(dot(from, to), -1e-9 * dot(from, from));
+            EXPECT_NEAR(length(from), region.max_range, 1e-9 * region.max_range);
+            EXPECT_NEAR(length(to), region.max_range, 1e-9 * region.max_range);
+        }
+        const Vec2 next = region.ends[(i + 1) % region.ends.size()].from - v;
+        EXPECT_NEAR(std::atan2(cross(to, next), dot(to, next)), 0, slack);
+    }
+    EXPECT_NEAR(turned, region.ends.empty() ? 0 : 2 * std::numbers::pi, slack);
+    EXPECT_GE(area(region), 0);
+    EXPECT_LE(area(region), std::numbers::pi * region.max_range * region.max_range * (1 + 1e-9));
+    EXPECT_NEAR(signedArea(outlineOf(region)), area(region), 1e-9 * (1 + area(region)));
+}
+
+inline double nearest(const std::vector<Segment2>& lines, Point2 p) {
+    double least = kInfinity;
+    for (const Segment2& line : lines) least = std::min(least, distance(p, line));
+    return least;
+}
+
+/// The area by dense rays against all lines, in the middle of each piece of the turn.
+inline double areaByRays(const std::vector<Segment2>& lines, Point2 p, double range, int rays) {
+    double sum = 0;
+    for (int i = 0; i < rays; ++i) {
+        const double angle = 2 * std::numbers::pi * (i + 0.5) / rays;
+        const Vec2 ray{std::cos(angle), std::sin(angle)};
+        double reach = range;
+        for (const auto& [a, b] : lines) {
+            const double right = cross(a - p, ray), left = cross(ray, b - p);
+            if ((right > 0) != (left > 0)) continue;
+            const double at = cross(a - p, b - a) / cross(ray, b - a);
+            if (at > 0) reach = std::min(reach, at);
+        }
+        sum += reach * reach * std::numbers::pi / rays;
+    }
+    return sum;
+}
+
+}  // namespace ispace::test
