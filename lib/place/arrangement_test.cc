@@ -70,7 +70,7 @@ TEST(Arrangement, AMovedRoomHasTheSameArrangement) {
 TEST(Arrangement, KeepsALayoutAndPlacesItsPendingSensors) {
     const Document layout = layoutFrom(
         "laser id=fixed at=0,0 heading=90\n"
-        "laser id=todo range=3\n"
+        "laser id=later range=3\n"
         "chair at=3,-2\n"
         "ultrasound id=ear\n"
         "result coverage=1%\n");
@@ -78,7 +78,7 @@ TEST(Arrangement, KeepsALayoutAndPlacesItsPendingSensors) {
     ASSERT_EQ(scene.pending.size(), 2U);
     const auto groups = groupsOf(scene, {"laser"});
     ASSERT_EQ(groups.size(), 3U);
-    EXPECT_EQ(groups[0].id, "todo");
+    EXPECT_EQ(groups[0].id, "later");
     const Arrangement arrangement = arranged(scene, groups, coarse());
     const Document written = layoutDocument(partsOf(scene), &layout, groups, arrangement);
     std::vector<std::string> keywords, ids;
@@ -88,7 +88,7 @@ TEST(Arrangement, KeepsALayoutAndPlacesItsPendingSensors) {
     }
     EXPECT_EQ(keywords, (std::vector<std::string>{"environment", "laser", "laser", "chair",
                                                   "ultrasound", "laser", "result"}));
-    EXPECT_EQ(ids, (std::vector<std::string>{"", "fixed", "todo", "", "ear", "laser1", ""}));
+    EXPECT_EQ(ids, (std::vector<std::string>{"", "fixed", "later", "", "ear", "laser1", ""}));
     EXPECT_EQ(written.records[2].tuple("range"), (Tuple{3}));
     EXPECT_TRUE(written.records[2].has("at"));
     EXPECT_TRUE(written.records[4].has("at"));
@@ -118,7 +118,7 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
         "robot id=r1 at=2,2 heading=-90 max_speed=1\n"
         "laser id=own at=0.1,0 range=2 on=r1\n"
         "laser id=top range=2 on=d1\n";
-    const Document layout = layoutFrom(kept + "laser id=todo range=3\n");
+    const Document layout = layoutFrom(kept + "laser id=later range=3\n");
     const Scene scene = roomScene(kTestRoom, &layout);
     ASSERT_EQ(scene.pending.size(), 1U);
     const auto groups = groupsOf(scene, {});

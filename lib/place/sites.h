@@ -29,10 +29,9 @@ std::vector<Angle> headingsAround(int count);
 /// Density of the thesis' Ordinary Grid (section 4.4.2).
 struct GridSearch {
     int x = 1, y = 1;  ///< interior grid lines along x and y
-    int headings = 8;  ///< 360/headings apart, the first 0
 };
 
-/// Eq. (4.1) and (4.2) with seg = 5, rounded down, at least 1; 8 headings.
+/// Eq. (4.1) and (4.2) with seg = 5, rounded down, at least 1.
 GridSearch defaultGridSearch(const Box2& limits, double max_range);
 
 /// The x * y crossings x_i = xmin + i (xmax - xmin) / (X + 1), i = 1..X, likewise y; y runs
@@ -109,8 +108,7 @@ struct SiteRules {
     double clearance = 0;           ///< least distance from walls and objects at this height
     std::vector<Polygon> keep_out;  ///< closed
     std::vector<Polygon> keep_in;   ///< closed; if any: in one of them
-    /// Places must be this near to the boundary of the indoor region or a wall at this height
-    /// (mounted on a wall).
+    /// Places must be this near to a wall that is there at this height (mounted on it).
     std::optional<double> wall_within;
 };
 

@@ -34,7 +34,7 @@ std::vector<Angle> headingsAround(int count) {
 }
 
 GridSearch defaultGridSearch(const Box2& limits, double max_range) {
-    return {linesAlong(limits.width(), max_range), linesAlong(limits.depth(), max_range), 8};
+    return {linesAlong(limits.width(), max_range), linesAlong(limits.depth(), max_range)};
 }
 
 std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {

@@ -29,14 +29,13 @@ TEST(GridSearch, DefaultsFollowTheThesis) {
     const GridSearch search = defaultGridSearch(boxOf({0, 0}, {9.6, 8}), 4);
     EXPECT_EQ(search.x, 11);  // 9.6 / 4 * 5 - 1 = 11
     EXPECT_EQ(search.y, 9);
-    EXPECT_EQ(search.headings, 8);
     const GridSearch least = defaultGridSearch(boxOf({0, 0}, {9.6, 8}), 100);
     EXPECT_EQ(least.x, 1);
     EXPECT_EQ(least.y, 1);
 }
 
 TEST(GridSearch, PlacesAreInteriorCrossings) {
-    const auto places = gridPlaces(boxOf({-1, 2}, {3, 5}), {3, 2, 8});
+    const auto places = gridPlaces(boxOf({-1, 2}, {3, 5}), {3, 2});
     ASSERT_EQ(places.size(), 6U);
     EXPECT_EQ(places[0], (Point2{0, 3}));
     EXPECT_EQ(places[2], (Point2{2, 3}));

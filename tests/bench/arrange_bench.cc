@@ -147,7 +147,7 @@ std::vector<ThesisRow> thesisRows(const Scene& facilities, const Scene& tracking
 void thesis(benchmark::State& state, const ThesisRow& row) {
     const Result result = quickest(state, row.job);
     const Arrangement& found = result.arrangement;
-    const bool is_thesis = row.theirs.size() > 0;
+    const bool is_thesis = !row.theirs.empty();
     if (is_thesis && result.all > 0.05) state.SkipWithError("a thesis strategy takes over 0.05 s");
     state.SetLabel(bench::leftCell(row.name, 13) + bench::leftCell(row.parameters, 20) +
                    bench::leftCell(row.theirs, 14) + bench::cell(percent(found.coverage), 8) +

@@ -31,7 +31,7 @@ std::vector<Site> allSites(const Environment& plan) {
     const auto add = [&sites](const std::vector<Point2>& places) {
         for (const Point2 place : places) sites.push_back({place, {Angle()}});
     };
-    add(gridPlaces(plan.limits(), {11, 11, 8}));
+    add(gridPlaces(plan.limits(), {11, 11}));
     add(latticePlaces(plan.limits(), 0.4));
     const std::vector<Segment2> sheets = plan.slice(kScanHeight).sheets;
     add(placesAlong(floor, 0.3, 0.02, sheets));

@@ -75,17 +75,17 @@ std::size_t readBytes(const std::string& text) {
     return static_cast<std::size_t>(bytes);
 }
 
-template <typename Value, std::size_t count>
-std::vector<std::string> wordsOf(const Value (&values)[count]) {
+template <typename Value, std::size_t kCount>
+std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
     std::vector<std::string> words;
-    words.reserve(count);
+    words.reserve(kCount);
     for (const Value value : values) words.emplace_back(nameOf(value));
     return words;
 }
 
 /// \pre it is the word of one of them
-template <typename Value, std::size_t count>
-Value valueOf(const std::string& word, const Value (&values)[count]) {
+template <typename Value, std::size_t kCount>
+Value valueOf(const std::string& word, const Value (&values)[kCount]) {
     return *std::find_if(std::begin(values), std::end(values),
                          [&word](Value value) { return nameOf(value) == word; });
 }
