@@ -44,7 +44,7 @@ std::uint64_t mostParts(const Problem& problem, const Grid& grid,
     std::vector<Offer> offers;
     offers.reserve(devices.size());
     for (std::size_t k = 0; k < devices.size(); ++k) {
-        const int share = std::holds_alternative<Receiver>(devices[k]) ? 1 : unit;
+        const int share = isReceiver(devices[k]) ? 1 : unit;
         offers.push_back({share * static_cast<double>(mostCellsInView(devices[k], grid)),
                           problem.kinds[k].cost, most[k]});
     }

@@ -12,17 +12,11 @@
 #include "cover/trace_file.h"
 #include "layout/scene.h"
 #include "place/arrange_options.h"
+#include "place/arranged_sensor.h"
 #include "place/curve.h"
 #include "place/sensor_group.h"
 
 namespace ispace {
-
-/// A sensor at the place found for it.
-struct ArrangedSensor {
-    std::size_t group = 0;
-    std::string id;
-    Pose3 pose;
-};
 
 /// Where the sensors stand and what that is worth.
 struct Arrangement {
@@ -61,13 +55,5 @@ struct Arrangement {
 ///         candidates do not fit in memory
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
-
-/// The record of a sensor at its place: `id`, `at` with z, `heading` and, where it was chosen,
-/// `tilt` set.
-Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor);
-
-/// The scene with the arranged sensors placed.
-Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
-                   const std::vector<ArrangedSensor>& sensors);
 
 }  // namespace ispace

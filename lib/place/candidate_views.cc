@@ -19,6 +19,7 @@
 #include "cover/visible.h"
 #include "env/solid_tree.h"
 #include "place/plane_candidates.h"
+#include "place/sensor_group.h"
 
 namespace ispace {
 
@@ -112,7 +113,7 @@ class Counted {
 
 /// True if what a device sees does not change as it turns about the vertical.
 bool looksRound(const SensorDevice& device, const Pose3& mount) {
-    if (std::holds_alternative<Receiver>(device)) {
+    if (isReceiver(device)) {
         const Frame3 frame(mount);
         return frame.forward.x == 0 && frame.forward.y == 0;
     }

@@ -15,6 +15,7 @@
 #include "cover/visible.h"
 #include "env/solid_tree.h"
 #include "geom/layers.h"
+#include "place/sensor_group.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {
@@ -194,7 +195,7 @@ struct ExactWorth::Data {
                               const Pose3& pose) const {
         auto region = sights.regionOf(device, pose, options.plane);
         if (!region) throw UsageError(id + " cannot be refined: its exact region is not known");
-        return {std::move(*region), std::holds_alternative<Receiver>(device)};
+        return {std::move(*region), isReceiver(device)};
     }
     [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
         return viewOf(movables[sensor].id, movables[sensor].device, pose);
@@ -264,7 +265,7 @@ struct ExactWorth::Data {
         for (std::size_t i = 0; i < moving.size(); ++i)
             if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
         const LayerOverlay overlay(layers);
-        const bool is_receiver = std::holds_alternative<Receiver>(movables[in_hand].device);
+        const bool is_receiver = isReceiver(movables[in_hand].device);
         for (std::size_t i = 0; i < floors.size(); ++i) {
             const std::uint64_t mark = std::uint64_t{1} << i;
             std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {

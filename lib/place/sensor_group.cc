@@ -112,4 +112,13 @@ std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
     return kinds;
 }
 
+std::size_t kindOf(const std::vector<SensorKind>& kinds, std::size_t group) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(), [group](const SensorKind& one) {
+        return std::find(one.groups.begin(), one.groups.end(), group) != one.groups.end();
+    });
+    return static_cast<std::size_t>(kind - kinds.begin());
+}
+
+bool isReceiver(const SensorDevice& device) { return std::holds_alternative<Receiver>(device); }
+
 }  // namespace ispace

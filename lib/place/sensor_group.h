@@ -51,6 +51,12 @@ struct SensorKind {
 /// The kinds of these groups, in the order in which they first come.
 std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups);
 
+/// The kind that a group is of. \pre it is of one
+std::size_t kindOf(const std::vector<SensorKind>& kinds, std::size_t group);
+
+/// True for what hears tags only together with others.
+bool isReceiver(const SensorDevice& device);
+
 /// Greatest distance at which a device sees.
 double maxRange(const SensorDevice& device);
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/scene_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "place/any_place.h"
+#include "place/refine.h"
+#include "place/scene_value.h"
+#include "place/whole_units.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<SensorDevice> devicesOf(const std::vector<SensorKind>& kinds) {
+    std::vector<SensorDevice> devices;
+    devices.reserve(kinds.size());
+    for (const SensorKind& kind : kinds) devices.push_back(kind.device);
+    return devices;
+}
+
+CoverageOptions searching(const ArrangeOptions& options) {
+    return {
+        .columns = options.columns, .rows = options.rows, .plane = options.plane, .exact = false};
+}
+
+}  // namespace
+
+SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& groups,
+                           const ArrangeOptions& options, Progress& progress)
+    : scene_(scene),
+      groups_(groups),
+      options_(options),
+      worlds_(scene.environment),
+      kinds_(kindsOf(groups)) {
+    mustBeAffordable();
+    if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.worth);
+    const Coverage standing = coverageOf({});
+    target_ = standing.target;
+    problem_.weights = wholeUnits(worthOfCells(target_, options.worth));
+    total_ = problem_.totalWeight();
+    if (total_ == 0)
+        throw UnmetError(
+            "nothing to cover: no cell of the target lies indoors; use a larger "
+            "zone or more cells (--reso)");
+    setDemand(standing);
+    CellWorth worth{CellSet(target_.grid.size()), weightsLeft()};
+    for (std::size_t i = 0; i < problem_.cells(); ++i)
+        if (problem_.weights[i] > 0) worth.counted.set(i);
+    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_, std::move(worth),
+                                            options, progress);
+    addKinds();
+}
+
+void SceneProblem::mustBeAffordable() const {
+    if (!options_.budget) return;
+    double least = kinds_.front().cost;
+    for (const SensorKind& kind : kinds_) least = std::min(least, kind.cost);
+    if (*options_.budget < least)
+        throw UnmetError("a budget of " + formatDouble(*options_.budget) +
+                         " buys nothing: the cheapest sensor costs " + formatDouble(least));
+}
+
+/// Receivers count four together; so others count as four each where there are receivers.
+void SceneProblem::setDemand(const Coverage& standing) {
+    const bool listens = !scene_.receivers.empty() ||
+                         std::any_of(kinds_.begin(), kinds_.end(), [](const SensorKind& kind) {
+                             return isReceiver(kind.device);
+                         });
+    unit_ = listens ? static_cast<int>(kLeastReceivers) : 1;
+    problem_.demand = unit_ * options_.redundancy;
+    problem_.met.assign(target_.grid.size(), 0);
+    problem_.standing = CellSet(target_.grid.size());
+    for (const SensorView& view : standing.sensors) {
+        const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
+        view.cells.forEach([&](std::size_t cell) {
+            problem_.met[cell] =
+                static_cast<std::uint16_t>(std::min(problem_.met[cell] + part, 0xffff));
+        });
+        problem_.standing |= view.cells;
+    }
+    problem_.is_connected = options_.is_connected;
+    problem_.budget = options_.budget;
+}
+
+void SceneProblem::addKinds() {
+    for (const SensorKind& kind : kinds_) {
+        CandidatePool::Made made = pool_->make(kind);
+        is_complete_ = is_complete_ && made.is_complete;
+        if (made.set->size() == 0)
+            throw UnmetError("stopped before there was any candidate for " + kind.id);
+        sets_.push_back(std::move(made.set));
+        problem_.kinds.push_back(
+            {sets_.back().get(), kind.most, kind.cost, isReceiver(kind.device) ? 1 : unit_});
+    }
+    if (options_.budget || options_.target) return;
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (int i = 0; i < groups_[g].most; ++i) problem_.order.push_back(kindOf(kinds_, g));
+}
+
+std::size_t SceneProblem::candidates() const {
+    std::size_t count = 0;
+    for (const auto& set : sets_) count += set->size();
+    return count;
+}
+
+std::size_t SceneProblem::bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& set : sets_) bytes += set->bytes();
+    return bytes;
+}
+
+double SceneProblem::share(std::uint64_t value) const {
+    return static_cast<double>(value) / static_cast<double>(total_);
+}
+
+std::uint64_t SceneProblem::valueFor(double share) const {
+    return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_) - 1e-6));
+}
+
+std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
+    std::vector<std::uint32_t> left = problem_.weights;
+    for (std::size_t i = 0; i < left.size(); ++i)
+        if (problem_.met[i] >= problem_.demand) left[i] = 0;
+    return left;
+}
+
+std::vector<ArrangedSensor> SceneProblem::sensorsOf(const std::vector<Choice>& chosen) const {
+    std::vector<std::vector<Pose3>> places(kinds_.size());
+    for (const Choice& choice : chosen)
+        places[choice.kind].push_back(sets_[choice.kind]->pose(choice.candidate));
+    return arrangedSensors(scene_, groups_, kinds_, places);
+}
+
+Coverage SceneProblem::coverageOf(const std::vector<ArrangedSensor>& sensors) {
+    return measureCoverage(withArranged(scene_, groups_, sensors), worlds_, searching(options_));
+}
+
+std::uint64_t SceneProblem::valueOf(const Coverage& coverage) const {
+    return ispace::valueOf(problem_, coverage, unit_);
+}
+
+bool SceneProblem::isConnected(const Coverage& coverage) const {
+    return ispace::isConnected(problem_, coverage, scene_);
+}
+
+std::uint64_t SceneProblem::mostFromAnyPlace(const std::vector<int>& most) const {
+    return ispace::mostFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most, unit_);
+}
+
+}  // namespace ispace
