@@ -14,6 +14,15 @@ enum class Purpose : std::uint32_t { Range = 1, Ultrasound = 2, Placement = 3, C
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.
 std::uint64_t hashOf(std::string_view id);
 
+/// Mixes all bits, one to one (SplitMix64; Steele et al., Fast Splittable Pseudorandom Number
+/// Generators, 2014): for hashes of numbers, the same on every machine.
+constexpr std::uint64_t mixedBits(std::uint64_t bits) {
+    bits += 0x9e3779b97f4a7c15U;
+    bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+    bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+    return bits ^ (bits >> 31U);
+}
+
 /// Names a sequence of random numbers. Element k depends on the key and on k alone, so that any
 /// thread may draw any part of it (Philox4x32-10; Salmon et al., Parallel Random Numbers: As Easy
 /// as 1, 2, 3, 2011).

@@ -32,6 +32,12 @@ Drawn drawAll(const RandomKey& key, std::uint32_t first, std::size_t count) {
     return drawn;
 }
 
+TEST(MixedBits, AreTheGeneratorsFirstNumbers) {
+    // Seed 1234567, as published for SplitMix64.
+    EXPECT_EQ(mixedBits(1234567), 6457827717110365317U);
+    EXPECT_EQ(mixedBits(1234567 + 0x9e3779b97f4a7c15U), 3203168211198807973U);
+}
+
 /// Three words of each of kGroup elements.
 using Group = std::array<std::array<std::uint32_t, random_loops::kGroup>, 3>;
 

@@ -2,7 +2,6 @@
 #include "place/arrangement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/error.h"
@@ -127,8 +126,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     result.is_complete = model.isComplete() && found.is_complete;
     result.candidates = model.candidates();
     result.bytes = model.bytes();
-    constexpr double kPerUnit = 1e6;  // of money: sums of decimals round
-    result.cost = std::round(costOf(problem, chosen) * kPerUnit) / kPerUnit;
+    result.cost = tidyCost(costOf(problem, chosen));
     result.has_costs = std::any_of(problem.kinds.begin(), problem.kinds.end(),
                                    [](const Kind& kind) { return kind.cost != 1; });
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <queue>
 #include <tuple>
 
+#include "place/cost_levels.h"
 #include "place/coverage_state.h"
 #include "place/exact.h"
 #include "place/lagrange.h"
@@ -13,60 +13,8 @@
 namespace ispace {
 namespace {
 
-constexpr double kCostSlack = 1e-9;  // costs nearer than this fraction are the same
-constexpr std::size_t kMostLevels = 4'000;
 constexpr int kQuickRounds = 8;  // of a bound
 constexpr int kFewStarts = 4;    // of swaps
-
-bool isLess(double cost, double than) { return cost < than * (1 - kCostSlack); }
-
-/// What sets of sensors can cost, ascending, from 0 up to a cost, each once; or, if there are very
-/// many, even steps.
-class CostLevels {
-  public:
-    CostLevels(const Problem& problem, double most) {
-        levels_ = {0};
-        for (const Kind& kind : problem.kinds) {
-            std::vector<double> sums;
-            for (const double level : levels_)
-                for (int n = 0; n <= kind.most && !isLess(most, level + n * kind.cost); ++n) {
-                    sums.push_back(level + n * kind.cost);
-                    if (sums.size() > 100 * kMostLevels) break;
-                }
-            std::sort(sums.begin(), sums.end());
-            const auto same = [](double a, double b) { return !isLess(a, b); };
-            sums.erase(std::unique(sums.begin(), sums.end(), same), sums.end());
-            levels_ = std::move(sums);
-            if (levels_.size() > kMostLevels) {
-                setEven(most);
-                return;
-            }
-        }
-    }
-    [[nodiscard]] double at(std::size_t i) const { return levels_[i]; }
-    /// The highest level that costs less. \pre cost is above 0
-    [[nodiscard]] std::size_t below(double cost) const {
-        std::size_t i = 0;
-        while (i + 1 < levels_.size() && isLess(levels_[i + 1], cost)) ++i;
-        return i;
-    }
-    /// What costs more than level i costs at least this. \param most what was found
-    [[nodiscard]] double above(std::size_t i, double most) const {
-        if (is_even_) return levels_[i];
-        return i + 1 < levels_.size() ? std::min(levels_[i + 1], most) : most;
-    }
-
-  private:
-    void setEven(double most) {
-        is_even_ = true;
-        levels_.resize(kMostLevels + 1);
-        for (std::size_t i = 0; i < levels_.size(); ++i)
-            levels_[i] = most * static_cast<double>(i) / static_cast<double>(kMostLevels);
-    }
-
-    std::vector<double> levels_;
-    bool is_even_ = false;
-};
 
 /// Looks for the cheapest that is worth something.
 class FewestSearch {
@@ -120,8 +68,9 @@ class FewestSearch {
 Problem FewestSearch::within(double cost) const {
     Problem cheaper = problem_;
     if (cheaper.kinds.size() == 1) {
-        const double count = std::floor(cost / cheaper.kinds[0].cost * (1 + kCostSlack));
-        cheaper.kinds[0].most = static_cast<int>(std::min<double>(cheaper.kinds[0].most, count));
+        Kind& kind = cheaper.kinds[0];
+        const auto most = static_cast<std::size_t>(std::max(kind.most, 0));
+        kind.most = static_cast<int>(affordableCount(cost, 0, kind.cost, most));
     } else {
         cheaper.budget = std::min(cost, problem_.budget.value_or(cost));
     }
@@ -241,7 +190,7 @@ Fewest FewestSearch::unreached(const Solution& greedy) {
             return cheapen(trimmed(fewest.result.best, wanted_));
     }
     fewest.result.best = trimmed(fewest.result.best, fewest.result.best.value);
-    fewest.cost = costOf(problem_, fewest.result.best.chosen);
+    fewest.cost = tidyCost(costOf(problem_, fewest.result.best.chosen));
     // If it can be had at all, it costs more than nothing.
     fewest.least_cost = problem_.kinds.empty() ? 0 : problem_.kinds[0].cost;
     for (const Kind& kind : problem_.kinds)
@@ -288,7 +237,7 @@ Solution FewestSearch::reachExactly(const Problem& cheaper, const Solution& best
 bool FewestSearch::take(const Solution& found, Solution& best) const {
     if (found.value < wanted_) return false;
     Solution trim = trimmed(found, wanted_);
-    if (!isLess(costOf(problem_, trim.chosen), costOf(problem_, best.chosen))) return false;
+    if (!isCheaper(costOf(problem_, trim.chosen), costOf(problem_, best.chosen))) return false;
     best = std::move(trim);
     return true;
 }
@@ -340,7 +289,7 @@ void FewestSearch::stepDown(const CostLevels& levels, Solution& best) {
 
 Fewest FewestSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
-    const CostLevels levels(problem_, most);
+    const CostLevels levels(problem_.kinds, most);
     // Quick bounds first: if there is no time for more, there are these.
     const LagrangeLimits limits = {.cut = best.value, .gap = 0.01, .rounds = 2};
     const Bound bound = boundWithin(within(most), best.chosen, limits, progress_);
@@ -349,14 +298,14 @@ Fewest FewestSearch::cheapen(Solution best) {
     if (options_.optimizer != Optimizer::Greedy) descend(levels, best);
     stepDown(levels, best);
     if (options_.optimizer != Optimizer::Greedy) raiseProven(levels, best, LagrangeLimits().rounds);
-    return reached(best, levels.above(proven_, costOf(problem_, best.chosen)));
+    return reached(best, levels.above(proven_));
 }
 
 Fewest FewestSearch::reached(const Solution& best, double least_cost) {
     Fewest fewest;
     fewest.is_reached = true;
-    fewest.cost = costOf(problem_, best.chosen);
-    fewest.least_cost = std::min(least_cost, fewest.cost);
+    fewest.cost = tidyCost(costOf(problem_, best.chosen));
+    fewest.least_cost = isCheaper(least_cost, fewest.cost) ? tidyCost(least_cost) : fewest.cost;
     fewest.result.best = best;
     fewest.result.bound = bound_;
     fewest.result.is_complete = !progress_.stopped();

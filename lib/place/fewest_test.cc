@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 
+#include "base/number.h"
 #include "place/search.h"
 #include "place/test_variety.h"
 
@@ -57,6 +58,100 @@ TEST(PlaceFewest, EqualsBruteForce) {
         }
     }
     EXPECT_GT(reached, 400);
+}
+
+TEST(PlaceFewest, EqualsBruteForceWithCostsFarApart) {
+    SilentProgress progress;
+    const double costs[] = {1e6, 999'999.999, 0.001, 0.1, 0.2, 1.0 / 3};
+    SearchOptions options;
+    options.optimizer = Optimizer::Exact;
+    options.swap.starts = 1;
+    for (std::uint64_t round = 0; round < 72; ++round) {
+        RandomProblem random = variedProblem(3 * round + 2);
+        Problem& problem = random.problem;
+        problem.kinds[0].cost = costs[round % 6];
+        problem.kinds[1].cost = costs[round / 6 % 6];
+        problem.budget.reset();
+        if (round % 4 == 3) problem.budget = problem.kinds[0].cost + problem.kinds[1].cost;
+        const std::uint64_t best = bestByBruteForce(problem).value;
+        for (const std::uint64_t wanted : {best / 2, best * 9 / 10, best}) {
+            const double least = leastCost(problem, wanted);
+            const Fewest fewest = placeFewest(problem, wanted, options, progress);
+            ASSERT_TRUE(fewest.is_reached);
+            ASSERT_EQ(fewest.cost, tidyCost(least)) << round << ' ' << wanted;
+            ASSERT_EQ(fewest.least_cost, fewest.cost) << round << ' ' << wanted;
+        }
+    }
+}
+
+/// Appends a candidate that sees these cells.
+void addCandidate(CandidateSet& set, const std::vector<std::size_t>& cells) {
+    CellSet seen(set.cells());
+    for (const std::size_t cell : cells) seen.set(cell);
+    set.addSite(Pose3(), seen);
+}
+
+TEST(PlaceFewest, SmallCostsCountBesideLargeOnes) {
+    CandidateSet large(10), small(10);
+    addCandidate(large, {0, 1, 2, 3, 4, 5, 6, 7, 8});
+    addCandidate(small, {9});
+    Problem problem;
+    problem.weights.assign(10, 1);
+    problem.kinds = {{&large, 1, 1e6, 1}, {&small, 1, 0.001, 1}};
+    SilentProgress progress;
+    const Fewest fewest = placeFewest(problem, 10, {}, progress);
+    EXPECT_EQ(fewest.cost, 1000000.001);
+    EXPECT_EQ(fewest.least_cost, 1000000.001);
+}
+
+TEST(PlaceFewest, ManyOfEqualCostHideNothingCheaper) {
+    // Greedy takes three of each group of eight where two are enough: 1700 in place of 1500.
+    constexpr std::size_t kGroups = 200, kOwn = 300, kOthers = 800;
+    constexpr std::size_t kCells = 8 * kGroups + kOwn + kOthers;
+    CandidateSet first(kCells), second(kCells);
+    for (std::size_t a = 0; a < 8 * kGroups; a += 8) {
+        const std::size_t b = a + 4;
+        addCandidate(first, {a});
+        addCandidate(first, {b});
+        addCandidate(first, {a + 1, a + 2, a + 3, b + 1, b + 2, b + 3});
+        addCandidate(first, {a, a + 1, a + 2, a + 3});
+        addCandidate(first, {b, b + 1, b + 2, b + 3});
+    }
+    for (std::size_t i = 0; i < kOwn; ++i) addCandidate(first, {8 * kGroups + i});
+    for (std::size_t i = 0; i < kOthers; ++i) addCandidate(second, {8 * kGroups + kOwn + i});
+    Problem problem;
+    problem.weights.assign(kCells, 1);
+    problem.kinds = {{&first, 1000, 1, 1}, {&second, 1000, 1, 1}};
+    SilentProgress progress;
+    SearchOptions options;
+    options.optimizer = Optimizer::Greedy;
+    const Fewest fewest = placeFewest(problem, kCells, options, progress);
+    EXPECT_EQ(fewest.cost, 1700);
+    EXPECT_LE(fewest.least_cost, 1500);
+    EXPECT_GE(fewest.least_cost, 1300);
+}
+
+TEST(PlaceFewest, EvenLevelsHaveFewDigits) {
+    // More than 4000 sums, and no bound is far off, as nothing overlaps.
+    constexpr std::size_t kOfEach = 30;
+    std::vector<CandidateSet> sets(3, CandidateSet(3 * kOfEach));
+    for (std::size_t i = 0; i < 3 * kOfEach; ++i) addCandidate(sets[i / kOfEach], {i});
+    Problem problem;
+    problem.weights.assign(3 * kOfEach, 1);
+    problem.kinds = {{&sets[0], 30, 1.2345, 1}, {&sets[1], 30, 1.41421, 1}};
+    problem.kinds.push_back({&sets[2], 30, 1.73205, 1});
+    SilentProgress progress;
+    const double least = 30 * 1.2345 + 30 * 1.41421 + 5 * 1.73205;
+    for (const Optimizer optimizer : {Optimizer::Greedy, Optimizer::Exact}) {
+        SearchOptions options;
+        options.optimizer = optimizer;
+        options.swap.starts = 2;
+        const Fewest fewest = placeFewest(problem, 65, options, progress);
+        EXPECT_LE(fewest.least_cost, least);
+        EXPECT_GE(fewest.least_cost, 0.99 * least);
+        EXPECT_LE(formatDouble(fewest.least_cost).size(), 7U);
+        EXPECT_EQ(fewest.cost, tidyCost(least));
+    }
 }
 
 TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {

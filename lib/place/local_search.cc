@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/random.h"
 #include "place/connection.h"
 
 namespace ispace {
@@ -42,21 +43,14 @@ bool haveCostsThatDiffer(const Problem& problem) {
                        [&](const Kind& kind) { return kind.cost != problem.kinds.front().cost; });
 }
 
-/// Mixes all bits (the finaliser of SplitMix64).
-std::uint64_t mixed(std::uint64_t bits) {
-    bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
-    bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
-    return bits ^ (bits >> 31U);
-}
-
 }  // namespace
 
 ResponseCache::Key::Key(const std::vector<Choice>& chosen) {
     // Sums: in any order, and a choice that is there twice does not cancel out.
     for (const Choice& choice : chosen) {
-        const std::uint64_t bits = mixed(mixed(choice.kind + 1) + choice.candidate);
+        const std::uint64_t bits = mixedBits(mixedBits(choice.kind) + choice.candidate);
         first += bits;
-        second += mixed(bits + 0x9e3779b97f4a7c15U);
+        second += mixedBits(bits);
     }
 }
 

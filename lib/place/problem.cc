@@ -2,6 +2,8 @@
 #include "place/problem.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <numeric>
 
 #include "place/connection.h"
@@ -44,8 +46,13 @@ std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen)
 }
 
 double costOf(const Problem& problem, const std::vector<Choice>& chosen) {
+    // Kind by kind there are few sums to round.
     double cost = 0;
-    for (const Choice& choice : chosen) cost += problem.kinds[choice.kind].cost;
+    for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
+        const auto count = std::count_if(chosen.begin(), chosen.end(),
+                                         [k](const Choice& choice) { return choice.kind == k; });
+        cost += static_cast<double>(count) * problem.kinds[k].cost;
+    }
     return cost;
 }
 
@@ -57,10 +64,39 @@ bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen) {
     return !problem.is_connected || isConnected(problem, chosen);
 }
 
+bool isCheaper(double cost, double than) {
+    constexpr double kSlack = 1e-13;
+    return cost < than * (1 - kSlack);
+}
+
 bool isAffordable(const Problem& problem, double cost) {
-    // Costs are sums of decimal numbers: 0.1 + 0.2 is to fit 0.3.
-    constexpr double kSlack = 1e-9;
-    return !problem.budget || cost <= *problem.budget * (1 + kSlack);
+    return !problem.budget || !isCheaper(*problem.budget, cost);
+}
+
+std::size_t affordableCount(double budget, double spent, double cost, std::size_t most) {
+    std::size_t least = 0;
+    while (least < most) {
+        const std::size_t middle = most - (most - least) / 2;
+        if (isCheaper(budget, spent + static_cast<double>(middle) * cost))
+            most = middle - 1;
+        else
+            least = middle;
+    }
+    return least;
+}
+
+double tidyCost(double cost) {
+    constexpr int kFewDigits = 12, kAllDigits = 17;
+    for (int digits = kFewDigits; digits < kAllDigits; ++digits) {
+        std::array<char, 32> text;
+        const auto end = std::to_chars(text.data(), text.data() + text.size(), cost,
+                                       std::chars_format::scientific, digits - 1)
+                             .ptr;
+        double tidy = cost;
+        std::from_chars(text.data(), end, tidy);
+        if (!isCheaper(tidy, cost) && !isCheaper(cost, tidy)) return tidy;
+    }
+    return cost;
 }
 
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen) {

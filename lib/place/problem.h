@@ -66,11 +66,20 @@ struct Solution {
 /// What a set of choices is worth: the sum of the weights of cells whose demand is met. Choices
 /// that are repeated count once. O(cells + runs)
 std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen);
-/// Of all, also of those that are repeated.
+/// Of all, also of those that are repeated. Does not depend on their order.
 double costOf(const Problem& problem, const std::vector<Choice>& chosen);
-/// True if so much is within the budget, but for what sums of decimal fractions are off by
-/// (1e-9 of it).
+/// True if a cost is below another by more than rounding explains. All comparisons of costs are
+/// this one: those within 1e-13 of each other (a fraction, and more than the rounding errors of a
+/// sum over some hundred kinds) are the same, as 0.1 + 0.2 and 0.3 are; 1e9 and 1e9 + 0.001 are
+/// not.
+bool isCheaper(double cost, double than);
+/// True if so much is within the budget.
 bool isAffordable(const Problem& problem, double cost);
+/// How many of this cost a budget buys beside what is spent already, up to `most`. O(log most)
+std::size_t affordableCount(double budget, double spent, double cost, std::size_t most);
+/// The decimal number that a cost, a sum of decimal numbers, stands for: rounded to 12 significant
+/// digits, or to as many as the same cost takes (isCheaper). 0.1 + 0.2 becomes 0.3.
+double tidyCost(double cost);
 /// Within `most`, `budget` and, if it is asked for, connected.
 bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
 /// True if the views hang together, see Problem::is_connected.

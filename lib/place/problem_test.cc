@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "place/test_problems.h"
 
 namespace ispace {
@@ -123,6 +126,80 @@ TEST(Problem, FeasibleIsWithinMostAndBudget) {
     problem.budget = 0;
     EXPECT_TRUE(isFeasible(problem, {}));
     EXPECT_FALSE(isFeasible(problem, {{0, 0}}));
+}
+
+TEST(Problem, SmallCostsCountBesideLargeOnes) {
+    const CandidateSet candidates = candidatesOf(2, {{0}, {1}});
+    Problem problem;
+    problem.weights = {1, 1};
+    problem.kinds = {{&candidates, 1000, 1e6, 1}, {&candidates, 1000, 0.001, 1}};
+    problem.budget = 1e6;
+    EXPECT_TRUE(isFeasible(problem, {{0, 0}}));
+    EXPECT_FALSE(isFeasible(problem, {{0, 0}, {1, 0}}));
+    problem.budget = 1e9;
+    std::vector<Choice> chosen(1000, {0, 0});
+    EXPECT_TRUE(isFeasible(problem, chosen));
+    chosen.push_back({1, 0});
+    EXPECT_FALSE(isFeasible(problem, chosen));
+    EXPECT_EQ(tidyCost(costOf(problem, chosen)), 1e9 + 0.001);
+}
+
+TEST(Problem, CostsOfManyAreTheDecimalSumInAnyOrder) {
+    test_problems::Random random(5);
+    const CandidateSet candidates = candidatesOf(1, {{0}});
+    Problem problem;
+    problem.kinds = {{&candidates, 9, 0.1, 1}, {&candidates, 9, 0.7, 1}, {&candidates, 9, 1e6, 1}};
+    for (int round = 0; round < 100; ++round) {
+        std::vector<Choice> chosen;
+        std::uint64_t tenths = 0;
+        for (std::uint64_t n = random() % 1000; n > 0; --n) {
+            chosen.push_back({random() % 3, 0});
+            tenths += std::vector<std::uint64_t>{1, 7, 10'000'000}[chosen.back().kind];
+        }
+        const double cost = costOf(problem, chosen);
+        EXPECT_EQ(tidyCost(cost), static_cast<double>(tenths) / 10);
+        std::reverse(chosen.begin(), chosen.end());
+        EXPECT_EQ(costOf(problem, chosen), cost);
+        problem.budget = static_cast<double>(tenths) / 10;
+        EXPECT_TRUE(isAffordable(problem, cost));
+        problem.budget = (static_cast<double>(tenths) - 1) / 10;
+        EXPECT_FALSE(isAffordable(problem, cost));
+    }
+}
+
+TEST(Problem, CheaperIsBelowByMoreThanRounding) {
+    EXPECT_FALSE(isCheaper(0.3, 0.1 + 0.2));
+    EXPECT_FALSE(isCheaper(0.1 + 0.2, 0.3));
+    EXPECT_FALSE(isCheaper(0, 0));
+    EXPECT_TRUE(isCheaper(0, 1e-9));
+    EXPECT_TRUE(isCheaper(1e9, 1e9 + 0.001));
+    EXPECT_FALSE(isCheaper(1e9 + 0.001, 1e9));
+    EXPECT_TRUE(isCheaper(3e-9, 4e-9));
+}
+
+TEST(Problem, ABudgetBuysSoMany) {
+    EXPECT_EQ(affordableCount(0.3, 0, 0.1, 9), 3U);
+    EXPECT_EQ(affordableCount(0.3, 0.2, 0.1, 9), 1U);
+    EXPECT_EQ(affordableCount(0.3, 0.1 + 0.2, 0.1, 9), 0U);
+    EXPECT_EQ(affordableCount(0.3, 0.4, 0.1, 9), 0U);
+    EXPECT_EQ(affordableCount(0.3, 0, 0.1, 2), 2U);
+    EXPECT_EQ(affordableCount(1e6, 1e6, 0.001, 9), 0U);
+    EXPECT_EQ(affordableCount(1e6 + 0.002, 1e6, 0.001, 9), 2U);
+    EXPECT_EQ(affordableCount(std::numeric_limits<double>::infinity(), 5, 0.1, 7), 7U);
+    EXPECT_EQ(affordableCount(0, 0, 1, 7), 0U);
+}
+
+TEST(Problem, TidyIsTheDecimalNumberMeant) {
+    EXPECT_EQ(tidyCost(0.1 + 0.2), 0.3);
+    EXPECT_EQ(tidyCost(327.8252249999999), 327.825225);
+    EXPECT_EQ(tidyCost(4 * 1e-9), 4e-9);
+    EXPECT_EQ(tidyCost(1e9 + 0.001), 1e9 + 0.001);
+    EXPECT_EQ(tidyCost(0), 0);
+    // What is no short decimal number stays the same cost.
+    for (const double cost : {1.0 / 3, 2.0 / 3, 1e6 / 7, 1 + 1.0 / 3}) {
+        EXPECT_FALSE(isCheaper(tidyCost(cost), cost));
+        EXPECT_FALSE(isCheaper(cost, tidyCost(cost)));
+    }
 }
 
 TEST(Problem, ViewsHangTogetherOverCellsThatCount) {

@@ -5,6 +5,8 @@
 #include <compare>
 #include <span>
 
+#include "base/random.h"
+
 namespace ispace {
 namespace {
 
@@ -19,14 +21,6 @@ struct Signature {
     }
     friend auto operator<=>(const Signature&, const Signature&) = default;
 };
-
-/// Well mixed bits (the finaliser of SplitMix64; Steele et al. 2014).
-std::uint64_t mixed(std::uint64_t bits) {
-    bits += 0x9e3779b97f4a7c15U;
-    bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
-    bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
-    return bits ^ (bits >> 31U);
-}
 
 /// A site with what its kept candidates see, in as few parts as tell them apart.
 struct KeptSite {
@@ -111,7 +105,7 @@ std::vector<Signature> signaturesOf(const std::vector<KeptSite>& sites, std::siz
     for (const KeptSite& site : sites)
         for (const auto& part : site.parts) {
             ++number;
-            const Signature own{mixed(2 * number), mixed(2 * number + 1)};
+            const Signature own{mixedBits(2 * number), mixedBits(2 * number + 1)};
             for (const CellRun& run : part) {
                 signatures[run.first] ^= own;
                 signatures[run.end] ^= own;

@@ -9,8 +9,6 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kMostWays = 20'000;
-// Costs are decimal numbers: three of 0.1 are within a budget of 0.3. A bound may let in too much.
-constexpr double kBudgetSlack = 1e-9;
 
 }  // namespace
 
@@ -38,7 +36,7 @@ RelaxedCells::RelaxedCells(const Problem& problem)
 }
 
 CountChoice::CountChoice(const Problem& problem) {
-    if (problem.budget) budget_ = *problem.budget * (1 + kBudgetSlack);
+    if (problem.budget) budget_ = *problem.budget;
     const std::size_t kinds = problem.kinds.size();
     costs_.reserve(kinds);
     most_.reserve(kinds);
@@ -46,39 +44,38 @@ CountChoice::CountChoice(const Problem& problem) {
         costs_.push_back(problem.kinds[k].cost);
         most_.push_back(std::min(static_cast<std::size_t>(std::max(problem.kinds[k].most, 0)),
                                  problem.kinds[k].candidates->size()));
-        most_[k] = fitting(k, budget_);
+        most_[k] = fitting(k, 0);
     }
     double cost = 0;
     for (std::size_t k = 0; k < kinds; ++k) cost += costs_[k] * static_cast<double>(most_[k]);
-    if (cost <= budget_) {
+    if (!isCheaper(budget_, cost)) {
         ways_ = {most_};
         total_ = std::accumulate(most_.begin(), most_.end(), std::size_t{0});
         return;
     }
     std::vector<std::size_t> counts(kinds, 0);
-    list(counts, 0, budget_);
+    list(counts, 0, 0);
     // The cheapest first gives the most sensors.
     std::vector<std::size_t> order(kinds);
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](auto a, auto b) { return costs_[a] < costs_[b]; });
-    double left = budget_;
+    double spent = 0;
     for (const std::size_t kind : order) {
-        const std::size_t count = fitting(kind, left);
-        left -= static_cast<double>(count) * costs_[kind];
+        const std::size_t count = fitting(kind, spent);
+        spent += static_cast<double>(count) * costs_[kind];
         total_ += count;
     }
     if (!is_listed_) ways_.clear();
 }
 
-std::size_t CountChoice::fitting(std::size_t kind, double left) const {
-    if (std::isinf(left)) return most_[kind];
-    const double count = std::floor(std::max(left, 0.0) / costs_[kind] * (1 + kBudgetSlack));
-    return count < static_cast<double>(most_[kind]) ? static_cast<std::size_t>(count) : most_[kind];
+std::size_t CountChoice::fitting(std::size_t kind, double spent) const {
+    return affordableCount(budget_, spent, costs_[kind], most_[kind]);
 }
 
-void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, double left) {
+void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, double spent) {
     if (!is_listed_) return;
-    const std::size_t most = fitting(kind, left);
+    // Sums kind by kind, as costOf has them: what is feasible is among the ways.
+    const std::size_t most = fitting(kind, spent);
     if (kind + 1 == counts.size()) {
         counts[kind] = most;
         ways_.push_back(counts);
@@ -87,7 +84,7 @@ void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, doubl
     }
     for (std::size_t n = most + 1; n-- > 0;) {
         counts[kind] = n;
-        list(counts, kind + 1, left - static_cast<double>(n) * costs_[kind]);
+        list(counts, kind + 1, spent + static_cast<double>(n) * costs_[kind]);
     }
 }
 
@@ -138,15 +135,18 @@ std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> 
     std::stable_sort(items.begin(), items.end(),
                      [](const Item& a, const Item& b) { return a.per_cost > b.per_cost; });
     counts.assign(sums.size(), 0);
-    double left = budget_, value = 0;
+    double spent = 0, value = 0;
     for (const Item& item : items) {
         const double cost = costs_[item.kind];
-        value += item.price * std::min(1.0, left / cost);
-        if (cost > left) break;
-        left -= cost;
+        if (isCheaper(budget_, spent + cost)) {
+            value += item.price * std::max(0.0, budget_ - spent) / cost;
+            break;
+        }
+        value += item.price;
+        spent += cost;
         ++counts[item.kind];
     }
-    // Rounding errors are far below a millionth of a sum below 2^53.
+    // Rounding errors, of costs and of values, are far below 1e-9 of the sum.
     return static_cast<std::uint64_t>(std::ceil(value * (1 + 1e-9))) + 1;
 }
 

@@ -73,8 +73,8 @@ class CountChoice {
     [[nodiscard]] Best best(std::span<const std::vector<std::uint64_t>> sums) const;
 
   private:
-    void list(std::vector<std::size_t>& counts, std::size_t kind, double left);
-    [[nodiscard]] std::size_t fitting(std::size_t kind, double left) const;
+    void list(std::vector<std::size_t>& counts, std::size_t kind, double spent);
+    [[nodiscard]] std::size_t fitting(std::size_t kind, double spent) const;
     [[nodiscard]] std::uint64_t knapsack(std::span<const std::vector<std::uint64_t>> sums,
                                          std::vector<std::size_t>& counts) const;
 

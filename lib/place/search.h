@@ -13,11 +13,12 @@ namespace ispace {
 /// Places one sensor after another, each on the candidate that adds most to those before it (thesis
 /// section 4.6), among equals on the first; in problem.order if there is one, else the sensor that
 /// adds most, with a budget: most for its cost (and then the better of that and of plain gain).
-/// With a demand above 1 what counts while searching is by how much the demand is met: of each cell
-/// min(met, demand) parts, so that the first sensor gains, too. Places all that fit, also those
-/// that add nothing. Lazy (Minoux 1978): a place is looked at again only while what it added before
-/// is more than the best so far. Without demand and budget its value is at least 1 - 1/e of the
-/// best.
+/// Where it takes several sensors to meet a demand, a cell counts by its weight shared out among
+/// those that it still lacks, and not at all once those to come are too few; among equals the parts
+/// met decide. Places all that fit, also those that add nothing; where progress says stop, the
+/// first 32 all the same. Lazy (Minoux 1978): a place is looked at again only while what it may add
+/// at most is more than the best so far. Without demand and budget its value is at least 1 - 1/e of
+/// the best.
 ///
 /// With is_connected each sensor after the first sees a cell that those before it see, if there is
 /// such a candidate.
@@ -32,7 +33,8 @@ struct SwapOptions {
 
 /// Local search: while it helps, one sensor is moved to the candidate that is best for it given the
 /// others (and sensors of another kind are bought instead, where there is a budget); from the
-/// greedy solution and from random ones, each from its own random numbers, in parallel. The best
+/// greedy solution, where demands take several sensors also from one by parts of them, and from
+/// random ones, each from its own random numbers, in parallel. The best
 /// result, the one of the first start among equals; or that of the first start that is worth
 /// enough: the same for any number of threads. Never worse than `start`. \pre start is feasible
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
@@ -88,14 +90,19 @@ struct Fewest {
     /// best there is, without sensors that add nothing.
     SearchResult result;
     bool is_reached = false;
-    double cost = 0;        ///< of result
-    double least_cost = 0;  ///< nothing cheaper reaches it
+    double cost = 0;        ///< of result, as tidyCost() has it
+    double least_cost = 0;  ///< nothing cheaper reaches it; tidy, too
 };
 
 /// The fewest sensors, or the cheapest where costs differ, that are worth at least `wanted`: greedy
 /// until it is reached; quick bounds tell how much less cannot be enough; then what lies between is
 /// searched with the optimiser asked for, with long steps and few starts first; then better bounds,
 /// but not for Greedy. Kinds without limit have a `most` of about a thousand.
+///
+/// Exact ends with cost and least_cost equal unless it is stopped or has no tree (see search). But
+/// where costs have so little in common that sets can cost more than 4000 different sums, up to
+/// what the first one found costs, it looks at 4000 even steps of that only: then both may be off
+/// the least by a step, and least_cost is below cost.
 Fewest placeFewest(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
                    Progress& progress);
 
