@@ -7,26 +7,56 @@
 #include <numbers>
 #include <vector>
 
+#include "cover/plane_field.h"
 #include "cover/visible.h"
 #include "place/sensor_group.h"
 
 namespace ispace {
 
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// What a sensor may see of a plane, at most; each figure on its own.
+struct Extent {
+    double reach;          ///< distance from the sensor, metres
+    double area, outline;  ///< square metres, metres
+};
+
+Extent discOf(double radius) { return {radius, kPi * radius * radius, 2 * kPi * radius}; }
+
+Extent extentOf(const Laser& laser) {
+    const double range = laser.max_range;
+    if (laser.sweep != SweepAxis::None) return discOf(range);
+    const double span = fanLimits(laser, Angle()).span.radians();
+    // The sides of a fan count also where it goes all around but for a gap.
+    return {range, span / 2 * range * range, span * range + (span < 2 * kPi ? 2 * range : 0)};
+}
+
+Extent extentOf(const Ranger& ranger) {
+    const FieldOfView view(PlacedRanger{"", ranger, {}});
+    const Extent disc = discOf(view.farthest());
+    if (view.shape != FieldOfView::Shape::Pyramid) return disc;
+    // Who measures distances has no greater depth than that in view, either.
+    const double depth = view.max_range, x = view.across, y = view.upright;
+    const double area = depth * depth * std::hypot(4 * x * y, x, y);
+    const double diameter = depth * std::max(2 * std::hypot(x, y), std::hypot(1, x, y));
+    return {disc.reach, std::min(disc.area, area), std::min(disc.outline, kPi * diameter)};
+}
+
+Extent extentOf(const Receiver& receiver) { return discOf(receiver.max_range); }
+
+}  // namespace
+
 std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid) {
-    constexpr double kPi = std::numbers::pi;
-    const double range = maxRange(device);
-    double area = kPi * range * range, outline = 2 * kPi * range;
-    const auto* const laser = std::get_if<Laser>(&device);
-    if (laser != nullptr && laser->sweep == SweepAxis::None) {  // seen from above, at most its fan
-        const double span = fanLimits(*laser, Angle()).span.radians();
-        // The sides of a fan count also where it goes all around but for a gap.
-        area = span / 2 * range * range;
-        outline = span * range + (span < 2 * kPi ? 2 * range : 0);
-    }
+    // Edges are in view, whatever rounding makes of them: ranges are those of float32, and of a
+    // narrow fan the cosines of its sides.
+    constexpr double kRounding = 2e-6;
+    const Extent most = std::visit([](const auto& figures) { return extentOf(figures); }, device);
     const double cell_x = grid.limits.width() / grid.columns,
                  cell_y = grid.limits.depth() / grid.rows;
-    const double near = std::hypot(cell_x, cell_y) / 2 + 1e-6 * range;  // and what float32 rounds
-    const double cells = (area + outline * near + kPi * near * near) / grid.cellArea();
+    const double near = std::hypot(cell_x, cell_y) / 2 + kRounding * most.reach;
+    const double cells = (most.area + most.outline * near + kPi * near * near) / grid.cellArea();
     const auto all = static_cast<double>(grid.size());
     return static_cast<std::uint64_t>(std::min(all, std::floor(cells) + 1));
 }

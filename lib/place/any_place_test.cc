@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "cover/plane_view.h"
 #include "place/test_arrange.h"
 
 namespace ispace {
@@ -59,6 +62,108 @@ TEST(MostCellsInView, ANarrowFanMayRunAlongARowOfCenters) {
     EXPECT_LE(seen, mostCellsInView(laser, grid));
 }
 
+constexpr double kPlane = 0.3;  // height of what is looked at
+
+/// Poses in the middle of a hall, turned in every way.
+class PoseSource {
+  public:
+    explicit PoseSource(unsigned seed) : random_(seed) {}
+    double between(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random_);
+    }
+    Angle turn(double most) { return Angle::degrees(between(-most, most)); }
+    Pose3 pose(double height) {
+        const Point3 place{between(-1, 1), between(-1, 1), height};
+        // Looking straight down, or in the plane itself, most of it is in view.
+        const double way = between(0, 1);
+        if (height == kPlane) return {place, turn(180), {}, Angle::degrees(way < 0.5 ? 0 : 90)};
+        if (way < 0.4) return {place, turn(180), Angle::degrees(-90), turn(180)};
+        return {place, turn(180), turn(180), turn(180)};
+    }
+
+  private:
+    std::mt19937_64 random_;
+};
+
+/// Cells of the hall that a device sees from random poses, over or in the plane: never more than
+/// most. Returns the largest share of that.
+template <typename Placed, typename Figures>
+double fullestView(const Figures& figures, double most_height, unsigned seed) {
+    static const Scene kHall = hall();
+    static Worlds worlds(kHall.environment);
+    worlds.prepareMesh();
+    const Grid grid{kHall.environment.limits(), 80, 90};
+    const auto most = static_cast<double>(mostCellsInView(figures, grid));
+    PoseSource poses(seed);
+    double fullest = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double above = i % 6 == 0 ? 0 : poses.between(0, most_height);
+        const Placed placed{"s", figures, poses.pose(kPlane + above)};
+        const auto seen =
+            static_cast<double>(cellsSeen(grid, worlds.mesh(), placed, kPlane).count());
+        EXPECT_LE(seen, most) << seed << ": " << i;
+        fullest = std::max(fullest, seen / most);
+    }
+    return fullest;
+}
+
+TEST(MostCellsInView, HoldsForRangersThatLookAnyWay) {
+    struct Case {
+        Projection projection;
+        bool measures_depth;
+        double fov_x, fov_y, range;
+        double least;  ///< share of the bound that some pose comes to
+    };
+    using enum Projection;
+    const Case cases[] = {
+        {Pinhole, true, 140, 130, 0.8, 0.7},  {Pinhole, true, 47.5, 39.6, 3, 0.5},
+        {Pinhole, true, 120, 2, 2, 0.6},      {Pinhole, true, 1, 100, 3, 0.7},
+        {Pinhole, false, 140, 130, 3, 0.7},   {Pinhole, false, 47.5, 39.6, 4, 0.4},
+        {Pinhole, false, 0.1, 120, 4, 0.3},   {Spherical, false, 360, 30, 3, 0.8},
+        {Spherical, false, 360, 180, 3, 0.8}, {Spherical, false, 90, 90, 4, 0.2},
+    };
+    unsigned seed = 0;
+    for (const Case& one : cases) {
+        Ranger ranger;
+        ranger.projection = one.projection;
+        ranger.measures_depth = one.measures_depth;
+        ranger.fov_x = Angle::degrees(one.fov_x);
+        ranger.fov_y = Angle::degrees(one.fov_y);
+        ranger.max_range = one.range;
+        const double share = fullestView<PlacedRanger>(ranger, one.range, ++seed);
+        EXPECT_GE(share, one.least) << seed;
+    }
+}
+
+TEST(MostCellsInView, HoldsForLasersThatTiltRollAndSweep) {
+    unsigned seed = 100;
+    for (const SweepAxis axis :
+         {SweepAxis::None, SweepAxis::Heading, SweepAxis::Tilt, SweepAxis::Roll})
+        for (const double fov : {2.0, 120.0, 300.0, 360.0}) {
+            Laser laser;
+            laser.max_range = 4;
+            laser.first = Angle::degrees(-fov / 2);
+            laser.beams = static_cast<int>(fov) + 1;
+            laser.sweep = axis;
+            laser.sweep_span = Angle::degrees(180);
+            fullestView<PlacedLaser>(laser, 4, ++seed);
+        }
+}
+
+// The picture's corners are farther away than the range, which is that along the axis.
+TEST(MostCellsInView, DepthReachesBeyondTheRange) {
+    const Grid grid{hall().environment.limits(), 100, 100};
+    Ranger ranger;
+    ranger.max_range = 2;
+    ranger.fov_x = ranger.fov_y = Angle::degrees(90);
+    const std::uint64_t by_distance = mostCellsInView(ranger, grid);
+    EXPECT_LE(by_distance, 400U) << "the disc of the range has 314 cells";
+    ranger.measures_depth = true;
+    EXPECT_GE(mostCellsInView(ranger, grid), 400U) << "4 m x 4 m, looking down";
+    ranger.fov_x = ranger.fov_y = Angle::degrees(179.9999);
+    EXPECT_EQ(mostCellsInView(ranger, grid), grid.size());
+}
+
 TEST(MostCellsInView, IsAtMostAllCells) {
     const Grid grid{hall().environment.limits(), 10, 10};
     Laser laser;
@@ -91,6 +196,21 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     // Twice as much is asked of each cell.
     problem.demand = 2;
     EXPECT_LE(most_of(1), 10 + 50 + cells);
+}
+
+TEST(MostFromAnyPlace, HoldsForWhatIsRefined) {
+    const Scene scene = roomScene("#env 1\nispace size=20,16 height=4\n");
+    ArrangeOptions options;
+    options.density = {8, 8, 1};
+    options.search.optimizer = Optimizer::Greedy;
+    options.refine = true;
+    options.mount.heights = {2.5};
+    options.mount.tilts = {Angle::degrees(-90)};
+    const auto groups = groupsOf(scene, {"ranger,range=2.6,fov=140,130,measures=depth"});
+    const Arrangement arrangement = arranged(scene, groups, options);
+    EXPECT_GT(arrangement.coverage, 0.45);
+    EXPECT_GE(arrangement.bound, arrangement.coverage);
+    EXPECT_LT(arrangement.bound, 0.6);
 }
 
 TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {

@@ -13,8 +13,6 @@ namespace ispace {
 
 namespace {
 
-/// "seg" of eq. (4.1) and (4.2): by default R2 places lie within this part of the greatest range.
-constexpr double kSegments = 5;
 /// Places are whole nanometres: layouts are read by people, and what a sum leaves behind is noise.
 double tidy(double metres) {
     constexpr double kPerMetre = 1e9;
@@ -96,8 +94,7 @@ struct CandidatePool::Data {
         GridSearch search = defaultGridSearch(environment.limits(), maxRange(kind.device));
         search.x = options.x.value_or(search.x);
         search.y = options.y.value_or(search.y);
-        constexpr std::int64_t kMostPlaces = 1000000;
-        if (std::int64_t{search.x} * search.y > kMostPlaces)
+        if (static_cast<double>(search.x) * search.y > kMostSites)
             throw UsageError("a grid of " + std::to_string(search.x) + " x " +
                              std::to_string(search.y) +
                              " places is more than a million: use fewer lines (-X, -Y)");
@@ -215,36 +212,57 @@ struct CandidatePool::Data {
         return true;
     }
 
-    /// Valid random places; fewer where they are hard to find.
-    template <typename Draw>
-    std::vector<Level> randomLevels(int count, Draw draw) {
-        constexpr int kTries = 1000;  // a place
+    /// Places drawn at all heights.
+    struct Drawn {
         std::vector<Level> levels;
+        std::size_t places = 0;
+        bool is_complete = true;  ///< false: progress said to stop before
+    };
+
+    /// Valid random places; fewer where they are hard to find, and those found so far where
+    /// progress says stop. `needs_one`: then, too, one is looked for, but for no longer than for
+    /// one place.
+    template <typename Draw>
+    Drawn randomLevels(int count, bool needs_one, Draw draw) {
+        constexpr std::uint64_t kTries = 1000;  // a place
+        const std::uint64_t most_tries = kTries * static_cast<std::uint64_t>(count);
+        Drawn drawn;
         std::uint64_t k = 0;
+        progress.begin("drawing places", std::int64_t{count} * std::ssize(heights()));
         for (const double height : heights()) {
             const SiteJudge& judge = judgeAt(height);
             std::vector<Point2> places;
-            for (int tries = count * kTries;
-                 tries > 0 && places.size() < static_cast<std::size_t>(count); --tries) {
+            for (std::uint64_t tries = 0;
+                 tries < most_tries && places.size() < static_cast<std::size_t>(count); ++tries) {
+                const bool must_go_on = needs_one && drawn.places == 0 && k < kTries;
+                if (progress.stopped() && !must_go_on) {
+                    drawn.is_complete = false;
+                    break;
+                }
                 const Point2 place = tidy(draw(k++));
-                if (judge.isValid(place)) places.push_back(place);
+                if (!judge.isValid(place)) continue;
+                places.push_back(place);
+                ++drawn.places;
+                progress.advance(1);
             }
-            levels.push_back({height, sitesAt(places, headings())});
+            drawn.levels.push_back({height, sitesAt(places, headings())});
         }
-        return levels;
+        progress.end();
+        return drawn;
     }
 
     /// Hierarchical Random: R1 places; for each sensor R2 more about the best one for it. Places
-    /// found for one sensor serve the others, too.
+    /// found for one sensor serve the others, too. False if progress says stop.
     bool addRandom(CandidateSet& set, const SensorKind& kind) {
-        const std::vector<Level> first = randomLevels(options.first_places, [&](std::uint64_t k) {
+        const Drawn first = randomLevels(options.first_places, true, [&](std::uint64_t k) {
             return randomPlace(environment.limits(), options.seed, kind.id, k);
         });
-        if (std::all_of(first.begin(), first.end(),
-                        [](const Level& level) { return level.sites.empty(); }))
-            throw UnmetError(
-                noPlaceText(kind, static_cast<std::size_t>(options.first_places) * first.size()));
-        if (!addLevels(set, kind, first)) return false;
+        if (first.places == 0) {
+            if (!first.is_complete) return false;
+            throw UnmetError(noPlaceText(
+                kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
+        }
+        if (!addLevels(set, kind, first.levels) || !first.is_complete) return false;
         const double scope = options.scope.value_or(maxRange(kind.device) / kSegments);
         std::vector<std::uint32_t> worth_left = worth.left;
         std::vector<std::uint32_t> values;
@@ -258,11 +276,11 @@ struct CandidatePool::Data {
             const std::size_t start = best();
             if (values[start] == 0) break;  // nothing is left to be seen
             const Point2 center = set.pose(start).position.onFloor();
-            const std::vector<Level> more = randomLevels(options.more_places, [&](std::uint64_t k) {
+            const Drawn more = randomLevels(options.more_places, false, [&](std::uint64_t k) {
                 return randomPlaceAbout(center, scope, options.seed, kind.id,
                                         static_cast<std::uint64_t>(sensor), k);
             });
-            if (!addLevels(set, kind, more)) return false;
+            if (!more.is_complete || !addLevels(set, kind, more.levels)) return false;
             set.forEachRun(best(), [&](const CellRun& run) {
                 std::fill(worth_left.begin() + run.first, worth_left.begin() + run.end, 0U);
             });

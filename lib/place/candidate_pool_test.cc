@@ -111,6 +111,65 @@ TEST(CandidatePool, FramesCarryWhatLooksDown) {
     EXPECT_LT(pooled.set->pose(0).position.z, 2);
 }
 
+/// Says stop once it was asked so often.
+class Asked final : public Progress {
+  public:
+    explicit Asked(int most) : most_(most) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return ++times_ > most_; }
+    [[nodiscard]] int times() const { return times_; }
+
+  private:
+    int most_;
+    mutable int times_ = 0;
+};
+
+/// Random places of a laser in a part of the room, of which there are few.
+CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
+    const Scene scene = roomScene();
+    Worlds worlds(scene.environment);
+    const Target target = makeTarget(scene.environment, 50, 50, kScanHeight);
+    ArrangeOptions options;
+    options.strategy = Strategy::Random;
+    options.first_places = count;
+    options.mount.heights = {0.15, 1};
+    options.mount.keep_in = {readZone(zone, scene.environment)};
+    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    return pool.make(kindsOf(groupsOf(scene, {"laser:2"})).front());
+}
+
+TEST(CandidatePool, DrawingEndsWhenProgressSaysSo) {
+    Asked later(20000);
+    const CandidatePool::Made some = drawnIn("rect:0,0,0.2,0.2", 1000, later);
+    EXPECT_FALSE(some.is_complete);
+    EXPECT_GE(some.set->sites(), 1U) << "what was found is there";
+    EXPECT_LE(later.times(), 20000 + 10);
+
+    Asked at_once(0);
+    const CandidatePool::Made one = drawnIn("rect:-4,-3,4,3", 1000, at_once);
+    EXPECT_FALSE(one.is_complete);
+    EXPECT_EQ(one.set->sites(), 1U) << "something to choose from there is";
+    const CandidatePool::Made only = drawnIn("rect:-4,-3,4,3", 1, at_once);
+    EXPECT_FALSE(only.is_complete);
+    EXPECT_EQ(only.set->sites(), 1U);
+}
+
+TEST(CandidatePool, NoRandomPlaceFoundSoFarIsNotThatThereIsNone) {
+    constexpr const char* kNowhere = "rect:9,9,10,10";
+    SilentProgress silent;
+    EXPECT_THROW(drawnIn(kNowhere, 20, silent), UnmetError);
+    for (const int asked : {0, 5000}) {
+        Asked progress(asked);
+        const CandidatePool::Made none = drawnIn(kNowhere, 20, progress);
+        EXPECT_FALSE(none.is_complete);
+        EXPECT_EQ(none.set->size(), 0U);
+        EXPECT_LE(progress.times(), asked + 1010) << "one more place is looked for";
+    }
+}
+
 // Fig. 4.8: without the Insider Judge the sensor would stand outside, facing the walls.
 TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     const Scene scene = roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));

@@ -16,10 +16,8 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMostPlaces = 1e6;
-
 void mustBeFew(double places, double step, const char* where) {
-    if (places <= kMostPlaces) return;
+    if (places <= kMostSites) return;
     throw UsageError("a step of " + formatDouble(step) + " m makes " + formatFixed(places, 0) +
                      " places " + where + ": more than a million are too many, use a larger one");
 }

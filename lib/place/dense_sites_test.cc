@@ -182,6 +182,8 @@ TEST(FramePlaces, HangUnderTheBars) {
     EXPECT_NEAR(places[7].y, 3 - 0.25, 1e-12);
     EXPECT_TRUE(framePlaces(roomOf("ispace\n"), 0.5).empty());
     EXPECT_EQ(framePlaces(room, 50).size(), 5U);
+    const Environment hall = roomOf("ispace size=500,500\ninfra size=400,400 rows=2 cols=2\n");
+    EXPECT_THROW(framePlaces(hall, 0.001), UsageError);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/number.h"
 #include "geom/planar_map.h"
 #include "place/sites.h"
 
@@ -30,6 +32,10 @@ std::vector<Point3> framePlaces(const Environment& environment, double step) {
         for (const Prism& bar : element.body.prisms) {
             const auto [a, b] = midLine(bar.footprint);
             const double count = std::max(1.0, std::round((distance(a, b) + kWeldDistance) / step));
+            if (static_cast<double>(places.size()) + count > kMostSites)
+                throw UsageError("a step of " + formatDouble(step) +
+                                 " m makes more than a million places under the frames: those are "
+                                 "too many, use a larger one");
             for (int i = 0; i < static_cast<int>(count); ++i) {
                 const Point2 place = a + ((i + 0.5) / count) * (b - a);
                 places.push_back({place.x, place.y, bar.bottom - kUnderBar});

@@ -29,6 +29,17 @@ CoverageOptions searching(const ArrangeOptions& options) {
         .columns = options.columns, .rows = options.rows, .plane = options.plane, .exact = false};
 }
 
+/// Why nothing counts. \pre all cells are worth 0
+std::string nothingText(const Target& target, Worth worth) {
+    worth.weights.clear();
+    const std::vector<double> unweighted = worthOfCells(target, worth);
+    const bool is_weight =
+        std::any_of(unweighted.begin(), unweighted.end(), [](double cell) { return cell > 0; });
+    return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
+                     : "nothing to cover: no cell of the target lies indoors; use a larger zone or "
+                       "more cells (--reso)";
+}
+
 }  // namespace
 
 SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& groups,
@@ -44,10 +55,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     target_ = standing.target;
     problem_.weights = wholeUnits(worthOfCells(target_, options.worth));
     total_ = problem_.totalWeight();
-    if (total_ == 0)
-        throw UnmetError(
-            "nothing to cover: no cell of the target lies indoors; use a larger "
-            "zone or more cells (--reso)");
+    if (total_ == 0) throw UnmetError(nothingText(target_, options.worth));
     setDemand(standing);
     CellWorth worth{CellSet(target_.grid.size()), weightsLeft()};
     for (std::size_t i = 0; i < problem_.cells(); ++i)

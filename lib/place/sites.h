@@ -24,36 +24,41 @@ struct Site {
 /// `count` headings 360 / count apart, the first 0.
 std::vector<Angle> headingsAround(int count);
 
+/// No strategy proposes more places than this at one height: nobody could wait for them.
+constexpr double kMostSites = 1e6;
+
 // ---- Strategies of the thesis
+
+/// "seg" of eq. (4.1) and (4.2): grid lines within the greatest range.
+constexpr double kSegments = 5;
 
 /// Density of the thesis' Ordinary Grid (section 4.4.2).
 struct GridSearch {
     int x = 1, y = 1;  ///< interior grid lines along x and y
 };
 
-/// Eq. (4.1) and (4.2) with seg = 5, rounded down, at least 1.
+/// Eq. (4.1) and (4.2), rounded down, at least 1.
 GridSearch defaultGridSearch(const Box2& limits, double max_range);
 
 /// The x * y crossings x_i = xmin + i (xmax - xmin) / (X + 1), i = 1..X, likewise y; y runs
 /// slowest.
 std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
 
-/// Along Wall (section 4.4.5): on every wall of the indoor region `times` places at equal distances
-/// (the first and last half a distance from its ends), `dist` from it along the inner normal, which
-/// is their heading. Walls are the lines of its outline and holes, from corner to corner: pieces
-/// that go straight on, as where another wall ends on one, are one wall.
+/// Along Wall (section 4.4.5): on every wall that a sensor at this height can hang on `times`
+/// places at equal distances (the first and last half a distance from its ends), `dist` from it
+/// along the inner normal, which is their heading. Walls are the lines of the indoor region's
+/// outline and holes, from corner to corner: pieces that go straight on, as where another wall ends
+/// on one, are one wall. Also both sides of walls that stand within the indoor region, as between
+/// rooms that open doors join; the faces of thick ones; and not across open doors, but where they
+/// lead out.
 ///
 /// "At the end of the wall line vector, concavity environment may ask for more candidates of
 /// orientation", says the thesis, and not which: the first and the last place of a wall also have
 /// the heading halfway to the neighbouring wall's normal and that normal. Around a corner that juts
 /// into the room a part of it lies behind the wall's line, where a sensor of 180 degrees that faces
 /// the normal does not look; in a corner of the room one with less than 180 degrees sees more
-/// across it. Valid or not: a place may lie beyond another wall. O(n times) for n lines
-/// \pre times >= 0
-std::vector<Site> wallSites(const Region& indoor, double dist, int times);
-/// The same along all walls that a sensor at this height can hang on: also on both sides of those
-/// that stand within the indoor region, as between rooms that open doors join; along the faces of
-/// thick ones; and not across open doors, but where they lead out. O((n + times) log n)
+/// across it. Valid or not: a place may lie beyond another wall. O(n (log n + times)) for n lines
+/// \pre times >= 0 \throws UsageError for more than kMostSites
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times);
 
 /// Hierarchical Random (section 4.4.3): place k of a sequence, anywhere within limits, or in the
@@ -67,7 +72,7 @@ Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const s
 // ---- Denser candidates
 
 /// Points of a lattice with this step that begins step / 2 inside the limits' lower corner, below
-/// the upper one; y runs slowest. \pre step > 0 \throws UsageError for more than a million
+/// the upper one; y runs slowest. \pre step > 0 \throws UsageError for more than kMostSites
 std::vector<Point2> latticePlaces(const Box2& limits, double step);
 
 /// About every `step` along the walls of the indoor region and the objects that touch or stand in
@@ -76,7 +81,7 @@ std::vector<Point2> latticePlaces(const Box2& limits, double step);
 /// ends; shorter ones that follow each other, of round and ragged things, share theirs. Places may
 /// lie beyond another wall. Also on both sides of those `sheets` that stand in the free floor, of
 /// which it does not know: walls without thickness, as between rooms that open doors join.
-/// \pre step > 0 \throws UsageError for more than a million
+/// \pre step > 0 \throws UsageError for more than kMostSites
 std::vector<Point2> placesAlong(const std::vector<Region>& free_floor, double step, double off,
                                 std::span<const Segment2> sheets = {});
 
@@ -96,7 +101,8 @@ std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double s
 /// Sensors under a bar hang this far below it, in metres: bars are closed.
 constexpr double kUnderBar = 0.01;
 /// Under the bars of all `infra` frames, about every `step` of each bar, kUnderBar below it. In the
-/// order of the records, rows before columns. \pre step > 0
+/// order of the records, rows before columns. \pre step > 0 \throws UsageError for more than
+/// kMostSites
 std::vector<Point3> framePlaces(const Environment& environment, double step);
 
 // ---- Which places are valid

@@ -4,7 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <string>
 
+#include "base/error.h"
+#include "base/number.h"
 #include "base/random.h"
 #include "geom/boolean.h"
 #include "place/sites.h"
@@ -13,8 +16,6 @@
 namespace ispace {
 
 namespace {
-
-constexpr double kSegments = 5;  // "seg" of eq. (4.1) and (4.2)
 
 int linesAlong(double extent, double max_range) {
     constexpr double kMost = 10000;
@@ -59,14 +60,16 @@ void addTurned(Site& site, Angle normal, Angle turn) {
 
 /// From one normal to the next of a curve; where a sheet ends, around that end.
 Angle turnBetween(Angle normal, Angle next) {
+    // Degrees by which rounding and welding may turn a side of a sheet. To the left lies no floor
+    // to speak of between walls at such an angle.
+    constexpr double kSlack = 1e-3;
     const Angle turn = wrapped(next - normal);
-    return turn == Angle::degrees(180) ? -turn : turn;
+    return turn >= Angle::degrees(180 - kSlack) ? turn - Angle::degrees(360) : turn;
 }
 
-void addWallSites(const Polygon& curve, double dist, int times, std::vector<Site>& sites) {
-    const Polygon corners = wallCorners(curve);
+/// Along the walls between the corners of a closed curve. \pre there are at least two
+void addWallSites(const Polygon& corners, double dist, int times, std::vector<Site>& sites) {
     const std::size_t n = corners.size();
-    if (n < 2) return;
     std::vector<Angle> normals;
     normals.reserve(n);
     forEachEdge(corners, [&](const Segment2& wall) {
@@ -87,28 +90,35 @@ void addWallSites(const Polygon& curve, double dist, int times, std::vector<Site
     }
 }
 
-std::vector<Site> sitesAlong(const std::vector<Polygon>& curves, double dist, int times) {
-    assert(times >= 0);
-    std::size_t walls = 0;
-    for (const Polygon& curve : curves) walls += curve.size();
-    std::vector<Site> sites;
-    sites.reserve(walls * static_cast<std::size_t>(times));
-    for (const Polygon& curve : curves) addWallSites(curve, dist, times, sites);
-    return sites;
+void mustBeFew(std::size_t walls, int times) {
+    const double places = static_cast<double>(walls) * times;
+    if (places <= kMostSites) return;
+    throw UsageError(std::to_string(times) + " places along each of " + std::to_string(walls) +
+                     " walls make " + formatFixed(places, 0) +
+                     ": more than a million are too many, use fewer (--times)");
 }
 
 }  // namespace
 
-std::vector<Site> wallSites(const Region& indoor, double dist, int times) {
-    // The inside lies to the left of the edges, of holes too.
-    return sitesAlong(curvesOf(indoor), dist, times);
-}
-
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times) {
-    const Slice walls = wallSlice(environment, height);
+    assert(times >= 0);
+    const Slice slice = wallSlice(environment, height);
     std::vector<Region> floor{environment.indoor()};
-    if (!walls.solids.empty()) floor = difference(environment.indoor(), walls.solids);
-    return sitesAlong(wallCurves(floor, walls.sheets), dist, times);
+    if (!slice.solids.empty()) floor = difference(environment.indoor(), slice.solids);
+    // What lies on the left of each is free.
+    std::vector<Polygon> curves = wallCurves(floor, slice.sheets);
+    std::size_t walls = 0;
+    for (Polygon& curve : curves) {
+        curve = wallCorners(curve);
+        if (curve.size() < 2) curve.clear();
+        walls += curve.size();
+    }
+    mustBeFew(walls, times);
+    std::vector<Site> sites;
+    sites.reserve(walls * static_cast<std::size_t>(times));
+    for (const Polygon& corners : curves)
+        if (!corners.empty()) addWallSites(corners, dist, times, sites);
+    return sites;
 }
 
 namespace {

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "base/error.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "place/sites.h"
 #include "place/test_room.h"
 #include "place/wall_curves.h"
@@ -68,7 +71,7 @@ TEST(WallCorners, AreWithoutPiecesAndDoubles) {
 
 TEST(WallSites, OfASquareRoom) {
     const Environment room = roomOf("ispace size=4,4\n");
-    const auto sites = wallSites(room.indoor(), 0.05, 4);
+    const auto sites = wallSites(room, kScanHeight, 0.05, 4);
     ASSERT_EQ(sites.size(), 16U);
     const auto at = [&sites](Point2 wanted) {
         const auto found = std::find_if(sites.begin(), sites.end(), [wanted](const Site& site) {
@@ -87,7 +90,7 @@ TEST(WallSites, OfASquareRoom) {
 
 TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
     const Environment room = environmentOf(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
-    const auto sites = wallSites(room.indoor(), 0.1, 2);
+    const auto sites = wallSites(room, kScanHeight, 0.1, 2);
     ASSERT_EQ(sites.size(), 12U);
     // The wall from (7, 1) to (1, 1) ends where the room goes on to the north.
     const auto found = std::find_if(sites.begin(), sites.end(), [](const Site& site) {
@@ -98,9 +101,12 @@ TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
 }
 
 TEST(WallSites, OneWallIsTheSameInPieces) {
-    const Region whole{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {}};
-    const Region pieces{{{0, 0}, {1, 0}, {1.7, 0}, {4, 0}, {4, 3}, {2, 3}, {0, 3}}, {}};
-    EXPECT_EQ(wallSites(whole, 0.05, 5), wallSites(pieces, 0.05, 5));
+    const Environment whole = roomOf("fence path=0,0;4,0;4,3;0,3 closed=yes\n");
+    const Environment pieces =
+        roomOf("fence path=0,0;1,0;1.7,0;4,0;4,3;2,3;0,3 closed=yes\nwall from=2,3 to=2,4\n");
+    const auto sites = wallSites(whole, kScanHeight, 0.05, 5);
+    EXPECT_EQ(sites.size(), 20U);
+    EXPECT_EQ(sites, wallSites(pieces, kScanHeight, 0.05, 5));
 }
 
 TEST(WallSites, PointIntoTheRoomOnHolesToo) {
@@ -108,7 +114,7 @@ TEST(WallSites, PointIntoTheRoomOnHolesToo) {
         roomOf("ispace size=8,6\nfence path=1,1;2,1;2.5,2;1,2 closed=yes\ninside at=-1,-1\n");
     ASSERT_EQ(room.indoor().holes.size(), 1U);
     for (const int times : {1, 3, 21}) {
-        const auto sites = wallSites(room.indoor(), 0.01, times);
+        const auto sites = wallSites(room, kScanHeight, 0.01, times);
         ASSERT_EQ(sites.size(), static_cast<std::size_t>(8 * times));
         for (const Site& site : sites) {
             EXPECT_EQ(room.indoor().locate(site.place), Side::Inside);
@@ -154,8 +160,6 @@ TEST(WallSites, AreOnBothSidesOfWallsWithinTheRoom) {
     const Environment room = roomOf(
         "ispace size=8,6\nwall id=w from=0,-3 to=0,3\ndoor wall=w offset=2 size=1 open=yes\n"
         "inside at=1,0\n");
-    // Outline of one region, without the wall between its parts.
-    EXPECT_EQ(wallSites(room.indoor(), 0.1, 2).size(), 4U * 2U);
     const auto sites = wallSites(room, 0.15, 0.1, 2);
     // The walls above and below in two halves each; both sides of both pieces of the wall.
     ASSERT_EQ(sites.size(), (2U + 4U + 4U) * 2U);
@@ -167,6 +171,28 @@ TEST(WallSites, AreOnBothSidesOfWallsWithinTheRoom) {
     expectHeadings(*found, {180, -90, 0});
     for (const Site& site : sites) EXPECT_EQ(room.indoor().locate(site.place), Side::Inside);
     EXPECT_EQ(wallSites(room, 100, 0.1, 2).size(), 8U) << "above all walls";
+}
+
+TEST(WallSites, LookAroundTheEndsOfWallsAtAnyAngle) {
+    for (int degrees = 0; degrees < 360; degrees += 7) {
+        const Vec2 half = 1.3 * unitVector(Angle::degrees(degrees));
+        std::string wall = "wall from=" + formatDouble(-half.x) + ',' + formatDouble(-half.y);
+        wall.append(" to=").append(formatDouble(half.x)).append(",");
+        wall.append(formatDouble(half.y)).append("\n");
+        const auto sites =
+            wallSites(roomOf("ispace size=8,6\ninside at=3,2\n" + wall), kScanHeight, 0.1, 2);
+        ASSERT_EQ(sites.size(), (4U + 2U) * 2U);
+        int ends = 0;
+        for (const Site& site : sites) {
+            const Vec2 place = site.place - Point2{};
+            if (length(place) > 1) continue;
+            ASSERT_EQ(site.headings.size(), 3U) << degrees;
+            const double along = dot(unitVector(site.headings[1]), half) / length(half);
+            EXPECT_NEAR(along, dot(place, half) > 0 ? 1 : -1, 1e-9) << degrees;
+            ++ends;
+        }
+        EXPECT_EQ(ends, 4) << degrees;
+    }
 }
 
 TEST(WallSites, StandBeforeTheFacesOfThickWalls) {
@@ -182,20 +208,34 @@ TEST(WallSites, StandBeforeTheFacesOfThickWalls) {
     }
 }
 
-TEST(WallSites, AreNoneWithoutTimesOrWalls) {
-    EXPECT_TRUE(wallSites({}, 0.05, 3).empty());
-    EXPECT_TRUE(wallSites({{{0, 0}, {1, 0}, {1, 1}}, {}}, 0.05, 0).empty());
+TEST(WallSites, AreNoneWithoutTimes) {
+    EXPECT_TRUE(wallSites(roomOf("ispace size=4,4\n"), kScanHeight, 0.05, 0).empty());
+}
+
+TEST(WallSites, RefuseTooMany) {
+    const Environment room = roomOf("ispace size=4,4\n");
+    try {
+        wallSites(room, kScanHeight, 0.05, 250001);
+        FAIL() << "a million and four";
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(),
+                     "250001 places along each of 4 walls make 1000004: more than a million are "
+                     "too many, use fewer (--times)");
+    }
+    EXPECT_THROW(wallSites(room, kScanHeight, 0.05, 2'000'000'000), UsageError);
 }
 
 TEST(WallSites, OfRaggedWallsEachHaveTheirs) {
-    Region ragged;
+    std::string path;
     constexpr int kCorners = 5000;
     for (int i = 0; i < kCorners; ++i) {
         const double radius = i % 2 == 0 ? 50 : 50.04;
-        const auto direction = unitVector(Angle::degrees(360.0 * i / kCorners));
-        ragged.outline.push_back(Point2{} + radius * direction);
+        const Vec2 corner = radius * unitVector(Angle::degrees(360.0 * i / kCorners));
+        path.append(i == 0 ? "" : ";").append(formatDouble(corner.x));
+        path.append(",").append(formatDouble(corner.y));
     }
-    EXPECT_EQ(wallSites(ragged, 0.05, 2).size(), 2U * kCorners);
+    const Environment room = roomOf("fence closed=yes path=" + path + '\n');
+    EXPECT_EQ(wallSites(room, kScanHeight, 0.05, 2).size(), 2U * kCorners);
 }
 
 TEST(RandomPlace, FillsTheLimitsEvenly) {

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 
 #include "geom/predicates.h"
 #include "plan_scene.h"
 #include "random_plan.h"
+#include "record/placing.h"
 
 namespace ispace::testing {
 namespace {
@@ -102,7 +104,14 @@ TEST(Sites, KeepTheirClearance) {
                                         nearest(walls, p) <= 0.6007);
 }
 
-/// The plan moved by a displacement.
+/// A plan whose records are moved by a displacement.
+Environment movedPlan(const std::string& text, Vec2 way) {
+    static const Schemas kSchemas(environmentSchemas());
+    Document document = readRecordText(text, "plan.env", kSchemas);
+    for (Record& record : document.records) placeIn(record, {Point2{} + way, {}});
+    return {document.records, assignIds(document.records)};
+}
+
 Region movedRegion(Region region, Vec2 way) {
     for (Point2& corner : region.outline) corner = corner + way;
     for (Polygon& hole : region.holes)
@@ -113,7 +122,8 @@ Region movedRegion(Region region, Vec2 way) {
 TEST(Sites, MoveWithThePlan) {
     const Vec2 way{300, -71};
     for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
-        const Environment plan = environmentOf(randomPlan(optionsOf(seed)));
+        const std::string text = randomPlan(optionsOf(seed));
+        const Environment plan = environmentOf(text);
         std::vector<Region> floor = plan.freeFloor(kScanHeight), moved;
         moved.reserve(floor.size());
         std::vector<Segment2> sheets = plan.slice(kScanHeight).sheets, moved_sheets;
@@ -128,8 +138,8 @@ TEST(Sites, MoveWithThePlan) {
         expect_moved(placesAlong(floor, 0.25, 0.02, sheets),
                      placesAlong(moved, 0.25, 0.02, moved_sheets));
         expect_moved(medialPlaces(floor, 0.25, sheets), medialPlaces(moved, 0.25, moved_sheets));
-        const std::vector<Site> sites = wallSites(plan.indoor(), 0.05, 3);
-        const std::vector<Site> others = wallSites(movedRegion(plan.indoor(), way), 0.05, 3);
+        const std::vector<Site> sites = wallSites(plan, kScanHeight, 0.05, 3);
+        const std::vector<Site> others = wallSites(movedPlan(text, way), kScanHeight, 0.05, 3);
         ASSERT_EQ(sites.size(), others.size());
         for (std::size_t i = 0; i < sites.size(); ++i) {
             ASSERT_LT(distance(sites[i].place + way, others[i].place), 1e-9);
