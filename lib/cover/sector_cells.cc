@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-/// Where a limit's near zone begins and ends in a row.
+/// Where the zone near to a group of limits begins and ends in a row.
 struct Cut {
     int begin = 0, end = 0;
 };
@@ -35,12 +35,12 @@ class SectorRaster {
     void cutAtRange();
     void findLevelRows();
     void takeCentre();
-    void cutAtLimit(std::size_t limit, int begin, int end);
-    void settleNear(std::size_t limit, int row);
+    void cutAtGroup(std::size_t group, int begin, int end);
+    void settleNear(std::size_t group, int row);
     void settleLevelRow(int row);
     void addParts();
-    void addLower(std::size_t part);
-    void addUpper(std::size_t part);
+    void addLower(std::size_t group, std::size_t part);
+    void addUpper(std::size_t group, std::size_t part);
     void addPieces(std::size_t part, std::size_t& next);
     void addRow(int row, int begin, int end);
     void addRun(CellRun run);
@@ -65,8 +65,8 @@ class SectorRaster {
     [[nodiscard]] int firstBeyond(double position) const {
         return static_cast<int>(std::max(-1.0, std::min(position, scan_.columns() - 1.0)) + 1);
     }
-    [[nodiscard]] const Cut& cutOf(std::size_t limit, int row) const {
-        return cuts_[limit * dy_.size() + static_cast<std::size_t>(row)];
+    [[nodiscard]] const Cut& cutOf(std::size_t group, int row) const {
+        return cuts_[group * dy_.size() + static_cast<std::size_t>(row)];
     }
     /// Calls visit(column) for the cells of a row in columns [begin, end); it may clear them.
     template <typename Visit>
@@ -90,7 +90,7 @@ class SectorRaster {
     std::vector<std::uint64_t> words_;     // what is seen, and not yet in a piece
     std::vector<double> dy_;               // of the rows' middles from the place
     int level_begin_ = 0, level_end_ = 0;  // rows as good as level with the place
-    std::vector<Cut> cuts_;                // by limit, by row
+    std::vector<Cut> cuts_;                // by group, by row
     std::vector<Piece> pieces_;            // cells that were settled one by one
     std::vector<CellRun> centre_;
 };
@@ -142,17 +142,17 @@ void SectorRaster::run(const Grid& grid, const SliceSight& sight, Point2 place, 
     rasterise(sight);
     cutAtRange();
     findLevelRows();
-    if (limits_.size() == 0) {
+    if (limits_.parts() == 0) {
         part_begin_ = 0;
         for (int row = 0; row < scan_.rows(); ++row) addRow(row, 0, scan_.columns());
         parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
         return;
     }
     takeCentre();
-    cuts_.resize(limits_.size() * dy_.size());
+    cuts_.resize(limits_.groups().size() * dy_.size());
     const auto cut = [&](const LimitsOfHalf& half, int begin, int end) {
         for (std::size_t i = half.first; i < half.first + half.count; ++i)
-            cutAtLimit(i, begin, end);
+            cutAtGroup(i, begin, end);
     };
     cut(limits_.lower(), 0, level_begin_);
     cut(limits_.upper(), level_end_, scan_.rows());
@@ -244,15 +244,15 @@ void SectorRaster::takeCentre() {
     }
 }
 
-/// Finds where a limit crosses rows [begin, end), and settles the cells near to it.
-void SectorRaster::cutAtLimit(std::size_t limit, int begin, int end) {
+/// Finds where a group of limits crosses rows [begin, end), and settles the cells near to it.
+void SectorRaster::cutAtGroup(std::size_t group, int begin, int end) {
     const double per_metre = x_axis_.perMetre(), middle = columnAt(place_.x);
-    const SectorLimit& at = limits_[limit];
+    const LimitGroup& at = limits_.groups()[group];
     // Columns rise counter-clockwise below the place, and clockwise above it.
     const bool is_upper = at.unit.y > 0;
     const double left = per_metre * (is_upper ? at.beyond : at.before);
     const double right = per_metre * (is_upper ? at.before : at.beyond);
-    Cut* cuts = cuts_.data() + limit * dy_.size();
+    Cut* cuts = cuts_.data() + group * dy_.size();
     const double* dy = dy_.data();
     int widest = 0;
     for (int row = begin; row < end; ++row) {
@@ -261,15 +261,15 @@ void SectorRaster::cutAtLimit(std::size_t limit, int begin, int end) {
         widest = std::max(widest, cuts[row].end - cuts[row].begin);
     }
     if (widest == 0) return;
-    for (int row = begin; row < end; ++row) settleNear(limit, row);
+    for (int row = begin; row < end; ++row) settleNear(group, row);
 }
 
-void SectorRaster::settleNear(std::size_t limit, int row) {
-    const Cut cut = cutOf(limit, row);
+void SectorRaster::settleNear(std::size_t group, int row) {
+    const Cut cut = cutOf(group, row);
     if (cut.begin >= cut.end) return;
     forEachCell(row, cut.begin, cut.end, [&](int column) {
         const std::uint32_t cell = cellAt(row, column);
-        pieces_.push_back({limits_.partNear(limit, offsetOf(row, column)), {cell, cell + 1}});
+        pieces_.push_back({limits_.partNear(group, offsetOf(row, column)), {cell, cell + 1}});
         clear(row, column);
     });
 }
@@ -297,12 +297,12 @@ void SectorRaster::addParts() {
     };
     if (!std::is_sorted(pieces_.begin(), pieces_.end(), before))
         std::sort(pieces_.begin(), pieces_.end(), before);
-    std::size_t next = 0;
-    for (std::size_t part = 0; part < 2 * limits_.size(); ++part) {
+    std::size_t next = 0, group = 0;
+    for (std::size_t part = 0; part < limits_.parts(); ++part) {
         part_begin_ = parts_->runs.size();
-        if (part % 2 == 1) {
-            addLower(part);
-            addUpper(part);
+        if (part + 1 == limits_.groups()[group].end) {  // it goes on to the next group
+            addLower(group, part);
+            addUpper(group++, part);
         }
         addPieces(part, next);
         parts_->first.push_back(static_cast<std::uint32_t>(parts_->runs.size()));
@@ -312,32 +312,32 @@ void SectorRaster::addParts() {
     parts_->first.push_back(static_cast<std::uint32_t>(parts_->runs.size()));
 }
 
-/// The cells of a part in the rows below the place.
-void SectorRaster::addLower(std::size_t part) {
+/// The cells of the part after a group of limits in the rows below the place.
+void SectorRaster::addLower(std::size_t group, std::size_t part) {
     const LimitsOfHalf& half = limits_.lower();
-    const std::size_t limit = part / 2, end = half.first + half.count;
+    const std::size_t end = half.first + half.count;
     const bool is_first = part == half.first_part;
-    const bool is_after = half.first <= limit && limit < end;
+    const bool is_after = half.first <= group && group < end;
     if (!is_first && !is_after) return;
     for (int row = 0; row < level_begin_; ++row) {
         if (is_first)
             addRow(row, 0, half.count > 0 ? cutOf(half.first, row).begin : scan_.columns());
         if (is_after)
-            addRow(row, cutOf(limit, row).end,
-                   limit + 1 < end ? cutOf(limit + 1, row).begin : scan_.columns());
+            addRow(row, cutOf(group, row).end,
+                   group + 1 < end ? cutOf(group + 1, row).begin : scan_.columns());
     }
 }
 
 /// The same above it, where columns fall counter-clockwise.
-void SectorRaster::addUpper(std::size_t part) {
+void SectorRaster::addUpper(std::size_t group, std::size_t part) {
     const LimitsOfHalf& half = limits_.upper();
-    const std::size_t limit = part / 2, end = half.first + half.count;
+    const std::size_t end = half.first + half.count;
     const bool is_first = part == half.first_part;
-    const bool is_after = half.first <= limit && limit < end;
+    const bool is_after = half.first <= group && group < end;
     if (!is_first && !is_after) return;
     for (int row = level_end_; row < scan_.rows(); ++row) {
         if (is_after)
-            addRow(row, limit + 1 < end ? cutOf(limit + 1, row).end : 0, cutOf(limit, row).begin);
+            addRow(row, group + 1 < end ? cutOf(group + 1, row).end : 0, cutOf(group, row).begin);
         if (is_first) addRow(row, half.count > 0 ? cutOf(half.first, row).end : 0, scan_.columns());
     }
 }

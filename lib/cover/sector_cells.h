@@ -29,15 +29,15 @@ struct CellParts {
 CellParts partOf(const CellSet& cells);
 
 /// Sets `parts` to what a level sensor sees from a place up to max_range, if it may face anywhere,
-/// in cells by their direction. Part 2i holds cells in the direction limits[i] (within the 1e-9
-/// degrees of Laser::sees), part 2i + 1 those between limits[i] and the limit that comes next
-/// counter-clockwise, and the last part, 2 * limits.size(), the cell whose centre is the place, if
-/// there is one: it is in every direction. A fan from limits[i] to limits[j] then sees parts 2i to
-/// 2j (around the end of the list where j < i) and the last one: the same cells as cellsSeen().
-/// Without limits the last part is all that is seen.
+/// in cells by their direction, which is directionOf() to the bit. Part i holds cells in directions
+/// from limits[i] counter-clockwise to before limits[i + 1] (the last one: to before limits[0]),
+/// and one more part, limits.size(), the cell whose centre is the place, if there is one: it is in
+/// every direction. A fan whose fanArc() goes from limits[i] to limits[j] then sees parts i to j -
+/// 1 (around the end of the list where j < i) and that one: the same cells as cellsSeen(), always.
+/// Without limits that part is all that is seen.
 ///
-/// The memory of `parts` is used again. O(look + rows * limits + runs), no arc tangent.
-/// \pre limits are in [0, 360) degrees, ascending, more than 1e-7 degrees apart, around 0 as well
+/// The memory of `parts` is used again. O(look + rows * limits + runs), mostly no arc tangent.
+/// \pre limits are in (-180, 180] degrees, ascending, all different
 void cellsBySector(const Grid& grid, const SliceSight& sight, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts);
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "base/number.h"
+#include "cover/fan_arc.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
 #include "cover/visible.h"
@@ -30,53 +32,41 @@ CellSet cellsOf(const CellParts& parts, std::size_t begin, std::size_t end, std:
     return set;
 }
 
-double turned(double degrees) { return std::fmod(std::fmod(degrees, 360) + 360, 360); }
-
-/// First and last directions of fans with these headings, those that are the same once.
+/// Where fans with these headings begin, and where they no longer see.
 std::vector<Angle> limitsOf(const Laser& laser, const std::vector<double>& headings) {
-    std::vector<double> degrees;
-    for (const double heading : headings) {
-        const FanLimits fan = fanLimits(laser, Angle::degrees(heading));
-        degrees.push_back(turned(fan.first.degrees()));
-        degrees.push_back(turned((fan.first + fan.span).degrees()));
-    }
-    std::sort(degrees.begin(), degrees.end());
     std::vector<Angle> limits;
-    for (const double value : degrees)
-        if (limits.empty() || value > limits.back().degrees() + 1e-7)
-            limits.push_back(Angle::degrees(value));
-    if (limits.size() > 1 && limits.front().degrees() + 360 - limits.back().degrees() <= 1e-7)
-        limits.pop_back();
+    for (const double heading : headings)
+        if (const std::optional<FanArc> arc = fanArc(laser, Angle::degrees(heading)))
+            limits.insert(limits.end(), {arc->first, arc->beyond});
+    std::sort(limits.begin(), limits.end());
+    limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
     return limits;
 }
 
-/// The limit in a direction.
 std::size_t indexOf(const std::vector<Angle>& limits, Angle direction) {
-    const auto apart = [direction](Angle limit) {
-        return std::abs(wrapped(limit - direction).degrees());
-    };
-    const auto nearest = std::min_element(limits.begin(), limits.end(),
-                                          [&](Angle a, Angle b) { return apart(a) < apart(b); });
-    EXPECT_LE(apart(*nearest), 1.1e-7);
-    return static_cast<std::size_t>(nearest - limits.begin());
+    const auto found = std::find(limits.begin(), limits.end(), direction);
+    EXPECT_NE(found, limits.end());
+    return static_cast<std::size_t>(found - limits.begin());
 }
 
 /// What a fan sees, put together from parts.
 CellSet cellsOfFan(const CellParts& parts, const std::vector<Angle>& limits, const Laser& laser,
                    double heading, std::size_t cells) {
-    const FanLimits fan = fanLimits(laser, Angle::degrees(heading));
-    if (fan.span >= Angle::degrees(360 - 1e-9)) return cellsOf(parts, 0, parts.size(), cells);
-    const std::size_t begin = 2 * indexOf(limits, fan.first);
-    const std::size_t end = 2 * indexOf(limits, fan.first + fan.span) + 1;
+    const std::optional<FanArc> arc = fanArc(laser, Angle::degrees(heading));
+    if (!arc) {
+        EXPECT_TRUE(seesAround(laser));
+        return cellsOf(parts, 0, parts.size(), cells);
+    }
+    const std::size_t begin = indexOf(limits, arc->first), end = indexOf(limits, arc->beyond);
     CellSet seen = cellsOf(parts, parts.size() - 1, parts.size(), cells);
     if (begin < end) return seen |= cellsOf(parts, begin, end, cells);
-    seen |= cellsOf(parts, begin, 2 * limits.size(), cells);
+    seen |= cellsOf(parts, begin, limits.size(), cells);
     return seen |= cellsOf(parts, 0, end, cells);
 }
 
 /// Parts are disjoint lists of ascending runs that do not touch.
 void expectTidy(const CellParts& parts, std::size_t limits, std::size_t cells) {
-    ASSERT_EQ(parts.size(), limits == 0 ? 1 : 2 * limits + 1);
+    ASSERT_EQ(parts.size(), limits + 1);
     ASSERT_EQ(parts.first.front(), 0U);
     ASSERT_EQ(parts.first.back(), parts.runs.size());
     std::vector<int> times(cells);
@@ -188,14 +178,19 @@ TEST(CellsBySector, FansAreWhatLasersSee) {
 
 TEST(CellsBySector, ManyLimitsCloseTogether) {
     Random random(21);
+    const auto heading_to = [](Point2 from, Point2 to) {
+        return directionOf(to.x - from.x, to.y - from.y).degrees();
+    };
     const Scene scene = sceneOf("ispace size=12,8\ncube at=1,1 size=1,2,1\n");
     const SliceSight sight(scene.environment.slice(kScanHeight));
     const Grid grid{scene.environment.limits(), 60, 40};
     CellParts parts;
-    for (int trial = 0; trial < 40; ++trial) {
+    for (int trial = 0; trial < 200; ++trial) {
         Case c{grid, sight, grid.center(random() % grid.size()), laserWith(6, -90, 180), {}};
-        const double apart = std::pow(10, uniform(random, -6.5, 0));
-        for (int k = 0; k < 12; ++k) c.headings.push_back((k - 6) * apart + 45 * (trial % 8));
+        const double apart = std::pow(10, uniform(random, -12, 0));
+        double about = 45 * (trial % 8);
+        if (trial % 3 == 0) about = heading_to(c.place, grid.center(random() % grid.size())) - 90;
+        for (int k = 0; k < 12; ++k) c.headings.push_back((k - 6) * apart + about);
         ASSERT_NO_FATAL_FAILURE(expectSame(c, parts)) << trial;
     }
 }
@@ -256,19 +251,36 @@ TEST(CellsBySector, OneLimitAndNone) {
     cellsBySector(grid, sight, place, 30, {}, parts);
     ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 0, grid.size()));
     EXPECT_EQ(parts.runs, (std::vector<CellRun>{{0, 96}}));  // rows go on
-    for (const double degrees : {0.0, 45.0, 90.0, 200.0, 180.0, 359.0}) {
+    for (const double degrees : {0.0, 45.0, 90.0, -160.0, 180.0, -1.0, 1e-9}) {
         const Angle limit = Angle::degrees(degrees);
         cellsBySector(grid, sight, place, 30, {&limit, 1}, parts);
         ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 1, grid.size()));
-        EXPECT_EQ(cellsOf(parts, 0, 3, grid.size()).count(), grid.size());
-        EXPECT_EQ(cellsOf(parts, 2, 3, grid.size()).count(), 1U);  // the centre
-        const std::size_t on = degrees == 0     ? 8
-                               : degrees == 45  ? 4
-                               : degrees == 90  ? 4
-                               : degrees == 180 ? 3
-                                                : 0;
-        EXPECT_EQ(cellsOf(parts, 0, 1, grid.size()).count(), on) << degrees;
+        EXPECT_EQ(cellsOf(parts, 0, 2, grid.size()).count(), grid.size());
+        EXPECT_EQ(cellsOf(parts, 1, 2, grid.size()).count(), 1U);  // the centre
     }
+}
+
+TEST(CellsBySector, LimitsBelongToWhatComesAfterThem) {
+    const Scene scene = sceneOf("ispace size=12,8\n");
+    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Grid grid{scene.environment.limits(), 12, 8};
+    CellParts parts;
+    const auto cells_on = [&](double degrees) {
+        const Angle limits[] = {Angle::degrees(degrees),
+                                Angle::degrees(std::nextafter(degrees, 1000))};
+        cellsBySector(grid, sight, grid.center(grid.cell(3, 3)), 30, limits, parts);
+        EXPECT_EQ(cellsOf(parts, 0, 3, grid.size()).count(), grid.size());
+        return cellsOf(parts, 0, 1, grid.size()).count();
+    };
+    EXPECT_EQ(cells_on(0), 8U);
+    EXPECT_EQ(cells_on(45), 4U);
+    EXPECT_EQ(cells_on(90), 4U);
+    EXPECT_EQ(cells_on(-90), 3U);
+    EXPECT_EQ(cells_on(-135), 3U);
+    EXPECT_EQ(cells_on(-160), 0U);
+    const Angle limits[] = {Angle::degrees(10), Angle::degrees(180)};
+    cellsBySector(grid, sight, grid.center(grid.cell(3, 3)), 30, limits, parts);
+    EXPECT_TRUE(cellsOf(parts, 1, 2, grid.size()).test(grid.cell(1, 3)));  // on 180 degrees
 }
 
 TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
@@ -279,10 +291,10 @@ TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
     CellParts parts;
     cellsBySector(grid, sight, {0.1, 0.2}, 5, limits, parts);
     EXPECT_TRUE(parts.runs.empty());
-    EXPECT_EQ(parts.size(), 5U);
+    EXPECT_EQ(parts.size(), 3U);
     cellsBySector(grid, sight, {100, 100}, 5, limits, parts);
     EXPECT_TRUE(parts.runs.empty());
-    EXPECT_EQ(parts.size(), 5U);
+    EXPECT_EQ(parts.size(), 3U);
 }
 
 TEST(PartOf, RunsOfASet) {

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "cover/fan_arc.h"
 #include "cover/plane_view.h"
 #include "cover/sector_cells.h"
 #include "cover/visible.h"
@@ -25,59 +26,50 @@ namespace ispace {
 
 namespace {
 
-/// Directions nearer to each other than this, in degrees, are one limit of sectors.
-constexpr double kSameLimit = 1e-7;
-
 /// The fans of a level laser at one place: between which limits each heading sees.
 struct Fans {
     std::vector<Angle> headings;
     std::vector<Angle> limits;
     std::vector<CandidateSet::PartRange> ranges;  // by heading
+    bool are_arcs = true;                         // else there are no limits
 
     Fans(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
         ranges.resize(headings.size());
-        if (headings.empty() || isWhole(laser)) return;
-        std::vector<double> degrees;
-        degrees.reserve(2 * headings.size());
+        if (seesAround(laser)) return;
+        std::vector<FanArc> arcs;
+        arcs.reserve(headings.size());
         for (const Angle heading : headings) {
-            const FanLimits fan = fanLimits(laser, heading);
-            degrees.push_back(turned(fan.first));
-            degrees.push_back(turned(fan.first + fan.span));
+            const std::optional<FanArc> arc = fanArc(laser, heading);
+            if (!arc) {
+                beAlone();
+                return;
+            }
+            arcs.push_back(*arc);
         }
-        setLimits(degrees);
-        const auto directed = static_cast<std::uint32_t>(2 * limits.size());
+        setLimits(arcs);
+        const auto directed = static_cast<std::uint32_t>(limits.size());
         for (std::size_t k = 0; k < headings.size(); ++k) {
-            const std::uint32_t begin = 2 * limitAt(degrees[2 * k]);
-            const std::uint32_t last = 2 * limitAt(degrees[2 * k + 1]);
-            ranges[k] = {begin, (last + directed - begin) % directed + 1};
+            const std::uint32_t begin = indexOf(arcs[k].first);
+            ranges[k] = {begin, (indexOf(arcs[k].beyond) + directed - begin) % directed};
         }
-    }
-    /// True if it sees all around.
-    static bool isWhole(const Laser& laser) {
-        return fanLimits(laser, {}).span >= Angle::degrees(360 - kSameLimit);
     }
 
   private:
-    /// Within [0, 360).
-    static double turned(Angle direction) {
-        return std::fmod(std::fmod(direction.degrees(), 360) + 360, 360);
+    /// Each heading has a part of its own.
+    void beAlone() {
+        are_arcs = false;
+        for (std::uint32_t k = 0; k < ranges.size(); ++k) ranges[k] = {k, 1};
     }
-    void setLimits(std::vector<double> degrees) {
-        std::sort(degrees.begin(), degrees.end());
-        limits.reserve(degrees.size());
-        for (const double value : degrees)
-            if (limits.empty() || value > limits.back().degrees() + kSameLimit)
-                limits.push_back(Angle::degrees(value));
-        if (limits.size() > 1 &&
-            limits.front().degrees() + 360 - limits.back().degrees() <= kSameLimit)
-            limits.pop_back();  // around the end, the first one again
+    /// Limits are one only where they are the same to the bit: so they part cells as coverage does.
+    void setLimits(const std::vector<FanArc>& arcs) {
+        limits.reserve(2 * arcs.size());
+        for (const FanArc& arc : arcs) limits.insert(limits.end(), {arc.first, arc.beyond});
+        std::sort(limits.begin(), limits.end());
+        limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
     }
-    [[nodiscard]] std::uint32_t limitAt(double degrees) const {
-        const auto beyond = std::upper_bound(limits.begin(), limits.end(), Angle::degrees(degrees));
-        if (beyond == limits.begin()) return 0;
-        const auto last = static_cast<std::uint32_t>(beyond - limits.begin() - 1);
-        const bool is_first = degrees > limits[last].degrees() + kSameLimit;
-        return is_first ? 0 : last;
+    [[nodiscard]] std::uint32_t indexOf(Angle limit) const {
+        return static_cast<std::uint32_t>(std::lower_bound(limits.begin(), limits.end(), limit) -
+                                          limits.begin());
     }
 };
 
@@ -121,7 +113,7 @@ bool looksRound(const SensorDevice& device, const Pose3& mount) {
         return ranger->projection == Projection::Spherical &&
                ranger->fov_x >= Angle::degrees(360) && mount.isLevel();
     return scansSlice(PlacedLaser{"", std::get<Laser>(device), mount}) &&
-           Fans::isWhole(std::get<Laser>(device));
+           seesAround(std::get<Laser>(device));
 }
 
 }  // namespace
@@ -157,29 +149,36 @@ struct CandidateViews::Data {
             return FieldOfView(PlacedRanger{"", *ranger, pose});
         return FieldOfView(PlacedReceiver{"", std::get<Receiver>(device), pose});
     }
-    /// The cells of each heading, a part each, and an empty one that all see.
-    void lookThroughMesh(const Site& site, CellParts& parts) const {
-        parts.runs.clear();
-        parts.first.assign(headingsOf(site) + 2, 0);
-        if (solids.isInside(site.place, kContact)) return;
+    [[nodiscard]] std::vector<Pose3> posesAt(const Site& site) const {
         std::vector<Pose3> poses(headingsOf(site), mount);
         for (std::size_t k = 0; k < poses.size(); ++k) {
             poses[k].position = {site.place.x, site.place.y, mount.position.z};
             poses[k].heading = site.headings[k];
         }
-        if (const auto* laser = std::get_if<Laser>(&device)) {
-            parts.first.assign(1, 0);
-            for (const Pose3& pose : poses) {
-                const CellParts seen =
-                    partOf(cellsSeen(grid, *mesh, PlacedLaser{"", *laser, pose}, plane));
-                parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
-                parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
-            }
-        } else {
-            std::vector<FieldOfView> fields;
-            fields.reserve(poses.size());
-            for (const Pose3& pose : poses) fields.push_back(fieldOf(pose));
-            cellsByView(grid, *mesh, fields, plane, parts);
+        return poses;
+    }
+    /// The cells of each heading, a part each, and an empty one that all see.
+    void lookThroughMesh(const Site& site, CellParts& parts) const {
+        parts.runs.clear();
+        parts.first.assign(headingsOf(site) + 2, 0);
+        if (solids.isInside(site.place, kContact)) return;
+        if (std::holds_alternative<Laser>(device)) return lookOneByOne(site, parts);
+        std::vector<FieldOfView> fields;
+        fields.reserve(headingsOf(site));
+        for (const Pose3& pose : posesAt(site)) fields.push_back(fieldOf(pose));
+        cellsByView(grid, *mesh, fields, plane, parts);
+        parts.first.push_back(parts.first.back());
+    }
+    /// The same, each heading of a laser by itself.
+    void lookOneByOne(const Site& site, CellParts& parts) const {
+        parts.runs.clear();
+        parts.first.assign(1, 0);
+        for (const Pose3& pose : posesAt(site)) {
+            const PlacedLaser sensor{"", std::get<Laser>(device), pose};
+            const CellParts seen = partOf(looksInSlice() ? cellsSeen(grid, *sight, sensor)
+                                                         : cellsSeen(grid, *mesh, sensor, plane));
+            parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
+            parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
         }
         parts.first.push_back(parts.first.back());
     }
@@ -272,7 +271,7 @@ class Scanner {
 
     /// Neighbours mostly have the same headings.
     void findFans(std::size_t count) {
-        fans_.clear();
+        if (fans_.size() > 1) fans_.erase(fans_.begin(), fans_.end() - 1);
         fan_of_.clear();
         for (std::size_t i = 0; i < count; ++i) {
             const std::span<const Angle> headings = headingsOf(i);
@@ -292,12 +291,13 @@ class Scanner {
     void lookFrom(std::size_t i) {
         const Site& site = sites_[begin_ + i];
         assert(!site.headings.empty());
-        if (data_.looksInSlice())
-            cellsBySector(data_.grid, *data_.sight, site.place,
-                          std::get<Laser>(data_.device).max_range, fans_[fan_of_[i]].limits,
-                          parts_[i]);
-        else
+        if (!data_.looksInSlice())
             data_.lookThroughMesh(site, parts_[i]);
+        else if (const Fans& fans = fans_[fan_of_[i]]; fans.are_arcs)
+            cellsBySector(data_.grid, *data_.sight, site.place,
+                          std::get<Laser>(data_.device).max_range, fans.limits, parts_[i]);
+        else
+            data_.lookOneByOne(site, parts_[i]);
         if (data_.counted) data_.counted->keepIn(parts_[i]);
     }
 

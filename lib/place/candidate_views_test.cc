@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <random>
 
 #include "base/error.h"
@@ -175,6 +176,77 @@ TEST(CandidateViews, OddHeadings) {
             expectSame(scene, {laserWith(4, -fov / 2, fov), poseAt({0, 0, 0.15}, 0, 0)}, sites,
                        false, nullptr))
             << fov;
+}
+
+/// A fan of just this width.
+Laser fanOf(double range, double first, double span) {
+    Laser laser = laserWith(range, first, 1);
+    laser.step = Angle::degrees(span);
+    return laser;
+}
+
+TEST(CandidateViews, HeadingsTooNearToBeTold) {
+    Random random(32);
+    const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
+    const Grid grid = makeTarget(scene.environment, 40, 30, kScanHeight).grid;
+    for (int trial = 0; trial < 60; ++trial) {
+        const double fov = std::vector<double>{0, 1, 90, 180, 270, 359, 102.8571429}[random() % 7];
+        const double first = trial % 2 == 0 ? -fov / 2 : uniform(random, -180, 180);
+        std::vector<Site> sites(12);
+        for (Site& site : sites) {
+            site.place = grid.center(random() % grid.size());
+            switch (random() % 4) {
+                case 0:  // hardly off a row
+                    site.place.y = std::nextafter(site.place.y, random() % 2 == 0 ? 9 : -9);
+                    break;
+                case 1:
+                    site.place = {uniform(random, -4, 4), uniform(random, -3, 3)};
+                    break;
+                default:
+                    break;
+            }
+            const Point2 aim = grid.center(random() % grid.size());
+            const double about =
+                random() % 2 == 0
+                    ? 90 * static_cast<double>(random() % 4)
+                    : directionOf(aim.x - site.place.x, aim.y - site.place.y).degrees();
+            const double apart = random() % 2 == 0 ? 1e-10 : 1e-14;
+            for (int k = 0; k < 5; ++k)
+                site.headings.push_back(
+                    Angle::degrees(about - first + apart * static_cast<double>(random() % 40)));
+        }
+        ASSERT_NO_FATAL_FAILURE(
+            expectSame(scene, {fanOf(4, first, fov), poseAt({0, 0, kScanHeight}, 0, 0)}, sites,
+                       false, nullptr))
+            << trial;
+    }
+}
+
+TEST(CandidateViews, SevenFansThatMeetBetweenCells) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    // Sides of the fans, 360 / 3.5 degrees wide, lie 2e-8 degrees on this side and on the other of
+    // the row through the place.
+    std::vector<Site> sites = {{{0.1, 0.1}, {}}};
+    for (int k = 0; k < 7; ++k) sites[0].headings.push_back(Angle::degrees(360.0 / 7 * k));
+    ASSERT_NO_FATAL_FAILURE(expectSame(
+        scene, {fanOf(3, -102.8571429 / 2, 102.8571429), poseAt({0, 0, kScanHeight}, 0, 0)}, sites,
+        false, nullptr));
+}
+
+TEST(CandidateViews, FansThatRoundingsTear) {
+    const Scene scene = sceneOf("ispace size=8,6\n");
+    const Grid grid = makeTarget(scene.environment, 40, 30, kScanHeight).grid;
+    std::vector<Site> sites(6, {grid.center(grid.cell(30, 12)), {}});
+    for (std::size_t i = 1; i < sites.size(); ++i)
+        sites[i].place.y = std::nextafter(sites[i - 1].place.y, 9);
+    // The first heading looks to -180 degrees and a little further, but not to 180.
+    for (Site& site : sites)
+        for (const double heading : {171.89986331761804, 0.0, 90.0, -171.8})
+            site.headings.push_back(Angle::degrees(heading));
+    ASSERT_NO_FATAL_FAILURE(expectSame(
+        scene,
+        {fanOf(9, -101.20355280257412, 109.30368948395606), poseAt({0, 0, kScanHeight}, 0, 0)},
+        sites, false, nullptr));
 }
 
 TEST(CandidateViews, ManyHeadingsOfAReceiver) {
