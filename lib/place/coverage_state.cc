@@ -2,8 +2,23 @@
 #include "place/coverage_state.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace ispace {
+
+namespace {
+
+/// The most with which weights may be multiplied, if there is room for it such that their halves,
+/// thirds, ... eighths are whole: sums of these that are equal stay equal.
+std::uint32_t stepScaleOf(const Problem& problem) {
+    constexpr std::uint32_t kWhole = 840;
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max() /
+                               std::max<std::uint64_t>(1, problem.totalWeight());
+    const auto scale = static_cast<std::uint32_t>(most);
+    return scale < kWhole ? scale : scale - scale % kWhole;
+}
+
+}  // namespace
 
 std::vector<std::uint32_t> weightsOfParts(const Problem& problem) {
     std::uint64_t most = 1;
@@ -25,6 +40,11 @@ std::vector<std::uint32_t> weightsOfParts(const Problem& problem) {
     return weights;
 }
 
+bool takesSteps(const Problem& problem) {
+    return std::any_of(problem.kinds.begin(), problem.kinds.end(),
+                       [&](const Kind& kind) { return kind.share < problem.demand; });
+}
+
 std::vector<int> limitsOf(const Problem& problem) {
     std::vector<int> limits;
     limits.reserve(problem.kinds.size());
@@ -41,7 +61,8 @@ std::vector<int> limitsOf(const Problem& problem) {
 CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint32_t>& parts)
     : problem_(&problem),
       part_weights_(&parts),
-      demand_(static_cast<std::uint32_t>(problem.demand)) {
+      demand_(static_cast<std::uint32_t>(problem.demand)),
+      step_scale_(stepScaleOf(problem)) {
     shares_.reserve(problem.kinds.size());
     for (const Kind& kind : problem.kinds)
         shares_.push_back(static_cast<std::uint32_t>(std::min(kind.share, problem.demand)));
@@ -117,6 +138,18 @@ void CoverageState::price(std::size_t kind, Measure measure,
         for (std::size_t i = 0; i < cells; ++i)
             prices[i] =
                 weights[i] * (std::min(loads_[i] + share, demand) - std::min(loads_[i], demand));
+    }
+}
+
+void CoverageState::priceSteps(std::size_t kind, std::uint64_t to_come,
+                               std::vector<std::uint32_t>& prices) const {
+    const std::uint32_t share = shares_[kind];
+    prices.resize(loads_.size());
+    for (std::size_t i = 0; i < prices.size(); ++i) {
+        const std::uint32_t lack = demand_ - std::min(loads_[i], demand_);
+        const bool is_in_vain = lack == 0 || lack > share + to_come;
+        const std::uint32_t steps = lack / share + (lack % share != 0 ? 1U : 0U);
+        prices[i] = is_in_vain ? 0 : problem_->weights[i] * step_scale_ / steps;
     }
 }
 

@@ -21,6 +21,9 @@ enum class Measure {
 /// unless the cells are too many for that.
 std::vector<std::uint32_t> weightsOfParts(const Problem& problem);
 
+/// True if there is a kind of which it takes several sensors to meet the demand.
+bool takesSteps(const Problem& problem);
+
 /// Sensors chosen and what each cell has of them. Choices that are repeated count once.
 class CoverageState {
   public:
@@ -41,11 +44,20 @@ class CoverageState {
     /// Sum of part weight * min(load, demand).
     [[nodiscard]] std::uint64_t parts() const { return parts_; }
     [[nodiscard]] double cost() const;
+    /// How many of a kind are chosen.
+    [[nodiscard]] int count(std::size_t kind) const { return counts_[kind]; }
 
     /// True if one more of this kind is within `limit` and the budget.
     [[nodiscard]] bool canTake(std::size_t kind, int limit) const;
     /// What each cell adds if one more sensor of this kind sees it.
     void price(std::size_t kind, Measure measure, std::vector<std::uint32_t>& prices) const;
+    /// What each cell is worth to one more sensor of this kind that sees it where more may follow,
+    /// with shares of at most `to_come` together: nothing if it is met, or cannot be met by these
+    /// any more; else its weight, shared out among the sensors of this kind that it lacks. So what
+    /// meets a demand at last counts whole. Weights are times the most with which their sum is
+    /// below 2^32: those of a sensor's cells are, too.
+    void priceSteps(std::size_t kind, std::uint64_t to_come,
+                    std::vector<std::uint32_t>& prices) const;
 
   private:
     template <bool kAdds>
@@ -53,7 +65,7 @@ class CoverageState {
 
     const Problem* problem_;
     const std::vector<std::uint32_t>* part_weights_;
-    std::uint32_t demand_;
+    std::uint32_t demand_, step_scale_;
     std::vector<std::uint32_t> shares_;  // per kind, at most the demand
     std::vector<std::uint32_t> loads_;   // per cell; what stood is at most the demand
     std::vector<Choice> chosen_;

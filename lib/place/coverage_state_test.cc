@@ -56,6 +56,46 @@ TEST(CoverageState, ValueAndPricesHoldWhileSensorsComeAndGo) {
     }
 }
 
+TEST(CoverageState, StepsCountByTheSensorsThatAreLacking) {
+    CandidateSet candidates(7);
+    CellSet last(7);
+    last.set(6);
+    candidates.addSite(Pose3(), last);
+    Problem problem;
+    problem.weights = {1, 1, 1, 1, 1, 1, 3};
+    problem.met = {0, 1, 2, 3, 4, 9, 0};
+    problem.demand = 4;
+    problem.kinds = {{&candidates, 1, 1, 1}, {&candidates, 1, 1, 3}, {&candidates, 1, 1, 5}};
+    const auto parts = weightsOfParts(problem);
+    CoverageState state(problem, parts);
+    std::vector<std::uint32_t> prices;
+    state.priceSteps(0, 9, prices);
+    const std::uint32_t whole = prices[3];
+    EXPECT_EQ(whole % 840, 0U);
+    EXPECT_LT(std::uint64_t{whole} * 9, std::uint64_t{1} << 32U);
+    EXPECT_GT(std::uint64_t{whole + 840} * 9, std::uint64_t{1} << 32U);
+    using Prices = std::vector<std::uint32_t>;
+    EXPECT_EQ(prices, (Prices{whole / 4, whole / 3, whole / 2, whole, 0, 0, whole / 4 * 3}));
+    state.priceSteps(0, 2, prices);
+    EXPECT_EQ(prices, (Prices{0, whole / 3, whole / 2, whole, 0, 0, 0}));
+    state.priceSteps(1, 1, prices);
+    EXPECT_EQ(prices, (Prices{whole / 2, whole, whole, whole, 0, 0, whole / 2 * 3}));
+    state.add({1, 0});
+    state.priceSteps(1, 0, prices);
+    EXPECT_EQ(prices, (Prices{0, whole, whole, whole, 0, 0, 3 * whole}));
+    state.priceSteps(2, 0, prices);
+    EXPECT_EQ(prices, (Prices{whole, whole, whole, whole, 0, 0, 3 * whole}));
+    EXPECT_TRUE(takesSteps(problem));
+    problem.kinds = {{&candidates, 1, 1, 4}, {&candidates, 1, 1, 5}};
+    EXPECT_FALSE(takesSteps(problem));
+    // Where there is no room nothing grows.
+    problem.weights = {std::numeric_limits<std::uint32_t>::max() - 1, 1, 0, 0, 0, 0, 0};
+    problem.met.clear();
+    problem.kinds = {{&candidates, 1, 1, 1}};
+    CoverageState(problem, weightsOfParts(problem)).priceSteps(0, 3, prices);
+    EXPECT_EQ(prices[0], problem.weights[0] / 4);
+}
+
 TEST(CoverageState, PartsOfLargeWeightsAreScaledToFit) {
     CandidateSet candidates(3);
     CellSet all(3);

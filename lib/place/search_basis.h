@@ -29,8 +29,9 @@ struct SearchBasis {
     std::vector<std::vector<std::uint32_t>> site_met;
 };
 
-/// Greedy placement of all that may still be placed, in the order asked for if there is one; with
-/// `per_cost` by gain for cost. For placeGreedily.
+/// Places all that may still be placed, each where it adds most parts of demands, met at last or
+/// not; in the order asked for if there is one; with `per_cost` by gain for cost. For the starts of
+/// swaps.
 void placeRest(const SearchBasis& basis, bool per_cost, CoverageState& state, Progress& progress);
 
 }  // namespace ispace

@@ -89,6 +89,8 @@ TEST(Search, StoppedAnywhereGivesTheBestSoFar) {
     const SearchResult nothing = search(random.problem, {}, at_once);
     EXPECT_FALSE(nothing.is_complete);
     EXPECT_EQ(nothing.bound, random.problem.totalWeight());
+    // There is time for a greedy layout.
+    EXPECT_EQ(nothing.best.chosen, placeGreedily(random.problem, silent).chosen);
 }
 
 TEST(Search, HasABoundBeforeTheSwaps) {

@@ -123,8 +123,10 @@ class SwapSearch {
           progress_(progress),
           herald_(problem, progress) {}
 
-    /// From what is given (start 0) and from random sensors. The ends up to the first that is worth
-    /// enough are the same for any number of threads; those after it are worth nothing.
+    /// From what is given (start 0), with demands that take several sensors of a kind from what
+    /// meets most parts of them one by one (start 1), and from random sensors. The ends up to the
+    /// first that is worth enough are the same for any number of threads; those after it are worth
+    /// nothing.
     std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
         std::vector<End> ends(starts);
         // Starts in ascending order, whichever thread takes them.
@@ -189,10 +191,9 @@ class SwapSearch {
         if (start == 0) {
             for (const Choice& choice : given) state.add(choice);
         } else {
-            std::array<float, 2 * kRandomSensors> draws{};
-            draw({seed_, Purpose::Placement, 0, start}, 0, {.uniform = draws});
-            for (std::size_t i = 0; i < kRandomSensors; ++i)
-                addRandom(state, draws[2 * i], draws[2 * i + 1]);
+            // Greedy placement goes for whole demands; from where parts of them count alike other
+            // places are reached.
+            if (start > 1 || !takesSteps(basis_.problem)) addRandomSensors(state, start);
             if (basis_.problem.demand == 1)
                 search.fill(state);
             else
@@ -222,6 +223,13 @@ class SwapSearch {
         const bool is_joined = !basis_.problem.is_connected ||
                                Connection(basis_.problem, state.chosen()).isJoinedBy(choice);
         if (is_joined) state.add(choice);
+    }
+
+    void addRandomSensors(CoverageState& state, std::size_t start) const {
+        std::array<float, 2 * kRandomSensors> draws{};
+        draw({seed_, Purpose::Placement, 0, start}, 0, {.uniform = draws});
+        for (std::size_t i = 0; i < kRandomSensors; ++i)
+            addRandom(state, draws[2 * i], draws[2 * i + 1]);
     }
 
     void kickOut(CoverageState& state, const RandomKey& key) const {

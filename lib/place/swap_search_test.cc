@@ -76,6 +76,14 @@ TEST(SwapSearch, FindsTheOptimumWithDemand) {
     EXPECT_GE(countOptima(options, 40), 38);
 }
 
+TEST(SwapSearch, FindsTheOptimumWhereItTakesSeveral) {
+    RandomProblemOptions options;
+    options.sites = 6;
+    options.most = 4;
+    for (options.demand = 2; options.demand <= 3; ++options.demand)
+        EXPECT_GE(countOptima(options, 20), 19);
+}
+
 TEST(SwapSearch, FindsTheOptimumWithinABudget) {
     RandomProblemOptions options;
     options.kinds = 3;
