@@ -2,19 +2,18 @@
 #include "place/branch_node.h"
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <numeric>
 
+#include "place/branch_split.h"
 #include "place/multiplier_search.h"
 #include "place/node_relaxation.h"
 
 namespace ispace {
 namespace {
 
-constexpr int kMostTrials = 40;
-constexpr int kTrialsBetweenLooks = 5;
-constexpr double kFewSets = 64;  // so many are tried one by one
+constexpr int kMostTrials = 80;
+constexpr int kTrialsBetweenLooks = 40;
+constexpr std::uint64_t kFairPart = 5;  // of what the bound has to fall: less is not worth more
+constexpr double kFewSets = 64;         // so many are tried one by one
 
 /// In how many ways the groups can choose, up to about kFewSets.
 double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
@@ -106,94 +105,6 @@ class SetSearch {
     BranchResult result_;
 };
 
-/// Where a node is to be split; one of the sides is empty if there is no such place.
-struct Split {
-    std::size_t group = 0;
-    std::vector<std::uint32_t> near, far;  ///< the places in the list of the group, in two
-};
-
-/// The group is split between candidates that are like the one chosen most often and the others,
-/// where by the relaxation about half a sensor too many is on one side.
-Split splitOf(NodeRelaxation& relaxed, const std::vector<std::uint32_t>& multipliers) {
-    Split split;
-    double best_score = -1;
-    for (std::size_t g = 0; g < relaxed.groups().size(); ++g) {
-        const OpenGroup& group = relaxed.groups()[g];
-        const std::vector<float>& shares = relaxed.shares()[g];
-        if (group.list.size() <= std::max<std::size_t>(group.count, 1)) continue;
-        const auto pivot = static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) -
-                                                    shares.begin());
-        const std::vector<float> like = relaxed.likeness(g, group.list[pivot], multipliers);
-        std::vector<std::uint32_t> order(group.list.size());
-        std::iota(order.begin(), order.end(), 0U);
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            if ((a == pivot) != (b == pivot)) return a == pivot;
-            return like[a] > like[b];
-        });
-        double sum = 0;
-        for (std::size_t n = 1; n < order.size(); ++n) {
-            sum += static_cast<double>(shares[order[n - 1]]);
-            const double odd = std::abs(sum - std::round(sum));
-            const double size = static_cast<double>(std::min(n, order.size() - n));
-            const double score = odd + 0.1 * size / static_cast<double>(order.size());
-            if (score <= best_score) continue;
-            best_score = score;
-            split.group = g;
-            split.near.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
-            split.far.assign(order.begin() + static_cast<std::ptrdiff_t>(n), order.end());
-        }
-    }
-    std::sort(split.near.begin(), split.near.end());
-    std::sort(split.far.begin(), split.far.end());
-    return split;
-}
-
-/// The children of a node: so many of the group from one side and the rest from the other.
-std::vector<BranchNode> childrenOf(const BranchNode& base, const Split& split) {
-    std::vector<BranchNode> children;
-    const BranchGroup& group = base.groups[split.group];
-    const auto list_of = [&group](std::vector<std::uint32_t> places) {
-        for (std::uint32_t& i : places) i = (*group.list)[i];
-        return std::make_shared<const std::vector<std::uint32_t>>(std::move(places));
-    };
-    const auto near_list = list_of(split.near), far_list = list_of(split.far);
-    children.reserve(group.count + 1);
-    for (std::size_t near = 0; near <= group.count; ++near) {
-        const std::size_t far = group.count - near;
-        if (near > split.near.size() || far > split.far.size()) continue;
-        BranchNode child = base;
-        child.groups.erase(child.groups.begin() + static_cast<std::ptrdiff_t>(split.group));
-        if (near > 0) child.groups.push_back({group.kind, near, near_list});
-        if (far > 0) child.groups.push_back({group.kind, far, far_list});
-        children.push_back(std::move(child));
-    }
-    return children;
-}
-
-/// The children of a node whose groups may choose all they have, where it is fewer that may be
-/// feasible: with one candidate and without it.
-std::vector<BranchNode> withAndWithout(const BranchNode& base) {
-    const auto larger = std::max_element(
-        base.groups.begin(), base.groups.end(),
-        [](const BranchGroup& a, const BranchGroup& b) { return a.list->size() < b.list->size(); });
-    assert(larger != base.groups.end() && !larger->list->empty());
-    std::vector<std::uint32_t> rest = *larger->list;
-    const std::uint32_t candidate = rest.back();
-    rest.pop_back();
-    BranchNode without = base;
-    const auto group = without.groups.begin() + (larger - base.groups.begin());
-    if (rest.empty()) {
-        without.groups.erase(group);
-    } else {
-        group->count = std::min(group->count - 1, rest.size());
-        group->list = std::make_shared<const std::vector<std::uint32_t>>(std::move(rest));
-    }
-    BranchNode with = without;
-    with.fixed.push_back({larger->kind, base.problem->kinds[larger->kind].original[candidate]});
-    with.pending.push_back({larger->kind, candidate});
-    return {std::move(with), std::move(without)};
-}
-
 /// The node with what has been fixed, cut down to what is left.
 BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
                    const std::vector<Choice>& forced, std::vector<std::uint32_t> multipliers) {
@@ -252,7 +163,7 @@ std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::ui
         relaxed.count(static_cast<float>(search.part()));
         if (trial % kTrialsBetweenLooks != kTrialsBetweenLooks - 1) continue;
         // As fast as this it would take too long.
-        if (bound > cut && (last - bound) * 3 < bound - cut) break;
+        if (bound > cut && (last - bound) * kFairPart < bound - cut) break;
         last = bound;
     }
     return bound;
@@ -297,7 +208,7 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
     if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets)
         return SetSearch(problem, node, relaxed, cut).search();
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
-                            static_cast<double>(cut));
+                            static_cast<double>(cut), kWarmFactor);
     std::uint64_t bound = boundOf(relaxed, search, node.bound, cut, progress);
     if (bound > cut && !progress.stopped())
         bound = std::min(bound, relaxed.evaluate(search.best()));
@@ -315,9 +226,9 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
         result.children.push_back(std::move(now));
         return result;
     }
-    const Split split = splitOf(relaxed, search.best());
-    result.children = split.near.empty() ? withAndWithout(now) : childrenOf(now, split);
-    assert(!result.children.empty());
+    SplitNode split = splitNode(now, relaxed, search.best(), cut, progress);
+    result.children = std::move(split.children);
+    result.closed = std::max(result.closed, split.closed);
     return result;
 }
 

@@ -59,8 +59,8 @@ ISPACE_SIMD_CLONES void move(const std::uint32_t* weights, const std::uint32_t* 
 }  // namespace
 
 MultiplierSearch::MultiplierSearch(std::span<const std::uint32_t> weights,
-                                   std::vector<std::uint32_t> start, double target)
-    : weights_(weights), target_(target), trial_(std::move(start)) {}
+                                   std::vector<std::uint32_t> start, double target, double factor)
+    : weights_(weights), target_(target), factor_(factor), trial_(std::move(start)) {}
 
 void MultiplierSearch::restart(double bound, std::span<const float> cover) {
     bound_ = bound;
