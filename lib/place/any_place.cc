@@ -102,11 +102,14 @@ std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
         std::uint64_t parts;
     };
     std::vector<Missing> missing;
+    int together = 0;  // what a cell gets from all of them
+    for (std::size_t k = 0; k < devices.size(); ++k)
+        together += most[k] * (isReceiver(devices[k]) ? 1 : unit);
     for (std::size_t i = 0; i < problem.cells(); ++i) {
         const int met = problem.met.empty() ? 0 : problem.met[i];
         if (met >= problem.demand)
             value += problem.weights[i];
-        else if (problem.weights[i] > 0)
+        else if (problem.weights[i] > 0 && problem.demand - met <= together)
             missing.push_back(
                 {problem.weights[i], static_cast<std::uint64_t>(problem.demand - met)});
     }

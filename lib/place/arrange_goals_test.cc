@@ -82,6 +82,45 @@ TEST(ArrangeGoals, ATargetIsReachedWithTheFewest) {
     EXPECT_FALSE(short_of.least);
 }
 
+TEST(ArrangeGoals, AmongTheFewestTheBest) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse();
+    options.target = 0.6;
+    const Arrangement enough = arranged(scene, groupsOf(scene, {"laser,range=3"}, true), options);
+    options.target.reset();
+    const std::string as_many = "laser,range=3:" + std::to_string(enough.sensors.size());
+    const Arrangement most = arranged(scene, groupsOf(scene, {as_many.c_str()}), options);
+    EXPECT_EQ(enough.candidate_value, most.candidate_value);
+    EXPECT_LE(enough.bound, most.bound);
+}
+
+TEST(ArrangeGoals, WhatAllCandidatesTogetherDoNotReachIsTold) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse();
+    options.target = 1;
+    options.mount.keep_in = {readZone("rect:-3,-2,0,2", scene.environment)};
+    const Arrangement all = arranged(scene, groupsOf(scene, {"laser,range=1"}, true), options);
+    EXPECT_FALSE(all.is_reached);
+    EXPECT_TRUE(all.is_exhausted);
+    EXPECT_EQ(all.bound, all.coverage);
+    const Arrangement one = arranged(scene, groupsOf(scene, {"laser,range=1:1"}, true), options);
+    EXPECT_FALSE(one.is_reached);
+    EXPECT_FALSE(one.is_exhausted);
+}
+
+TEST(ArrangeGoals, WhatTooFewSensorsCannotDoHasNoBoundAboveNothing) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse();
+    options.redundancy = 3;
+    const Arrangement two = arranged(scene, groupsOf(scene, {"laser:2"}), options);
+    EXPECT_EQ(two.value, 0);
+    EXPECT_EQ(two.bound, 0);
+    options.redundancy = 1;
+    const Arrangement deaf = arranged(scene, groupsOf(scene, {"ultrasound:3"}), options);
+    EXPECT_EQ(deaf.coverage, 0);
+    EXPECT_EQ(deaf.bound, 0);
+}
+
 TEST(ArrangeGoals, ABudgetBuysWhatIsWorthMost) {
     const Scene scene = roomScene();
     ArrangeOptions options = coarse(Optimizer::Exact);
@@ -201,6 +240,60 @@ TEST(ArrangeGoals, ACurveRises) {
     }
     EXPECT_EQ(chosen, 4U);
     EXPECT_NEAR(best, arrangement.curve.front().value, 1e-12);
+}
+
+TEST(ArrangeGoals, ACurveOfSeveralKindsDoesNotFall) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=1,fov=90:2", "laser,range=4,fov=270:2"});
+    ArrangeOptions options = coarse(Optimizer::Greedy);
+    options.wants_curve = true;
+    const Arrangement arrangement = arranged(scene, groups, options);
+    ASSERT_EQ(arrangement.curve.size(), 4U);
+    for (std::size_t i = 1; i < 4; ++i) {
+        EXPECT_GE(arrangement.curve[i].value, arrangement.curve[i - 1].value);
+        EXPECT_GE(arrangement.curve[i].bound, arrangement.curve[i - 1].bound);
+    }
+}
+
+/// Says stop once it has begun so many phases.
+class StopAtPhase final : public Progress {
+  public:
+    explicit StopAtPhase(int last) : last_(last) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++begun_; }
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return begun_ > last_; }
+
+  private:
+    int last_, begun_ = 0;
+};
+
+TEST(ArrangeGoals, ACurveThatIsCutHasAllItsPoints) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3:4"});
+    ArrangeOptions options = coarse();
+    options.wants_curve = true;
+    const Arrangement whole = arranged(scene, groups, options);
+    for (const int phases : {2, 3, 4, 6, 9}) {
+        StopAtPhase progress(phases);
+        const Arrangement cut = arrange(scene, groups, options, progress);
+        ASSERT_EQ(cut.curve.size(), 4U) << phases;
+        EXPECT_FALSE(cut.is_complete) << phases;
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_GT(cut.curve[i].value, i == 0 ? 0 : cut.curve[i - 1].value) << phases;
+            EXPECT_LE(cut.curve[i].value, whole.curve[i].bound) << phases;
+            EXPECT_GE(cut.curve[i].bound, whole.curve[i].value) << phases;
+        }
+    }
+}
+
+TEST(ArrangeGoals, WhatIsNotMovedKeepsItsBound) {
+    const Scene scene = roomScene("#env 1\nispace size=4,4\n");
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    options.refine = true;
+    const Arrangement all = arranged(scene, groupsOf(scene, {"laser,range=9,fov=360"}), options);
+    EXPECT_EQ(all.refined_after, all.refined_before);
+    EXPECT_EQ(all.bound, all.candidate_bound);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ struct ArrangeOptions {
 
     double plane = 0;                                ///< height of what rangers and receivers cover
     int columns = 100, rows = 100;                   ///< cells over the limits while searching
-    std::size_t most_bytes = std::size_t{8} << 30U;  ///< of candidates
+    std::size_t most_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
     std::uint64_t seed = 0;
 };
 

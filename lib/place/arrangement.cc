@@ -42,10 +42,11 @@ void writeModel(const SceneProblem& model, std::ostream& mps) {
 
 SearchResult find(const SceneProblem& model, Arrangement& result, Progress& progress) {
     const ArrangeOptions& options = model.options();
-    if (!options.target) return search(model.problem(), options.search, progress);
-    Fewest fewest =
-        placeFewest(model.problem(), model.valueFor(*options.target), options.search, progress);
+    if (!options.target) return search(model.problem(), model.searchOptions(), progress);
+    Fewest fewest = placeFewest(model.problem(), model.valueFor(*options.target),
+                                model.searchOptions(), progress);
     result.is_reached = fewest.is_reached;
+    result.is_exhausted = fewest.is_all;
     if (fewest.is_reached) result.least = fewest.least_cost;
     return fewest.result;
 }
@@ -70,10 +71,11 @@ double boundOfAnyPlace(const SceneProblem& model, const std::vector<ArrangedSens
 
 void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refineArranged(model, result.sensors, before, progress);
-    result.sensors = movedTo(std::move(result.sensors), refined.poses);
     result.refined_before = refined.before;
     result.refined_after = refined.after;
     result.is_complete = result.is_complete && !progress.stopped();
+    if (!(refined.after > refined.before)) return;  // all stand on candidates
+    result.sensors = movedTo(std::move(result.sensors), refined.poses);
     result.bound = boundOfAnyPlace(model, result.sensors);
 }
 
@@ -89,25 +91,60 @@ void measure(Arrangement& result, SceneProblem& model) {
     if (!is_coverage) result.value = model.share(model.valueOf(model.coverageOf(result.sensors)));
 }
 
-/// Of 1, 2, ... sensors of these kinds, whatever they cost.
+/// Worth of the first n of these sensors, each placed where it adds most of them: [n].
+std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
+    std::vector<std::uint64_t> values = {valueOf(problem, {})};
+    std::vector<Choice> first;
+    while (!chosen.empty()) {
+        std::uint64_t best = 0;
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            first.push_back(chosen[i]);
+            const bool may_be = !problem.is_connected || isConnected(problem, first);
+            const std::uint64_t value = may_be ? valueOf(problem, first) : 0;
+            first.pop_back();
+            if (value > best) {
+                best = value;
+                next = i;
+            }
+        }
+        first.push_back(chosen[next]);
+        chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(next));
+        values.push_back(std::max(best, values.back()));
+    }
+    return values;
+}
+
+/// Of 1, 2, ... sensors of these kinds, whatever they cost. Where there is no time left a point
+/// tells what so many of the sensors found are worth, and the bound of more.
 std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
                                 Progress& progress) {
     const ArrangeOptions& options = model.options();
-    const bool is_last_known = !options.budget && !options.target;
-    const auto last = static_cast<int>(found.best.chosen.size());
-    std::vector<CurvePoint> curve;
+    const std::size_t last = found.best.chosen.size();
+    const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
+    const bool is_any_cost = !options.budget && !options.target;
     Problem fewer = model.problem();
     fewer.order.clear();
     for (Kind& kind : fewer.kinds) kind.cost = 1;
-    const auto add = [&](int n, const SearchResult& best) {
-        curve.push_back({n, model.share(best.best.value), model.share(best.bound)});
-    };
-    for (int n = 1; n <= last && !progress.stopped(); ++n) {
-        fewer.budget = n;
-        add(n, n == last && is_last_known ? found : search(fewer, options.search, progress));
+    std::vector<std::uint64_t> values, bounds;
+    for (std::size_t n = 1; n <= last; ++n) {
+        fewer.budget = static_cast<double>(n);
+        SearchResult best = found;
+        if (n < last || !is_any_cost) {
+            best.best.value = part[n];
+            best.bound = is_any_cost ? found.bound : model.problem().totalWeight();
+            if (!progress.stopped()) best = search(fewer, model.searchOptions(), progress);
+        }
+        // One more costs nothing: it is worth no less.
+        values.push_back(std::max({best.best.value, part[n], values.empty() ? 0 : values.back()}));
+        bounds.push_back(std::max(best.bound, values.back()));
     }
-    const bool is_cut = curve.size() < found.best.chosen.size();
-    if (is_cut && is_last_known) add(last, found);
+    // What more sensors cannot cover, fewer cannot.
+    for (std::size_t n = last; n-- > 1;) bounds[n - 1] = std::min(bounds[n - 1], bounds[n]);
+    std::vector<CurvePoint> curve;
+    curve.reserve(last);
+    for (std::size_t n = 0; n < last; ++n)
+        curve.push_back({static_cast<int>(n) + 1, model.share(values[n]), model.share(bounds[n])});
     return curve;
 }
 

@@ -25,8 +25,9 @@ struct Arrangement {
     double area = 0;      ///< total effective area by cells, m2, eq. (4.6)
     /// Share of what counts; not set where that is the coverage.
     std::optional<double> value;
-    double bound =
-        1;  ///< nothing that the search could choose is worth more; of `value` or coverage
+    /// Of `value` or coverage: nothing that the search could choose is worth more or, where sensors
+    /// were moved off candidates, no such sensors at any places.
+    double bound = 1;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     bool is_complete = true;                          ///< false: cut by time or a signal
@@ -40,10 +41,12 @@ struct Arrangement {
     /// costs are equal) reaches it.
     bool is_reached = true;
     std::optional<double> least;
+    bool is_exhausted = false;  ///< not reached, and all candidates together are worth no more
 
     std::vector<CurvePoint> curve;
     std::vector<TriedPose> tried;
-    double refined_before = 0, refined_after = 0;  ///< exact worth, m2
+    /// Exact worth, m2; equal where refining found nothing better: then all stand on candidates.
+    double refined_before = 0, refined_after = 0;
 };
 
 /// Places the groups' sensors beside those that the scene has placed already.

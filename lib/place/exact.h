@@ -15,9 +15,6 @@ namespace ispace {
 std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
                                                   std::uint64_t value);
 
-/// About so much memory the open nodes of a tree may take.
-constexpr std::size_t kMostTreeBytes = std::size_t{1} << 30U;
-
 /// Branch and bound over what is left: best and bound of `known` are improved until they are within
 /// `gap`, the best is worth `enough`, or progress says stop. Each node is bounded by a Lagrangian
 /// relaxation of its own, warm from its parent's multipliers, and rules out more candidates; nodes

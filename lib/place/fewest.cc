@@ -42,6 +42,7 @@ class FewestSearch {
     [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
     [[nodiscard]] Fewest unreached(const Solution& greedy);
     [[nodiscard]] Fewest cheapen(Solution best);
+    void lowerBound(const Solution& best, const LagrangeLimits& limits, Progress& progress);
     void raiseProven(const CostLevels& levels, const Solution& best, int rounds);
     void descend(const CostLevels& levels, Solution& best);
     void stepDown(const CostLevels& levels, Solution& best);
@@ -52,6 +53,7 @@ class FewestSearch {
     [[nodiscard]] Bound boundOf(const Problem& cheaper, const Solution& best, int rounds) {
         return boundWithin(cheaper, best.chosen, {.cut = wanted_ - 1, .rounds = rounds}, progress_);
     }
+    [[nodiscard]] Solution filled(const Solution& best);
     [[nodiscard]] Fewest reached(const Solution& best, double least_cost);
 
     Problem problem_;
@@ -181,6 +183,7 @@ Fewest FewestSearch::unreached(const Solution& greedy) {
         fewest.result.best = greedy;
         fewest.result.bound = is_all_ ? greedy.value : problem_.totalWeight();
         fewest.result.is_complete = is_all_;
+        fewest.is_all = is_all_;
     } else {
         SearchOptions options = options_;
         options.swap.enough = wanted_;
@@ -228,7 +231,7 @@ Solution FewestSearch::reachExactly(const Problem& cheaper, const Solution& best
     SearchResult known;
     known.best = {{}, wanted_ - 1};
     known.bound = bound.value;
-    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_);
+    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_, options_.most_bytes);
     is_proven = known.bound < wanted_;
     return known.best.value >= wanted_ ? known.best : Solution();
 }
@@ -291,29 +294,49 @@ Fewest FewestSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
     // Quick bounds first: if there is no time for more, there are these.
-    const LagrangeLimits limits = {.cut = best.value, .gap = 0.01, .rounds = 2};
-    const Bound bound = boundWithin(within(most), best.chosen, limits, progress_);
-    bound_ = std::min(bound_, bound.value);
+    lowerBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
     raiseProven(levels, best, kQuickRounds);
-    if (options_.optimizer != Optimizer::Greedy) descend(levels, best);
+    if (options_.optimizer != Optimizer::Greedy) {
+        descend(levels, best);
+        lowerBound(best, {.cut = best.value, .gap = 0.001}, progress_);
+    }
     stepDown(levels, best);
     if (options_.optimizer != Optimizer::Greedy) raiseProven(levels, best, LagrangeLimits().rounds);
     return reached(best, levels.above(proven_));
 }
 
+/// For what costs no more than the best.
+void FewestSearch::lowerBound(const Solution& best, const LagrangeLimits& limits,
+                              Progress& progress) {
+    const double cost = costOf(problem_, best.chosen);
+    const Bound bound = boundWithin(within(cost), best.chosen, limits, progress);
+    bound_ = std::min(bound_, bound.value);
+}
+
+/// The most that can be had for what is known to be enough.
+Solution FewestSearch::filled(const Solution& best) {
+    SearchOptions options = options_;
+    options.optimizer = Optimizer::Swap;  // the tree is for the number
+    const SearchResult found = search(within(costOf(problem_, best.chosen)), options, progress_);
+    bound_ = std::min(bound_, found.bound);
+    return found.best.value > best.value ? trimmed(found.best, found.best.value) : best;
+}
+
 Fewest FewestSearch::reached(const Solution& best, double least_cost) {
     Fewest fewest;
     fewest.is_reached = true;
-    fewest.cost = tidyCost(costOf(problem_, best.chosen));
-    fewest.least_cost = isCheaper(least_cost, fewest.cost) ? tidyCost(least_cost) : fewest.cost;
     fewest.result.best = best;
+    if (progress_.stopped()) {
+        SilentProgress silent;  // there shall be some bound
+        lowerBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, silent);
+    } else if (options_.optimizer == Optimizer::Greedy) {
+        lowerBound(best, {best.value, 0.01, kQuickRounds}, progress_);
+    } else {
+        fewest.result.best = filled(best);
+    }
+    fewest.cost = tidyCost(costOf(problem_, fewest.result.best.chosen));
+    fewest.least_cost = isCheaper(least_cost, fewest.cost) ? tidyCost(least_cost) : fewest.cost;
     fewest.result.bound = bound_;
-    fewest.result.is_complete = !progress_.stopped();
-    if (progress_.stopped()) return fewest;
-    LagrangeLimits limits = {.cut = best.value, .gap = 0.001};
-    if (options_.optimizer == Optimizer::Greedy) limits = {best.value, 0.01, kQuickRounds};
-    const Bound bound = boundWithin(within(fewest.cost), best.chosen, limits, progress_);
-    fewest.result.bound = std::min(bound_, bound.value);
     fewest.result.is_complete = !progress_.stopped();
     return fewest;
 }

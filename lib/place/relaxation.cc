@@ -10,6 +10,18 @@ namespace {
 
 constexpr std::size_t kMostWays = 20'000;
 
+/// No cell gets more than these shares from all sensors that may be placed.
+std::uint64_t mostSharesOf(const Problem& problem) {
+    std::uint64_t shares = 0;
+    for (const Kind& kind : problem.kinds) {
+        auto most =
+            std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
+        if (problem.budget) most = affordableCount(*problem.budget, 0, kind.cost, most);
+        shares += most * static_cast<std::uint64_t>(kind.share);
+    }
+    return shares;
+}
+
 }  // namespace
 
 RelaxedCells::RelaxedCells(const Problem& problem)
@@ -23,6 +35,7 @@ RelaxedCells::RelaxedCells(const Problem& problem)
     shares.reserve(problem.kinds.size());
     for (const Kind& kind : problem.kinds)
         shares.push_back(static_cast<std::uint16_t>(kind.share / common));
+    const std::uint64_t most_shares = mostSharesOf(problem);
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const int met = problem.met.empty() ? 0 : problem.met[i];
         const std::uint32_t weight = problem.weights[i] * scale;
@@ -30,6 +43,7 @@ RelaxedCells::RelaxedCells(const Problem& problem)
             settled += weight;
             continue;
         }
+        if (static_cast<std::uint64_t>(problem.demand - met) > most_shares) continue;
         weights[i] = weight;
         needs[i] = static_cast<std::uint16_t>((problem.demand - met + common - 1) / common);
     }

@@ -18,9 +18,10 @@ namespace ispace {
 /// Shares and needs are divided by what all shares have in common and needs are rounded up: with
 /// shares of 4 a need of 5 takes two sensors, as 8 does.
 struct RelaxedCells {
-    std::uint32_t scale = 1;             ///< fine units in one unit of the problem's weights
-    std::uint64_t settled = 0;           ///< worth of cells that are met already, fine
-    std::vector<std::uint32_t> weights;  ///< fine; 0 where settled or worth nothing
+    std::uint32_t scale = 1;    ///< fine units in one unit of the problem's weights
+    std::uint64_t settled = 0;  ///< worth of cells that are met already, fine
+    /// Fine; 0 where settled or worth nothing, or where all sensors together are too few.
+    std::vector<std::uint32_t> weights;
     std::vector<std::uint16_t> needs;  ///< shares that a cell lacks; at least 1 where it has weight
     std::vector<std::uint16_t> shares;  ///< of a sensor, per kind
 

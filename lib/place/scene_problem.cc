@@ -123,6 +123,13 @@ std::size_t SceneProblem::bytes() const {
     return bytes;
 }
 
+SearchOptions SceneProblem::searchOptions() const {
+    SearchOptions searching = options_.search;
+    const std::size_t taken = std::min(bytes(), options_.most_bytes);
+    searching.most_bytes = std::min(searching.most_bytes, options_.most_bytes - taken);
+    return searching;
+}
+
 double SceneProblem::share(std::uint64_t value) const {
     return static_cast<double>(value) / static_cast<double>(total_);
 }

@@ -43,6 +43,8 @@ class SceneProblem {
     /// Of all kinds.
     [[nodiscard]] std::size_t candidates() const;
     [[nodiscard]] std::size_t bytes() const;
+    /// As the options have it, with the memory that candidates leave.
+    [[nodiscard]] SearchOptions searchOptions() const;
     /// The judge of the places that a sensor of this height may take.
     const SiteJudge& judgeAt(double height) { return pool_->judgeAt(height); }
 

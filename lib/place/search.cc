@@ -67,7 +67,13 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         noteProgress(problem, result, progress);
         if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
             result.best.value < result.bound)
-            result = branchAndBound(problem, bound, std::move(result), options.gap, progress);
+            result = branchAndBound(problem, bound, std::move(result), options.gap, progress,
+                                    std::numeric_limits<std::uint64_t>::max(), options.most_bytes);
+    }
+    if (result.bound == problem.totalWeight() && progress.stopped()) {
+        SilentProgress silent;  // there shall be some bound
+        const LagrangeLimits soon = {.cut = result.best.value, .gap = kQuick.gap, .rounds = 2};
+        result.bound = boundWithin(problem, result.best.chosen, soon, silent).value;
     }
     if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
     return result;

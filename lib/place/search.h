@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -34,9 +35,9 @@ struct SwapOptions {
 /// Local search: while it helps, one sensor is moved to the candidate that is best for it given the
 /// others (and sensors of another kind are bought instead, where there is a budget); from the
 /// greedy solution, where demands take several sensors also from one by parts of them, and from
-/// random ones, each from its own random numbers, in parallel. The best
-/// result, the one of the first start among equals; or that of the first start that is worth
-/// enough: the same for any number of threads. Never worse than `start`. \pre start is feasible
+/// random ones, each from its own random numbers, in parallel. The best result, the one of the
+/// first start among equals; or that of the first start that is worth enough: the same for any
+/// number of threads. Never worse than `start`. \pre start is feasible
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
                         Progress& progress);
 
@@ -68,10 +69,14 @@ struct SearchResult {
 
 enum class Optimizer { Greedy, Swap, Exact };
 
+/// About so much memory the open nodes of a tree may take.
+constexpr std::size_t kMostTreeBytes = std::size_t{1} << 30U;
+
 struct SearchOptions {
     Optimizer optimizer = Optimizer::Swap;
     double gap = 0;  ///< of value to bound, as a fraction of the bound, that is good enough
     SwapOptions swap = SwapOptions();
+    std::size_t most_bytes = kMostTreeBytes;
 };
 
 /// Greedy, then by options: with swaps, with the bound of Lagrange for all three (a quick one
@@ -86,10 +91,11 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
 
 /// The least that reaches a value.
 struct Fewest {
-    /// The cheapest found that reaches the value, with the bound of what costs no more; else the
-    /// best there is, without sensors that add nothing.
+    /// Of the cheapest found that reach the value one that is worth much, with the bound of what
+    /// costs no more; else the best there is, without sensors that add nothing.
     SearchResult result;
     bool is_reached = false;
+    bool is_all = false;    ///< not reached, and all candidates together are worth no more
     double cost = 0;        ///< of result, as tidyCost() has it
     double least_cost = 0;  ///< nothing cheaper reaches it; tidy, too
 };
@@ -97,7 +103,8 @@ struct Fewest {
 /// The fewest sensors, or the cheapest where costs differ, that are worth at least `wanted`: greedy
 /// until it is reached; quick bounds tell how much less cannot be enough; then what lies between is
 /// searched with the optimiser asked for, with long steps and few starts first; then better bounds,
-/// but not for Greedy. Kinds without limit have a `most` of about a thousand.
+/// and with swaps the most that can be had at that cost, but not for Greedy. Kinds without limit
+/// have a `most` of about a thousand.
 ///
 /// Exact ends with cost and least_cost equal unless it is stopped or has no tree (see search). But
 /// where costs have so little in common that sets can cost more than 4000 different sums, up to

@@ -87,8 +87,8 @@ TEST(Search, StoppedAnywhereGivesTheBestSoFar) {
     }
     Watch at_once(0);
     const SearchResult nothing = search(random.problem, {}, at_once);
-    EXPECT_FALSE(nothing.is_complete);
-    EXPECT_EQ(nothing.bound, random.problem.totalWeight());
+    EXPECT_GE(nothing.bound, exact.best.value);
+    EXPECT_LT(nothing.bound, random.problem.totalWeight());
     // There is time for a greedy layout.
     EXPECT_EQ(nothing.best.chosen, placeGreedily(random.problem, silent).chosen);
 }

@@ -109,25 +109,36 @@ void writeLayout(const ArrangeCommand& command, const Work& work, const Arrangem
     writeDependencies(options.common, work.files);
 }
 
-/// What cannot be met with this many sensors is worth a word.
-void warnOfTooFew(const ArrangeToolOptions& options, const Work& work,
-                  const Arrangement& arrangement) {
-    const Scene whole = withArranged(work.input.scene, work.groups, arrangement.sensors);
-    const std::size_t sensors =
-        whole.lasers.size() + whole.rangers.size() + whole.receivers.size() / kLeastReceivers;
-    if (const auto times = static_cast<std::size_t>(work.how.redundancy);
-        times > 1 && sensors < times)
-        warn(options, "nothing counts: floor has to be seen by " + std::to_string(times) +
-                          " sensors, and there are " + std::to_string(sensors));
+/// Sensors that stand and those that may be placed.
+struct Numbers {
+    std::size_t receivers = 0, others = 0;
+};
+
+Numbers numbersOf(const Work& work) {
+    const Scene& scene = work.input.scene;
+    Numbers numbers{scene.receivers.size(), scene.lasers.size() + scene.rangers.size()};
+    for (const SensorGroup& group : work.groups)
+        (isReceiver(group.device) ? numbers.receivers : numbers.others) +=
+            static_cast<std::size_t>(group.most);
+    return numbers;
 }
 
-/// As coverage does: fewer receivers than it takes see nothing together.
-void warnOfDeafness(const ArrangeToolOptions& options, const Work& work,
-                    const Arrangement& arrangement) {
-    const Scene whole = withArranged(work.input.scene, work.groups, arrangement.sensors);
-    if (const std::size_t count = whole.receivers.size(); count > 0 && count < kLeastReceivers)
+/// Where nothing is covered there is a reason, which is worth a word.
+void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
+                   const Arrangement& arrangement) {
+    const auto [receivers, others] = numbersOf(work);
+    const std::size_t together = others + receivers / kLeastReceivers;
+    const auto times = static_cast<std::size_t>(work.how.redundancy);
+    if (receivers > 0 && receivers < kLeastReceivers)
         warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
-                          " receivers have to hear a tag, here are " + std::to_string(count));
+                          " receivers have to hear a tag, here are " + std::to_string(receivers));
+    else if (times > 1 && together < times)
+        warn(options, "nothing counts: floor has to be seen by " + std::to_string(times) +
+                          " sensors, and there are " + std::to_string(together));
+    else if (arrangement.coverage == 0 && !arrangement.sensors.empty())
+        warn(options,
+             "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
+             "`coverage` draws (-o map.png)");
 }
 
 void arrangeSensors(const ArrangeCommand& command) {
@@ -163,8 +174,7 @@ void arrangeSensors(const ArrangeCommand& command) {
          "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
              formatDouble(arrangement.cost));
     if (signal != 0) endBySignal(signal);
-    warnOfDeafness(options, work, arrangement);
-    warnOfTooFew(options, work, arrangement);
+    warnOfNothing(options, work, arrangement);
     if (!arrangement.is_reached) throw UnmetError(shortfallText(work.how, arrangement));
     if (arrangement.unplaced > 0)
         throw UnmetError(std::to_string(arrangement.unplaced) +

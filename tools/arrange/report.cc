@@ -40,10 +40,15 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
             overText(how, arrangement);
     if (!arrangement.is_complete) text += ", cut short";
     text += '\n';
-    if (how.refine) {
+    if (how.refine && arrangement.refined_after > arrangement.refined_before) {
         text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
                 formatFixed(arrangement.refined_after, 3) +
-                " m2 by exact area; bound over all places " + percent(arrangement.bound) + '\n';
+                " m2 by exact area; bound over all places " + percent(arrangement.bound) + " (" +
+                gapText(arrangement.value.value_or(arrangement.coverage), arrangement.bound) +
+                ")\n";
+    } else if (how.refine) {
+        text += "arrange: refining found nothing better than " +
+                formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
     }
     if (arrangement.least) {
         text += "arrange: target " + percent(*how.target) + " reached " +
@@ -70,6 +75,10 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
         text += ", and no layout of these candidates covers more than " +
                 percent(arrangement.candidate_bound);
     if (!arrangement.is_complete) return text + "; the search was cut short";
+    if (arrangement.is_exhausted)
+        return text +
+               "; all candidates together see no more: try denser ones (--candidates), other "
+               "places (--mount, --z) or sensors";
     return text + "; allow more sensors (:COUNT), or denser candidates";
 }
 
