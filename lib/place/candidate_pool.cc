@@ -198,18 +198,27 @@ struct CandidatePool::Data {
         return text;
     }
 
-    /// Candidates at these sites for each tilt; false if progress says stop.
-    bool addLevels(CandidateSet& set, const SensorKind& kind, const std::vector<Level>& levels) {
+    /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
+    /// places, shared out over all levels and tilts.
+    bool addLevels(CandidateSet& set, const SensorKind& kind, const std::vector<Level>& levels,
+                   std::size_t least) {
+        const std::vector<Angle> tilts = tiltsOf(kind);
+        std::size_t places = 0;
+        for (const Level& level : levels) places += level.sites.size() * tilts.size();
+        bool is_complete = true;
         for (const Level& level : levels)
-            for (const Angle tilt : tiltsOf(kind)) {
+            for (const Angle tilt : tilts) {
                 if (level.sites.empty()) continue;
+                if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
                 const CandidateViews views(environment, worlds, target.grid, options.plane,
                                            kind.device, mount, &worth.counted, &sights);
-                if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress))
-                    return false;
+                const std::size_t share = (least * level.sites.size() + places - 1) / places;
+                if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
+                                   share))
+                    is_complete = false;
             }
-        return true;
+        return is_complete;
     }
 
     /// Places drawn at all heights.
@@ -262,7 +271,7 @@ struct CandidatePool::Data {
             throw UnmetError(noPlaceText(
                 kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
         }
-        if (!addLevels(set, kind, first.levels) || !first.is_complete) return false;
+        if (!addLevels(set, kind, first.levels, kLeastPlaces) || !first.is_complete) return false;
         const double scope = options.scope.value_or(maxRange(kind.device) / kSegments);
         std::vector<std::uint32_t> worth_left = worth.left;
         std::vector<std::uint32_t> values;
@@ -280,7 +289,7 @@ struct CandidatePool::Data {
                 return randomPlaceAbout(center, scope, options.seed, kind.id,
                                         static_cast<std::uint64_t>(sensor), k);
             });
-            if (!more.is_complete || !addLevels(set, kind, more.levels)) return false;
+            if (!more.is_complete || !addLevels(set, kind, more.levels, 0)) return false;
             set.forEachRun(best(), [&](const CellRun& run) {
                 std::fill(worth_left.begin() + run.first, worth_left.begin() + run.end, 0U);
             });
@@ -300,8 +309,9 @@ CandidatePool::Made CandidatePool::make(const SensorKind& kind) {
     Made made{std::make_unique<CandidateSet>(data_->target.grid.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
-    made.is_complete = is_random ? data_->addRandom(*made.set, kind)
-                                 : data_->addLevels(*made.set, kind, data_->levelsFor(kind));
+    made.is_complete =
+        is_random ? data_->addRandom(*made.set, kind)
+                  : data_->addLevels(*made.set, kind, data_->levelsFor(kind), kLeastPlaces);
     data_->bytes += made.set->bytes();
     return made;
 }

@@ -30,7 +30,8 @@ class CandidatePool {
     CandidatePool& operator=(const CandidatePool&) = delete;
 
     /// All candidates of a kind. False in `is_complete` where progress said to stop before: then
-    /// those made so far, one at least unless no random place was found yet.
+    /// those made so far, spread over all places; some at least, unless no random place was found
+    /// yet.
     /// \throws UnmetError if there is no valid place, UsageError for more memory than is allowed
     struct Made {
         std::unique_ptr<CandidateSet> set;

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -123,7 +126,7 @@ class Asked final : public Progress {
 
   private:
     int most_;
-    mutable int times_ = 0;
+    mutable std::atomic<int> times_ = 0;
 };
 
 /// Random places of a laser in a part of the room, of which there are few.
@@ -168,6 +171,123 @@ TEST(CandidatePool, NoRandomPlaceFoundSoFarIsNotThatThereIsNone) {
         EXPECT_EQ(none.set->size(), 0U);
         EXPECT_LE(progress.times(), asked + 1010) << "one more place is looked for";
     }
+}
+
+/// All candidates of a laser in the room, on a lattice of 0.1 m and along walls, at these heights.
+CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Progress& progress) {
+    Worlds worlds(scene.environment);
+    const Target target = makeTarget(scene.environment, 50, 50, kScanHeight);
+    ArrangeOptions options;
+    options.density = {0.1, 0.1, 2};
+    options.mount.heights = std::move(heights);
+    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    return pool.make(kindsOf(groupsOf(scene, {"laser,range=3"})).front());
+}
+
+/// Fails unless the candidates are some of these, in their order, and see the same.
+void expectSomeOf(const CandidateSet& some, const CandidateSet& all) {
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        while (i < all.size() && all.pose(i) != some.pose(k)) ++i;
+        ASSERT_LT(i, all.size()) << "not in the order of all";
+        ASSERT_EQ(some.cellsOf(k), all.cellsOf(i));
+    }
+}
+
+TEST(CandidatePool, WhatIsThereWhenStoppedIsSpreadOverTheRoom) {
+    const Scene scene = roomScene();
+    SilentProgress silent;
+    const CandidatePool::Made all = placedIn(scene, {}, silent);
+    ASSERT_TRUE(all.is_complete);
+    ASSERT_GT(all.set->sites(), 4000U);
+    std::size_t before = 0;
+    for (const int asked : {0, 1, 2, 5}) {
+        Asked progress(asked);
+        const CandidatePool::Made some = placedIn(scene, {}, progress);
+        EXPECT_FALSE(some.is_complete);
+        ASSERT_GE(some.set->sites(), 64U);
+        ASSERT_LT(some.set->sites(), all.set->sites());
+        EXPECT_GE(some.set->sites(), before);
+        before = some.set->sites();
+        ASSERT_NO_FATAL_FAILURE(expectSomeOf(*some.set, *all.set));
+        std::set<std::pair<int, int>> squares;  // of two metres
+        for (std::size_t k = 0; k < some.set->size(); ++k) {
+            const Point3 place = some.set->pose(k).position;
+            squares.emplace((place.x + 4) / 2, (place.y + 3) / 2);
+        }
+        EXPECT_EQ(squares.size(), 4U * 3) << "stopped after " << asked;
+    }
+}
+
+TEST(CandidatePool, WhatIsThereWhenStoppedIsAtAllHeights) {
+    Asked at_once(0);
+    const CandidatePool::Made some = placedIn(roomScene(), {0.15, 1, 2}, at_once);
+    EXPECT_FALSE(some.is_complete);
+    EXPECT_GE(some.set->sites(), 64U);
+    EXPECT_LE(some.set->sites(), 67U);
+    std::map<double, int> at;
+    for (std::size_t k = 0; k < some.set->size(); ++k) ++at[some.set->pose(k).position.z];
+    ASSERT_EQ(at.size(), 3U);
+    for (const auto& [height, count] : at) EXPECT_GE(count, 2 * 20) << height;
+}
+
+/// Places within 4 x 3 m, row by row.
+std::vector<Site> latticeOf(int columns, int rows) {
+    std::vector<Site> sites;
+    sites.reserve(static_cast<std::size_t>(columns * rows));
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            sites.push_back({{column * 4.0 / columns, row * 3.0 / rows}, {Angle()}});
+    return sites;
+}
+
+TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
+    const Scene scene = roomScene();
+    Worlds worlds(scene.environment);
+    const Grid grid{scene.environment.limits(), 40, 30};
+    for (const double tilt : {0, -30}) {  // in a slice, through the mesh
+        const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
+                                   {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
+        for (const int columns : {8, 16, 20, 32, 64, 89, 100, 160, 233})
+            for (const int rows : {8, 30, 34, 64, 144}) {
+                const std::vector<Site> sites = latticeOf(columns, rows);
+                CandidateSet set(grid.size());
+                Asked progress(0);
+                EXPECT_EQ(addCandidates(set, views, sites, 1U << 30U, progress),
+                          sites.size() == 64);
+                ASSERT_EQ(set.sites(), 64U);
+                std::set<std::pair<int, int>> parts;  // of 1 x 0.75 m
+                for (std::size_t i = 0; i < set.size(); ++i) {
+                    const Point3 place = set.pose(i).position;
+                    parts.emplace(place.x, place.y / 0.75);
+                }
+                EXPECT_EQ(parts.size(), 16U) << columns << " x " << rows;
+            }
+    }
+}
+
+TEST(CandidatePool, MeshesAreLeftInBetween) {
+    const Scene scene = roomScene();
+    Worlds worlds(scene.environment);
+    const Grid grid{scene.environment.limits(), 40, 30};
+    const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
+                               {{0, 0, 1}, {}, Angle::degrees(-30), {}});
+    const std::vector<Site> sites = latticeOf(60, 40);
+    SilentProgress silent;
+    CandidateSet all(grid.size());
+    ASSERT_TRUE(addCandidates(all, views, sites, 1U << 30U, silent));
+    ASSERT_EQ(all.sites(), sites.size());
+    std::set<std::size_t> sizes;
+    for (const int asked : {0, 10, 70, 100, 110, 140, 160, 200, 300, 2000}) {
+        Asked progress(asked);
+        CandidateSet some(grid.size());
+        ASSERT_FALSE(addCandidates(some, views, sites, 1U << 30U, progress));
+        ASSERT_GE(some.sites(), 64U);
+        ASSERT_NO_FATAL_FAILURE(expectSomeOf(some, all));
+        sizes.insert(some.sites());
+    }
+    EXPECT_GE(sizes.size(), 6U) << "stopped between places, too";
 }
 
 // Fig. 4.8: without the Insider Judge the sensor would stand outside, facing the walls.

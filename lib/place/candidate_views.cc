@@ -19,6 +19,7 @@
 #include "cover/sector_cells.h"
 #include "cover/visible.h"
 #include "env/solid_tree.h"
+#include "place/look_ahead.h"
 #include "place/plane_candidates.h"
 #include "place/sensor_group.h"
 
@@ -211,62 +212,115 @@ bool CandidateViews::isRound() const { return data_->is_round; }
 
 namespace {
 
-/// Looks from some sites at a time and adds what is seen to the set.
+/// Looks from some sites at a time and adds what is seen to the set: first from a few all over the
+/// list, whose cells wait on the shelf, then from all others in order. So whoever stops has
+/// candidates everywhere, and nearly all go to the set at once.
 class Scanner {
   public:
     Scanner(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
-            Progress& progress)
-        : set_(set), data_(views.data()), sites_(sites), progress_(progress) {}
+            std::size_t least, Progress& progress)
+        : set_(set),
+          data_(views.data()),
+          sites_(sites),
+          progress_(progress),
+          least_(std::min(least, sites.size())),
+          at_once_(data_.looksInSlice() ? 512 : 32),
+          ahead_(sites, std::max(least_, sites.size() / kStretch)),
+          shelf_(ahead_.size()) {}
 
     bool run(std::size_t most_bytes) {
-        // What is looked through the mesh takes a while: one can stop in between.
-        const std::size_t at_once = data_.looksInSlice() ? 512 : 32;
-        for (begin_ = 0; begin_ < sites_.size(); begin_ += at_once) {
-            std::size_t count = std::min(at_once, sites_.size() - begin_);
-            // Something to choose from there is, however early one stops.
-            const bool is_first = set_.sites() == 0;
-            if (progress_.stopped()) {
-                if (!is_first) return false;
-                count = 1;
-            }
-            if (!look(count, is_first)) {
-                if (!is_first) return false;
-                count = 1;
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                add(i);
-                if (set_.bytes() > most_bytes) throw UsageError(tooLarge(most_bytes));
-            }
-            progress_.advance(static_cast<std::int64_t>(count));
-            if (count < at_once && begin_ + count < sites_.size()) return false;
-        }
-        return true;
+        lookAhead(most_bytes / kShelfPart);
+        return addAll(most_bytes);
     }
 
   private:
+    /// One in so many is looked at ahead: enough to choose well from, and little to copy.
+    static constexpr std::size_t kStretch = 32;
+    /// On the shelf runs take twice the memory of the set.
+    static constexpr std::size_t kShelfPart = kStretch / 2;
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    /// A site to look at now.
+    struct Turn {
+        std::size_t site;
+        std::size_t slot;  ///< on the shelf, or kNone
+    };
+
+    /// Puts what is seen from sites all over the list on the shelf, until progress says stop or the
+    /// shelf is full; but from least_ sites always.
+    void lookAhead(std::size_t most_shelved) {
+        for (std::size_t k = 0; k < ahead_.size();) {
+            const std::size_t must = least_ - std::min(k, least_);
+            const bool is_stopped = progress_.stopped() || shelf_.bytes() > most_shelved;
+            const std::size_t end =
+                k + std::min({at_once_, ahead_.size() - k, is_stopped ? must : at_once_});
+            if (k == end) return;
+            turns_.clear();
+            for (; k < end; ++k) turns_.push_back({ahead_.turn(k), ahead_.slotOf(ahead_.turn(k))});
+            look(must);
+            for (std::size_t i = 0; i < turns_.size(); ++i)
+                if (is_done_[i] != 0) shelf_.put(turns_[i].slot, parts_[i]);
+        }
+    }
+
+    /// Adds all sites; once progress says stop, only those of the rest that are on the shelf.
+    /// True if that were all.
+    bool addAll(std::size_t most_bytes) {
+        std::size_t slot = 0, added = 0;
+        for (std::size_t site = 0; site < sites_.size();) {
+            const bool is_stopped = progress_.stopped();
+            turns_.clear();
+            for (; site < sites_.size() && turns_.size() < at_once_; ++site) {
+                const bool is_ahead = slot < ahead_.size() && ahead_.at(slot) == site;
+                const bool is_shelved = is_ahead && shelf_.has(slot);
+                if (is_shelved || !is_stopped) turns_.push_back({site, is_shelved ? slot : kNone});
+                if (is_ahead) ++slot;
+            }
+            look(0);
+            for (std::size_t i = 0; i < turns_.size(); ++i) {
+                if (is_done_[i] == 0) continue;
+                add(i);
+                ++added;
+                if (set_.bytes() > most_bytes) throw UsageError(tooLarge(most_bytes));
+            }
+            shelf_.dropBefore(slot);
+        }
+        return added == sites_.size();
+    }
+
     static std::string tooLarge(std::size_t most_bytes) {
         return "the candidates take more than " + formatBytes(most_bytes) +
                ": use fewer places, headings or cells, or --max-memory";
     }
 
-    /// Fills parts_ and, for slices, fans_ of the next `count` sites; false if it was stopped, then
-    /// after the first one if that must be.
-    bool look(std::size_t count, bool first_must_be) {
+    /// Fills parts_ and, for slices, fans_ of the sites at hand, from the shelf where they are on
+    /// it. What is looked through the mesh takes a while: one can stop in between, but for the
+    /// first `must` of them.
+    void look(std::size_t must) {
+        const std::size_t count = turns_.size();
         if (parts_.size() < count) parts_.resize(count);
+        is_done_.assign(count, 1);
         if (data_.looksInSlice()) findFans(count);
-        std::atomic<bool> is_stopped = false;
+        std::atomic<std::int64_t> looks = 0;
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-            if (data_.looksInSlice()) {
+            if (isShelved(i)) {
+                shelf_.copy(turns_[i].slot, parts_[i]);
+            } else if (data_.looksInSlice()) {
                 lookFrom(i);
-            } else if ((i > 0 || !first_must_be) &&
-                       (is_stopped.load(std::memory_order_relaxed) || progress_.stopped())) {
-                is_stopped = true;
+                ++looks;
+            } else if (i >= must && progress_.stopped()) {
+                is_done_[i] = 0;
             } else {
                 // Whoever waits for rows of cells here does not begin with another site.
                 tbb::this_task_arena::isolate([&] { lookFrom(i); });
+                ++looks;
             }
         });
-        return !is_stopped;
+        progress_.advance(looks);
+    }
+
+    [[nodiscard]] bool isShelved(std::size_t i) const {
+        return turns_[i].slot != kNone && shelf_.has(turns_[i].slot);
     }
 
     /// Neighbours mostly have the same headings.
@@ -284,12 +338,12 @@ class Scanner {
     }
 
     [[nodiscard]] std::span<const Angle> headingsOf(std::size_t i) const {
-        const Site& site = sites_[begin_ + i];
+        const Site& site = sites_[turns_[i].site];
         return std::span(site.headings).first(data_.headingsOf(site));
     }
 
     void lookFrom(std::size_t i) {
-        const Site& site = sites_[begin_ + i];
+        const Site& site = sites_[turns_[i].site];
         assert(!site.headings.empty());
         if (!data_.looksInSlice())
             data_.lookThroughMesh(site, parts_[i]);
@@ -302,7 +356,7 @@ class Scanner {
     }
 
     void add(std::size_t i) {
-        const Site& site = sites_[begin_ + i];
+        const Site& site = sites_[turns_[i].site];
         Pose3 mount = data_.mount;
         mount.position = {site.place.x, site.place.y, mount.position.z};
         const std::span<const Angle> headings = headingsOf(i);
@@ -319,8 +373,12 @@ class Scanner {
     const CandidateViews::Data& data_;
     std::span<const Site> sites_;
     Progress& progress_;
-    // Of the sites at hand, which begin at begin_:
-    std::size_t begin_ = 0;
+    std::size_t least_, at_once_;
+    Spread ahead_;
+    Shelf shelf_;  // in the order of ahead_.at()
+    // Of the sites at hand:
+    std::vector<Turn> turns_;
+    std::vector<char> is_done_;
     std::vector<CellParts> parts_;
     std::vector<Fans> fans_;
     std::vector<std::size_t> fan_of_;
@@ -330,10 +388,10 @@ class Scanner {
 }  // namespace
 
 bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t most_bytes, Progress& progress) {
+                   std::size_t most_bytes, Progress& progress, std::size_t least) {
     assert(set.cells() == views.data().grid.size());
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
-    const bool is_complete = Scanner(set, views, sites, progress).run(most_bytes);
+    const bool is_complete = Scanner(set, views, sites, least, progress).run(most_bytes);
     progress.end();
     return is_complete;
 }

@@ -59,12 +59,17 @@ class CandidateViews {
     std::unique_ptr<const Data> data_;
 };
 
+/// From so many places at least candidates are made, however early one stops: something to choose
+/// from, which takes milliseconds where a slice is looked at.
+constexpr std::size_t kLeastPlaces = 64;
+
 /// Appends the candidates of all sites, in order: of each its headings (only the first if
 /// views.isRound()) are the candidates of one site of the set. The work is shared out over all
-/// cores, some sites at a time, so that no more memory is needed than the set takes; the result
-/// does not depend on the number of threads. False if progress said to stop: then the first sites,
-/// as many as were done, are there. \throws UsageError once set.bytes() is more than most_bytes
+/// cores, some sites at a time, so that hardly more memory is needed than the set takes; the result
+/// does not depend on the number of threads. Sites all over the list are looked at first. False if
+/// progress said to stop: then those that were done are there, in order, at least `least` of them
+/// (or all), spread over the list. \throws UsageError once set.bytes() is more than most_bytes
 bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t most_bytes, Progress& progress);
+                   std::size_t most_bytes, Progress& progress, std::size_t least = kLeastPlaces);
 
 }  // namespace ispace

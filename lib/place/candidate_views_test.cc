@@ -356,5 +356,44 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
     EXPECT_LT(large.bytes(), 210'000U);
 }
 
+/// Fails unless both have the same candidates.
+void expectEqual(const CandidateSet& set, const CandidateSet& expected) {
+    ASSERT_EQ(set.sites(), expected.sites());
+    ASSERT_EQ(set.size(), expected.size());
+    EXPECT_EQ(set.runs(), expected.runs());
+    EXPECT_EQ(set.bytes(), expected.bytes());
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        ASSERT_EQ(set.siteOf(i), expected.siteOf(i));
+        ASSERT_EQ(set.pose(i), expected.pose(i));
+        std::vector<CellRun> runs, expected_runs;
+        set.forEachRun(i, [&](const CellRun& run) { runs.push_back(run); });
+        expected.forEachRun(i, [&](const CellRun& run) { expected_runs.push_back(run); });
+        ASSERT_EQ(runs, expected_runs) << i;
+    }
+}
+
+TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
+    const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
+    Worlds worlds(scene.environment);
+    const Grid grid{scene.environment.limits(), 40, 30};
+    SilentProgress quiet;
+    const std::vector<Mounted> all = devices();
+    for (const std::size_t device : {0U, 3U, 9U}) {
+        const CandidateViews views(scene.environment, worlds, grid, 0.1, all[device].device,
+                                   all[device].mount);
+        for (const int count : {0, 1, 63, 64, 65, 700, 20000}) {
+            if ((device == 9 && count > 70) || (device == 0 && count > 700)) continue;
+            const std::vector<Site> sites = manySites(count);
+            for (const std::size_t least : {0U, 1U, 50U}) {
+                CandidateSet set(grid.size()), expected(grid.size());
+                ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet, least));
+                for (const Site& site : sites)
+                    ASSERT_TRUE(addCandidates(expected, views, {&site, 1}, kPlenty, quiet));
+                ASSERT_NO_FATAL_FAILURE(expectEqual(set, expected)) << device << ' ' << count;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ispace

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which sites are looked at before their turn, and where what is seen from them waits.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cover/sector_cells.h"
+#include "geom/box.h"
+#include "place/sites.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// The bits of a number of 16 bits at every second place.
+inline std::uint32_t spreadOut(std::uint32_t x) {
+    x = (x | x << 8U) & 0x00ff00ffU;
+    x = (x | x << 4U) & 0x0f0f0f0fU;
+    x = (x | x << 2U) & 0x33333333U;
+    return (x | x << 1U) & 0x55555555U;
+}
+
+/// Where a place is along a curve through the whole box, on which neighbours mostly are near each
+/// other: the bits of both coordinates in turn (Morton order).
+inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
+    const double scale = 0xffff / std::max({box.width(), box.depth(), kContact});
+    const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
+    const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
+    return spreadOut(x & 0xffffU) | spreadOut(y & 0xffffU) << 1U;
+}
+
+/// Some of the sites, and the order in which to take them so that those taken at any time are
+/// spread over the plan, however the sites are listed. O(n log n)
+class Spread {
+  public:
+    /// \pre count <= sites.size() < 2^32
+    Spread(std::span<const Site> sites, std::size_t count) {
+        Box2 box;
+        for (const Site& site : sites) box.add(site.place);
+        std::vector<std::uint64_t> curve;  // the place on it above, the site below
+        curve.reserve(sites.size());
+        for (std::size_t i = 0; i < sites.size(); ++i)
+            curve.push_back(std::uint64_t{alongCurve(sites[i].place, box)} << 32U | i);
+        std::sort(curve.begin(), curve.end());
+        // The middle of each stretch of the curve, in the order of their numbers with bits
+        // reversed.
+        in_turn_.reserve(count);
+        const std::size_t end = std::bit_ceil(count);
+        for (std::size_t k = 0, stretch = 0; k < end; ++k) {
+            if (stretch < count)
+                in_turn_.push_back(curve[(2 * stretch + 1) * sites.size() / (2 * count)] &
+                                   0xffffffffU);
+            // The highest bits are counted up first.
+            std::size_t bit = end / 2;
+            for (; (stretch & bit) != 0; bit /= 2) stretch ^= bit;
+            stretch |= bit;
+        }
+        in_order_ = in_turn_;
+        std::sort(in_order_.begin(), in_order_.end());
+    }
+    [[nodiscard]] std::size_t size() const { return in_turn_.size(); }
+    /// The site whose turn is the k-th.
+    [[nodiscard]] std::size_t turn(std::size_t k) const { return in_turn_[k]; }
+    /// The k-th of all as they are listed.
+    [[nodiscard]] std::size_t at(std::size_t k) const { return in_order_[k]; }
+    [[nodiscard]] std::size_t slotOf(std::size_t site) const {
+        return static_cast<std::size_t>(std::lower_bound(in_order_.begin(), in_order_.end(), site) -
+                                        in_order_.begin());
+    }
+
+  private:
+    std::vector<std::size_t> in_turn_, in_order_;
+};
+
+/// What was seen from places before their turn. It lies together by some hundred neighbours, in
+/// pieces large enough to go back to the system once they are done with.
+class Shelf {
+  public:
+    explicit Shelf(std::size_t size) : slots_(size), boards_(size / kTogether + 1) {}
+    void put(std::size_t k, const CellParts& parts) {
+        Board& board = boards_[k / kTogether];
+        slots_[k] = {board.runs.size(), board.first.size(), parts.runs.size(), parts.first.size()};
+        board.runs.insert(board.runs.end(), parts.runs.begin(), parts.runs.end());
+        board.first.insert(board.first.end(), parts.first.begin(), parts.first.end());
+        bytes_ += parts.runs.size() * sizeof(CellRun) + parts.first.size() * sizeof(std::uint32_t);
+    }
+    [[nodiscard]] bool has(std::size_t k) const { return slots_[k].firsts > 0; }
+    void copy(std::size_t k, CellParts& parts) const {
+        const Board& board = boards_[k / kTogether];
+        const Slot& slot = slots_[k];
+        const std::span runs = std::span(board.runs).subspan(slot.run, slot.runs);
+        const std::span first = std::span(board.first).subspan(slot.first, slot.firsts);
+        parts.runs.assign(runs.begin(), runs.end());
+        parts.first.assign(first.begin(), first.end());
+    }
+    /// Those before k are not asked for any more.
+    void dropBefore(std::size_t k) {
+        for (; dropped_ < k / kTogether; ++dropped_) boards_[dropped_] = {};
+    }
+    /// Of all that was put here.
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  private:
+    static constexpr std::size_t kTogether = 512;
+    struct Slot {
+        std::size_t run = 0, first = 0;    // where they begin on their board
+        std::size_t runs = 0, firsts = 0;  // how many
+    };
+    struct Board {
+        std::vector<CellRun> runs;
+        std::vector<std::uint32_t> first;
+    };
+    std::vector<Slot> slots_;
+    std::vector<Board> boards_;
+    std::size_t dropped_ = 0, bytes_ = 0;
+};
+
+}  // namespace ispace
