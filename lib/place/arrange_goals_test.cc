@@ -255,19 +255,6 @@ TEST(ArrangeGoals, ACurveOfSeveralKindsDoesNotFall) {
     }
 }
 
-/// Says stop once it has begun so many phases.
-class StopAtPhase final : public Progress {
-  public:
-    explicit StopAtPhase(int last) : last_(last) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++begun_; }
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return begun_ > last_; }
-
-  private:
-    int last_, begun_ = 0;
-};
-
 TEST(ArrangeGoals, ACurveThatIsCutHasAllItsPoints) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:4"});

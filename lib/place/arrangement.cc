@@ -115,10 +115,12 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
     return values;
 }
 
-/// Of 1, 2, ... sensors of these kinds, whatever they cost. Where there is no time left a point
-/// tells what so many of the sensors found are worth, and the bound of more.
+/// Of 1, 2, ... sensors of these kinds, whatever they cost. Where there is no time left the first
+/// points are of greedy layouts with quick bounds, and others tell what so many of the sensors
+/// found are worth, and the bound of more.
 std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
                                 Progress& progress) {
+    constexpr std::size_t kQuickPoints = 12;
     const ArrangeOptions& options = model.options();
     const std::size_t last = found.best.chosen.size();
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
@@ -133,7 +135,8 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& m
         if (n < last || !is_any_cost) {
             best.best.value = part[n];
             best.bound = is_any_cost ? found.bound : model.problem().totalWeight();
-            if (!progress.stopped()) best = search(fewer, model.searchOptions(), progress);
+            if (n <= kQuickPoints || !progress.stopped())
+                best = search(fewer, model.searchOptions(), progress);
         }
         // One more costs nothing: it is worth no less.
         values.push_back(std::max({best.best.value, part[n], values.empty() ? 0 : values.back()}));

@@ -173,17 +173,9 @@ TEST(Arrangement, FourReceiversUnderTheCeilingHearTogether) {
 }
 
 TEST(Arrangement, StopsWithTheBestSoFar) {
-    class Impatient final : public Progress {
-      public:
-        void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++phases; }
-        void advance(std::int64_t /*count*/) override {}
-        void end() override {}
-        [[nodiscard]] bool stopped() const override { return phases > 2; }
-        int phases = 0;
-    };
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=4:3"});
-    Impatient progress;
+    StopAtPhase progress(2);
     const Arrangement arrangement = arrange(scene, groups, coarse(Optimizer::Exact), progress);
     EXPECT_FALSE(arrangement.is_complete);
     EXPECT_EQ(arrangement.sensors.size(), 3U);
@@ -193,15 +185,8 @@ TEST(Arrangement, StopsWithTheBestSoFar) {
 }
 
 TEST(Arrangement, ThereIsALayoutHoweverEarlyOneStops) {
-    class Hasty final : public Progress {
-      public:
-        void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-        void advance(std::int64_t /*count*/) override {}
-        void end() override {}
-        [[nodiscard]] bool stopped() const override { return true; }
-    };
     const Scene scene = roomScene();
-    Hasty progress;
+    StopAtPhase progress(-1);  // at once
     for (const Optimizer optimizer : {Optimizer::Greedy, Optimizer::Exact}) {
         ArrangeOptions options = coarse(optimizer);
         options.mount.heights = {1.2};
