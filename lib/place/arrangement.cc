@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/coverage.h"
+#include "place/coverage_state.h"
 #include "place/model_file.h"
 #include "place/refine_arranged.h"
 #include "place/scene_problem.h"
@@ -91,26 +92,28 @@ void measure(Arrangement& result, SceneProblem& model) {
     if (!is_coverage) result.value = model.share(model.valueOf(model.coverageOf(result.sensors)));
 }
 
-/// Worth of the first n of these sensors, each placed where it adds most of them: [n].
+/// Worth of the first n of these sensors, each placed where it adds most of them: [n]. Where views
+/// have to hang together part of them need not: then only all are worth something. O(n^2 * runs)
 std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
-    std::vector<std::uint64_t> values = {valueOf(problem, {})};
-    std::vector<Choice> first;
-    while (!chosen.empty()) {
+    const std::vector<std::uint32_t> part_weights = weightsOfParts(problem);
+    CoverageState state(problem, part_weights);
+    std::vector<std::uint64_t> values(chosen.size() + 1, state.value());
+    values.back() = valueOf(problem, chosen);
+    if (problem.is_connected) return values;
+    for (std::size_t n = 1; !chosen.empty(); ++n) {
         std::uint64_t best = 0;
         std::size_t next = 0;
         for (std::size_t i = 0; i < chosen.size(); ++i) {
-            first.push_back(chosen[i]);
-            const bool may_be = !problem.is_connected || isConnected(problem, first);
-            const std::uint64_t value = may_be ? valueOf(problem, first) : 0;
-            first.pop_back();
-            if (value > best) {
-                best = value;
+            state.add(chosen[i]);
+            if (state.value() > best) {
+                best = state.value();
                 next = i;
             }
+            state.removeAt(n - 1);
         }
-        first.push_back(chosen[next]);
+        state.add(chosen[next]);
         chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(next));
-        values.push_back(std::max(best, values.back()));
+        values[n] = state.value();
     }
     return values;
 }
