@@ -14,9 +14,8 @@ namespace ispace {
 /// plane at whatever height: the area within half a cell's diagonal of what may be in view, by the
 /// area of a cell. That area is at most A + L d + pi d^2 (Steiner's formula) of a connected piece
 /// of plane with area A and outline L, here at most those
-/// - of the sector of its fan for a laser that does not sweep: of a tilted or rolled one that
-/// sector
-///   is seen from above, where nothing is longer or larger;
+/// - of the sector of its fan for a laser that does not sweep: a tilted or rolled one has it seen
+///   from above, where nothing is longer or larger;
 /// - of the disc of its range for swept lasers, receivers and spherical rangers: what they see of a
 ///   plane is nowhere farther away;
 /// - for pinholes of any plane section of the pyramid of their view, down to the depth of their

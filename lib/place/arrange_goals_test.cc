@@ -274,6 +274,30 @@ TEST(ArrangeGoals, ACurveThatIsCutHasAllItsPoints) {
     }
 }
 
+TEST(ArrangeGoals, ACurveKnowsNothingOfCandidatesThatWereNotMade) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3:3"});
+    ArrangeOptions options = coarse();
+    options.density = {0.2, 0.2, 8};
+    options.wants_curve = true;
+    StopAtPhase at_once(-1);
+    const Arrangement cut = arrange(scene, groups, options, at_once);
+    ASSERT_EQ(cut.bound, 1);
+    ASSERT_EQ(cut.curve.size(), 3U);
+    for (const CurvePoint& point : cut.curve) EXPECT_EQ(point.bound, 1);
+}
+
+TEST(ArrangeGoals, ACurveToATargetEndsWithItsBound) {
+    const Scene scene = roomScene();
+    ArrangeOptions options = coarse();
+    options.target = 0.7;
+    options.wants_curve = true;
+    const Arrangement all = arranged(scene, groupsOf(scene, {"laser,range=3"}, true), options);
+    ASSERT_EQ(all.curve.size(), all.sensors.size());
+    EXPECT_EQ(all.curve.back().value, all.candidate_value);
+    EXPECT_EQ(all.curve.back().bound, all.candidate_bound);
+}
+
 TEST(ArrangeGoals, WhatIsNotMovedKeepsItsBound) {
     const Scene scene = roomScene("#env 1\nispace size=4,4\n");
     ArrangeOptions options = coarse(Optimizer::Exact);

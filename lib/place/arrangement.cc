@@ -70,6 +70,11 @@ double boundOfAnyPlace(const SceneProblem& model, const std::vector<ArrangedSens
     return model.share(model.mostFromAnyPlace(most));
 }
 
+/// Nothing is known of candidates that were not made.
+double boundOf(const SearchResult& result, const SceneProblem& model) {
+    return model.isComplete() ? model.share(result.bound) : 1;
+}
+
 void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refineArranged(model, result.sensors, before, progress);
     result.refined_before = refined.before;
@@ -118,39 +123,60 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
     return values;
 }
 
-/// Of 1, 2, ... sensors of these kinds, whatever they cost. Where there is no time left the first
-/// points are of greedy layouts with quick bounds, and others tell what so many of the sensors
-/// found are worth, and the bound of more.
-std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
-                                Progress& progress) {
-    constexpr std::size_t kQuickPoints = 12;
-    const ArrangeOptions& options = model.options();
-    const std::size_t last = found.best.chosen.size();
+/// Up to so many sensors a point of a curve is searched for even if there is no time left: what
+/// greedy and a quick bound take is about in proportion to what is looked through.
+std::size_t quickPoints(const SceneProblem& model) {
+    constexpr std::size_t kMostBytes = std::size_t{64} << 20U;
+    constexpr std::size_t kBytesPerCell = 8;
+    return kMostBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
+}
+
+/// True if what was found is also the most that so many sensors are known to be worth.
+bool isByNumber(const SceneProblem& model) {
+    if (!model.options().budget && !model.options().target) return true;
+    const std::vector<Kind>& kinds = model.problem().kinds;
+    return std::all_of(kinds.begin(), kinds.end(),
+                       [&](const Kind& kind) { return kind.cost == kinds[0].cost; });
+}
+
+/// What 1, 2, ... sensors of these kinds are worth, whatever they cost, and at most. Where there is
+/// no time left for a search it is what so many of the sensors found are worth, and no bound.
+std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneProblem& model,
+                                         Progress& progress) {
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
-    const bool is_any_cost = !options.budget && !options.target;
+    const std::size_t last = part.size() - 1, quick = quickPoints(model);
     Problem fewer = model.problem();
     fewer.order.clear();
     for (Kind& kind : fewer.kinds) kind.cost = 1;
-    std::vector<std::uint64_t> values, bounds;
+    std::vector<SearchResult> results;
+    results.reserve(last);
     for (std::size_t n = 1; n <= last; ++n) {
         fewer.budget = static_cast<double>(n);
-        SearchResult best = found;
-        if (n < last || !is_any_cost) {
-            best.best.value = part[n];
-            best.bound = is_any_cost ? found.bound : model.problem().totalWeight();
-            if (n <= kQuickPoints || !progress.stopped())
-                best = search(fewer, model.searchOptions(), progress);
-        }
-        // One more costs nothing: it is worth no less.
-        values.push_back(std::max({best.best.value, part[n], values.empty() ? 0 : values.back()}));
-        bounds.push_back(std::max(best.bound, values.back()));
+        SearchResult result;
+        result.bound = fewer.totalWeight();
+        if (n == last && isByNumber(model))
+            result = found;
+        else if (n <= quick || !progress.stopped())
+            result = search(fewer, model.searchOptions(), progress);
+        result.best.value = std::max(result.best.value, part[n]);
+        results.push_back(std::move(result));
     }
-    // What more sensors cannot cover, fewer cannot.
-    for (std::size_t n = last; n-- > 1;) bounds[n - 1] = std::min(bounds[n - 1], bounds[n]);
+    return results;
+}
+
+std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
+                                Progress& progress) {
+    std::vector<SearchResult> results = searchByNumber(found, model, progress);
+    // One sensor more costs nothing and is worth no less; what more cannot cover fewer cannot.
+    for (std::size_t i = 1; i < results.size(); ++i)
+        results[i].best.value = std::max(results[i].best.value, results[i - 1].best.value);
+    for (std::size_t i = results.size(); i-- > 1;)
+        results[i - 1].bound = std::min(results[i - 1].bound, results[i].bound);
     std::vector<CurvePoint> curve;
-    curve.reserve(last);
-    for (std::size_t n = 0; n < last; ++n)
-        curve.push_back({static_cast<int>(n) + 1, model.share(values[n]), model.share(bounds[n])});
+    curve.reserve(results.size());
+    for (const SearchResult& result : results)
+        curve.push_back({static_cast<int>(curve.size()) + 1, model.share(result.best.value),
+                         boundOf(result, model)});
     return curve;
 }
 
@@ -174,7 +200,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                                    [](const Kind& kind) { return kind.cost != 1; });
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
     result.candidate_value = model.share(found.best.value);
-    result.candidate_bound = model.isComplete() ? model.share(found.bound) : 1;
+    result.candidate_bound = boundOf(found, model);
     result.bound = result.candidate_bound;
     result.sensors = model.sensorsOf(chosen);
     if (options.refine) refineIn(result, model, found.best.value, progress);

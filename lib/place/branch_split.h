@@ -17,10 +17,10 @@ struct SplitNode {
     std::uint64_t closed = 0;          ///< what is in no child is worth no more; at most the cut
 };
 
-/// Splits a node in two by what candidates see: so many sensors of a group are of those that see
-/// about the same as one, the others of the rest; a child for each number. Of the places where a
-/// group could be split, that one is taken whose children promise the smallest tree, by a few steps
-/// of the bound of each (strong branching, Applegate, Bixby, Chvatal & Cook 1995).
+/// Splits the list of one group of a node in two: candidates that see about the same as one of
+/// them, and the rest. There is a child for each number of sensors that are of the first. Of the
+/// places where a group could be split, that one is taken whose children promise the smallest tree,
+/// by a few steps of the bound of each (strong branching, Applegate, Bixby, Chvatal & Cook 1995).
 ///
 /// The result depends on the arguments alone, unless progress says stop: then any split will do.
 /// \param relaxed of the node before it was cut down, the same groups and lists, with the shares of

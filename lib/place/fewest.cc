@@ -42,7 +42,7 @@ class FewestSearch {
     [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
     [[nodiscard]] Fewest unreached(const Solution& greedy);
     [[nodiscard]] Fewest cheapen(Solution best);
-    void lowerBound(const Solution& best, const LagrangeLimits& limits, Progress& progress);
+    void lowerValueBound(const Solution& best, const LagrangeLimits& limits, Progress& progress);
     void raiseProven(const CostLevels& levels, const Solution& best, int rounds);
     void descend(const CostLevels& levels, Solution& best);
     void stepDown(const CostLevels& levels, Solution& best);
@@ -294,11 +294,11 @@ Fewest FewestSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
     // Quick bounds first: if there is no time for more, there are these.
-    lowerBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
+    lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, progress_);
     raiseProven(levels, best, kQuickRounds);
     if (options_.optimizer != Optimizer::Greedy) {
         descend(levels, best);
-        lowerBound(best, {.cut = best.value, .gap = 0.001}, progress_);
+        lowerValueBound(best, {.cut = best.value, .gap = 0.001}, progress_);
     }
     stepDown(levels, best);
     if (options_.optimizer != Optimizer::Greedy) raiseProven(levels, best, LagrangeLimits().rounds);
@@ -306,8 +306,8 @@ Fewest FewestSearch::cheapen(Solution best) {
 }
 
 /// For what costs no more than the best.
-void FewestSearch::lowerBound(const Solution& best, const LagrangeLimits& limits,
-                              Progress& progress) {
+void FewestSearch::lowerValueBound(const Solution& best, const LagrangeLimits& limits,
+                                   Progress& progress) {
     const double cost = costOf(problem_, best.chosen);
     const Bound bound = boundWithin(within(cost), best.chosen, limits, progress);
     bound_ = std::min(bound_, bound.value);
@@ -328,9 +328,9 @@ Fewest FewestSearch::reached(const Solution& best, double least_cost) {
     fewest.result.best = best;
     if (progress_.stopped()) {
         SilentProgress silent;  // there shall be some bound
-        lowerBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, silent);
+        lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, silent);
     } else if (options_.optimizer == Optimizer::Greedy) {
-        lowerBound(best, {best.value, 0.01, kQuickRounds}, progress_);
+        lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = kQuickRounds}, progress_);
     } else {
         fewest.result.best = filled(best);
     }

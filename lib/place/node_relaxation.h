@@ -44,7 +44,7 @@ class NodeRelaxation {
     void count(float part);
     [[nodiscard]] const std::vector<std::vector<float>>& shares() const { return shares_; }
     /// By how much what the candidates of a group see is what this one sees: 1 for itself, in
-    /// multipliers given (not all 0).
+    /// multipliers given (not all 0). Prices anew: evaluate() before anything else but shares().
     [[nodiscard]] std::vector<float> likeness(std::size_t group, std::uint32_t pivot,
                                               const std::vector<std::uint32_t>& multipliers);
 

@@ -18,11 +18,12 @@ namespace ispace {
 /// those that it still lacks, and not at all once those to come are too few; among equals the parts
 /// met decide. Places all that fit, also those that add nothing; where progress says stop, the
 /// first 32 all the same. Lazy (Minoux 1978): a place is looked at again only while what it may add
-/// at most is more than the best so far. Without demand and budget its value is at least 1 - 1/e of
-/// the best.
+/// at most is more than the best so far. Its value is at least 1 - 1/e of the best where one
+/// sensor meets a demand, all are of one kind, and there is no budget; of several kinds 1/2
+/// (Fisher, Nemhauser & Wolsey 1978).
 ///
 /// With is_connected each sensor after the first sees a cell that those before it see, if there is
-/// such a candidate.
+/// such a candidate; then nothing is guaranteed.
 Solution placeGreedily(const Problem& problem, Progress& progress);
 
 struct SwapOptions {

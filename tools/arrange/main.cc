@@ -16,6 +16,7 @@
 #include "cli/search_watch.h"
 #include "layout/schemas.h"
 #include "place/layout_document.h"
+#include "place/problem.h"
 #include "record/text.h"
 #include "sense/ultrasound.h"
 
@@ -117,9 +118,12 @@ struct Numbers {
 Numbers numbersOf(const Work& work) {
     const Scene& scene = work.input.scene;
     Numbers numbers{scene.receivers.size(), scene.lasers.size() + scene.rangers.size()};
-    for (const SensorGroup& group : work.groups)
-        (isReceiver(group.device) ? numbers.receivers : numbers.others) +=
-            static_cast<std::size_t>(group.most);
+    for (const SensorGroup& group : work.groups) {
+        auto most = static_cast<std::size_t>(group.most);
+        if (work.how.budget)
+            most = affordableCount(*work.how.budget, 0, group.record.number("cost"), most);
+        (isReceiver(group.device) ? numbers.receivers : numbers.others) += most;
+    }
     return numbers;
 }
 
