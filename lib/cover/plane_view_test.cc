@@ -20,19 +20,23 @@ struct Room {
           grid{scene.environment.limits(), columns, rows},
           mesh(RayWorld::ofEnvironment(scene.environment)) {}
 
-    /// Checks each cell with `is_seen(centre)`, which gives how far inside a place is (below 0:
-    /// outside); places nearer to the edge are left out.
+    /// True if just those cells are seen whose centres are inside: `inside(centre)` gives how far
+    /// (below 0: outside); places nearer to the edge than 0.1 mm are left out. False if none is
+    /// inside, too.
     template <typename Inside>
-    void expect(const CellSet& cells, Inside inside) const {
+    [[nodiscard]] ::testing::AssertionResult agrees(const CellSet& cells, Inside inside) const {
         std::size_t count = 0;
         for (std::size_t cell = 0; cell < grid.size(); ++cell) {
             const double depth = inside(grid.center(cell));
             if (std::fabs(depth) < 1e-4) continue;
-            ASSERT_EQ(cells.test(cell), depth > 0)
-                << grid.center(cell).x << ", " << grid.center(cell).y;
+            if (cells.test(cell) != (depth > 0))
+                return ::testing::AssertionFailure()
+                       << grid.center(cell).x << ", " << grid.center(cell).y
+                       << (depth > 0 ? " is not seen" : " is seen");
             count += depth > 0 ? 1 : 0;
         }
-        EXPECT_GT(count, 0U);
+        if (count == 0) return ::testing::AssertionFailure() << "no cell is inside";
+        return ::testing::AssertionSuccess();
     }
 
     Scene scene;
@@ -48,29 +52,30 @@ TEST(PlaneCells, RangerLookingDownSeesARectangle) {
         const PlacedRanger sensor = rangerAt(poseAt(place, 0, plane < 3 ? -90 : 90), 70, 40, 20);
         const double w = std::fabs(plane - 3) * tanOf(35), d = std::fabs(plane - 3) * tanOf(20);
         const Room fine("ispace size=12,8,4", 1200, 400);
-        fine.expect(cellsSeen(fine.grid, fine.mesh, sensor, plane), [&](Point2 p) {
+        EXPECT_TRUE(fine.agrees(cellsSeen(fine.grid, fine.mesh, sensor, plane), [&](Point2 p) {
             return std::min(w - std::fabs(p.y - place.y), d - std::fabs(p.x - place.x));
-        });
+        }));
     }
 }
 
 TEST(PlaneCells, RollTurnsThePicture) {
     const Room room("ispace size=12,8,4", 120, 80);
     const PlacedRanger sensor = rangerAt(poseAt({0, 0, 3}, 0, -90, 90), 70, 40, 20);
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
         return std::min(3 * tanOf(35) - std::fabs(p.x), 3 * tanOf(20) - std::fabs(p.y));
-    });
+    }));
 }
 
 TEST(PlaneCells, RangeIsADistanceOrADepth) {
     const Room room("ispace size=12,8,4", 120, 80);
     PlacedRanger sensor = rangerAt(poseAt({0, 0, 1}, 0, 0), 90, 100, 4);
     const auto wedge = [](Point2 p) { return std::min(p.x - std::fabs(p.y), p.x - 1 / tanOf(50)); };
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
-                [&](Point2 p) { return std::min(wedge(p), 4 - std::hypot(p.x, p.y, 1)); });
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+        return std::min(wedge(p), 4 - std::hypot(p.x, p.y, 1));
+    }));
     sensor.ranger.measures_depth = true;
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
-                [&](Point2 p) { return std::min(wedge(p), 4 - p.x); });
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
+                            [&](Point2 p) { return std::min(wedge(p), 4 - p.x); }));
 }
 
 TEST(PlaneCells, HeadSeesBearingsAndElevations) {
@@ -78,13 +83,13 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
     for (const double span : {30.0, 180.0, 300.0, 360.0}) {
         PlacedRanger sensor = rangerAt(poseAt({0.05, 0, 2}, 20, 0), span, 100, 4);
         sensor.ranger.projection = Projection::Spherical;
-        room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+        EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
             const Vec2 way = p - Point2{0.05, 0};
             const Angle off = wrapped(directionOf(way.x, way.y) - Angle::degrees(20));
             const double side = span == 360 ? 1 : span / 2 - std::fabs(off.degrees());
             const double ring = length(way) - 2 / tanOf(50);
             return std::min({side, ring, 4 - std::hypot(way.x, way.y, 2)});
-        });
+        }));
     }
 }
 
@@ -93,12 +98,12 @@ TEST(PlaneCells, ReceiverHearsACone) {
     for (const double fov : {60.0, 120.0, 180.0, 240.0, 360.0}) {
         const Pose3 pose = poseAt({0.3, 0.1, 2}, 30, -50, 77);
         const PlacedReceiver sensor = receiverAt(pose, fov, 5);
-        room.expect(cellsHeard(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
+        EXPECT_TRUE(room.agrees(cellsHeard(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
             const Vec3 way = Point3{p.x, p.y, 0.5} - pose.position;
             const double cosine = dot(way, pose.beam({})) / length(way);
             const double off = std::acos(std::min(1.0, cosine)) * (180 / std::numbers::pi);
             return std::min(fov == 360 ? 1 : fov / 2 - off, 5 - length(way));
-        });
+        }));
     }
 }
 
@@ -126,11 +131,13 @@ TEST(PlaneCells, PlaneOutOfRangeIsNotSeen) {
 TEST(PlaneCells, TiltedLaserCoversTheFloorUnderItsPlane) {
     const Room room("ispace size=12,8,20", 120, 80);
     const Laser wide = laserWith(30, -90, 180);
-    room.expect(cellsSeen(room.grid, room.mesh, {"l", wide, poseAt({0, 0, 1}, 0, -45)}, 0),
-                [](Point2 p) { return std::min(p.x, 1 - p.x); });
+    EXPECT_TRUE(
+        room.agrees(cellsSeen(room.grid, room.mesh, {"l", wide, poseAt({0, 0, 1}, 0, -45)}, 0),
+                    [](Point2 p) { return std::min(p.x, 1 - p.x); }));
     const Laser near = laserWith(2, -90, 180);
-    room.expect(cellsSeen(room.grid, room.mesh, {"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
-                [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); });
+    EXPECT_TRUE(
+        room.agrees(cellsSeen(room.grid, room.mesh, {"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
+                    [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); }));
     const PlacedLaser upright{"l", wide, poseAt({0, 0, 1}, 0, -90)};
     EXPECT_EQ(cellsSeen(room.grid, room.mesh, upright, 0).count(), 0U);
 }
@@ -140,22 +147,23 @@ TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
     const Room room("ispace size=9,9,4.5", 90, 90);
     PlacedLaser sensor{"l", laserWith(7, -90, 180), poseAt({0, 0, 4}, 0, -90)};
     sensor.laser.sweep = SweepAxis::Heading;
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
-                [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); });
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
+                            [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); }));
     // Four scans, and all between the last and the first.
     sensor.laser.sweep_step = Angle::degrees(90);
     sensor.laser.first = Angle::degrees(10);
     sensor.laser.beams = 61;
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
         const double off = std::hypot(p.x, p.y) / 4;  // tangent, from straight down
         return std::min({off - tanOf(10), tanOf(60) - off, 7 - std::hypot(p.x, p.y, 4)});
-    });
+    }));
     sensor.laser = laserWith(7, -90, 180);
     sensor.laser.sweep = SweepAxis::Heading;
     // A quarter of the headings, of both halves of the scan.
     sensor.laser.sweep_span = Angle::degrees(90);
-    room.expect(cellsSeen(room.grid, room.mesh, sensor, 0),
-                [](Point2 p) { return std::min(7 - std::hypot(p.x, p.y, 4), -p.x * p.y); });
+    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
+        return std::min(7 - std::hypot(p.x, p.y, 4), -p.x * p.y);
+    }));
 }
 
 /// The same by trying angle after angle: where the place changes sides of the scan plane.

@@ -258,9 +258,9 @@ struct Furnished {
           mesh(RayWorld::ofEnvironment(scene.environment)),
           caster(scene.environment) {}
 
-    /// Cells are those whose centre lies in the region; on its boundary float32 decides.
-    void compare(const CellSet& cells, const std::vector<Curve>& curves,
-                 const std::string& what) const {
+    /// Cells are those whose centre lies in the region; on its boundary float32 decides. How many.
+    std::size_t compare(const CellSet& cells, const std::vector<Curve>& curves,
+                        const std::string& what) const {
         std::vector<Polygon> polygons;
         polygons.reserve(curves.size());
         for (const Curve& curve : curves) polygons.push_back(chords(curve, 1e-6));
@@ -282,25 +282,27 @@ struct Furnished {
                               << " m from the boundary";
         }
         EXPECT_EQ(wrong, 0U) << what;
+        return cells.count();
     }
 
-    /// All sensors at one place.
-    void compareAll(const Pose3& pose, Angle fov_x, Angle fov_y, double range, bool is_by_depth,
-                    double height, const std::string& what) const {
+    /// All sensors at one place; how many cells they see.
+    std::size_t compareAll(const Pose3& pose, Angle fov_x, Angle fov_y, double range,
+                           bool is_by_depth, double height, const std::string& what) const {
         const double wide = fov_x.degrees(), upright = fov_y.degrees();
         PlacedRanger ranger = rangerAt(pose, wide, upright, range);
         ranger.ranger.measures_depth = is_by_depth;
-        compare(cellsSeen(grid, mesh, ranger, height), caster.regionSeen(ranger, height),
-                what + " pinhole");
+        std::size_t seen = compare(cellsSeen(grid, mesh, ranger, height),
+                                   caster.regionSeen(ranger, height), what + " pinhole");
         const PlacedRanger head = rangerAt(pose, 2 * wide, upright, range, Projection::Spherical);
-        compare(cellsSeen(grid, mesh, head, height), caster.regionSeen(head, height),
-                what + " spherical");
+        seen += compare(cellsSeen(grid, mesh, head, height), caster.regionSeen(head, height),
+                        what + " spherical");
         const PlacedReceiver receiver = receiverAt(pose, 2 * upright, range);
-        compare(cellsHeard(grid, mesh, receiver, height), caster.regionHeard(receiver, height),
-                what + " receiver");
+        seen += compare(cellsHeard(grid, mesh, receiver, height),
+                        caster.regionHeard(receiver, height), what + " receiver");
         const PlacedLaser laser = laserAt(pose, range, -wide, 2 * wide);
-        compare(cellsSeen(grid, mesh, laser, height), caster.regionSeen(laser).value(),
-                what + " laser");
+        seen += compare(cellsSeen(grid, mesh, laser, height), caster.regionSeen(laser).value(),
+                        what + " laser");
+        return seen;
     }
 
     Scene scene;
@@ -313,28 +315,33 @@ TEST(ShadowCaster, CellsAreThoseInTheRegion) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> x(-7, 7), y(-5, 5), z(0.05, 3.5), turn(-180, 180),
         fov(20, 170), plane(0, 1.5);
+    std::size_t seen = 0;
     for (int trial = 0; trial < 40; ++trial) {
         const Furnished room(furniture(random, 3 + trial % 9));
         const Pose3 pose = poseAt({x(random), y(random), z(random)}, turn(random), turn(random),
                                   trial % 3 == 0 ? turn(random) : 0);
         const double height = trial % 4 == 0 ? 0 : trial % 4 == 1 ? 0.75 : plane(random);
-        room.compareAll(pose, Angle::degrees(fov(random)), Angle::degrees(fov(random)),
-                        trial % 5 == 0 ? 30 : 2 + trial % 5, trial % 6 == 0, height,
-                        "trial " + std::to_string(trial));
+        seen += room.compareAll(pose, Angle::degrees(fov(random)), Angle::degrees(fov(random)),
+                                trial % 5 == 0 ? 30 : 2 + trial % 5, trial % 6 == 0, height,
+                                "trial " + std::to_string(trial));
     }
+    EXPECT_GT(seen, 5000U);
 }
 
 TEST(ShadowCaster, CellsOfAPlaneThroughTheSensorAreThoseInTheRegion) {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> x(-5.9, 5.9), y(-3.9, 3.9), z(0.05, 1.2),
         turn(-180, 180), fov(20, 170);
+    std::size_t seen = 0;
     for (int trial = 0; trial < 12; ++trial) {
         const Furnished room(furniture(random, 3 + trial % 9));
         const Pose3 pose =
             poseAt({x(random), y(random), z(random)}, turn(random), turn(random) / 4, turn(random));
-        room.compareAll(pose, Angle::degrees(fov(random)), Angle::degrees(fov(random)), 2 + trial,
-                        trial % 2 == 0, pose.position.z, "trial " + std::to_string(trial));
+        seen += room.compareAll(pose, Angle::degrees(fov(random)), Angle::degrees(fov(random)),
+                                2 + trial, trial % 2 == 0, pose.position.z,
+                                "trial " + std::to_string(trial));
     }
+    EXPECT_GT(seen, 5000U);
 }
 
 TEST(ShadowCaster, CellsAreThoseInTheRegionWhereAllIsAligned) {
@@ -342,6 +349,7 @@ TEST(ShadowCaster, CellsAreThoseInTheRegionWhereAllIsAligned) {
     const auto pick = [&](int low, int high, double step) {
         return step * std::uniform_int_distribution<int>(low, high)(random);
     };
+    std::size_t seen = 0;
     for (int trial = 0; trial < 60; ++trial) {
         std::string lines;
         for (int i = 0; i < 6; ++i)
@@ -352,10 +360,11 @@ TEST(ShadowCaster, CellsAreThoseInTheRegionWhereAllIsAligned) {
         const Furnished room(lines);
         const Pose3 pose = poseAt({pick(-12, 12, 0.5), pick(-8, 8, 0.5), pick(0, 10, 0.25)},
                                   pick(-8, 8, 45), pick(-4, 4, 45), pick(-2, 2, 90));
-        room.compareAll(pose, Angle::degrees(pick(2, 11, 15)), Angle::degrees(pick(2, 11, 15)),
-                        pick(1, 12, 1), trial % 3 == 0, pick(0, 4, 0.25),
-                        "trial " + std::to_string(trial));
+        seen += room.compareAll(pose, Angle::degrees(pick(2, 11, 15)),
+                                Angle::degrees(pick(2, 11, 15)), pick(1, 12, 1), trial % 3 == 0,
+                                pick(0, 4, 0.25), "trial " + std::to_string(trial));
     }
+    EXPECT_GT(seen, 5000U);
 }
 
 TEST(ShadowCaster, TurningTheSceneChangesNothing) {

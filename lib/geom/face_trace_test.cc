@@ -34,14 +34,14 @@ std::vector<Region> facesByBoth(const Lines& lines, const Lines& passages = {}) 
     return arranged;
 }
 
-TEST(TracedFaces, nothingFromNothing) {
+TEST(TracedFaces, NothingFromNothing) {
     EXPECT_TRUE(facesByBoth({}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {0, 0}}}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}, {{1, 0}, {0, 0}}, {{1, 0}, {2, 1}}}).empty());
 }
 
-TEST(TracedFaces, leavesLinesThatMeetElsewhereToTheArrangement) {
+TEST(TracedFaces, LeavesLinesThatMeetElsewhereToTheArrangement) {
     EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 2}}, {{0, 2}, {2, 0}}}));   // cross
     EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {1, 1}}}));   // touch
     EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {3, 0}}}));   // overlap
@@ -52,7 +52,7 @@ TEST(TracedFaces, leavesLinesThatMeetElsewhereToTheArrangement) {
     EXPECT_TRUE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{2, 0}, {3, 0}}, {{0, 0}, {-1, 0}}}));
 }
 
-TEST(TracedFaces, islandsBridgesAndAntennas) {
+TEST(TracedFaces, IslandsBridgesAndAntennas) {
     Lines lines = test::edgesOf(test::box(0, 0, 8, 6));
     append(lines, test::box(3, 2, 5, 4));
     lines.push_back({{8, 6}, {9, 7}});  // antenna outside
@@ -67,14 +67,16 @@ TEST(TracedFaces, islandsBridgesAndAntennas) {
     EXPECT_EQ(totalArea(faces), 49);
 }
 
-TEST(TracedFaces, curvesThatTouchAtPoints) {
+TEST(TracedFaces, CurvesThatTouchAtPoints) {
     Lines lines = test::edgesOf({{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}});
     append(lines, {{2, 2}, {2.5, 2.2}, {2.5, 1.8}});
     append(lines, {{2, 2}, {3, 2.5}, {3.5, 2}, {3, 1.5}});
-    facesByBoth(lines);
+    const auto faces = facesByBoth(lines);
+    ASSERT_EQ(faces.size(), 4U);
+    EXPECT_EQ(totalArea(faces), 8);
 }
 
-TEST(TracedFaces, islandsUnderSlopesAndUprightLines) {
+TEST(TracedFaces, IslandsUnderSlopesAndUprightLines) {
     // Islands whose leftmost vertex lies over, under and beside vertices of what is around them.
     Lines lines = test::edgesOf({{0, 0}, {4, -3}, {8, 0}, {8, 6}, {4, 9}, {0, 6}});
     for (const double x : {1.0, 4.0, 6.0}) {
@@ -88,7 +90,7 @@ TEST(TracedFaces, islandsUnderSlopesAndUprightLines) {
     EXPECT_EQ(faces.front().holes.size(), 9U);
 }
 
-TEST(TracedFaces, pixelMaps) {
+TEST(TracedFaces, PixelMaps) {
     std::mt19937_64 random(21);
     for (int round = 0; round < 40; ++round) {
         const test::PixelMap map(random, 40, 30, 0.3 + 0.01 * round);
@@ -96,7 +98,7 @@ TEST(TracedFaces, pixelMaps) {
     }
 }
 
-TEST(TracedFaces, randomTrianglesOfALattice) {
+TEST(TracedFaces, RandomTrianglesOfALattice) {
     // Edges of a lattice with diagonals, some left out, turned and scaled: islands, antennas,
     // bridges and vertices of every degree.
     std::mt19937_64 random(22);
@@ -127,7 +129,7 @@ TEST(TracedFaces, randomTrianglesOfALattice) {
     }
 }
 
-TEST(Passages, joinBoundedFaces) {
+TEST(Passages, JoinBoundedFaces) {
     // Three rooms in a row and one apart.
     Lines lines{{{0, 0}, {9, 0}}, {{9, 0}, {9, 3}}, {{9, 3}, {0, 3}}, {{0, 3}, {0, 0}}};
     const auto wall = [&](double x) {
@@ -154,7 +156,7 @@ TEST(Passages, joinBoundedFaces) {
     EXPECT_EQ(facesByBoth(with_second, {first, second}).size(), 3U);
 }
 
-TEST(Passages, toTheOutsideJoinNothing) {
+TEST(Passages, ToTheOutsideJoinNothing) {
     const Lines lines{
         {{0, 0}, {4, 0}}, {{4, 0}, {4, 1}}, {{4, 2}, {4, 3}}, {{4, 3}, {0, 3}}, {{0, 3}, {0, 0}}};
     const auto faces = facesByBoth(lines, {{{4, 1}, {4, 2}}});
@@ -162,7 +164,7 @@ TEST(Passages, toTheOutsideJoinNothing) {
     EXPECT_EQ(faces[0].area(), 12);
 }
 
-TEST(Passages, openABoothInARoom) {
+TEST(Passages, OpenABoothInARoom) {
     Lines lines = test::edgesOf(test::box(0, 0, 8, 6));
     append(lines, test::box(3, 2, 5, 4));
     ASSERT_EQ(facesByBoth(lines).size(), 2U);
@@ -175,7 +177,7 @@ TEST(Passages, openABoothInARoom) {
     EXPECT_EQ(facesByBoth(test::edgesOf(test::box(0, 0, 8, 6)), {{{3, 2}, {5, 2}}}).size(), 1U);
 }
 
-TEST(Passages, joinFacesWhereLinesCross) {
+TEST(Passages, JoinFacesWhereLinesCross) {
     Lines lines;
     for (int i = 0; i < 4; ++i) {
         lines.push_back({{i + 0.0, -1}, {i + 0.0, 4}});
@@ -188,7 +190,7 @@ TEST(Passages, joinFacesWhereLinesCross) {
     EXPECT_EQ(totalArea(faces), 9);
 }
 
-TEST(TracedFaces, crowdsAreLeftToTheArrangementInTime) {
+TEST(TracedFaces, CrowdsAreLeftToTheArrangementInTime) {
     // Ten thousand lines through one cell: not compared pair by pair.
     Lines lines;
     for (int i = 0; i < 10000; ++i) lines.push_back({{0, i * 1e-3}, {1000, i * 1e-3}});
