@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "place/test_arrange.h"
+#include "place/test_progress.h"
 
 namespace ispace {
 namespace {
@@ -262,7 +263,7 @@ TEST(ArrangeGoals, ACurveThatIsCutHasAllItsPoints) {
     options.wants_curve = true;
     const Arrangement whole = arranged(scene, groups, options);
     for (const int phases : {2, 3, 4, 6, 9}) {
-        StopAtPhase progress(phases);
+        StopWhen progress(afterPhases(phases));
         const Arrangement cut = arrange(scene, groups, options, progress);
         ASSERT_EQ(cut.curve.size(), 4U) << phases;
         EXPECT_FALSE(cut.is_complete) << phases;
@@ -280,7 +281,7 @@ TEST(ArrangeGoals, ACurveKnowsNothingOfCandidatesThatWereNotMade) {
     ArrangeOptions options = coarse();
     options.density = {0.2, 0.2, 8};
     options.wants_curve = true;
-    StopAtPhase at_once(-1);
+    StopWhen at_once(always);
     const Arrangement cut = arrange(scene, groups, options, at_once);
     ASSERT_EQ(cut.bound, 1);
     ASSERT_EQ(cut.curve.size(), 3U);

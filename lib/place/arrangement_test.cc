@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "place/test_arrange.h"
+#include "place/test_progress.h"
 
 namespace ispace {
 namespace {
@@ -175,7 +176,7 @@ TEST(Arrangement, FourReceiversUnderTheCeilingHearTogether) {
 TEST(Arrangement, StopsWithTheBestSoFar) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=4:3"});
-    StopAtPhase progress(2);
+    StopWhen progress(afterPhases(2));
     const Arrangement arrangement = arrange(scene, groups, coarse(Optimizer::Exact), progress);
     EXPECT_FALSE(arrangement.is_complete);
     EXPECT_EQ(arrangement.sensors.size(), 3U);
@@ -186,7 +187,7 @@ TEST(Arrangement, StopsWithTheBestSoFar) {
 
 TEST(Arrangement, ThereIsALayoutHoweverEarlyOneStops) {
     const Scene scene = roomScene();
-    StopAtPhase progress(-1);  // at once
+    StopWhen progress(always);
     for (const Optimizer optimizer : {Optimizer::Greedy, Optimizer::Exact}) {
         ArrangeOptions options = coarse(optimizer);
         options.mount.heights = {1.2};

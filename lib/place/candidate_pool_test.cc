@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <set>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "base/file.h"
 #include "place/candidate_views.h"
 #include "place/test_arrange.h"
+#include "place/test_progress.h"
 
 namespace ispace {
 namespace {
@@ -114,21 +114,6 @@ TEST(CandidatePool, FramesCarryWhatLooksDown) {
     EXPECT_LT(pooled.set->pose(0).position.z, 2);
 }
 
-/// Says stop once it was asked so often.
-class Asked final : public Progress {
-  public:
-    explicit Asked(int most) : most_(most) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return ++times_ > most_; }
-    [[nodiscard]] int times() const { return times_; }
-
-  private:
-    int most_;
-    mutable std::atomic<int> times_ = 0;
-};
-
 /// Random places of a laser in a part of the room, of which there are few.
 CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     const Scene scene = roomScene();
@@ -145,13 +130,13 @@ CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
 }
 
 TEST(CandidatePool, DrawingEndsWhenProgressSaysSo) {
-    Asked later(20000);
+    StopWhen later(afterAsking(20000));
     const CandidatePool::Made some = drawnIn("rect:0,0,0.2,0.2", 1000, later);
     EXPECT_FALSE(some.is_complete);
     EXPECT_GE(some.set->sites(), 1U) << "what was found is there";
-    EXPECT_LE(later.times(), 20000 + 10);
+    EXPECT_LE(later.asked, 20000 + 10);
 
-    Asked at_once(0);
+    StopWhen at_once(afterAsking(0));
     const CandidatePool::Made one = drawnIn("rect:-4,-3,4,3", 1000, at_once);
     EXPECT_FALSE(one.is_complete);
     EXPECT_EQ(one.set->sites(), 1U) << "something to choose from there is";
@@ -165,11 +150,11 @@ TEST(CandidatePool, NoRandomPlaceFoundSoFarIsNotThatThereIsNone) {
     SilentProgress silent;
     EXPECT_THROW(drawnIn(kNowhere, 20, silent), UnmetError);
     for (const int asked : {0, 5000}) {
-        Asked progress(asked);
+        StopWhen progress(afterAsking(asked));
         const CandidatePool::Made none = drawnIn(kNowhere, 20, progress);
         EXPECT_FALSE(none.is_complete);
         EXPECT_EQ(none.set->size(), 0U);
-        EXPECT_LE(progress.times(), asked + 1010) << "one more place is looked for";
+        EXPECT_LE(progress.asked, asked + 1010) << "one more place is looked for";
     }
 }
 
@@ -203,7 +188,7 @@ TEST(CandidatePool, WhatIsThereWhenStoppedIsSpreadOverTheRoom) {
     ASSERT_GT(all.set->sites(), 4000U);
     std::size_t before = 0;
     for (const int asked : {0, 1, 2, 5}) {
-        Asked progress(asked);
+        StopWhen progress(afterAsking(asked));
         const CandidatePool::Made some = placedIn(scene, {}, progress);
         EXPECT_FALSE(some.is_complete);
         ASSERT_GE(some.set->sites(), 64U);
@@ -221,7 +206,7 @@ TEST(CandidatePool, WhatIsThereWhenStoppedIsSpreadOverTheRoom) {
 }
 
 TEST(CandidatePool, WhatIsThereWhenStoppedIsAtAllHeights) {
-    Asked at_once(0);
+    StopWhen at_once(afterAsking(0));
     const CandidatePool::Made some = placedIn(roomScene(), {0.15, 1, 2}, at_once);
     EXPECT_FALSE(some.is_complete);
     EXPECT_GE(some.set->sites(), 64U);
@@ -253,7 +238,7 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
             for (const int rows : {8, 30, 34, 64, 144}) {
                 const std::vector<Site> sites = latticeOf(columns, rows);
                 CandidateSet set(grid.size());
-                Asked progress(0);
+                StopWhen progress(afterAsking(0));
                 EXPECT_EQ(addCandidates(set, views, sites, 1U << 30U, progress),
                           sites.size() == 64);
                 ASSERT_EQ(set.sites(), 64U);
@@ -280,7 +265,7 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
     ASSERT_EQ(all.sites(), sites.size());
     std::set<std::size_t> sizes;
     for (const int asked : {0, 10, 70, 100, 110, 140, 160, 200, 300, 2000}) {
-        Asked progress(asked);
+        StopWhen progress(afterAsking(asked));
         CandidateSet some(grid.size());
         ASSERT_FALSE(addCandidates(some, views, sites, 1U << 30U, progress));
         ASSERT_GE(some.sites(), 64U);

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <atomic>
 #include <limits>
 
 #include "place/lagrange.h"
 #include "place/reduced_problem.h"
+#include "place/test_progress.h"
 #include "place/test_variety.h"
 
 namespace ispace {
@@ -144,24 +144,12 @@ TEST(BranchAndBound, IsTheSameForAnyNumberOfThreads) {
         }
 }
 
-class StopsAfter final : public Progress {
-  public:
-    explicit StopsAfter(int left) : left_(left) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override { --left_; }
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return left_ <= 0; }
-
-  private:
-    int left_;
-};
-
 TEST(BranchAndBound, StoppedItStillBounds) {
     const RandomProblem random = largerProblem(5);
     SilentProgress silent;
     const SearchResult exact = searchTree(random.problem, 0, silent);
     for (const int steps : {3, 12, 40}) {
-        StopsAfter progress(steps);
+        StopWhen progress([steps](const StopWhen& told) { return told.done >= steps; });
         const SearchResult result = searchTree(random.problem, 0, progress);
         EXPECT_GE(result.bound, exact.best.value);
         EXPECT_LE(result.best.value, exact.best.value);
@@ -169,26 +157,13 @@ TEST(BranchAndBound, StoppedItStillBounds) {
     }
 }
 
-/// Stops after so many questions, in the midst of a node.
-class StopsWhenAsked final : public Progress {
-  public:
-    explicit StopsWhenAsked(int left) : left_(left) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return --left_ <= 0; }
-
-  private:
-    mutable std::atomic<int> left_;
-};
-
 TEST(BranchAndBound, StoppedInTheMidstOfANodeItStillBounds) {
     SilentProgress silent;
     const RandomProblem random = largerProblem(5);
     const SearchResult exact = searchTree(random.problem, 0, silent);
     std::size_t stopped = 0;
     for (int asked = 1; asked < 900; asked += 1 + asked / 20) {
-        StopsWhenAsked progress(asked);
+        StopWhen progress(afterAsking(asked - 1));  // in the midst of a node
         const SearchResult result = searchTree(random.problem, 0, progress);
         ASSERT_GE(result.bound, exact.best.value) << asked;
         ASSERT_EQ(valueOf(random.problem, result.best.chosen), result.best.value) << asked;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <limits>
 #include <string_view>
 
 #include "base/number.h"
 #include "place/search.h"
+#include "place/test_progress.h"
 #include "place/test_variety.h"
 
 namespace ispace {
@@ -171,19 +171,9 @@ TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {
     EXPECT_GE(fewest.least_cost, fewest.cost * 0.6);
 }
 
-/// Says stop once swaps begin.
-class StopAtSwaps final : public Progress {
-  public:
-    void begin(std::string_view phase, std::int64_t /*total*/) override {
-        is_over_ = is_over_ || phase == "improving";
-    }
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return is_over_; }
-
-  private:
-    std::atomic<bool> is_over_ = false;
-};
+bool onceSwapsBegin(const StopWhen& told) {
+    return told.phases.find("improving ") != std::string::npos;
+}
 
 TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
     RandomProblemOptions options;
@@ -196,7 +186,7 @@ TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
         const RandomProblem random = randomProblem(seed, options);
         const std::uint64_t total = random.problem.totalWeight();
-        StopAtSwaps progress;
+        StopWhen progress(onceSwapsBegin);
         const Fewest fewest = placeFewest(random.problem, total * 7 / 10, {}, progress);
         ASSERT_TRUE(fewest.is_reached);
         EXPECT_EQ(fewest.result.is_complete, !progress.stopped());
@@ -209,7 +199,7 @@ TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
 
 TEST(PlaceFewest, GreedilyRunsNoSwaps) {
     const RandomProblem random = randomProblem(5);
-    StopAtSwaps progress;
+    StopWhen progress(onceSwapsBegin);
     SearchOptions options;
     options.optimizer = Optimizer::Greedy;
     const std::uint64_t wanted = random.problem.totalWeight() / 10;

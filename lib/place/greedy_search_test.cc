@@ -9,6 +9,7 @@
 #include "place/search.h"
 #include "place/search_basis.h"
 #include "place/test_problems.h"
+#include "place/test_progress.h"
 
 namespace ispace {
 namespace {
@@ -320,19 +321,11 @@ TEST(GreedySearch, LeavesOutWhatCannotBeConnected) {
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{1, 0}}));
 }
 
-class Stopped final : public Progress {
-  public:
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return true; }
-};
-
 TEST(GreedySearch, StoppedItStillPlacesAll) {
     RandomProblemOptions options;
     options.most = 5;
     options.sites = 9;
-    Stopped progress;
+    StopWhen progress(always);
     const RandomProblem made = randomProblem(1, options);
     const Solution solution = placeGreedily(made.problem, progress);
     EXPECT_EQ(solution.chosen.size(), 5U);
@@ -345,7 +338,7 @@ TEST(GreedySearch, StoppedItPlacesThirtyTwoWithCare) {
     options.sites = 80;
     options.columns = 60;
     options.rows = 50;
-    Stopped stopped;
+    StopWhen stopped(always);
     SilentProgress progress;
     for (options.demand = 1; options.demand <= 2; ++options.demand) {
         const RandomProblem made = randomProblem(2, options);

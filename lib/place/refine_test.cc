@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "cover/test_scenes.h"
 #include "place/exact_worth.h"
+#include "place/test_progress.h"
 
 namespace ispace {
 namespace {
@@ -191,20 +192,10 @@ TEST(Refine, DemandDrawsTogetherWhatElsePartsFromEachOther) {
     EXPECT_LE(length(together.poses[0].position.onFloor() - Point2{}), 0.03);
 }
 
-/// Says stop from the start on.
-class Stopped final : public Progress {
-  public:
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++begun; }
-    void advance(std::int64_t /*count*/) override {}
-    void end() override { ++ended; }
-    [[nodiscard]] bool stopped() const override { return true; }
-    int begun = 0, ended = 0;
-};
-
 TEST(Refine, EndsWhenItIsToldTo) {
     const Scene scene = sceneOf("ispace size=8,6\n");
     const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), nullptr}};
-    Stopped progress;
+    StopWhen progress(always);
     const Refined result = refine(scene, one, {}, {}, {}, progress);
     EXPECT_EQ(result.poses[0], one[0].pose);
     EXPECT_EQ(progress.begun, 1);

@@ -60,19 +60,6 @@ inline Arrangement arranged(const Scene& scene, const std::vector<SensorGroup>& 
     return arrange(scene, groups, options, silent);
 }
 
-/// Says stop once it has begun so many phases.
-class StopAtPhase final : public Progress {
-  public:
-    explicit StopAtPhase(int last) : last_(last) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override { ++begun_; }
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return begun_ > last_; }
-
-  private:
-    int last_, begun_ = 0;
-};
-
 inline LayoutParts partsOf(const Scene& scene) {
     return {{"arrange room.glb"}, "room.glb", scene.digest, "all", "swap"};
 }
