@@ -248,7 +248,7 @@ void ArrangeCommand::addSearchOptions() {
     line_.parsed(
         "--max-memory", "SIZE",
         [&how](const std::string& text) { how.most_bytes = readBytes(text); },
-        "what candidates may take, e.g. 2G (default 8G)", Enters::Nothing);
+        "what candidates and the tree of exact may take, e.g. 2G (default 8G)", Enters::Nothing);
 }
 
 void ArrangeCommand::addFileOptions() {
