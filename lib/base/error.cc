@@ -19,7 +19,8 @@ std::string Diagnostic::text() const {
         place += ':' + std::to_string(line);
         if (column > 0) place += ':' + std::to_string(column);
     }
-    return (place.empty() ? "" : place + ": ") + "error: " + message;
+    return (place.empty() ? "" : place + ": ") +
+           (severity == Severity::Warning ? "warning: " : "error: ") + message;
 }
 
 FormatError::FormatError(Diagnostic diagnostic)

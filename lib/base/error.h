@@ -23,12 +23,17 @@ class UnmetError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// How bad a finding is. A warning tells of what is probably not meant; the data are good all the
+/// same.
+enum class Severity { Error, Warning };
+
 /// One finding in an input: `file:line:column: error: message`.
 struct Diagnostic {
     std::string file;     ///< as the user named it; "-" reads as "stdin"; empty: no place
     int line = 0;         ///< 1-based; 0: the file as a whole
     int column = 0;       ///< 1-based, in bytes; 0: the line as a whole
     std::string message;  ///< what was found, what was wanted, the hint
+    Severity severity = Severity::Error;
 
     /// "room.env:14:7: error: wall has zero length"
     [[nodiscard]] std::string text() const;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,10 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 
 /// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
+
+/// Says each warning on stderr, unless the user wants to hear less (-q).
+void warn(const CommonOptions& options, const std::string& tool,
+          std::span<const Diagnostic> warnings);
 
 /// Keeps the number of worker threads down to `threads` (0: cores of the affinity mask, or
 /// SLURM_CPUS_PER_TASK if that is less) while it lives.

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/utf8.h"
 #include "cli/command_line.h"
 
 namespace ispace {
@@ -58,6 +59,13 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
     if (options.verbose > 0 && !options.quiet) std::cerr << tool << ": " << text << '\n';
+}
+
+void warn(const CommonOptions& options, const std::string& tool,
+          std::span<const Diagnostic> warnings) {
+    if (options.quiet) return;
+    for (const Diagnostic& warning : warnings)
+        std::cerr << tool << ": " << printable(warning.text()) << '\n';
 }
 
 struct ThreadLimit::Data {

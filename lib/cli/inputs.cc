@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "cli/command_line.h"
 #include "cli/operands.h"
+#include "env/walls.h"
 #include "io/input.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
@@ -27,13 +28,70 @@ std::string folderOf(const std::string& operand) {
     return isStream(operand) ? "" : fs::path(operand).parent_path().string();
 }
 
-Document readInput(const std::string& input, const InputRequest& request) {
-    const std::string bytes = input == "-" ? readStdin() : readAll(input);
-    if (input == "-" && request.may_be_empty && isBlank(bytes)) return {};
-    Document document = parseDocument(bytes, input, request.import, sceneSchemas());
+/// Points that are given win over those of records.
+void setInside(std::span<const Point2> points, std::vector<Document>& documents) {
+    for (Document& document : documents)
+        std::erase_if(document.records,
+                      [](const Record& record) { return record.keyword() == "inside"; });
+    for (const Point2 p : points) {
+        Record record(*sceneSchemas().find("inside"));
+        record.set("at", Tuple{p.x, p.y});
+        documents.front().records.push_back(std::move(record));
+    }
+}
+
+/// The bytes of an input; an empty stdin may stand for no records.
+struct RawInput {
+    std::string name, bytes;
+    bool is_plan = false;
+};
+
+RawInput readRaw(const std::string& input) {
+    RawInput raw{input, input == "-" ? readStdin() : readAll(input)};
+    raw.is_plan = isPlan(raw.bytes, input, sceneSchemas());
+    return raw;
+}
+
+Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import) {
+    if (raw.name == "-" && request.may_be_empty && isBlank(raw.bytes)) return {};
+    Document document = parseDocument(raw.bytes, raw.name, import, sceneSchemas());
     checkIds(document.records);
-    rebaseFiles(document.records, folderOf(input), "");
+    rebaseFiles(document.records, folderOf(raw.name), "");
     return document;
+}
+
+/// What an importer has to know of records that others bring: their walls close its gaps, their
+/// inside points choose its rooms.
+void addKnown(std::span<const Record> records, ImportOptions& import) {
+    Diagnostics ignored;  // said where the environment is built
+    for (const Record& record : records) {
+        if (record.keyword() == "inside" && record.has("at")) {
+            const Tuple& at = record.tuple("at");
+            import.known_inside.push_back({at[0], at[1]});
+        } else if (isWall(record)) {
+            for (const WallLine& wall : wallLinesOf(record, ignored))
+                import.known_walls.push_back(wall.line);
+        }
+    }
+}
+
+/// All inputs in their order; plans are read last, as they need to know what the others say.
+std::vector<Document> parseInputs(const InputRequest& request) {
+    std::vector<RawInput> raw;
+    for (const std::string& input : request.inputs) raw.push_back(readRaw(input));
+    std::vector<Document> documents(raw.size());
+    ImportOptions import = request.import;
+    addKnown(request.added, import);
+    for (const bool plans : {false, true})
+        for (std::size_t i = 0; i < raw.size(); ++i) {
+            if (raw[i].is_plan != plans) continue;
+            documents[i] = parseInput(raw[i], request, import);
+            if (!plans) addKnown(documents[i].records, import);
+        }
+    const bool any_plan =
+        std::any_of(raw.begin(), raw.end(), [](const RawInput& input) { return input.is_plan; });
+    if (!any_plan && !import.inside.empty()) setInside(import.inside, documents);
+    return documents;
 }
 
 template <typename T>
@@ -49,7 +107,7 @@ void addEnvironment(std::vector<Document>& documents, const InputRequest& reques
         const auto reference = environmentReference(document);
         if (!reference || reference->file.empty()) continue;
         // Names are relative to the current folder by now.
-        Document environment = readInput(reference->file, request);
+        Document environment = parseInput(readRaw(reference->file), request, request.import);
         if (environment.kind != DocumentKind::Environment)
             throw FormatError(reference->record.finding(
                 "file", reference->file + " is a layout, not an environment"));
@@ -80,9 +138,7 @@ void rebaseFiles(std::vector<Record>& records, const std::string& from, const st
 }
 
 Document readInputs(const InputRequest& request) {
-    std::vector<Document> documents;
-    documents.reserve(request.inputs.size());
-    for (const std::string& input : request.inputs) documents.push_back(readInput(input, request));
+    std::vector<Document> documents = parseInputs(request);
     if (request.compiles) addEnvironment(documents, request);
     std::stable_sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) {
         return a.kind == DocumentKind::Environment && b.kind == DocumentKind::Layout;
@@ -93,6 +149,7 @@ Document readInputs(const InputRequest& request) {
     for (Document& document : documents) {
         append(joined.history, document.history);
         append(joined.notes, document.notes);
+        append(joined.warnings, document.warnings);
         append(joined.sources, document.sources);
         if (document.kind == DocumentKind::Layout) {
             if (request.compiles && !environment.empty() && !request.any_environment)

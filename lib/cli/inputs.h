@@ -13,7 +13,8 @@ namespace ispace {
 struct InputRequest {
     std::vector<std::string> inputs;  ///< "-" for stdin
     ImportOptions import;
-    bool compiles = true;  ///< a layout's digest must match, unless any_environment
+    std::vector<Record> added;  ///< that edits will add: plans are imported in their light
+    bool compiles = true;       ///< a layout's digest must match, unless any_environment
     bool any_environment = false;
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
@@ -21,7 +22,7 @@ struct InputRequest {
 /// All inputs as one document: environments in their order, then layouts, whose records take the
 /// place of those with the same id. Layouts alone bring the environment along that they name, if it
 /// is to be compiled. Names of files are relative to the current folder; history,
-/// notes and sources are those of all.
+/// notes, warnings and sources are those of all.
 /// \throws as parseDocument; FormatError for doubled ids and for a digest that differs
 Document readInputs(const InputRequest& request);
 

@@ -6,12 +6,34 @@
 #include <string>
 #include <vector>
 
+#include "geom/polygon.h"
+#include "geom/pose.h"
+
 namespace ispace {
+
+/// Places of plans lie no farther from the origin, in metres; records end at 1000 km.
+constexpr double kFarthestPlan = 900'000;
+
+/// Which of the closed regions of a plan or map are imported.
+enum class RoomChoice {
+    Largest,  ///< the largest that is no outside and no hollow of a wall
+    All,      ///< every room that is closed in itself
+};
 
 /// How plans, maps and meshes that somebody else made become records.
 struct ImportOptions {
-    double wall_height = 2.5;        ///< metres, of walls in plans without heights
-    double wall_thickness = 0;       ///< metres, of lines in plans; 0: the line is the face
+    double wall_height = 2.5;   ///< metres, of walls in plans without heights
+    double wall_thickness = 0;  ///< metres, of lines in plans; 0: the line is the face
+    RoomChoice rooms = RoomChoice::Largest;
+    std::vector<Point2> inside;  ///< points in the rooms that are meant; they win over `rooms`
+    std::vector<Point2> known_inside;   ///< the same, of `inside` records that come from elsewhere
+    std::vector<Segment2> known_walls;  ///< wall lines that edits or other inputs add
+    std::optional<double> close_gaps;   ///< metres up to which gaps between walls are closed;
+                                        ///< default: as little as the importer gets by with
+    std::optional<double> reachable;    ///< radius of the disc that has to reach the floor
+    std::optional<double> resolution;   ///< metres a pixel of a picture that comes alone
+    Pose2 origin;                       ///< of the lower left corner of such a picture
+    std::optional<double> slice_walls;  ///< height at which a mesh of a building is cut into walls
     std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
                                      ///< importer's own
     std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own

@@ -15,9 +15,6 @@
 
 namespace ispace {
 
-/// Places of plans lie no farther from the origin, in metres; records end at 1000 km.
-constexpr double kFarthestPlan = 900'000;
-
 /// What drawings of lines are joined by, in metres, unless ImportOptions::snap says otherwise.
 constexpr double kDefaultSnap = 0.005;
 
@@ -49,6 +46,11 @@ class ImportRecords {
     std::string freeId(std::string_view name, const std::string& fallback);
 
     void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
+    /// Shown without being asked for; `line` of the file, 0 for the file as a whole.
+    void warn(std::string sentence, int line = 0) {
+        document_.warnings.push_back(
+            {*place_.file, line, 0, std::move(sentence), Severity::Warning});
+    }
     void source(std::string path) { document_.sources.push_back(std::move(path)); }
     [[nodiscard]] Document take() { return std::move(document_); }
 

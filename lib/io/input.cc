@@ -2,7 +2,7 @@
 #include "io/input.h"
 
 #include <algorithm>
-#include <optional>
+#include <span>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -88,51 +88,114 @@ std::string foreignJson(std::string_view bytes) {
     return "";
 }
 
-/// Formats whose first bytes tell them, text or not; nothing for others.
-std::optional<Document> readByMagic(std::string_view bytes, const std::string& operand,
-                                    const ImportOptions& options, const Schemas& schemas) {
-    if (isRecordText(bytes)) return readRecordText(bytes, operand, schemas);
-    if (isAriaMap(bytes)) return readAriaMap(bytes, operand, options, schemas);
-    if (isDxf(bytes)) return readDxf(bytes, operand, options, schemas);
-    if (isMeshFile(bytes)) return meshDocument(operand, options, schemas);
-    return std::nullopt;
+/// What is to be read, and how.
+struct Source {
+    std::string_view bytes;  ///< without a byte order mark
+    const std::string& operand;
+    const ImportOptions& options;
+    const Schemas& schemas;
+};
+
+/// A format that is read.
+struct InputFormat {
+    bool is_plan;  ///< rooms are chosen from it, see isPlan()
+    bool (*holds)(const Source&);
+    Document (*read)(const Source&);
+};
+
+template <bool (*test)(std::string_view)>
+bool holdsBytes(const Source& source) {
+    return test(source.bytes);
 }
 
-Document parseRecords(std::string_view bytes, const std::string& operand,
-                      const ImportOptions& options, const Schemas& schemas) {
-    const auto fail = [&operand](int line, const std::string& message) {
-        throw FormatError(Diagnostic{displayName(operand), line, line == 0 ? 0 : 1, message});
-    };
-    if (isGlb(bytes))
-        return glbHasRecords(bytes) ? readGlb(bytes, operand, schemas)
-                                    : meshDocument(operand, options, schemas);
-    bytes = withoutMark(bytes);
+template <Document (*reader)(std::string_view, const std::string&, const ImportOptions&,
+                             const Schemas&)>
+Document importPlan(const Source& source) {
+    return reader(source.bytes, source.operand, source.options, source.schemas);
+}
+
+Document readMesh(const Source& source) {
+    return meshDocument(source.operand, source.options, source.schemas);
+}
+Document readGlbOrMesh(const Source& source) {
+    return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)
+                                       : readMesh(source);
+}
+Document readRecords(const Source& source) {
+    return readRecordText(source.bytes, source.operand, source.schemas);
+}
+Document readYamlRecords(const Source& source) {
+    return readYaml(source.bytes, source.operand, source.schemas);
+}
+bool isHouseExpo(const Source& source) {
+    return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
+}
+
+/// Formats that their first bytes tell, text or not.
+constexpr InputFormat kFormatsByMagic[] = {
+    {false, holdsBytes<isGlb>, readGlbOrMesh},
+    {false, holdsBytes<isRecordText>, readRecords},
+    {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
+    {true, holdsBytes<isDxf>, importPlan<readDxf>},
+    {false, holdsBytes<isMeshFile>, readMesh},
+};
+
+/// Formats of plain text that a look into it tells; the last takes everything.
+constexpr InputFormat kFormatsOfText[] = {
+    {true, isHouseExpo, importPlan<readHouseExpo>},
+    {true, holdsBytes<isRosMap>, importPlan<readRosMap>},
+    {false, [](const Source&) { return true; }, readYamlRecords},
+};
+
+constexpr InputFormat kMeshBySuffix = {
+    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, readMesh};
+
+const InputFormat* findFormat(std::span<const InputFormat> formats, const Source& source) {
+    const auto found = std::find_if(formats.begin(), formats.end(),
+                                    [&source](const auto& format) { return format.holds(source); });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+/// The format of the source, or nothing with `refuse(line, message)` called where it is none.
+template <typename Refuse>
+const InputFormat* formatOf(const Source& source, Refuse refuse) {
+    const std::string_view bytes = source.bytes;
     if (bytes.find_first_not_of(kBlanks) == std::string_view::npos)
-        fail(0, std::string("empty input: ") + kWanted);
-    if (auto document = readByMagic(bytes, operand, options, schemas)) return *std::move(document);
+        return refuse(0, std::string("empty input: ") + kWanted), nullptr;
+    if (const InputFormat* format = findFormat(kFormatsByMagic, source)) return format;
     if (const std::string what = foreignFile(bytes); !what.empty())
-        fail(0, "not an environment or layout but " + what);
-    if (hasMeshSuffix(operand)) return meshDocument(operand, options, schemas);
-    if (!isPlainText(bytes)) fail(0, std::string("not an environment or layout: ") + kWanted);
-    if (isJson(bytes)) {
-        if (bytes.find("\"verts\"") != std::string_view::npos)
-            return readHouseExpo(bytes, operand, options, schemas);
+        return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (kMeshBySuffix.holds(source)) return &kMeshBySuffix;
+    if (!isPlainText(bytes))
+        return refuse(0, std::string("not an environment or layout: ") + kWanted), nullptr;
+    if (isJson(bytes) && !isHouseExpo(source))
         if (const std::string what = foreignJson(bytes); !what.empty())
-            fail(0, "not an environment or layout but " + what);
-    }
+            return refuse(0, "not an environment or layout but " + what), nullptr;
     const Line line = firstLine(bytes);
-    if (isRecordLine(line.text, schemas))
-        fail(line.number,
-             "a record before the magic line: the first line must be `#env 1` or `#3dm 1`");
-    if (isRosMap(bytes)) return readRosMap(bytes, operand, options, schemas);
-    return readYaml(bytes, operand, schemas);
+    if (isRecordLine(line.text, source.schemas))
+        return refuse(line.number,
+                      "a record before the magic line: the first line must be "
+                      "`#env 1` or `#3dm 1`"),
+               nullptr;
+    return findFormat(kFormatsOfText, source);
 }
 
 }  // namespace
 
+bool isPlan(std::string_view bytes, const std::string& operand, const Schemas& schemas) {
+    const ImportOptions options;
+    const InputFormat* format = formatOf({withoutMark(bytes), operand, options, schemas},
+                                         [](int /*line*/, const std::string& /*message*/) {});
+    return format != nullptr && format->is_plan;
+}
+
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas) {
-    Document document = parseRecords(bytes, operand, options, schemas);
+    const Source source{withoutMark(bytes), operand, options, schemas};
+    const InputFormat* format = formatOf(source, [&](int line, const std::string& message) {
+        throw FormatError(Diagnostic{displayName(operand), line, line == 0 ? 0 : 1, message});
+    });
+    Document document = format->read(source);
     if (options.load_meshes) loadMeshes(document, operand);
     return document;
 }

@@ -18,6 +18,10 @@ namespace ispace {
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
+/// True if the bytes are a plan, map or drawing: an importer chooses the rooms of it, so what other
+/// inputs and edits know of walls and inside points has to be known to it before (ImportOptions).
+bool isPlan(std::string_view bytes, const std::string& operand, const Schemas& schemas);
+
 /// The same for bytes already read.
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);

@@ -42,6 +42,23 @@ std::vector<const KeySpec*> placeKeys(const Record& record) {
     return keys;
 }
 
+/// The record of an edit that adds one.
+Record addedRecord(const Edit& edit, const Schemas& schemas) {
+    if (edit.kind == Edit::Kind::Add) return readRecord(edit.text, "--add", schemas);
+    const Schema* const schema = schemas.find("fence");
+    if (schema == nullptr) throw std::logic_error("no schema of fences");
+    Record fence(*schema);
+    try {
+        fence.set("path", parseValue(*schema->find("path"), edit.text));
+    } catch (const FormatError& error) {
+        throw FormatError(Diagnostic{
+            "", 0, 0,
+            optionOf(edit.kind) + ' ' + edit.text + ": " + error.diagnostics().front().message});
+    }
+    fence.set("closed", edit.closed);
+    return fence;
+}
+
 class Editor {
   public:
     Editor(std::vector<Record> records, const Schemas& schemas)
@@ -54,9 +71,8 @@ class Editor {
         edit_ = &edit;
         switch (edit.kind) {
             case Edit::Kind::Add:
-                return add(readRecord(edit.text, "--add", schemas_));
             case Edit::Kind::Fence:
-                return addFence();
+                return add(addedRecord(edit, schemas_));
             case Edit::Kind::Delete:
                 return erase();
             default:
@@ -162,19 +178,6 @@ class Editor {
         }
         records_.push_back(std::move(record));
         ids_.push_back(std::move(id));
-    }
-
-    void addFence() {
-        const Schema* const schema = schemas_.find("fence");
-        if (schema == nullptr) throw std::logic_error("no schema of fences");
-        Record fence(*schema);
-        try {
-            fence.set("path", parseValue(*schema->find("path"), edit_->text));
-        } catch (const FormatError& error) {
-            fail(error.diagnostics().front().message);
-        }
-        fence.set("closed", edit_->closed);
-        add(std::move(fence));
     }
 
     void erase() {
@@ -322,6 +325,14 @@ class Editor {
 };
 
 }  // namespace
+
+std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& schemas) {
+    std::vector<Record> records;
+    for (const Edit& edit : edits)
+        if (edit.kind == Edit::Kind::Add || edit.kind == Edit::Kind::Fence)
+            records.push_back(addedRecord(edit, schemas));
+    return records;
+}
 
 std::vector<Record> edited(std::vector<Record> records, std::span<const Edit> edits,
                            const Schemas& schemas) {

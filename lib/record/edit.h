@@ -39,6 +39,9 @@ std::string optionOf(Edit::Kind kind);
 /// option's name
 Edit parseEdit(Edit::Kind kind, std::string_view text);
 
+/// What --add and --fence add, in their order. \throws FormatError as edited
+std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& schemas);
+
 /// The records after all edits in their order.
 ///
 /// Ids are those before the first edit (assignIds), written or automatic; where an edit would

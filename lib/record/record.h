@@ -134,6 +134,8 @@ struct Document {
     std::vector<std::string> sources = {};
     /// What an importer had to decide, a sentence each; for people.
     std::vector<std::string> notes = {};
+    /// What an importer doubts: for people, even if they did not ask to hear more.
+    std::vector<Diagnostic> warnings = {};
 };
 
 /// Ids of all records, in order: the written one, else keyword and number, counting from 1 within

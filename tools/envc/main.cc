@@ -44,12 +44,14 @@ Document readModel(const EnvcOptions& options) {
     request.import = options.import;
     request.compiles = !isRecordFormat(options.format);
     request.import.load_meshes = request.compiles;
+    request.added = addedRecords(options.edits, sceneSchemas());
     request.any_environment = options.any_environment;
     request.may_be_empty = !options.edits.empty();
     Document document = readInputs(request);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadMeshes(document, "");
     document.history.push_back(options.history_line);
+    warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
     return document;
 }

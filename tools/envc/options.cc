@@ -58,6 +58,35 @@ void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
     edit(Edit::Kind::Delete, "ID", "remove");
 }
 
+Point2 pointFrom(const std::string& text) {
+    KeySpec key;
+    key.name = "point";
+    key.type = KeyType::Tuple;
+    key.unit = Unit::Length;
+    key.min_count = key.max_count = 2;
+    key.lower = -kFarthestPlan;
+    key.upper = kFarthestPlan;
+    const Tuple at = std::get<Tuple>(parseValue(key, text));
+    return {at[0], at[1]};
+}
+
+/// Which part of a plan is the room.
+void addRoomOptions(CommandLine& line, EnvcOptions& options) {
+    ImportOptions& import = options.import;
+    const auto take_inside = [&import](const std::string& text) {
+        import.inside.push_back(pointFrom(text));
+    };
+    line.ordered("--inside", "X,Y", take_inside, "a point in the room that is meant");
+    line.choice("--rooms", options.rooms, {"largest", "all"},
+                "which closed rooms of a plan are kept (default largest)", Enters::History);
+    line.meters("--close-gaps", import.close_gaps, 0, 100,
+                "close gaps between a plan's walls up to this wide "
+                "(default: as little as the plan needs, at most 0.2 m)",
+                Enters::History);
+    line.meters("--reachable", import.reachable, 0.001, 100,
+                "keep only floor that a disc of this radius reaches", Enters::History);
+}
+
 void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.meters("--wall-height", import.wall_height, 0.001, 1000, "height of walls of plans",
                 Enters::History);
@@ -114,12 +143,14 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addProductOptions(line, options, to);
     addEditOptions(line, options.edits);
     line.flag("--closed", closed, "close the fences of --fence", Enters::History);
+    addRoomOptions(line, options);
     addImportOptions(line, options.import);
     addAnyEnvironmentOption(line, options.any_environment);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
     line.parse(argc, argv);
 
     if (options.inputs.empty()) options.inputs.emplace_back("-");
+    if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
     if (!options.info && !options.check)
         options.format = outputFormat(to, options.common.output, options.slice ? kMaps : kModels);

@@ -21,6 +21,7 @@ struct EnvcOptions {
     int width = 1200;             ///< pixels of a PNG
     bool any_environment = false;
     ImportOptions import;
+    std::string rooms;        ///< "" or a word of --rooms
     std::vector<Edit> edits;  ///< in their order
     std::string history_line;
 };
