@@ -18,11 +18,8 @@ constexpr std::size_t kWaysPerEnd = 4;
 /// answered in seconds too.
 constexpr std::size_t kMostClosings = 10000;
 
-struct Closing {
-    Segment2 line;
-    double width;
-    std::size_t a, b;  // the input lines it joins, a < b
-};
+/// What is this near to a line lies on it: a place that was rounded.
+constexpr double kOnLine = 2 * kWeldDistance;
 
 /// Each line's pieces without the doubles that overlapping lines leave.
 WeldedLines withoutDoubles(const WeldedLines& lines) {
@@ -86,15 +83,18 @@ class GapFinder {
         extent_ = box.width() + box.depth();
     }
 
-    /// From the narrowest on; in an order that depends only on the lines.
-    [[nodiscard]] std::vector<Closing> closings() const {
+    /// As of ispace::closings().
+    [[nodiscard]] std::vector<Closing> closings(std::span<const Point2> corners,
+                                                double widest) const {
         std::vector<Closing> all;
         for (std::size_t i = 0; i < lines_.pieces.size(); ++i) {
             const auto& [a, b] = lines_.pieces[i];
             for (const Point2 end : {a, b}) {
-                if (vertices_.at(end).size() == 1) addClosings(i, end, all);
+                if (vertices_.at(end).size() == 1) addClosings(i, end, widest, all);
             }
         }
+        for (const Point2 corner : corners)
+            if (const auto own = pieceAt(corner)) addClosings(*own, corner, widest, all);
         const auto key = [](const Closing& c) {
             return std::tuple(c.width, c.line.a.x, c.line.a.y, c.line.b.x, c.line.b.y);
         };
@@ -130,22 +130,31 @@ class GapFinder {
         });
     }
 
-    void addClosings(std::size_t own, Point2 end, std::vector<Closing>& all) const {
+    /// A piece on which the point lies.
+    [[nodiscard]] std::optional<std::size_t> pieceAt(Point2 p) const {
+        std::optional<std::size_t> found;
+        tree_.search({p, p}, kOnLine, [&](std::size_t i) {
+            if (distance(p, lines_.pieces[i]) <= kOnLine && (!found || i < *found)) found = i;
+        });
+        return found;
+    }
+
+    void addClosings(std::size_t own, Point2 end, double widest, std::vector<Closing>& all) const {
         std::vector<Way> ways;
         const auto collect = [&](std::size_t i) {
             if (i == own) return;
             const Point2 to = nearestPoint(lines_.pieces[i], end);
             const double width = distance(end, to);
-            if (width > 0 && isNearestOfItsNeighbours(end, to, width))
+            if (width > kOnLine && width <= widest && isNearestOfItsNeighbours(end, to, width))
                 ways.push_back({width, to, lines_.source[i]});
         };
-        for (double reach = first_reach_;; reach *= 4) {
+        for (double reach = std::min(first_reach_, widest);; reach *= 4) {
             ways.clear();
             tree_.search({end, end}, reach, collect);
             std::sort(ways.begin(), ways.end());
             ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
             if (ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach) break;
-            if (!(reach < extent_)) break;  // all were seen
+            if (!(reach < extent_) || reach >= widest) break;  // all were seen
         }
         ways.resize(std::min(ways.size(), kWaysPerEnd));
         const std::size_t source = lines_.source[own];
@@ -236,8 +245,15 @@ class Closed {
 
 }  // namespace
 
+std::vector<Closing> closings(std::span<const Segment2> lines, std::span<const Point2> corners,
+                              double widest) {
+    if (lines.empty()) return {};
+    return GapFinder(weld(lines)).closings(corners, widest);
+}
+
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside) {
-    const std::vector<Closing> closings = GapFinder(weld(lines)).closings();
+    const std::vector<Closing> closings =
+        ispace::closings(lines, {}, std::numeric_limits<double>::infinity());
     if (closings.empty()) return std::nullopt;
     const Closed closed(lines, closings);
     // What is enclosed stays enclosed as more gaps are closed: halve between too few and enough.

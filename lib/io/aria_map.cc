@@ -16,7 +16,7 @@
 #include "geom/predicates.h"
 #include "io/import_records.h"
 #include "io/near_segments.h"
-#include "io/plan_region.h"
+#include "io/plan_rooms.h"
 #include "io/plan_simplify.h"
 
 namespace ispace {
@@ -206,10 +206,10 @@ std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
 
 class AriaPlan {
   public:
-    AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options)
+    AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options, ImportRecords& out)
         : map_(std::move(map)),
           name_(name),
-          paths_(withoutRepeats(snapped(map_.lines, options.snap.value_or(kDefaultSnap)))) {
+          paths_(tidyLines(map_.lines, options.snap.value_or(kDefaultSnap))) {
         std::vector<Segment2> lines = piecesOf(paths_);
         if (lines.empty())
             fail(map_.points.empty()
@@ -221,9 +221,9 @@ class AriaPlan {
             paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify);
             lines = piecesOf(paths_);
         }
-        region_ = PlanFaces(lines).region(map_.home);
-        if (!region_) return;
-        const std::vector<bool> keep = belongsTo(*region_, lines);
+        rooms_ = chooseRooms({lines, {}, map_.home}, options, out);
+        if (rooms_.regions.empty()) return;
+        const std::vector<bool> keep = belongsTo(rooms_.regions, lines);
         dropped_ = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
         paths_ = withPieces(paths_, keep);
     }
@@ -232,11 +232,9 @@ class AriaPlan {
         for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
         if (options.points) writePoints(out);
         writeAreas(out);
-        const bool at_home = map_.home && isInside(*map_.home);
-        if (at_home || (map_.home && !region_))
+        writeRooms(rooms_, options, out);
+        if (rooms_.regions.empty() && rooms_.writes_inside && options.inside.empty() && map_.home)
             out.inside(*map_.home);
-        else if (region_)
-            out.inside(region_->inside);
         note(out, options);
     }
 
@@ -246,7 +244,12 @@ class AriaPlan {
     }
 
     [[nodiscard]] bool isInside(Point2 p) const {
-        return region_ && region_->rooms.front().locate(p) == Side::Inside;
+        return std::any_of(
+            rooms_.regions.begin(), rooms_.regions.end(), [p](const PlanRegion& region) {
+                return std::any_of(
+                    region.rooms.begin(), region.rooms.end(),
+                    [p](const Region& room) { return room.locate(p) == Side::Inside; });
+            });
     }
 
     void writePoints(ImportRecords& out) const {
@@ -259,7 +262,7 @@ class AriaPlan {
             const bool is_echo = std::any_of(near.begin(), near.end(), [&](std::size_t i) {
                 return distance(p, lines[i]) <= kEchoReach;
             });
-            const bool is_outside = !is_echo && region_ && !isInside(p);
+            const bool is_outside = !is_echo && !rooms_.regions.empty() && !isInside(p);
             echoes += is_echo ? 1 : 0;
             outside += is_outside ? 1 : 0;
             if (!is_echo && !is_outside) free.push_back(p);
@@ -300,17 +303,13 @@ class AriaPlan {
             out.note(countText(count, type) + " left out");
         if (!options.points && !map_.points.empty())
             out.note(countText(map_.points.size(), "point") + " left out");
-        if (!region_)
-            out.note("nothing is enclosed: all lines are kept");
-        else if (dropped_ > 0)
-            out.note(countText(dropped_, "line") + " outside of the region of " +
-                     areaText(region_->area()) + " left out");
+        if (dropped_ > 0) out.note("left out outside of it: " + countText(dropped_, "line"));
     }
 
     AriaMap map_;
     const std::string& name_;
     std::vector<PlanPath> paths_;
-    std::optional<PlanRegion> region_;
+    PlanRooms rooms_;
     std::size_t dropped_ = 0;
 };
 
@@ -325,8 +324,9 @@ bool isAriaMap(std::string_view bytes) {
 Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas) {
     ImportRecords out(schemas, name, options);
-    withFileName(
-        name, [&] { AriaPlan(AriaReader(bytes, name).read(), name, options).write(out, options); });
+    withFileName(name, [&] {
+        AriaPlan(AriaReader(bytes, name).read(), name, options, out).write(out, options);
+    });
     return out.take();
 }
 

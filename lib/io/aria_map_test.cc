@@ -58,10 +58,12 @@ TEST(AriaMap, LinesZonesAndHome) {
               "zone id=forbidden at=2,1.5 heading=90 size=1,2\n"
               "inside at=1,2\n");
     EXPECT_EQ(notesOf(document),
+              "kept 48.0 m2 in 1 room\n"
               "1 ForbiddenLine left out\n"
               "1 Goal left out\n"
               "7 points left out\n"
-              "1 line outside of the region of 48.0 m2 left out\n");
+              "left out outside of it: 1 line\n");
+    EXPECT_EQ(warningsOf(document), "");
     EXPECT_DOUBLE_EQ(environmentOf(document).indoor().area(), 48);
     EXPECT_EQ(document.records.front().place().line, 15);
 }
@@ -82,8 +84,19 @@ TEST(AriaMap, PointsOnRequest) {
     EXPECT_GT(environmentOf(document).freeFloor(0.15).size(), 0U);
 }
 
-TEST(AriaMap, OpenMapsAreImportedAsTheyAre) {
-    const Document document = read(with("8000 0 8000 6000", "8000 0 8000 5000"));
+TEST(AriaMap, OpenMapsAreClosedAndSaySo) {
+    const std::string open = with("8000 0 8000 6000", "8000 0 8000 5000");
+    const Document document = read(open);
+    EXPECT_EQ(warningsOf(document),
+              "office.map: warning: the walls do not close: closed 1 gap of up to 1 m (1.000 m at "
+              "(8.0, 5.5)); --close-gaps M sets the widest\n");
+    EXPECT_DOUBLE_EQ(environmentOf(document).indoor().area(), 48);
+}
+
+TEST(AriaMap, GapsStayOpenOnRequest) {
+    ImportOptions options;
+    options.close_gaps = 0.9;
+    const Document document = read(with("8000 0 8000 6000", "8000 0 8000 5000"), options);
     EXPECT_EQ(countOf(document, "fence"), 3U);
     // Home tells which room the gap is about.
     EXPECT_EQ(countOf(document, "inside"), 1U);

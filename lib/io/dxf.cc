@@ -5,18 +5,20 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "env/texts.h"
 #include "geom/predicates.h"
 #include "io/dxf_shapes.h"
 #include "io/import_records.h"
 #include "io/near_segments.h"
 #include "io/plan_openings.h"
-#include "io/plan_region.h"
+#include "io/plan_rooms.h"
 #include "io/plan_simplify.h"
 
 namespace ispace {
@@ -25,6 +27,9 @@ namespace {
 
 constexpr double kLargestExtent = 10000;  // metres
 constexpr double kOpeningReach = 1e-5;    // from its end to the wall it was put on
+
+/// Metres that a plan is wide if its unit is right.
+constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
 /// What openings are if the walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
@@ -48,8 +53,8 @@ constexpr std::array<LengthUnit, 8> kUnits{{{1, "inch", 0.0254},
     throw FormatError(Diagnostic{displayName(name), 0, 0, message});
 }
 
-double unitOf(const DxfDrawing& drawing, const std::string& name, const ImportOptions& options,
-              ImportRecords& out) {
+const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
+                         const ImportOptions& options, ImportRecords& out) {
     const bool asked = !options.units.empty();
     const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&](const LengthUnit& u) {
         return asked ? u.name == options.units : u.code == drawing.units;
@@ -63,7 +68,7 @@ double unitOf(const DxfDrawing& drawing, const std::string& name, const ImportOp
                  "; say it, for example with --units mm");
     out.note(std::string("unit: ") + unit->name +
              (asked ? ", as asked for" : ", as $INSUNITS of the drawing says"));
-    return unit->metres;
+    return *unit;
 }
 
 /// "WALLS (24), 0 (3) and 2 more".
@@ -159,8 +164,9 @@ class LayerSorter {
 /// A plan's lines and what is kept of them.
 class DxfPlan {
   public:
-    DxfPlan(const SortedShapes& shapes, const std::string& name, const ImportOptions& options)
-        : paths_(withoutRepeats(snapped(shapes.walls, options.snap.value_or(kDefaultSnap)))),
+    DxfPlan(const SortedShapes& shapes, const std::string& name, const ImportOptions& options,
+            std::function<std::string(double)> unit_hint, ImportRecords& out)
+        : paths_(tidyLines(shapes.walls, options.snap.value_or(kDefaultSnap))),
           pieces_(piecesOf(paths_)) {
         check(name);
         PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
@@ -170,8 +176,10 @@ class DxfPlan {
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
-        keepRegion();
+        keepRooms(options, std::move(unit_hint), out);
     }
+
+    [[nodiscard]] double area() const { return rooms_.area(); }
 
     void write(ImportRecords& out, const ImportOptions& options) {
         std::vector<PlanPath> fences = joinedAtEnds(paths_);
@@ -187,7 +195,7 @@ class DxfPlan {
             if (!openings_[i].wall) out.wall(openings_[i].line, wall, openings_[i].drawn_on);
             writeOpening(openings_[i], wall, out, options.wall_height);
         }
-        if (region_) out.inside(region_->inside);
+        writeRooms(rooms_, options, out);
         note(out);
     }
 
@@ -229,14 +237,15 @@ class DxfPlan {
         return all;
     }
 
-    void keepRegion() {
+    void keepRooms(const ImportOptions& options, std::function<std::string(double)> unit_hint,
+                   ImportRecords& out) {
         std::vector<Segment2> doorways;
         for (const PlanOpening& opening : openings_)
             if (!opening.is_window) doorways.push_back(opening.line);
         const std::vector<Segment2> all = allPieces();
-        region_ = PlanFaces(all, doorways).region();
-        if (!region_) return;
-        const std::vector<bool> keep = belongsTo(*region_, all);
+        rooms_ = chooseRooms({all, doorways, {}, {}, std::move(unit_hint)}, options, out);
+        if (rooms_.regions.empty()) return;
+        const std::vector<bool> keep = belongsTo(rooms_.regions, all);
         std::size_t gap = pieces_.size();
         std::vector<PlanOpening> kept;
         for (const PlanOpening& opening : openings_)
@@ -299,12 +308,6 @@ class DxfPlan {
                      (unused_symbols_ == 0 ? std::string()
                                            : "; " + countText(unused_symbols_, "line") +
                                                  " on their layers open nothing and are left out"));
-        if (!region_) {
-            out.note("nothing is enclosed: all lines are kept");
-            return;
-        }
-        out.note("kept the largest region, " + areaText(region_->area()) + " in " +
-                 countText(region_->rooms.size(), "room"));
         if (dropped_lines_ + dropped_openings_ > 0)
             out.note("left out outside of it: " + countText(dropped_lines_, "line") + " and " +
                      countText(dropped_openings_, "opening"));
@@ -314,30 +317,78 @@ class DxfPlan {
     std::vector<Segment2> pieces_;  // of all walls drawn
     std::vector<PlanOpening> openings_;
     std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
-    std::optional<PlanRegion> region_;
+    PlanRooms rooms_;
+};
+
+/// A drawing's document in a unit, and the floor it comes to.
+struct DxfImport {
+    Document document;
+    double area = 0;
+};
+
+class DxfImporter {
+  public:
+    DxfImporter(const DxfDrawing& drawing, const std::string& name, const Schemas& schemas)
+        : drawing_(drawing), name_(name), schemas_(schemas) {}
+
+    /// \param hints whether the import may be tried in other units to tell what helps
+    [[nodiscard]] DxfImport import(const ImportOptions& options, bool hints) const {
+        ImportRecords out(schemas_, name_, options);
+        const LengthUnit& unit = unitOf(drawing_, name_, options, out);
+        MissingBlocks missing;
+        LayerSorter sorter(drawing_, options);
+        const SortedShapes shapes = sorter.sort(
+            shapesOf(drawing_, unit.metres, name_, options.most_points, missing,
+                     [&sorter](const std::string& layer) { return sorter.isUsed(layer); }));
+        sorter.note(out);
+        if (!drawing_.left_out.empty()) out.note("entities left out: " + listed(drawing_.left_out));
+        if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
+        if (shapes.walls.empty())
+            fail(name_, (options.wall_layers.empty() ? "no line to make a wall of"
+                                                     : "no line on the layers of walls") +
+                            std::string("; layers with lines: ") + sorter.all());
+        const auto hint = [&](double extent) {
+            return hints ? unitHint(extent, unit, options) : std::string();
+        };
+        double area = 0;
+        withFileName(name_, [&] {
+            DxfPlan plan(shapes, name_, options, hint, out);
+            plan.write(out, options);
+            area = plan.area();
+        });
+        return {out.take(), area};
+    }
+
+  private:
+    /// "; it says mm: with --units m it would be 7.855 m wide and 57.3 m2"
+    [[nodiscard]] std::string unitHint(double extent, const LengthUnit& unit,
+                                       const ImportOptions& options) const {
+        for (const char* name : {"m", "mm", "cm", "inch", "foot"}) {
+            const auto other = std::find_if(kUnits.begin(), kUnits.end(), [&](const LengthUnit& u) {
+                return std::string_view(u.name) == name;
+            });
+            const double metres = extent / unit.metres * other->metres;
+            if (metres < kLikelyPlan || metres > kUnlikelyPlan) continue;
+            ImportOptions as_other = options;
+            as_other.units = name;
+            return std::string(" It is read in ") + unit.name + "; with --units " + name +
+                   " it would be " + lengthText(metres) + " m wide and have " +
+                   areaText(import(as_other, false).area) + " of floor";
+        }
+        return "";
+    }
+
+    const DxfDrawing& drawing_;
+    const std::string& name_;
+    const Schemas& schemas_;
 };
 
 }  // namespace
 
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
-    ImportRecords out(schemas, name, options);
     const DxfDrawing drawing = readDrawing(bytes, name);
-    const double metres = unitOf(drawing, name, options, out);
-    MissingBlocks missing;
-    LayerSorter sorter(drawing, options);
-    const SortedShapes shapes =
-        sorter.sort(shapesOf(drawing, metres, name, options.most_points, missing,
-                             [&sorter](const std::string& layer) { return sorter.isUsed(layer); }));
-    sorter.note(out);
-    if (!drawing.left_out.empty()) out.note("entities left out: " + listed(drawing.left_out));
-    if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
-    if (shapes.walls.empty())
-        fail(name, (options.wall_layers.empty() ? "no line to make a wall of"
-                                                : "no line on the layers of walls") +
-                       std::string("; layers with lines: ") + sorter.all());
-    withFileName(name, [&] { DxfPlan(shapes, name, options).write(out, options); });
-    return out.take();
+    return DxfImporter(drawing, name, schemas).import(options, true).document;
 }
 
 }  // namespace ispace

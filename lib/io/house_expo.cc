@@ -17,7 +17,7 @@
 #include "base/utf8.h"
 #include "geom/simplify.h"
 #include "io/import_records.h"
-#include "io/plan_region.h"
+#include "io/plan_rooms.h"
 
 namespace ispace {
 
@@ -236,24 +236,17 @@ class RoomFinder {
                  " encloses nothing, wanted three corners or more");
     }
 
-    Region room() {
-        std::vector<Segment2> lines;
+    PlanRooms rooms(const ImportOptions& options, ImportRecords& out) const {
+        PlanWalls plan;
         for (const auto* rings : {&outline_, &holes_})
             for (const Polygon& ring : *rings)
-                forEachEdge(ring, [&](const Segment2& edge) { lines.push_back(edge); });
-        if (crossTooOften(lines)) fail("the outline crosses itself too often to be a plan");
-        const PlanFaces faces(lines);
-        const Region* best = nullptr;
-        for (const Region& face : faces.faces()) {
-            if (!isFloor(interiorPoint(face))) continue;
-            ++pieces_;
-            if (best == nullptr || face.area() > best->area()) best = &face;
-        }
-        if (best == nullptr) fail("`verts` encloses nothing outside of the holes");
-        return *best;
+                forEachEdge(ring, [&](const Segment2& edge) { plan.lines.push_back(edge); });
+        if (crossTooOften(plan.lines)) fail("the outline crosses itself too often to be a plan");
+        plan.is_floor = [this](Point2 p) { return isFloor(p); };
+        PlanRooms rooms = chooseRooms(plan, options, out);
+        if (rooms.regions.empty()) fail("`verts` encloses nothing outside of the holes");
+        return rooms;
     }
-    /// How many regions room() chose from.
-    [[nodiscard]] std::size_t pieces() const { return pieces_; }
 
   private:
     [[noreturn]] void fail(const std::string& message) const {
@@ -267,7 +260,6 @@ class RoomFinder {
 
     const std::string& name_;
     std::vector<Polygon> outline_, holes_;
-    std::size_t pieces_ = 0;
 };
 
 void writeZones(const std::vector<Box>& boxes, ImportRecords& out) {
@@ -300,14 +292,13 @@ bool isJson(std::string_view bytes) {
 Document readHouseExpo(std::string_view json, const std::string& name, const ImportOptions& options,
                        const Schemas& schemas) {
     const HousePlan plan = HousePlanHandler(json, name).read();
-    RoomFinder finder(plan, name, options);
-    const Region room = withFileName(name, [&finder] { return finder.room(); });
+    const RoomFinder finder(plan, name, options);
     ImportRecords out(schemas, name, options);
-    out.region(room, interiorPoint(room));
+    const PlanRooms rooms = withFileName(name, [&] { return finder.rooms(options, out); });
+    for (const PlanRegion& region : rooms.regions)
+        for (const Region& room : region.rooms) out.outline(room);
+    writeRooms(rooms, options, out);
     writeZones(plan.boxes, out);
-    if (finder.pieces() > 1)
-        out.note("kept the largest of " + countText(finder.pieces(), "piece") + ", " +
-                 areaText(room.area()));
     return out.take();
 }
 

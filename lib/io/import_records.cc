@@ -64,9 +64,13 @@ void ImportRecords::wall(const Segment2& line, const std::string& id, int file_l
     record.set("thickness", wall_thickness_);
 }
 
-void ImportRecords::region(const Region& region, Point2 inside_point) {
+void ImportRecords::outline(const Region& region) {
     fence({region.outline, true, 0});
     for (const Polygon& hole : region.holes) fence({hole, true, 0});
+}
+
+void ImportRecords::region(const Region& region, Point2 inside_point) {
+    outline(region);
     inside(inside_point);
 }
 

@@ -15,9 +15,6 @@
 
 namespace ispace {
 
-/// What drawings of lines are joined by, in metres, unless ImportOptions::snap says otherwise.
-constexpr double kDefaultSnap = 0.005;
-
 /// Writes the records of an imported plan, places in metres on whole micrometres.
 class ImportRecords {
   public:
@@ -29,7 +26,9 @@ class ImportRecords {
     void fence(const PlanPath& path, const std::string& id = "");
     /// The same as a wall.
     void wall(const Segment2& line, const std::string& id, int file_line);
-    /// Outline and holes as closed fences, and a point inside.
+    /// Outline and holes as closed fences.
+    void outline(const Region& region);
+    /// The same, and a point inside.
     void region(const Region& region, Point2 inside);
     void inside(Point2 point);
     /// A rectangle of the floor, by its middle.

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "io/near_segments.h"
 
@@ -249,6 +250,36 @@ std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths) {
     for (std::size_t i = 1; i < order.size(); ++i)
         if (pieces[order[i]] == pieces[order[i - 1]]) keep[order[i]] = false;
     return withPieces(paths, keep);
+}
+
+std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
+    std::map<Point2, int, LexLess> free;  // loose ends, with the line of the file
+    std::map<Point2, int, LexLess> uses;
+    for (const PlanPath& path : paths)
+        for (std::size_t i = 0; i < path.pieceCount(); ++i)
+            for (const Point2 p : {path.piece(i).a, path.piece(i).b}) ++uses[p];
+    for (const PlanPath& path : paths)
+        for (const Point2 end : {path.points.front(), path.points.back()})
+            if (!path.closed && uses[end] == 1) free.emplace(end, path.line);
+    const std::vector<Segment2> lines = piecesOf(paths);
+    for (const Closing& closing : closings(lines, {}, reach)) {
+        auto from = free.find(closing.line.a);
+        if (from == free.end()) from = free.find(closing.line.b);
+        if (from == free.end()) continue;
+        const bool forward = from->first == closing.line.a;
+        const Point2 to = forward ? closing.line.b : closing.line.a;
+        paths.push_back(
+            {{from->first, {wholeMicrometres(to.x), wholeMicrometres(to.y)}}, false, from->second});
+        free.erase(from);
+        free.erase(to);
+    }
+    return paths;
+}
+
+std::vector<PlanPath> tidyLines(const std::vector<PlanPath>& paths, double snap) {
+    std::vector<PlanPath> tidy = snapped(paths, std::min(snap, kDefaultSnap));
+    if (snap > kDefaultSnap && !tidy.empty()) tidy = bridged(std::move(tidy), snap);
+    return withoutRepeats(tidy);
 }
 
 std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths) {

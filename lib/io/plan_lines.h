@@ -21,6 +21,9 @@ struct PlanPath {
     friend bool operator==(const PlanPath&, const PlanPath&) = default;
 };
 
+/// What drawings of lines are joined by, in metres, unless ImportOptions::snap says otherwise.
+constexpr double kDefaultSnap = 0.005;
+
 /// Metres on whole micrometres, which keeps the text short and moves nothing visibly.
 double wholeMicrometres(double metres);
 
@@ -29,6 +32,14 @@ double wholeMicrometres(double metres);
 /// Points that fall together are one; paths without two different points are dropped. With less
 /// than a micrometre only equal points are one. O(n log n) unless most lines lie in one place.
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
+
+/// The paths, and behind them a short one from each loose end of a line to the nearest point of
+/// another within `reach`: nothing moves, and nothing new crosses. O(n log n).
+std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
+
+/// Lines as people draw them, ready to be walls: points within 5 mm (or `snap`, if that is less)
+/// are one, loose ends are bridged within `snap`, and nothing is there twice.
+std::vector<PlanPath> tidyLines(const std::vector<PlanPath>& paths, double snap);
 
 /// All pieces of all paths, in order.
 std::vector<Segment2> piecesOf(const std::vector<PlanPath>& paths);

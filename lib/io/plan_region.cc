@@ -18,6 +18,13 @@ namespace {
 /// How far beside a door the rooms on its sides are looked for: less than any wall is thick.
 constexpr double kBesideDoor = 0.005;
 
+/// Both the region and the line were welded, which moves each by that distance.
+constexpr double kOnLine = 3 * kWeldDistance;
+
+/// No disc of this diameter fits between the two lines of a wall; in plans of any scale none of
+/// this share of the plan's extent.
+constexpr double kNarrowestRoom = 0.5, kWallShare = 12;
+
 /// An inside point nearer than this to a line that stands free is exchanged for the clearest of a
 /// grid of points.
 constexpr double kClear = 0.05;
@@ -109,6 +116,46 @@ Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     return best;
 }
 
+/// The part of `line` that lies on `other`, if it is longer than a point.
+std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) {
+    const Vec2 along = line.b - line.a;
+    if (line.a == line.b) return std::nullopt;
+    const auto share = [&](Point2 p) {
+        return std::clamp(dot(p - line.a, along) / dot(along, along), 0.0, 1.0);
+    };
+    const auto [first, last] = std::minmax({share(other.a), share(other.b)});
+    const auto at = [&](double s) { return s == 1 ? line.b : line.a + s * along; };
+    const Segment2 part{at(first), at(last)};
+    if (distance(part.a, part.b) <= kOnLine || distance(part.a, other) > kOnLine ||
+        distance(part.b, other) > kOnLine)
+        return std::nullopt;
+    return part;
+}
+
+/// Pieces of walls, and of closings where no wall lies on them.
+struct WeldedPlan {
+    std::vector<Segment2> walls, closings;
+};
+
+WeldedPlan weldedPlan(std::span<const Segment2> walls, std::span<const Segment2> closings) {
+    std::vector<Segment2> all(walls.begin(), walls.end());
+    all.insert(all.end(), closings.begin(), closings.end());
+    const WeldedLines welded = weld(all);
+    WeldedPlan plan;
+    std::vector<Segment2> pieces;
+    for (std::size_t i = 0; i < welded.pieces.size(); ++i)
+        (welded.source[i] < walls.size() ? plan.walls : pieces).push_back(welded.pieces[i]);
+    const NearSegments search(plan.walls);
+    for (const Segment2& piece : pieces) {
+        const Point2 middle = middleOf(piece);
+        const auto near = search.near(middle, kOnLine);
+        if (std::none_of(near.begin(), near.end(),
+                         [&](std::size_t i) { return distance(middle, plan.walls[i]) <= kOnLine; }))
+            plan.closings.push_back(piece);
+    }
+    return plan;
+}
+
 }  // namespace
 
 double PlanRegion::area() const {
@@ -116,14 +163,32 @@ double PlanRegion::area() const {
                            [](double sum, const Region& room) { return sum + room.area(); });
 }
 
-PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors)
-    : walls_(walls.begin(), walls.end()), faces_(boundedFaces(weld(walls))) {
+PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors,
+                     std::span<const Segment2> closings)
+    : walls_(walls.begin(), walls.end()) {
+    if (closings.empty()) {
+        faces_ = boundedFaces(weld(walls));
+    } else {
+        WeldedPlan welded = weldedPlan(walls, closings);
+        faces_ = boundedFaces(welded.walls, welded.closings);
+        closings_ = std::move(welded.closings);
+    }
     boxes_.reserve(faces_.size());
-    for (const Region& face : faces_) boxes_.push_back(bounds(face.outline));
-    group_.resize(faces_.size());
-    std::iota(group_.begin(), group_.end(), std::size_t{0});
-    const auto root = [this](std::size_t i) {
-        while (group_[i] != i) i = group_[i];
+    Box2 all;
+    for (const Region& face : faces_) {
+        boxes_.push_back(bounds(face.outline));
+        all.add(boxes_.back().low);
+        all.add(boxes_.back().high);
+    }
+    thinnest_ = std::min(kNarrowestRoom, std::max(all.width(), all.depth()) / kWallShare) / 2;
+    makeGroups(doors);
+}
+
+void PlanFaces::makeGroups(std::span<const Segment2> doors) {
+    std::vector<std::size_t> group_of(faces_.size());
+    std::iota(group_of.begin(), group_of.end(), std::size_t{0});
+    const auto root = [&group_of](std::size_t i) {
+        while (group_of[i] != i) i = group_of[i];
         return i;
     };
     for (const Segment2& door : doors) {
@@ -133,9 +198,24 @@ PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> 
         const auto right = faceAt(middleOf(door) - across);
         if (!left || !right) continue;
         const std::size_t a = root(*left), b = root(*right);
-        group_[std::max(a, b)] = std::min(a, b);
+        group_of[std::max(a, b)] = std::min(a, b);
     }
-    for (std::size_t i = 0; i < group_.size(); ++i) group_[i] = root(i);
+    std::vector<std::size_t> place(faces_.size(), faces_.size());
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        std::size_t& at = place[root(i)];
+        if (at == faces_.size()) {
+            at = groups_.size();
+            groups_.emplace_back();
+        }
+        groups_[at].faces.push_back(i);
+        groups_[at].area += faces_[i].area();
+    }
+    for (Group& group : groups_)
+        std::stable_sort(group.faces.begin(), group.faces.end(), [&](std::size_t i, std::size_t k) {
+            return faces_[i].area() > faces_[k].area();
+        });
+    std::stable_sort(groups_.begin(), groups_.end(),
+                     [](const Group& a, const Group& b) { return a.area > b.area; });
 }
 
 std::optional<std::size_t> PlanFaces::faceAt(Point2 p) const {
@@ -144,34 +224,60 @@ std::optional<std::size_t> PlanFaces::faceAt(Point2 p) const {
     return std::nullopt;
 }
 
-std::optional<PlanRegion> PlanFaces::region(std::optional<Point2> preferred) const {
-    if (faces_.empty()) return std::nullopt;
-    std::vector<double> areas(faces_.size());
-    for (std::size_t i = 0; i < faces_.size(); ++i) areas[group_[i]] += faces_[i].area();
-    auto best =
-        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
-    if (preferred)
-        if (const auto face = faceAt(*preferred)) best = group_[*face];
+const PlanFaces::Group* PlanFaces::groupAt(Point2 p) const {
+    const auto face = faceAt(p);
+    if (!face) return nullptr;
+    const auto found = std::find_if(groups_.begin(), groups_.end(), [&face](const Group& group) {
+        return std::find(group.faces.begin(), group.faces.end(), *face) != group.faces.end();
+    });
+    return &*found;
+}
+
+bool PlanFaces::isHollow(const Group& group) const {
+    return std::all_of(group.faces.begin(), group.faces.end(), [this](std::size_t i) {
+        const Box2& box = boxes_[i];
+        if (std::min(box.width(), box.depth()) < 2 * thinnest_) return true;
+        const Point2 p = interiorPoint(faces_[i]);
+        bool is_thin = false;
+        faces_[i].forEachEdge(
+            [&](const Segment2& edge) { is_thin = is_thin || distance(p, edge) < thinnest_; });
+        return is_thin;
+    });
+}
+
+PlanRegion PlanFaces::region(const Group& group) const {
     PlanRegion region;
-    for (std::size_t i = 0; i < faces_.size(); ++i)
-        if (group_[i] == best) region.rooms.push_back(faces_[i]);
-    std::stable_sort(region.rooms.begin(), region.rooms.end(),
-                     [](const Region& a, const Region& b) { return a.area() > b.area(); });
+    for (const std::size_t i : group.faces) region.rooms.push_back(faces_[i]);
     region.inside = clearPoint(region.rooms.front(), walls_);
     return region;
 }
 
-std::vector<bool> belongsTo(const PlanRegion& region, std::span<const Segment2> lines) {
-    std::vector<bool> belongs(lines.size());
-    // Lines on which an edge of a room lies; both were welded, which moves by that distance.
-    const NearSegments search(lines);
+std::vector<Segment2> PlanFaces::closedBy(const PlanRegion& region) const {
+    std::vector<Segment2> closed;
+    if (closings_.empty()) return closed;
+    const NearSegments search(closings_);
     for (const Region& room : region.rooms)
         room.forEachEdge([&](const Segment2& edge) {
-            const Point2 middle = middleOf(edge);
-            for (const std::size_t i : search.near(middle, 3 * kWeldDistance))
-                if (distance(middle, lines[i]) <= 3 * kWeldDistance) belongs[i] = true;
+            // An edge may run on from a closing along a wall in its direction.
+            for (const std::size_t i : search.near(bounds(edge), kOnLine))
+                if (const auto part = commonPart(closings_[i], edge)) closed.push_back(*part);
         });
-    const RegionLocator locator(region.rooms);
+    return closed;
+}
+
+std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines) {
+    std::vector<bool> belongs(lines.size());
+    // Lines on which an edge of a room lies.
+    const NearSegments search(lines);
+    std::vector<Region> rooms;
+    for (const PlanRegion& region : regions)
+        rooms.insert(rooms.end(), region.rooms.begin(), region.rooms.end());
+    for (const Region& room : rooms)
+        room.forEachEdge([&](const Segment2& edge) {
+            for (const std::size_t i : search.near(bounds(edge), kOnLine))
+                if (!belongs[i] && commonPart(lines[i], edge)) belongs[i] = true;
+        });
+    const RegionLocator locator(rooms);
     for (std::size_t i = 0; i < lines.size(); ++i)
         for (const double share : kSharesInside)
             if (!belongs[i])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,28 +18,48 @@ struct PlanRegion {
     [[nodiscard]] double area() const;
 };
 
-/// The faces of the lines, without those that open doors join being told apart.
+/// The faces of a plan's lines, those that doors join taken together.
 class PlanFaces {
   public:
+    /// Faces that hang together: indices of faces(), the largest first.
+    struct Group {
+        std::vector<std::size_t> faces;
+        double area = 0;
+    };
+
     /// \param doors lines across which one can pass: among the walls, or on them
-    explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {});
+    /// \param closings lines across gaps between walls: they bound what they separate from the
+    ///        outside of everything, and nothing else
+    explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {},
+                       std::span<const Segment2> closings = {});
 
     [[nodiscard]] const std::vector<Region>& faces() const { return faces_; }
-    /// The rooms joined to the face that holds `preferred` strictly inside, else those that are
-    /// largest together; nothing where nothing is enclosed.
-    [[nodiscard]] std::optional<PlanRegion> region(std::optional<Point2> preferred = {}) const;
+    /// By falling area.
+    [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+    /// The group that holds the point strictly inside one of its faces.
+    [[nodiscard]] const Group* groupAt(Point2 p) const;
+    /// True if nothing wider than a wall fits into any of its faces: what lies between the two
+    /// lines of a wall, and never a room.
+    [[nodiscard]] bool isHollow(const Group& group) const;
+    [[nodiscard]] PlanRegion region(const Group& group) const;
+    /// The part of the region's boundary that lies on closings alone.
+    [[nodiscard]] std::vector<Segment2> closedBy(const PlanRegion& region) const;
 
   private:
+    void makeGroups(std::span<const Segment2> doors);
     [[nodiscard]] std::optional<std::size_t> faceAt(Point2 p) const;
 
     std::vector<Segment2> walls_;
+    std::vector<Segment2> closings_;  // pieces of them that lie on no wall
     std::vector<Region> faces_;
     std::vector<Box2> boxes_;
-    std::vector<std::size_t> group_;  // of each face; the lowest index of a group names it
+    std::vector<Group> groups_;
+    double thinnest_ = 0;  // radius of the disc that fits into a room
 };
 
-/// For each line, whether it bounds one of the rooms or lies in it, with its middle or an end.
-std::vector<bool> belongsTo(const PlanRegion& region, std::span<const Segment2> lines);
+/// For each line, whether it bounds one of the regions' rooms or lies in it, with its middle or an
+/// end.
+std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
 /// True if the lines cross each other so often that their faces would take hours: no plan does.
 /// Judged by a sample, the same one at every call.

@@ -25,35 +25,75 @@ Lines flat() {
     return lines;
 }
 
-TEST(PlanRegion, LargestFaceOrThePreferred) {
+TEST(PlanRegion, GroupsByAreaAndPlace) {
     const PlanFaces faces(flat());
     EXPECT_EQ(faces.faces().size(), 3U);
-    EXPECT_DOUBLE_EQ(faces.region()->area(), 25);
-    EXPECT_DOUBLE_EQ(faces.region(Point2{1, 1})->area(), 16);
-    EXPECT_DOUBLE_EQ(faces.region(Point2{-1, 1})->area(), 25);
-    EXPECT_FALSE(PlanFaces(Lines{{{0, 0}, {1, 0}}}).region());
-    EXPECT_FALSE(PlanFaces(Lines{}).region());
+    ASSERT_EQ(faces.groups().size(), 3U);
+    EXPECT_DOUBLE_EQ(faces.groups().front().area, 25);
+    EXPECT_DOUBLE_EQ(faces.groupAt({1, 1})->area, 16);
+    EXPECT_EQ(faces.groupAt({-1, 1}), nullptr);
+    EXPECT_TRUE(PlanFaces(Lines{{{0, 0}, {1, 0}}}).groups().empty());
+    EXPECT_TRUE(PlanFaces(Lines{}).groups().empty());
 }
 
 TEST(PlanRegion, DoorsJoinRooms) {
     const Lines doors{{{4, 1}, {4, 2}}};
-    const auto region = PlanFaces(flat(), doors).region();
-    ASSERT_TRUE(region);
-    EXPECT_DOUBLE_EQ(region->area(), 28);
-    ASSERT_EQ(region->rooms.size(), 2U);
-    EXPECT_DOUBLE_EQ(region->rooms[0].area(), 16);
-    EXPECT_EQ(region->rooms[0].locate(region->inside), Side::Inside);
+    const PlanFaces faces(flat(), doors);
+    const PlanRegion region = faces.region(faces.groups().front());
+    EXPECT_DOUBLE_EQ(region.area(), 28);
+    ASSERT_EQ(region.rooms.size(), 2U);
+    EXPECT_DOUBLE_EQ(region.rooms[0].area(), 16);
+    EXPECT_EQ(region.rooms[0].locate(region.inside), Side::Inside);
     // A door to the outside joins nothing.
     const Lines outside{{{0, 1}, {0, 2}}};
-    EXPECT_DOUBLE_EQ(PlanFaces(flat(), outside).region()->area(), 25);
+    EXPECT_DOUBLE_EQ(PlanFaces(flat(), outside).groups().front().area, 25);
+}
+
+TEST(PlanRegion, HollowsOfWallsAreNoRooms) {
+    Lines lines = rectangle(0, 0, 6, 5);
+    for (const Segment2& line : rectangle(0.3, 0.3, 5.7, 4.7)) lines.push_back(line);
+    for (const Segment2& line : rectangle(2, 1, 3, 2)) lines.push_back(line);
+    const PlanFaces faces(lines);
+    ASSERT_EQ(faces.groups().size(), 3U);  // the room, the hollow, a closed thing
+    EXPECT_FALSE(faces.isHollow(faces.groups()[0]));
+    EXPECT_NEAR(faces.groups()[1].area, 30 - 5.4 * 4.4, 1e-9);
+    EXPECT_TRUE(faces.isHollow(faces.groups()[1]));
+    EXPECT_FALSE(faces.isHollow(faces.groups()[2]));
+    // The same in millimetres that were taken for metres.
+    for (Segment2& line : lines)
+        line = {{line.a.x / 1000, line.a.y / 1000}, {line.b.x / 1000, line.b.y / 1000}};
+    const PlanFaces small(lines);
+    EXPECT_FALSE(small.isHollow(small.groups()[0]));
+    EXPECT_TRUE(small.isHollow(small.groups()[1]));
+}
+
+TEST(PlanRegion, ClosingsBoundOnlyAgainstTheOutside) {
+    // Two rooms without the wall between them, and without a piece of the outer wall.
+    const Lines walls{{{0, 0}, {3, 0}}, {{4, 0}, {7, 0}}, {{7, 0}, {7, 4}}, {{7, 4}, {0, 4}},
+                      {{0, 4}, {0, 0}}, {{3, 0}, {3, 1}}, {{3, 3}, {3, 4}}};
+    const Lines closings{{{3, 0}, {4, 0}}, {{3, 1}, {3, 3}}};
+    const PlanFaces faces(walls, {}, closings);
+    ASSERT_EQ(faces.groups().size(), 1U);
+    EXPECT_DOUBLE_EQ(faces.groups()[0].area, 28);
+    const auto closed = faces.closedBy(faces.region(faces.groups()[0]));
+    ASSERT_EQ(closed.size(), 1U);
+    EXPECT_DOUBLE_EQ(distance(closed[0].a, closed[0].b), 1);
+    EXPECT_DOUBLE_EQ(closed[0].a.y, 0);
+    EXPECT_TRUE(PlanFaces(walls).groups().empty());
 }
 
 TEST(PlanRegion, InsideIsClearOfLinesThatStandFree) {
     Lines lines = rectangle(0, 0, 4, 4);
     lines.push_back({{1, 1}, {3, 3}});
     lines.push_back({{1, 3}, {3, 1}});
-    const Point2 inside = PlanFaces(lines).region()->inside;
+    const PlanFaces faces(lines);
+    const Point2 inside = faces.region(faces.groups().front()).inside;
     for (const Segment2& line : lines) EXPECT_GT(distance(inside, line), 0.3);
+}
+
+PlanRegion leftRoom(const Lines& lines) {
+    const PlanFaces faces(lines);
+    return faces.region(*faces.groupAt({1, 3}));
 }
 
 TEST(PlanRegion, LinesThatBelong) {
@@ -62,7 +102,7 @@ TEST(PlanRegion, LinesThatBelong) {
     lines.push_back({{5, 1}, {6, 2}});    // in the right one
     lines.push_back({{4, 2}, {3, 2}});    // from the wall into the left one
     lines.push_back({{-3, 1}, {-2, 1}});  // outside
-    const auto belongs = belongsTo(*PlanFaces(lines).region(Point2{1, 3}), lines);
+    const auto belongs = belongsTo({{leftRoom(lines)}}, lines);
     const std::vector<bool> expected{true,  false, true, true,  true, false, false,
                                      false, false, true, false, true, false};
     // The lower and upper sides run on to the right room; they bound the left one as well.
@@ -80,18 +120,25 @@ TEST(PlanRegion, BelongingEqualsBruteForce) {
             lines.push_back({at(), at()});
         }
         const PlanFaces faces(lines);
-        const auto region = faces.region();
-        if (!region) continue;
-        const auto belongs = belongsTo(*region, lines);
+        if (faces.groups().empty()) continue;
+        const PlanRegion region = faces.region(faces.groups().front());
+        const auto belongs = belongsTo({{region}}, lines);
         for (std::size_t i = 0; i < lines.size(); ++i) {
             bool within = false;
             for (const double share : {0.01, 0.501, 0.99})
                 within = within ||
-                         region->rooms[0].locate(lines[i].a + share * (lines[i].b - lines[i].a)) ==
+                         region.rooms[0].locate(lines[i].a + share * (lines[i].b - lines[i].a)) ==
                              Side::Inside;
+            // A stretch of an edge lies on the line: of the points of one on the other some do.
+            const auto lie_on = [](const Segment2& s, const Segment2& t) {
+                int on = 0;
+                for (int k = 0; k < 400; ++k)
+                    if (distance(s.a + (k + 0.5) / 400 * (s.b - s.a), t) < 2e-6) ++on;
+                return on > 1;
+            };
             bool bounds = false;
-            region->rooms[0].forEachEdge([&](const Segment2& edge) {
-                bounds = bounds || distance(edge.a + 0.5 * (edge.b - edge.a), lines[i]) < 2e-6;
+            region.rooms[0].forEachEdge([&](const Segment2& edge) {
+                bounds = bounds || lie_on(edge, lines[i]) || lie_on(lines[i], edge);
             });
             EXPECT_EQ(belongs[i], within || bounds) << round << ' ' << i;
         }

@@ -71,6 +71,13 @@ inline std::string notesOf(const Document& document) {
     return all;
 }
 
+/// All warnings as tools print them, a line each.
+inline std::string warningsOf(const Document& document) {
+    std::string all;
+    for (const Diagnostic& warning : document.warnings) all += warning.text() + '\n';
+    return all;
+}
+
 inline std::size_t countOf(const Document& document, const std::string& keyword) {
     return static_cast<std::size_t>(
         std::count_if(document.records.begin(), document.records.end(),

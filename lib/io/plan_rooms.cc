@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan_rooms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/number.h"
+#include "env/check.h"
+#include "env/texts.h"
+#include "geom/planar_map.h"
+
+namespace ispace {
+
+namespace {
+
+/// Widths up to which gaps are closed, tried in this order where the user names none.
+constexpr std::array kSmallGaps{0.01, 0.02, 0.05, 0.1, 0.2};
+constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
+
+/// Drawings with more lines are not tried again and again.
+constexpr std::size_t kMostLinesTried = 30'000;
+
+/// A room of less than this share of the drawing's extent, or of what could be enclosed, is
+/// doubted.
+constexpr double kSmallShare = 0.5;
+
+/// What closes gaps wider than this is a doorway: corners of thick walls count as well.
+constexpr double kNarrowestDoorway = 0.3;
+
+/// Where all rooms are kept: smaller ones are shafts, and smaller ones that stand within another
+/// room things.
+constexpr double kSmallestRoom = 1, kSmallestInnerRoom = 4;
+
+/// Metres: what is smaller or larger is in other units.
+constexpr double kSmallestPlan = 2, kLargestPlan = 2000;
+
+/// Rooms that were left out are counted up to here.
+constexpr std::size_t kMostGroups = 500;
+
+constexpr std::size_t kMostPlaces = 6;  // that one message names
+
+Box2 boundsOf(std::span<const Segment2> lines) {
+    Box2 box;
+    for (const Segment2& line : lines) {
+        box.add(line.a);
+        box.add(line.b);
+    }
+    return box;
+}
+
+double areaOf(const Box2& box) { return box.width() * box.depth(); }
+
+std::string sizeText(const Box2& box) {
+    return formatFixed(box.width(), 1) + " x " + formatFixed(box.depth(), 1) + " m";
+}
+
+Point2 rounded(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
+
+/// Corners of the solid between the two lines of a wall, as seen from the floor.
+std::vector<Point2> wallCorners(const PlanFaces& faces) {
+    std::vector<Point2> corners;
+    for (const PlanFaces::Group& group : faces.groups()) {
+        if (!faces.isHollow(group)) continue;
+        for (const std::size_t face : group.faces)
+            for (const Polygon& curve : curvesOf(faces.faces()[face]))
+                corners.insert(corners.end(), curve.begin(), curve.end());
+    }
+    return corners;
+}
+
+class RoomChooser {
+  public:
+    RoomChooser(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out)
+        : plan_(plan), options_(options), out_(out), lines_(plan.lines) {
+        lines_.insert(lines_.end(), options.known_walls.begin(), options.known_walls.end());
+        points_ = options.inside;
+        points_.insert(points_.end(), options.known_inside.begin(), options.known_inside.end());
+    }
+
+    PlanRooms choose() {
+        const Box2 box = boundsOf(plan_.lines);
+        const double extent = std::max(box.width(), box.depth());
+        is_odd_ = !plan_.lines.empty() && (extent < kSmallestPlan || extent > kLargestPlan);
+        if (is_odd_)
+            out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
+                      (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
+        Attempt best = attempt(options_.close_gaps.value_or(0));
+        if (!options_.close_gaps && isDoubtful(best)) best = closed(std::move(best));
+        PlanRooms rooms;
+        rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
+        if (best.groups.empty()) {
+            out_.note("nothing is enclosed: all lines are kept");
+            return rooms;
+        }
+        for (const PlanFaces::Group* group : best.groups) {
+            rooms.regions.push_back(best.faces.region(*group));
+            if (points_.empty() && plan_.home && best.faces.groupAt(*plan_.home) == group)
+                rooms.regions.back().inside = *plan_.home;
+            const auto closing = best.faces.closedBy(rooms.regions.back());
+            rooms.closing.insert(rooms.closing.end(), closing.begin(), closing.end());
+        }
+        report(best, rooms);
+        return rooms;
+    }
+
+  private:
+    /// The rooms with gaps up to a width closed.
+    struct Attempt {
+        double width;
+        PlanFaces faces;
+        std::vector<const PlanFaces::Group*> groups = {};
+        double area = 0;
+        bool is_whole = false;  ///< every point that was asked for is in a room
+    };
+
+    [[nodiscard]] bool isRoom(const PlanFaces& faces, const PlanFaces::Group& group) const {
+        if (faces.isHollow(group)) return false;
+        return !plan_.is_floor || plan_.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
+    }
+
+    Attempt attempt(double width) {
+        std::vector<Segment2> closing;
+        if (width > 0) {
+            const bool with_corners = width >= kNarrowestDoorway;
+            if (with_corners && corners_.empty()) corners_ = wallCorners(PlanFaces(lines_));
+            for (const Closing& gap :
+                 closings(lines_, with_corners ? corners_ : std::vector<Point2>(), width)) {
+                const Segment2 line{rounded(gap.line.a), rounded(gap.line.b)};
+                if (line.a != line.b) closing.push_back(line);
+            }
+        }
+        Attempt attempt{width, PlanFaces(lines_, plan_.doors, closing)};
+        takeGroups(attempt);
+        for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
+        return attempt;
+    }
+
+    void takeGroups(Attempt& attempt) const {
+        const PlanFaces& faces = attempt.faces;
+        attempt.is_whole = true;
+        if (!points_.empty()) {
+            std::set<const PlanFaces::Group*> taken;
+            for (const Point2 p : points_) {
+                const PlanFaces::Group* group = faces.groupAt(p);
+                if (group == nullptr)
+                    attempt.is_whole = false;
+                else if (taken.insert(group).second)
+                    attempt.groups.push_back(group);
+            }
+            return;
+        }
+        if (options_.rooms == RoomChoice::All) return takeAll(attempt);
+        if (plan_.home) {
+            const PlanFaces::Group* group = faces.groupAt(*plan_.home);
+            attempt.is_whole = group != nullptr && isRoom(faces, *group);
+            if (attempt.is_whole) return attempt.groups.push_back(group);
+        }
+        for (const PlanFaces::Group& group : faces.groups())
+            if (isRoom(faces, group)) return attempt.groups.push_back(&group);
+    }
+
+    void takeAll(Attempt& attempt) const {
+        const PlanFaces& faces = attempt.faces;
+        for (const PlanFaces::Group& group : faces.groups()) {
+            if (group.area < kSmallestRoom || !isRoom(faces, group)) continue;
+            const Point2 corner = faces.faces()[group.faces.front()].outline.front();
+            const bool is_inner = std::any_of(
+                attempt.groups.begin(), attempt.groups.end(), [&](const PlanFaces::Group* outer) {
+                    const Region& room = faces.faces()[outer->faces.front()];
+                    return std::any_of(
+                        room.holes.begin(), room.holes.end(),
+                        [&](const Polygon& hole) { return locate(hole, corner) != Side::Outside; });
+                });
+            if (!is_inner || group.area >= kSmallestInnerRoom) attempt.groups.push_back(&group);
+        }
+    }
+
+    [[nodiscard]] bool isDoubtful(const Attempt& attempt) const {
+        if (is_odd_) return false;  // one doubt at a time
+        return attempt.groups.empty() || !attempt.is_whole ||
+               attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
+    }
+
+    /// Of the widths the smallest that comes to half of the best, where that is better.
+    template <typename Widths>
+    std::optional<Attempt> smallestGood(const Widths& widths, const Attempt& open) {
+        std::vector<Attempt> attempts;
+        double best = 0;
+        bool any_whole = false;
+        for (const double width : widths) {
+            attempts.push_back(attempt(width));
+            any_whole = any_whole || attempts.back().is_whole;
+        }
+        for (const Attempt& a : attempts)
+            if (a.is_whole == any_whole) best = std::max(best, a.area);
+        if (any_whole == open.is_whole && !(best * kSmallShare > open.area)) return std::nullopt;
+        for (Attempt& a : attempts)
+            if (a.is_whole == any_whole && a.area > 0 && a.area >= best * kSmallShare)
+                return std::move(a);
+        return std::nullopt;
+    }
+
+    Attempt closed(Attempt open) {
+        if (lines_.size() > kMostLinesTried) return open;
+        if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
+        if (!isDoubtful(open)) return open;
+        auto wide = smallestGood(kDoorways, open);
+        if (!wide) return open;
+        if (open.groups.empty() || !open.is_whole) return *std::move(wide);
+        wider_ = {wide->width, wide->area};
+        return open;
+    }
+
+    void report(const Attempt& taken, const PlanRooms& rooms) {
+        if (!rooms.closing.empty()) out_.warn(gapsText(rooms.closing, taken.width));
+        std::size_t faces = 0;
+        Box2 kept;
+        for (const PlanRegion& region : rooms.regions)
+            for (const Region& room : region.rooms) {
+                ++faces;
+                kept.add(bounds(room.outline).low);
+                kept.add(bounds(room.outline).high);
+            }
+        const bool is_largest = points_.empty() && !plan_.home && rooms.regions.size() == 1;
+        out_.note((is_largest ? "kept the largest region, " : "kept ") + areaText(taken.area) +
+                  " in " + countText(faces, "room"));
+        if (wider_)
+            out_.warn("only " + areaText(taken.area) +
+                      " are enclosed, the walls are open; with --close-gaps " +
+                      formatDouble(wider_->first) + " it would be " + areaText(wider_->second));
+        if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(taken, kept);
+    }
+
+    void warnOfTheRest(const Attempt& taken, const Box2& kept) {
+        const Box2 all = boundsOf(plan_.lines);
+        const PlanFaces::Group* largest_other = nullptr;
+        double others = 0;
+        std::size_t looked_at = 0;
+        for (const PlanFaces::Group& group : taken.faces.groups()) {
+            if (std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end())
+                continue;
+            if (++looked_at > kMostGroups) break;
+            if (!isRoom(taken.faces, group)) continue;
+            if (largest_other == nullptr) largest_other = &group;
+            others += group.area;
+        }
+        if (areaOf(kept) >= kSmallShare * areaOf(all) && taken.area >= others) return;
+        std::string text = "kept " + areaText(taken.area) + " on " + sizeText(kept) +
+                           " of a drawing of " + sizeText(all);
+        if (largest_other != nullptr)
+            text += "; other rooms have " + areaText(others) + ", the largest of them " +
+                    areaText(largest_other->area) + " about " +
+                    placeText(interiorPoint(taken.faces.faces()[largest_other->faces.front()])) +
+                    ": --inside X,Y chooses rooms, --rooms all keeps all";
+        out_.warn(std::move(text));
+    }
+
+    [[nodiscard]] static std::string gapsText(std::span<const Segment2> closing, double width) {
+        std::vector<std::pair<double, Point2>> gaps;
+        for (const Segment2& line : closing)
+            gaps.emplace_back(distance(line.a, line.b), line.a + 0.5 * (line.b - line.a));
+        std::stable_sort(gaps.begin(), gaps.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::string text = "the walls do not close: closed " + countText(gaps.size(), "gap") +
+                           " of up to " + formatDouble(width) + " m (";
+        for (std::size_t i = 0; i < std::min(gaps.size(), kMostPlaces); ++i)
+            text += (i == 0 ? "" : ", ") + formatFixed(gaps[i].first, 3) + " m at " +
+                    placeText(gaps[i].second);
+        if (gaps.size() > kMostPlaces)
+            text += " and " + std::to_string(gaps.size() - kMostPlaces) + " more";
+        return text + "); --close-gaps M sets the widest";
+    }
+
+    const PlanWalls& plan_;
+    const ImportOptions& options_;
+    ImportRecords& out_;
+    std::vector<Segment2> lines_;  // with those that others bring
+    std::vector<Point2> points_, corners_;
+    bool is_odd_ = false;                             // of a size that no plan has
+    std::optional<std::pair<double, double>> wider_;  // width and area of what is not done
+};
+
+}  // namespace
+
+double PlanRooms::area() const {
+    return std::accumulate(
+        regions.begin(), regions.end(), 0.0,
+        [](double sum, const PlanRegion& region) { return sum + region.area(); });
+}
+
+PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out) {
+    return RoomChooser(plan, options, out).choose();
+}
+
+void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out) {
+    for (const Segment2& line : rooms.closing)
+        out.fence({{rounded(line.a), rounded(line.b)}, false, 0});
+    if (!rooms.writes_inside) return;
+    for (const Point2 p : options.inside) out.inside(p);
+    if (!options.inside.empty()) return;
+    for (const PlanRegion& region : rooms.regions) out.inside(region.inside);
+}
+
+}  // namespace ispace
