@@ -229,7 +229,8 @@ class AriaPlan {
     }
 
     void write(ImportRecords& out, const ImportOptions& options) const {
-        for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
+        if (rooms_.reached.empty())
+            for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
         if (options.points) writePoints(out);
         writeAreas(out);
         writeRooms(rooms_, options, out);

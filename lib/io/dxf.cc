@@ -182,6 +182,11 @@ class DxfPlan {
     [[nodiscard]] double area() const { return rooms_.area(); }
 
     void write(ImportRecords& out, const ImportOptions& options) {
+        if (!rooms_.reached.empty()) {
+            // Doors have no walls to be in: they are where the floor goes on.
+            writeRooms(rooms_, options, out);
+            return note(out);
+        }
         std::vector<PlanPath> fences = joinedAtEnds(paths_);
         const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
         std::vector<std::string> ids(fences.size());

@@ -295,8 +295,9 @@ Document readHouseExpo(std::string_view json, const std::string& name, const Imp
     const RoomFinder finder(plan, name, options);
     ImportRecords out(schemas, name, options);
     const PlanRooms rooms = withFileName(name, [&] { return finder.rooms(options, out); });
-    for (const PlanRegion& region : rooms.regions)
-        for (const Region& room : region.rooms) out.outline(room);
+    if (rooms.reached.empty())
+        for (const PlanRegion& region : rooms.regions)
+            for (const Region& room : region.rooms) out.outline(room);
     writeRooms(rooms, options, out);
     writeZones(plan.boxes, out);
     return out.take();

@@ -44,11 +44,13 @@ void ImportRecords::setPoint(Record& record, const char* key, Point2 point) {
 void ImportRecords::fence(const PlanPath& path, const std::string& id) {
     Record& record = add("fence", path.line);
     if (!id.empty()) record.set("id", id);
+    Polygon corners = path.points;
+    for (Point2& p : corners) p = {wholeMicrometres(p.x), wholeMicrometres(p.y)};
+    const bool crossing = path.closed && selfCrossing(corners);
+    if (crossing) corners.push_back(corners.front());
     TupleList points;
-    points.reserve(path.points.size() + 1);
-    for (const Point2 p : path.points) points.push_back(tupleOf(p));
-    const bool crossing = path.closed && selfCrossing(path.points);
-    if (crossing) points.push_back(points.front());
+    points.reserve(corners.size());
+    for (const Point2 p : corners) points.push_back({p.x, p.y});
     record.set("path", std::move(points));
     record.set("closed", path.closed && !crossing);
     record.set("height", wall_height_);

@@ -12,6 +12,7 @@
 #include "env/check.h"
 #include "env/texts.h"
 #include "geom/planar_map.h"
+#include "io/plan_reach.h"
 
 namespace ispace {
 
@@ -104,6 +105,7 @@ class RoomChooser {
             rooms.closing.insert(rooms.closing.end(), closing.begin(), closing.end());
         }
         report(best, rooms);
+        if (options_.reachable) rooms.reached = reach(rooms, *options_.reachable);
         return rooms;
     }
 
@@ -215,6 +217,34 @@ class RoomChooser {
         return open;
     }
 
+    [[nodiscard]] std::vector<Region> reach(const PlanRooms& rooms, double radius) const {
+        std::vector<Segment2> walls = withoutPassages(lines_, plan_.doors);
+        walls.insert(walls.end(), rooms.closing.begin(), rooms.closing.end());
+        std::vector<Region> reached;
+        double floor = 0;
+        for (const PlanRegion& region : rooms.regions) {
+            Point2 start = region.inside;
+            for (const Point2 p : points_)
+                for (const Region& room : region.rooms)
+                    if (room.locate(p) == Side::Inside) start = p;
+            std::vector<Region> pieces = reachedFloor(region.rooms, walls, start, radius);
+            if (pieces.empty())
+                throw FormatError(Diagnostic{"", 0, 0,
+                                             "a disc of " + lengthText(radius) +
+                                                 " m does not fit at the inside point " +
+                                                 placeText(start) +
+                                                 ": give another with --inside, or a smaller "
+                                                 "--reachable"});
+            for (Region& piece : pieces) {
+                floor += piece.area();
+                reached.push_back(std::move(piece));
+            }
+        }
+        out_.note("a disc of " + lengthText(radius) + " m reaches " + areaText(floor) + " of " +
+                  areaText(rooms.area()));
+        return reached;
+    }
+
     void report(const Attempt& taken, const PlanRooms& rooms) {
         if (!rooms.closing.empty()) out_.warn(gapsText(rooms.closing, taken.width));
         std::size_t faces = 0;
@@ -297,8 +327,10 @@ PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, Impor
 }
 
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out) {
-    for (const Segment2& line : rooms.closing)
-        out.fence({{rounded(line.a), rounded(line.b)}, false, 0});
+    for (const Region& floor : rooms.reached) out.outline(floor);
+    if (rooms.reached.empty())
+        for (const Segment2& line : rooms.closing)
+            out.fence({{rounded(line.a), rounded(line.b)}, false, 0});
     if (!rooms.writes_inside) return;
     for (const Point2 p : options.inside) out.inside(p);
     if (!options.inside.empty()) return;

@@ -25,6 +25,7 @@ struct PlanWalls {
 struct PlanRooms {
     std::vector<PlanRegion> regions;  ///< empty: nothing is enclosed
     std::vector<Segment2> closing;    ///< lines that close gaps in their walls
+    std::vector<Region> reached;      ///< floor that a disc reaches, if that was asked for
     bool writes_inside = true;        ///< false: inside points come from elsewhere
 
     [[nodiscard]] double area() const;
@@ -45,7 +46,8 @@ struct PlanRooms {
 /// small against the drawing, and a drawing of less than 2 m or more than 2 km.
 PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out);
 
-/// Adds the lines that close gaps as fences, and the inside points.
+/// Adds the lines that close gaps as fences, and the inside points. Where only what a disc reaches
+/// is kept, its outlines: then the importer writes no walls of its own.
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out);
 
 }  // namespace ispace
