@@ -62,7 +62,7 @@ void addLayers(const Coverage& coverage, std::int64_t number, std::vector<Layer>
         layers.push_back({.curves = *set.region, .number = number});
 }
 
-void compareExactly(const Coverage& coverage, const Coverage& other, const Region& indoor,
+void compareExactly(const Coverage& coverage, const Coverage& other, const Regions& indoor,
                     Comparison& comparison) {
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + other.sets.size() + 1);
@@ -128,7 +128,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     return coverage;
 }
 
-void compare(Coverage& coverage, const Coverage& other, const Region& indoor,
+void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
              const std::string& name) {
     assert(coverage.target.grid == other.target.grid);
     Comparison comparison{.name = name, .coverage = other.report.coverage};

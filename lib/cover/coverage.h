@@ -141,7 +141,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
 
 /// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room
 /// that has this indoor region
-void compare(Coverage& coverage, const Coverage& other, const Region& indoor,
+void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
              const std::string& name);
 
 /// By how many sets each cell of the grid is seen: the redundancy of a cell.

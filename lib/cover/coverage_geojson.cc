@@ -51,7 +51,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
                                               : coverage.report.coverage.grid);
     out.beginFeatures();
     out.begin("indoor", "indoor", "region");
-    out.endAsArea({scene.environment.indoor()});
+    out.endAsArea(scene.environment.indoor().parts);
     out.begin("free", "free", "region");
     out.endAsArea(scene.environment.freeFloor(coverage.target.height));
     const std::vector<std::uint32_t> times = timesSeen(coverage);

@@ -70,11 +70,13 @@ std::size_t countCommon(const CellSet& a, const CellSet& b) {
     return sum;
 }
 
-CellSet cellsIn(const Grid& grid, const Region& region) {
-    Scanline scan(grid, bounds(region.outline));
-    region.forEachEdge([&scan](const Segment2& edge) { scan.add(edge); });
+CellSet cellsIn(const Grid& grid, const Regions& regions) {
     CellSet inside(grid.size());
-    scan.addInside(inside);
+    for (const Region& part : regions.parts) {
+        Scanline scan(grid, bounds(part.outline));
+        part.forEachEdge([&scan](const Segment2& edge) { scan.add(edge); });
+        scan.addInside(inside);
+    }
     return inside;
 }
 

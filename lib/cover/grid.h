@@ -73,9 +73,9 @@ void CellSet::forEach(Visit visit) const {
             visit(i * 64 + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
-/// Cells whose centre lies strictly inside the region; exact, by scanline. O(cells + sum of the
-/// rows that each edge spans).
-CellSet cellsIn(const Grid& grid, const Region& region);
+/// Cells whose centre lies strictly inside one of the regions; exact, by scanline. O(cells + sum of
+/// the rows that each edge spans).
+CellSet cellsIn(const Grid& grid, const Regions& regions);
 /// The same of closed curves by the even-odd rule, which may touch and repeat edges.
 CellSet cellsWithin(const Grid& grid, std::span<const Polygon> curves);
 /// Cells whose centre lies in a solid or on its edge.

@@ -154,10 +154,23 @@ Color floorColor(const MapPicture& map, std::size_t set) {
 
 Color stripeColor(const MapPicture& map, std::size_t set) { return tint(setColor(map, set), 0.7); }
 
+std::vector<Polygon> outsideOf(const Regions& indoor) {
+    std::vector<Polygon> outside;
+    for (const Region& part : indoor.parts)
+        for (const Polygon& hole : part.holes) {
+            outside.push_back(hole);
+            // Another room in it is no outside: by the even-odd rule it is cut out again.
+            for (const Region& other : indoor.parts)
+                if (&other != &part && locate(hole, interiorPoint(other)) == Side::Inside)
+                    for (const Polygon& curve : curvesOf(other)) outside.push_back(curve);
+        }
+    return outside;
+}
+
 void drawFloor(Canvas& canvas, const MapPicture& map) {
-    const Region& indoor = map.scene.environment.indoor();
-    canvas.fill(indoor, map_colors::kUncovered);
-    canvas.pushClip(indoor);
+    const Regions& indoor = map.scene.environment.indoor();
+    canvas.fill(curvesOf(indoor), map_colors::kUncovered);
+    canvas.pushClip(curvesOf(indoor));
     if (map.other != nullptr)
         drawComparison(canvas, map);
     else if (map.options.color == MapColor::Sensor)
@@ -165,8 +178,9 @@ void drawFloor(Canvas& canvas, const MapPicture& map) {
     else
         drawRedundancy(canvas, map);
     canvas.pop();
-    canvas.fill(indoor.holes, map_colors::kOutside);
-    canvas.hatch(indoor.holes,
+    const std::vector<Polygon> outside = outsideOf(indoor);
+    canvas.fill(outside, map_colors::kOutside);
+    canvas.hatch(outside,
                  {map_colors::kOutsideHatch, 0.7 * map.em, 0.07 * map.em, 0, Angle::degrees(-45)});
 }
 

@@ -96,6 +96,8 @@ Color stripeColor(const MapPicture& map, std::size_t set);
 /// Sets more than these share stripes without colours.
 constexpr std::size_t kMostStriped = 6;
 
+/// What lies in holes of the indoor region and is no room, as curves by the even-odd rule.
+std::vector<Polygon> outsideOf(const Regions& indoor);
 /// Indoor floor in the colours of coverage.
 void drawFloor(Canvas& canvas, const MapPicture& map);
 

@@ -78,7 +78,7 @@ void drawZones(Canvas& canvas, const MapPicture& map) {
 
 MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     MapContents contents;
-    contents.outside = !scene.environment.indoor().holes.empty();
+    contents.outside = !outsideOf(scene.environment.indoor()).empty();
     for (const Element& element : scene.environment.elements()) {
         if (element.record.keyword() == "zone") contents.zones = true;
         const double height = coverage.target.height;

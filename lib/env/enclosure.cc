@@ -102,26 +102,44 @@ class Search {
     std::span<const Element> elements_;
 };
 
+/// The face that holds the record's point. \throws FormatError why there is none
+const Region& faceOf(const Record& inside, const Search& search, double leak, bool any_face) {
+    const Tuple& at = inside.tuple("at");
+    const Point2 point{at[0], at[1]};
+    if (const Region* face = search.faceAt(point)) return *face;
+    if (search.onWall(point))
+        throw FormatError(inside.finding(
+            "at", "inside point " + placeText(point) + " lies on a wall; move it off"));
+    search.throwGap(point, any_face ? leak : kAnyWidth);
+    throw FormatError(inside.finding(
+        "at",
+        "inside point " + placeText(point) + " lies outside of everything enclosed" +
+            (any_face ? "; move it into the room, or leave it out" : ": the walls do not close")));
+}
+
 }  // namespace
 
 Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,
-                  std::span<const Element> elements, const Record* inside) {
+                  std::span<const Element> elements, std::span<const Record* const> inside) {
     const Search search(plan, faces, elements);
     const double leak = kLeakShare * std::min(limits.width(), limits.depth());
-    if (inside != nullptr) {
-        const Tuple& at = inside->tuple("at");
-        const Point2 point{at[0], at[1]};
-        if (const Region* face = search.faceAt(point)) return {*face, point};
-        if (search.onWall(point))
-            throw FormatError(inside->finding(
-                "at", "inside point " + placeText(point) + " lies on a wall; move it off"));
-        double widest = leak;
-        if (faces.empty()) widest = kAnyWidth;
-        search.throwGap(point, widest);
-        throw FormatError(inside->finding(
-            "at", "inside point " + placeText(point) + " lies outside of everything enclosed" +
-                      (faces.empty() ? ": the walls do not close"
-                                     : "; move it into the room, or leave it out")));
+    if (!inside.empty()) {
+        std::vector<const Region*> held;
+        Diagnostics findings;
+        for (const Record* record : inside) {
+            try {
+                const Region* face = &faceOf(*record, search, leak, !faces.empty());
+                if (std::find(held.begin(), held.end(), face) == held.end()) held.push_back(face);
+            } catch (const FormatError& error) {
+                findings.add(error);
+            }
+        }
+        findings.throwIfAny();
+        Enclosure enclosure;
+        const Tuple& first = inside.front()->tuple("at");
+        enclosure.inside = {first[0], first[1]};
+        for (const Region* face : held) enclosure.indoor.parts.push_back(*face);
+        return enclosure;
     }
     if (faces.empty()) {
         search.throwGap(std::nullopt, kAnyWidth);
@@ -132,7 +150,7 @@ Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box
     const Region* at_origin = search.faceAt(origin);
     const Region& face = at_origin != nullptr ? *at_origin : *search.largest();
     if (const auto open = search.openPlaceAround(face, limits)) search.throwGap(open, leak);
-    return {face, at_origin != nullptr ? origin : interiorPoint(face)};
+    return {{{face}}, at_origin != nullptr ? origin : interiorPoint(face)};
 }
 
 }  // namespace ispace

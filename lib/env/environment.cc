@@ -31,19 +31,11 @@ void addBody(Body& body, Body&& more) {
     std::move(more.prisms.begin(), more.prisms.end(), std::back_inserter(body.prisms));
 }
 
-/// The `inside` record, or null; a second, other one is a finding. A layout that was made of a room
-/// and a layout has the room's once more.
-const Record* insideRecord(std::span<const Element> elements, Diagnostics& findings) {
-    const Record* inside = nullptr;
-    for (const Element& element : elements) {
-        if (element.record.keyword() != "inside") continue;
-        if (inside == nullptr)
-            inside = &element.record;
-        else if (element.record.tuple("at") != inside->tuple("at"))
-            findings.add(element.record.finding("a second `inside` record (the first is on line " +
-                                                std::to_string(inside->place().line) +
-                                                "); one point tells which room is meant"));
-    }
+/// The `inside` records.
+std::vector<const Record*> insideRecords(std::span<const Element> elements) {
+    std::vector<const Record*> inside;
+    for (const Element& element : elements)
+        if (element.record.keyword() == "inside") inside.push_back(&element.record);
     return inside;
 }
 
@@ -89,7 +81,7 @@ class Builder {
         for (std::size_t i = 0; i < records.size(); ++i) {
             if (records[i].schema().isEnvironment()) takeRecord(records[i], ids[i]);
         }
-        inside_ = insideRecord(elements_, findings_);
+        inside_ = insideRecords(elements_);
         if (plan_.walls.empty() && walls_whole_)
             findings_.add(fileFinding(
                 elements_,
@@ -194,7 +186,7 @@ class Builder {
     std::size_t corners_ = 0, most_corners_ = kMostCorners;  // without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;  // every record has all its lines
-    const Record* inside_ = nullptr;
+    std::vector<const Record*> inside_;
     std::vector<Opening> openings_;
     WeldedLines welded_;
     CutWalls cut_;
@@ -253,14 +245,14 @@ Band Environment::band(double bottom, double top) const {
 }
 
 std::vector<Region> Environment::freeFloor(double height) const {
-    const Box2 box = bounds(indoor_.outline);
+    const Box2 box = bounds(indoor_);
     std::vector<Polygon> solids = slice(height).solids;
     std::erase_if(solids, [&box](const Polygon& solid) {
         const Box2 other = bounds(solid);
         return other.low.x > box.high.x || other.high.x < box.low.x || other.low.y > box.high.y ||
                other.high.y < box.low.y;
     });
-    if (solids.empty()) return {indoor_};
+    if (solids.empty()) return indoor_.parts;
     return difference(indoor_, solids);
 }
 

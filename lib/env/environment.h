@@ -39,11 +39,12 @@ class Environment {
     [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
     /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
     [[nodiscard]] const Box2& limits() const { return limits_; }
-    /// The face of the wall lines that holds the inside point, and those joined to it by open
-    /// doors, directly or through others. Openings else do not count: an open door to the outside
-    /// joins nothing. Walls that stand within the joined rooms bound nothing.
-    [[nodiscard]] const Region& indoor() const { return indoor_; }
-    /// The known inside point: the record's, else the origin if it lies strictly in a bounded
+    /// The faces of the wall lines that hold the inside points, each with those joined to it by
+    /// open doors, directly or through others: mostly one part, and one for each room where
+    /// several are meant. Openings else do not count: an open door to the outside joins nothing.
+    /// Walls that stand within the joined rooms bound nothing.
+    [[nodiscard]] const Regions& indoor() const { return indoor_; }
+    /// The known inside point: the first record's, else the origin if it lies strictly in a bounded
     /// face, else a point of the largest face.
     [[nodiscard]] Point2 inside() const { return inside_; }
     /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
@@ -63,7 +64,7 @@ class Environment {
     std::vector<Element> elements_;
     std::vector<Segment2> wall_lines_;
     Box2 limits_;
-    Region indoor_;
+    Regions indoor_;
     Point2 inside_;
     double height_ = 0;
 };

@@ -20,7 +20,7 @@ TEST(Environment, RoomByOneRecord) {
     const Environment env = environment("ispace at=1,2 size=6,4\n");
     EXPECT_EQ(env.limits(), (Box2{{-2, 0}, {4, 4}}));
     EXPECT_EQ(env.indoor().area(), 24);
-    EXPECT_TRUE(env.indoor().holes.empty());
+    EXPECT_TRUE(env.indoor().parts.at(0).holes.empty());
     EXPECT_EQ(env.height(), 2.5);
     EXPECT_EQ(env.wallLines().size(), 4U);
     // The origin lies on the lower wall, so a point of the room stands in for it.
@@ -81,7 +81,7 @@ TEST(Environment, OriginInAClosedPillar) {
     EXPECT_EQ(environment(plan).indoor().area(), 1);
     const Environment room = environment(plan + "inside at=2,2\n");
     EXPECT_EQ(room.indoor().area(), 63);
-    EXPECT_EQ(room.indoor().holes.size(), 1U);
+    EXPECT_EQ(room.indoor().parts.at(0).holes.size(), 1U);
     EXPECT_EQ(room.indoor().boundaryLength(), 36);
     // A pillar record is a thing in the room, not a wall.
     EXPECT_EQ(environment("ispace\npillar size=1,1\n").indoor().area(), 64);
@@ -290,7 +290,7 @@ TEST(Environment, HolesOfImportedPlansAreNotIndoor) {
                     ";" + p(-0.25, 0.25) + " closed=yes\n";
         }
     const Environment env = environment(plan);
-    EXPECT_EQ(env.indoor().holes.size(), 81U);
+    EXPECT_EQ(env.indoor().parts.at(0).holes.size(), 81U);
     EXPECT_NEAR(env.indoor().area(), 400 - 81 * 0.25, 1e-9);
 }
 
@@ -355,7 +355,7 @@ TEST(Environment, BearsAsManyRoundThingsAsSomebodyWrites) {
 TEST(Environment, SameForAnyRun) {
     const std::string plan = "ispace heading=13\ncube at=1,1 heading=5\nwall from=0,0 to=1,2\n";
     const Environment a = environment(plan), b = environment(plan);
-    EXPECT_EQ(a.indoor().outline, b.indoor().outline);
+    EXPECT_EQ(a.indoor().parts.at(0).outline, b.indoor().parts.at(0).outline);
     EXPECT_EQ(a.wallLines(), b.wallLines());
     EXPECT_EQ(a.inside(), b.inside());
 }

@@ -37,7 +37,7 @@ TEST(JoinedRooms, AreOneRegion) {
     const Environment env = environment(
         "fence path=-2,-2;6,-2;6,2;-2,2 closed=yes\nwall from=2,-2 to=2,2\n"
         "door at=2,0 open=yes\ninside at=0,0\n");
-    const Region& indoor = env.indoor();
+    const Region& indoor = env.indoor().parts.at(0);
     EXPECT_EQ(indoor.area(), 32);
     EXPECT_EQ(indoor.boundaryLength(), 24) << "what stands within bounds nothing";
     EXPECT_EQ(indoor.locate({2, 1.5}), Side::Inside);
@@ -73,7 +73,7 @@ TEST(JoinedRooms, ABoothIsPartOfTheRoomOnceItsDoorIsOpen) {
     EXPECT_EQ(environment(plan + "door at=2,1\n").indoor().area(), 46);
     const Environment open = environment(plan + "door at=2,1 open=yes\n");
     EXPECT_EQ(open.indoor().area(), 48);
-    EXPECT_TRUE(open.indoor().holes.empty());
+    EXPECT_TRUE(open.indoor().parts.at(0).holes.empty());
 }
 
 TEST(JoinedRooms, OverLinesThatCross) {
@@ -134,9 +134,48 @@ TEST(JoinedRooms, ClosedOpeningsChangeNothing) {
     with.walls_per_door = 2;
     const Environment plain = environment(testing::buildingPlan(200, without));
     const Environment doors = environment(testing::buildingPlan(200, with));
-    EXPECT_EQ(plain.indoor().outline, doors.indoor().outline);
+    EXPECT_EQ(plain.indoor().parts.at(0).outline, doors.indoor().parts.at(0).outline);
     EXPECT_EQ(plain.wallLines(), doors.wallLines());
     EXPECT_EQ(plain.limits(), doors.limits());
+}
+
+TEST(SeveralRooms, EachInsidePointHasItsOwn) {
+    const std::string rooms =
+        "ispace id=a at=0,0 size=4,4\nispace id=b at=10,0 size=4,3\nispace id=c at=20,0 size=2,2\n";
+    const Environment two = environment(rooms + "inside at=10,0\ninside at=20,0\n");
+    ASSERT_EQ(two.indoor().parts.size(), 2U);
+    EXPECT_DOUBLE_EQ(two.indoor().area(), 16);
+    EXPECT_DOUBLE_EQ(two.indoor().boundaryLength(), 14 + 8);
+    EXPECT_EQ(two.inside(), (Point2{10, 0}));
+    EXPECT_EQ(two.indoor().locate({0, 0}), Side::Outside);
+    EXPECT_EQ(two.indoor().locate({20, 0}), Side::Inside);
+    EXPECT_EQ(two.indoor().locate({21, 0}), Side::Boundary);
+    const Environment all = environment(rooms + "inside at=10,0\ninside at=20,0\ninside at=1,1\n");
+    EXPECT_DOUBLE_EQ(all.indoor().area(), 32);
+    // Points of one room are one.
+    EXPECT_EQ(environment(rooms + "inside at=10,0\ninside at=10,0\ninside at=10,1\n")
+                  .indoor()
+                  .parts.size(),
+              1U);
+}
+
+TEST(SeveralRooms, SideBySideAndWithin) {
+    const std::string next = "ispace id=a at=0,0 size=4,4\nispace id=b at=4,0 size=4,4\n";
+    const Environment side = environment(next + "inside at=0,0\ninside at=4,0\n");
+    EXPECT_DOUBLE_EQ(side.indoor().area(), 32);
+    EXPECT_EQ(side.indoor().locate({2, 0}), Side::Boundary);
+    // A room within the ring of another.
+    const std::string ring = "ispace id=a at=0,0 size=10,10\nispace id=b at=0,0 size=4,4\n";
+    const Environment both = environment(ring + "inside at=4,0\ninside at=0,0\n");
+    EXPECT_DOUBLE_EQ(both.indoor().area(), 100);
+    EXPECT_DOUBLE_EQ(environment(ring + "inside at=4,0\n").indoor().area(), 84);
+    double free = 0;
+    for (const Region& piece :
+         environment(ring + "inside at=4,0\ninside at=0,0\ncube at=1,1 size=1,1,1\ncube at=4,4 "
+                            "size=1,1,1\n")
+             .freeFloor(0.15))
+        free += piece.area();
+    EXPECT_DOUBLE_EQ(free, 98);
 }
 
 }  // namespace

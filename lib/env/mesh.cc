@@ -124,10 +124,15 @@ bool isWatertight(const Mesh& mesh) {
     return true;
 }
 
-Mesh floorMesh(const Region& indoor) {
-    Triangulation parts = triangulate(indoor);
-    Mesh mesh{Material::Floor, {}, std::move(parts.triangles), true};
-    for (const Point2 p : parts.vertices) mesh.vertices.push_back({p.x, p.y, 0});
+Mesh floorMesh(const Regions& indoor) {
+    Mesh mesh{Material::Floor, {}, {}, true};
+    for (const Region& part : indoor.parts) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        const Triangulation triangles = triangulate(part);
+        for (const auto& [a, b, c] : triangles.triangles)
+            mesh.triangles.push_back({first + a, first + b, first + c});
+        for (const Point2 p : triangles.vertices) mesh.vertices.push_back({p.x, p.y, 0});
+    }
     return mesh;
 }
 

@@ -29,6 +29,6 @@ std::vector<Mesh> meshesOf(const Body& body, bool with_visual);
 bool isWatertight(const Mesh& mesh);
 
 /// The floor of an indoor region at z = 0.
-Mesh floorMesh(const Region& indoor);
+Mesh floorMesh(const Regions& indoor);
 
 }  // namespace ispace

@@ -69,7 +69,7 @@ TEST(Openings, DoorByOffset) {
     EXPECT_EQ(wall.sheets[2].line, (Segment2{{3.45, 0}, {8, 0}}));
     EXPECT_EQ(wall.sheets[2].bottom, 0);
     EXPECT_EQ(env.indoor().area(), 48);
-    EXPECT_EQ(env.indoor().outline.size(), 4U) << "closed openings leave no trace";
+    EXPECT_EQ(env.indoor().parts.at(0).outline.size(), 4U) << "closed openings leave no trace";
 }
 
 TEST(Openings, OffsetRunsAlongTheWholeRecord) {

@@ -112,6 +112,13 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     return pieces;
 }
 
+std::vector<Region> difference(const Regions& regions, std::span<const Polygon> solids) {
+    std::vector<Region> pieces;
+    for (const Region& part : regions.parts)
+        for (Region& piece : difference(part, solids)) pieces.push_back(std::move(piece));
+    return pieces;
+}
+
 std::vector<Region> unite(std::span<const Polygon> solids) {
     std::vector<Segment2> lines;
     for (const Polygon& solid : solids) addCurve(solid, true, lines);

@@ -12,6 +12,9 @@ namespace ispace {
 /// overlap and touch). Exact constructions inside (CGAL), rounded to doubles at the end.
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
 
+/// The same of each part.
+std::vector<Region> difference(const Regions& regions, std::span<const Polygon> solids);
+
 /// The pieces of all closed `solids` together (simple polygons, any orientation, which may overlap
 /// and touch). As exact as difference().
 std::vector<Region> unite(std::span<const Polygon> solids);

@@ -126,4 +126,11 @@ std::vector<Curve> curvesWithArcs(const Region& region) {
     return curves;
 }
 
+std::vector<Curve> curvesWithArcs(const Regions& regions) {
+    std::vector<Curve> curves;
+    for (const Region& part : regions.parts)
+        for (Curve& curve : curvesWithArcs(part)) curves.push_back(std::move(curve));
+    return curves;
+}
+
 }  // namespace ispace

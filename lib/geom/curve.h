@@ -42,5 +42,6 @@ Polygon chords(const Curve& curve, double error = kChordError);
 Curve curveOf(const Polygon& polygon);
 /// Outline and holes.
 std::vector<Curve> curvesWithArcs(const Region& region);
+std::vector<Curve> curvesWithArcs(const Regions& regions);
 
 }  // namespace ispace

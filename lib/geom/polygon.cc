@@ -107,6 +107,15 @@ std::vector<Polygon> curvesOf(const std::vector<Region>& regions) {
     return curves;
 }
 
+std::vector<Polygon> curvesOf(const Regions& regions) { return curvesOf(regions.parts); }
+
+Box2 bounds(const Regions& regions) {
+    Box2 box;
+    for (const Region& part : regions.parts)
+        for (const Point2 p : part.outline) box.add(p);
+    return box;
+}
+
 double Region::area() const {
     double sum = std::abs(signedArea(outline));
     for (const Polygon& hole : holes) sum -= std::abs(signedArea(hole));
@@ -128,6 +137,28 @@ Side Region::locate(Point2 p) const {
         if (in_hole == Side::Inside) return Side::Outside;
     }
     return Side::Inside;
+}
+
+double Regions::area() const {
+    double sum = 0;
+    for (const Region& part : parts) sum += part.area();
+    return sum;
+}
+
+double Regions::boundaryLength() const {
+    double sum = 0;
+    for (const Region& part : parts) sum += part.boundaryLength();
+    return sum;
+}
+
+Side Regions::locate(Point2 p) const {
+    Side side = Side::Outside;
+    for (const Region& part : parts) {
+        const Side in_part = part.locate(p);
+        if (in_part == Side::Inside) return Side::Inside;
+        if (in_part == Side::Boundary) side = Side::Boundary;
+    }
+    return side;
 }
 
 }  // namespace ispace

@@ -46,12 +46,31 @@ struct Region {
     /// Calls visit(Segment2) for each edge, outline first.
     template <typename Visit>
     void forEachEdge(Visit visit) const;
+    friend bool operator==(const Region&, const Region&) = default;
 };
+
+/// Pieces of the floor that share no inside: they may share edges, and one may lie in a hole of
+/// another.
+struct Regions {
+    std::vector<Region> parts;
+
+    [[nodiscard]] double area() const;
+    /// Of all parts: an edge between two counts for both.
+    [[nodiscard]] double boundaryLength() const;
+    /// On the boundary of a part it is Boundary, also between two.
+    [[nodiscard]] Side locate(Point2 p) const;
+    /// Calls visit(Segment2) for each edge of each part.
+    template <typename Visit>
+    void forEachEdge(Visit visit) const;
+    friend bool operator==(const Regions&, const Regions&) = default;
+};
+Box2 bounds(const Regions& regions);
 
 /// The outline and then the holes, of one region or of several one after another: by the even-odd
 /// rule the same area, where regions are disjoint.
 std::vector<Polygon> curvesOf(const Region& region);
 std::vector<Polygon> curvesOf(const std::vector<Region>& regions);
+std::vector<Polygon> curvesOf(const Regions& regions);
 
 /// A point strictly inside the region, well away from its boundary where it can be.
 Point2 interiorPoint(const Region& region);
@@ -66,6 +85,11 @@ template <typename Visit>
 void Region::forEachEdge(Visit visit) const {
     ispace::forEachEdge(outline, visit);
     for (const Polygon& hole : holes) ispace::forEachEdge(hole, visit);
+}
+
+template <typename Visit>
+void Regions::forEachEdge(Visit visit) const {
+    for (const Region& part : parts) part.forEachEdge(visit);
 }
 
 }  // namespace ispace

@@ -147,7 +147,7 @@ TEST(Dxf, BlocksAreTurnedScaledMirroredAndRepeated) {
     const Document all =
         read(drawing(insert("ROOM", "W", 0, 0, grid) + rectangle("W", -9, -1, 2, 9), blocks, 6));
     EXPECT_EQ(countOf(all, "fence"), 7U);
-    EXPECT_EQ(environmentOf(all).indoor().holes.size(), 6U);
+    EXPECT_EQ(environmentOf(all).indoor().parts.at(0).holes.size(), 6U);
 }
 
 TEST(Dxf, EntitiesOnLayerZeroOfABlockAreOnThatOfTheInsert) {

@@ -113,9 +113,9 @@ void addFree(FeatureWriter& out, const Environment& environment, double height) 
 }
 
 void addRoom(FeatureWriter& out, const Scene& scene) {
-    const Region& indoor = scene.environment.indoor();
+    const Regions& indoor = scene.environment.indoor();
     out.begin("indoor", "indoor", "region").key("area").value(indoor.area());
-    out.endAsArea({indoor});
+    out.endAsArea(indoor.parts);
     addFree(out, scene.environment, kScanHeight);
     const std::vector<Element>& elements = scene.environment.elements();
     const std::vector<ElementLines> lines = elementLinesOf(scene.environment);

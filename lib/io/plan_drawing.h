@@ -68,7 +68,7 @@ struct PlanDrawing {
     double em = 0;                 ///< size of text on it
     PageView view;                 ///< metres to the page
     Box2 box;                      ///< what the plan shows, metres
-    Region indoor;                 ///< fields of view are drawn on it alone
+    Regions indoor;                ///< fields of view are drawn on it alone
     std::vector<DrawnItem> items = {};
 
     /// Size of text in metres of the plan.

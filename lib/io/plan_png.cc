@@ -44,7 +44,7 @@ class Painter {
         const Point2 low = plan_.box.low - Vec2{rim, rim}, high = plan_.box.high + Vec2{rim, rim};
         canvas_.pushClip({low, {high.x, low.y}, high, {low.x, high.y}});
         paint(PlanLayer::Floor, PlanLayer::Zones);
-        canvas_.pushClip(plan_.indoor);
+        canvas_.pushClip(curvesOf(plan_.indoor));
         paint(PlanLayer::Views, PlanLayer::Views);
         canvas_.pop();
         paint(PlanLayer::Objects, PlanLayer::Sensors);

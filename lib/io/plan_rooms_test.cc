@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <random>
 
-#include "geom/boolean.h"
 #include "io/input.h"
 #include "io/test_import.h"
 
@@ -166,7 +165,7 @@ void expectArea(const std::string& file, double area, const ImportOptions& optio
     if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
     const Document document =
         readDocument(std::string(folder) + "/more/" + file, options, sceneSchemas());
-    EXPECT_NEAR(totalArea({{environmentOf(document).indoor()}}), area, 0.01 * area) << file;
+    EXPECT_NEAR(environmentOf(document).indoor().area(), area, 0.01 * area) << file;
 }
 
 TEST(RealPlans, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }

@@ -119,8 +119,7 @@ class SvgWriter {
 
     void addIndoorClip() {
         out_ += "<clipPath id=\"clip-indoor\"><path clip-rule=\"evenodd\" d=\"";
-        addCurve(plan_.indoor.outline, true);
-        for (const Polygon& hole : plan_.indoor.holes) addCurve(hole, true);
+        for (const Polygon& curve : curvesOf(plan_.indoor)) addCurve(curve, true);
         out_ += "\"/></clipPath>\n";
     }
 

@@ -70,7 +70,7 @@ class MapPainter {
                     kUnknown);
     }
 
-    void addFloor(const Region& indoor) {
+    void addFloor(const Regions& indoor) {
         fill(insideRuns(curvesOf(indoor), frame_), kFree);
         indoor.forEachEdge([this](const Segment2& edge) { addMiddlesOn(edge); });
     }
@@ -175,8 +175,8 @@ std::string yamlText(const std::string& text) {
 
 RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
                         const std::string& image_name) {
-    const Region& indoor = scene.environment.indoor();
-    const CellFrame frame = frameOf(bounds(indoor.outline), resolution);
+    const Regions& indoor = scene.environment.indoor();
+    const CellFrame frame = frameOf(bounds(indoor), resolution);
     const Slice slice = scene.environment.slice(height);
     MapPainter painter(frame);
     painter.addFloor(indoor);
@@ -184,7 +184,8 @@ RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
     slice.forEachLine([&](const Segment2& line) { painter.addLine(line); });
     indoor.forEachEdge([&](const Segment2& edge) { painter.addLine(edge); });
     for (const Polygon& solid : slice.solids) painter.addSmall(solid);
-    for (const Polygon& hole : indoor.holes) painter.addSmall(hole);
+    for (const Region& part : indoor.parts)
+        for (const Polygon& hole : part.holes) painter.addSmall(hole);
     painter.closeRim();
 
     RosMapFiles files;

@@ -307,7 +307,7 @@ TEST_F(RosRoundTrip, AThinWallBetweenTwoRoomsHolds) {
         const Scene room =
             scene("ispace size=5,5\ninside at=-2,-2\nfence path=" + path + " closed=yes\n");
         const Environment again = reread(room, resolution);
-        ASSERT_EQ(again.indoor().holes.size(), 1U) << round;
+        ASSERT_EQ(again.indoor().parts.at(0).holes.size(), 1U) << round;
         EXPECT_LE(offsets(room.environment, again, resolution).map_to_room, 1) << round;
     }
 }

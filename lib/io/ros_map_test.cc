@@ -98,7 +98,7 @@ TEST_F(RosMap, RoomWithPillar) {
               "inside at=0.25,2.75\n");
     const Environment room = environmentOf(read(kHeader));
     EXPECT_DOUBLE_EQ(room.indoor().area(), 11 * 0.25);
-    EXPECT_EQ(room.indoor().holes.size(), 1U);
+    EXPECT_EQ(room.indoor().parts.at(0).holes.size(), 1U);
     EXPECT_DOUBLE_EQ(room.height(), 2.5);
 }
 
@@ -254,7 +254,7 @@ TEST_F(RealMaps, PillarsOfTheArenaAreHoles) {
     const Document document = read("turtlebot3.yaml", -1, 0.05);
     if (document.records.empty()) GTEST_SKIP() << "ISPACE_TEST_DATA names no folder of maps";
     const Environment room = environmentOf(document);
-    EXPECT_EQ(room.indoor().holes.size(), 9U);
+    EXPECT_EQ(room.indoor().parts.at(0).holes.size(), 9U);
     EXPECT_NEAR(room.indoor().area(), 7936 * 0.0025, 7936 * 0.0025 * 0.01);
     // The origin lies in a pillar, so the inside point cannot be the origin.
     EXPECT_EQ(room.indoor().locate({0, 0}), Side::Outside);
@@ -267,7 +267,7 @@ TEST_F(RealMaps, OfficeKeepsItsFloor) {
     EXPECT_NEAR(environmentOf(exact).indoor().area(), 1312.46, 1e-6);
     const Environment room = environmentOf(read("willow-full.yaml", -1, 0.1));
     EXPECT_NEAR(room.indoor().area(), 1312.46, 4);
-    EXPECT_GT(room.indoor().holes.size(), 800U);
+    EXPECT_GT(room.indoor().parts.at(0).holes.size(), 800U);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace ispace {
 
-IndoorIndex::IndoorIndex(const Region& region) {
-    region.forEachEdge([this](const Segment2& edge) { edges_.push_back(edge); });
+IndoorIndex::IndoorIndex(const Regions& regions) {
+    regions.forEachEdge([this](const Segment2& edge) { edges_.push_back(edge); });
     std::vector<Box2> boxes;
     boxes.reserve(edges_.size());
     for (const Segment2& edge : edges_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/layout only: a region that is asked often.
+// Inside lib/layout only: regions that is asked often.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace ispace {
 
-/// Answers as Region::locate does, in O(log n + edges beside the point).
+/// Answers as Regions::locate does, in O(log n + edges beside the point).
 class IndoorIndex {
   public:
-    explicit IndoorIndex(const Region& region);
+    explicit IndoorIndex(const Regions& regions);
 
     [[nodiscard]] Side locate(Point2 p) const;
     /// Outside, and farther from the boundary than touching.

@@ -71,7 +71,7 @@ std::vector<Segment2> linesOf(const Slice& slice) {
 }
 
 /// The boundary of the indoor region, whatever the height, and what stands at one.
-std::vector<Segment2> linesOf(const Region& indoor, const Slice& slice) {
+std::vector<Segment2> linesOf(const Regions& indoor, const Slice& slice) {
     std::vector<Segment2> lines;
     indoor.forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
     slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
@@ -83,7 +83,7 @@ std::vector<Segment2> linesOf(const Region& indoor, const Slice& slice) {
 struct SiteJudge::Data {
     Data(const Environment& environment, SiteRules wanted, Slice slice)
         : rules(std::move(wanted)),
-          indoor({environment.indoor()}),
+          indoor(environment.indoor().parts),
           obstacles(linesOf(environment.indoor(), slice)),
           walls(linesOf(wallSlice(environment, slice.height))),
           sheets(std::move(slice.sheets)),

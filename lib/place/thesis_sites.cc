@@ -103,7 +103,7 @@ void mustBeFew(std::size_t walls, int times) {
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times) {
     assert(times >= 0);
     const Slice slice = wallSlice(environment, height);
-    std::vector<Region> floor{environment.indoor()};
+    std::vector<Region> floor = environment.indoor().parts;
     if (!slice.solids.empty()) floor = difference(environment.indoor(), slice.solids);
     // What lies on the left of each is free.
     std::vector<Polygon> curves = wallCurves(floor, slice.sheets);

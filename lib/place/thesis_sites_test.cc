@@ -112,7 +112,7 @@ TEST(WallSites, OneWallIsTheSameInPieces) {
 TEST(WallSites, PointIntoTheRoomOnHolesToo) {
     const Environment room =
         roomOf("ispace size=8,6\nfence path=1,1;2,1;2.5,2;1,2 closed=yes\ninside at=-1,-1\n");
-    ASSERT_EQ(room.indoor().holes.size(), 1U);
+    ASSERT_EQ(room.indoor().parts.at(0).holes.size(), 1U);
     for (const int times : {1, 3, 21}) {
         const auto sites = wallSites(room, kScanHeight, 0.01, times);
         ASSERT_EQ(sites.size(), static_cast<std::size_t>(8 * times));

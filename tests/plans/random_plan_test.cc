@@ -42,8 +42,9 @@ TEST(RandomPlan, CompilesToOneRegionOfAboutTheArea) {
         const int pieces = counts["desk"] + counts["table"] + counts["chair"] + counts["cube"];
         EXPECT_GE(pieces, 0.15 * options.area);
         // Closed fences are holes of the region, things of the free floor.
-        EXPECT_GE(plan.indoor().holes.size(), static_cast<std::size_t>(counts["fence"] - 1));
-        holes += plan.indoor().holes.size();
+        EXPECT_GE(plan.indoor().parts.at(0).holes.size(),
+                  static_cast<std::size_t>(counts["fence"] - 1));
+        holes += plan.indoor().parts.at(0).holes.size();
         EXPECT_LT(totalArea(plan.freeFloor(kScanHeight)), plan.indoor().area());
     }
     EXPECT_GT(holes, 60U);

@@ -40,7 +40,7 @@ std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel&
                                std::size_t count, double gap, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const Band band = environment.band(0, model.height);
-    const Box2 box = bounds(environment.indoor().outline);
+    const Box2 box = bounds(environment.indoor());
     std::uniform_real_distribution<double> x(box.low.x, box.high.x), y(box.low.y, box.high.y);
     std::uniform_real_distribution<double> heading(-180, 180);
     std::vector<PlacedRobot> robots;

@@ -49,9 +49,7 @@ void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
 
 /// A layout may bring furniture, which is part of the comparison, but not another room.
 void mustBeSameRoom(const Environment& room, const Environment& other, const std::string& file) {
-    if (room.limits() == other.limits() && room.indoor().outline == other.indoor().outline &&
-        room.indoor().holes == other.indoor().holes)
-        return;
+    if (room.limits() == other.limits() && room.indoor() == other.indoor()) return;
     throw FormatError({displayName(file), 0, 0,
                        "its walls make another room: layouts of one room can be compared"});
 }
