@@ -23,24 +23,35 @@ std::size_t MapCells::count() const {
     return static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), 1));
 }
 
-MapCells freeCells(const Picture& image, const OccupancyRule& rule) {
+namespace {
+
+MapCells cellsThatAre(Cell kind, const Picture& image, const OccupancyRule& rule) {
     using Mode = OccupancyRule::Mode;
     const bool averaged = rule.mode == Mode::Trinary && !image.opacity.empty();
     const bool wants_opaque = rule.mode == Mode::Scale && !image.opacity.empty();
     const int white = image.max_value + (averaged ? 255 : 0);
-    std::vector<std::uint8_t> is_free(static_cast<std::size_t>(white) + 1);
+    std::vector<std::uint8_t> is_meant(static_cast<std::size_t>(white) + 1);
     for (int sample = 0; sample <= white; ++sample)
-        is_free[static_cast<std::size_t>(sample)] =
-            classify(sample, white, rule) == Cell::Free ? 1 : 0;
+        is_meant[static_cast<std::size_t>(sample)] = classify(sample, white, rule) == kind ? 1 : 0;
     MapCells cells(image.width, image.height);
     std::size_t i = 0;
     for (int y = image.height - 1; y >= 0; --y)
         for (int x = 0; x < image.width; ++x, ++i) {
             if (wants_opaque && image.opacity[i] != 255) continue;
             const std::size_t opacity = averaged ? image.opacity[i] : 0;
-            if (is_free[image.samples[i] + opacity] != 0) cells.insert(x, y);
+            if (is_meant[image.samples[i] + opacity] != 0) cells.insert(x, y);
         }
     return cells;
+}
+
+}  // namespace
+
+MapCells freeCells(const Picture& image, const OccupancyRule& rule) {
+    return cellsThatAre(Cell::Free, image, rule);
+}
+
+MapCells occupiedCells(const Picture& image, const OccupancyRule& rule) {
+    return cellsThatAre(Cell::Occupied, image, rule);
 }
 
 std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule) {

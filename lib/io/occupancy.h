@@ -43,6 +43,8 @@ class MapCells {
     }
     /// \pre the cell lies in the grid
     void insert(int x, int y) { cells_[index(x, y)] = 1; }
+    /// \pre the cell lies in the grid
+    void erase(int x, int y) { cells_[index(x, y)] = 0; }
     [[nodiscard]] std::size_t count() const;
     /// Where (x, y) stands in a list of all cells, row by row from the bottom.
     [[nodiscard]] std::size_t index(int x, int y) const {
@@ -55,10 +57,11 @@ class MapCells {
     std::vector<std::uint8_t> cells_;
 };
 
-/// The free cells of a map; the picture's top row becomes the highest row. Opacity counts as
-/// map_server has it: with Trinary it is averaged with the colours, with Scale what is not opaque
-/// is unknown.
+/// The free and the occupied cells of a map; the picture's top row becomes the highest row. Opacity
+/// counts as map_server has it: with Trinary it is averaged with the colours, with Scale what is
+/// not opaque is unknown.
 MapCells freeCells(const Picture& image, const OccupancyRule& rule);
+MapCells occupiedCells(const Picture& image, const OccupancyRule& rule);
 
 /// How many samples count as free that map_server writes for unknown: 205 of 255, which is as dark
 /// as 0.196. Rules written by Nav2 have a free_thresh of 0.25.

@@ -19,17 +19,14 @@
 #include "base/suggest.h"
 #include "base/utf8.h"
 #include "geom/pose.h"
+#include "io/cell_map.h"
 #include "io/import_records.h"
 #include "io/occupancy.h"
-#include "io/outline.h"
 #include "io/picture.h"
 
 namespace ispace {
 
 namespace {
-
-/// Cells that outlines move by default: half for stairs, see outline.h, and half for noise.
-constexpr double kDefaultSimplify = 1;
 
 /// A millimetre a cell and ten kilometres of map: beyond them the numbers are no metres, or the map
 /// is no plan of a building.
@@ -196,46 +193,18 @@ void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords&
                  formatDouble(rule.free_thresh) + "; with 0.196 they are unknown");
 }
 
-MapCells readRoom(const MapHeader& header, const std::string& path, const std::string& name,
+CellMap readCells(const MapHeader& header, const std::string& path, const std::string& name,
                   ImportRecords& out) {
-    const auto fail = [&path](const std::string& message) {
-        throw FormatError(Diagnostic{path, 0, 0, message});
-    };
     const Picture image = parsePicture(readImage(header, path, name), path);
     if (header.resolution * std::max(image.width, image.height) > kLargestExtent)
-        fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " cells of " +
-             formatDouble(header.resolution) + " m are more than " + formatDouble(kLargestExtent) +
-             " m: is `resolution` in metres?");
-    const MapCells cells = freeCells(image, header.rule);
-    MapCells room = largestPiece(cells);
-    const std::size_t count = room.count();
-    if (count == 0)
-        fail("no free cell among " + std::to_string(image.width) + " x " +
-             std::to_string(image.height) + ": check `negate` and `free_thresh` of the map");
+        throw FormatError(
+            Diagnostic{path, 0, 0,
+                       std::to_string(image.width) + " x " + std::to_string(image.height) +
+                           " cells of " + formatDouble(header.resolution) + " m are more than " +
+                           formatDouble(kLargestExtent) + " m: is `resolution` in metres?"});
     noteUnknown(image, header.rule, out);
-    if (const std::size_t others = cells.count() - count; others > 0)
-        out.note(countText(others, "free cell") + " apart from the room dropped; the room has " +
-                 std::to_string(count));
-    return room;
-}
-
-/// From cells to the map's metres.
-Point2 inMap(const MapHeader& header, Point2 cells) {
-    return header.map_from_grid * Point2{cells.x * header.resolution, cells.y * header.resolution};
-}
-
-Region inMap(const MapHeader& header, Region region) {
-    for (Point2& corner : region.outline) corner = inMap(header, corner);
-    for (Polygon& hole : region.holes)
-        for (Point2& corner : hole) corner = inMap(header, corner);
-    return region;
-}
-
-/// The middle of the widest place; where simplification took it away, another point of the room.
-Point2 insideOf(const MapCells& room, const Region& region) {
-    const CellPlace widest = widestPlace(room);
-    const Point2 middle{widest.x + 0.5, widest.y + 0.5};
-    return region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
+    return {freeCells(image, header.rule), occupiedCells(image, header.rule), header.resolution,
+            header.map_from_grid};
 }
 
 }  // namespace
@@ -259,12 +228,8 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
     const std::string path = imagePath(header.image, name);
     ImportRecords out(schemas, name, options);
     out.source(path);
-    const MapCells room = readRoom(header, path, name, out);
-    const double tolerance =
-        options.simplify ? *options.simplify / header.resolution : kDefaultSimplify;
-    const Region region = vectorised(room, tolerance);
-    const Point2 inside = inMap(header, insideOf(room, region));
-    out.region(inMap(header, region), inside);
+    const CellMap map = readCells(header, path, name, out);
+    writeCellMap(map, {path, "check `negate` and `free_thresh` of the map"}, options, out);
     return out.take();
 }
 
