@@ -1,52 +1,320 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/cell_map.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
 #include "base/error.h"
+#include "base/number.h"
+#include "env/check.h"
+#include "io/cell_cleaning.h"
+#include "io/cell_distance.h"
+#include "io/cell_gaps.h"
+#include "io/cell_pieces.h"
+#include "io/cell_report.h"
+#include "io/cell_rooms.h"
 #include "io/outline.h"
 
 namespace ispace {
 
 namespace {
 
-/// Cells that outlines move by default: half for stairs, see outline.h, and half for noise.
+/// Cells that outlines move by default: half for stairs, see outline.h, and the rest for noise.
 constexpr double kDefaultSimplify = 1;
+constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on each side
 
-Point2 inMap(const CellMap& map, Point2 cells) {
-    return map.map_from_grid * Point2{cells.x * map.resolution, cells.y * map.resolution};
-}
+/// Metres: beyond it numbers are no metres, or the map is no plan of a building.
+constexpr double kLargestExtent = 10000;
 
-Region inMap(const CellMap& map, Region region) {
-    for (Point2& corner : region.outline) corner = inMap(map, corner);
-    for (Polygon& hole : region.holes)
-        for (Point2& corner : hole) corner = inMap(map, corner);
-    return region;
-}
+/// Metres; rooms beyond have a resolution that is hardly meant.
+constexpr double kSmallRoom = 2, kLargeRoom = 2000;
 
-/// The middle of the widest place; where simplification took it away, another point of the room.
-Point2 insideOf(const MapCells& room, const Region& region) {
-    const CellPlace widest = widestPlace(room);
-    const Point2 middle{widest.x + 0.5, widest.y + 0.5};
-    return region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
-}
+/// A point that says which room is meant.
+struct Choice {
+    Point2 point;
+    bool is_option = false;  ///< of --inside, not of a record that comes from elsewhere
+    CellPlace place;
+};
+
+/// Turns cells into records, one step after the other.
+class CellMapImport {
+  public:
+    CellMapImport(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
+                  ImportRecords& out)
+        : map_(map), source_(source), options_(options), out_(out), floor_(map.free) {
+        for (const Point2 p : options.inside) choices_.push_back({p, true, map.placeOf(p)});
+        // Records from elsewhere may be about another room.
+        for (const Point2 p : options.known_inside)
+            if (isInGrid(map.placeOf(p))) choices_.push_back({p, false, map.placeOf(p)});
+    }
+
+    void run() {
+        raiseBarriers();
+        const CellPieces pieces(floor_, CellPieces::Joined::BySides);
+        if (pieces.size() == 0)
+            fail("no free cell among " + std::to_string(floor_.width()) + " x " +
+                 std::to_string(floor_.height()) + ": " + source_.hint_if_no_free);
+        if (!options_.close_gaps || !keepClosedRooms()) keepRooms(pieces, choose(floor_, pieces));
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& message) const {
+        throw FormatError(Diagnostic{source_.file, 0, 0, message});
+    }
+
+    [[nodiscard]] bool isInGrid(CellPlace place) const {
+        return place.x >= 0 && place.y >= 0 && place.x < floor_.width() &&
+               place.y < floor_.height();
+    }
+
+    // Choice of the rooms
+
+    /// Walls of others stand in the floor while the rooms are chosen.
+    void raiseBarriers() {
+        if (options_.known_walls.empty()) return;
+        std::vector<Segment2> lines;
+        for (const Segment2& wall : options_.known_walls)
+            lines.push_back({map_.inCells(wall.a), map_.inCells(wall.b)});
+        barrier_ = barrierCells(lines, floor_.width(), floor_.height());
+        floor_ = difference(floor_, *barrier_);
+    }
+
+    /// Keeps the rooms of the map whose gaps are closed; nothing if these are open to the border
+    /// nevertheless: then it was their inner doors that closed.
+    bool keepClosedRooms() {
+        const MapCells cut = gapCells(floor_, *options_.close_gaps / map_.resolution);
+        const MapCells closed = difference(floor_, cut);
+        const CellPieces pieces(closed, CellPieces::Joined::BySides);
+        const std::vector<std::size_t> rooms =
+            pieces.size() == 0 ? std::vector<std::size_t>() : choose(closed, pieces);
+        if (cut.count() == 0 || std::any_of(rooms.begin(), rooms.end(), [&](std::size_t room) {
+                return pieces[room].border > 0;
+            })) {
+            out_.note("no gap of up to " + formatDouble(*options_.close_gaps) +
+                      " m opens the room to the picture's border");
+            return false;
+        }
+        tellGaps(map_, cut, pieces, rooms, *options_.close_gaps, out_);
+        keepRooms(pieces, rooms);
+        return true;
+    }
+
+    [[nodiscard]] std::vector<std::size_t> choose(const MapCells& cells,
+                                                  const CellPieces& pieces) const {
+        if (choices_.empty()) {
+            if (options_.rooms == RoomChoice::All)
+                return closedRooms(cells, pieces, map_.resolution);
+            return {likeliestRoom(pieces, map_.resolution).value()};
+        }
+        std::vector<std::size_t> rooms;
+        for (const Choice& choice : choices_) {
+            const auto room = pieces.at(choice.place);
+            if (!room) refuse(choice);
+            if (std::find(rooms.begin(), rooms.end(), *room) == rooms.end()) rooms.push_back(*room);
+        }
+        return rooms;
+    }
+
+    static std::string nameOf(const Choice& choice) {
+        return (choice.is_option ? "--inside " : "inside point ") + formatDouble(choice.point.x) +
+               ',' + formatDouble(choice.point.y);
+    }
+
+    [[noreturn]] void refuse(const Choice& choice) const {
+        const std::string name = nameOf(choice);
+        const CellPlace place = choice.place;
+        const auto width = static_cast<double>(floor_.width());
+        const auto height = static_cast<double>(floor_.height());
+        if (!isInGrid(place))
+            fail(name + " lies outside of the map, whose corners are " +
+                 placeText(map_.inMap({0, 0})) + " and " + placeText(map_.inMap({width, height})));
+        const char* what = map_.free.contains(place.x, place.y)       ? "on a wall that was added"
+                           : map_.occupied.contains(place.x, place.y) ? "on an occupied cell"
+                                                                      : "in unknown space";
+        fail(name + " lies " + what + ", at pixel " + std::to_string(place.x) + ',' +
+             std::to_string(floor_.height() - 1 - place.y) + "; wanted a point on free floor");
+    }
+
+    // Their records
+
+    void keepRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
+        Cleaning cleaning;
+        for (const std::size_t room : rooms) keepRoom(pieces, room, cleaning);
+        tellRest(map_, pieces, rooms, options_, out_);
+        tellCleaning(map_, cleaning, out_);
+    }
+
+    void keepRoom(const CellPieces& pieces, std::size_t piece, Cleaning& cleaning) {
+        RoomCells room = cutOut(pieces, piece);
+        std::vector<Choice> choices;
+        std::vector<CellPlace> keep;
+        for (const Choice& choice : choices_) {
+            if (pieces.at(choice.place) != piece) continue;
+            choices.push_back(choice);
+            keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
+        }
+        double tolerance = options_.simplify.value_or(0) / map_.resolution;
+        if (options_.simplify != 0) {
+            const Cleaning own = cleanRoom(room, map_.resolution, keep);
+            cleaning += own;
+            if (!options_.simplify) tolerance = own.isRagged() ? kRaggedSimplify : kDefaultSimplify;
+        }
+        if (options_.reachable) keepReachable(room, keep);
+        if (pieces[piece].border > 0) warnOfBorder(map_, room, pieces.borderShare(piece), out_);
+        if (barrier_) giveBack(room);
+        write(room, tolerance, choices);
+    }
+
+    /// With a rim for what is given back.
+    [[nodiscard]] RoomCells cutOut(const CellPieces& pieces, std::size_t piece) const {
+        constexpr int kRim = 3;
+        const CellPiece& box = pieces[piece];
+        const CellPlace offset{box.lowest.x - kRim, box.lowest.y - kRim};
+        const int width = box.highest.x - box.lowest.x + 1 + 2 * kRim;
+        const int height = box.highest.y - box.lowest.y + 1 + 2 * kRim;
+        RoomCells room{MapCells(width, height), MapCells(width, height), offset};
+        pieces.forEachRun([&](const CellRun& run, std::size_t of) {
+            if (of != piece) return;
+            for (int x = run.first; x <= run.last; ++x)
+                room.floor.insert(x - offset.x, run.row - offset.y);
+        });
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                if (map_.occupied.contains(x + offset.x, y + offset.y)) room.occupied.insert(x, y);
+        return room;
+    }
+
+    void keepReachable(RoomCells& room, const std::vector<CellPlace>& from) {
+        const std::size_t before = room.floor.count();
+        const std::string radius = formatDouble(*options_.reachable) + " m";
+        room.floor = reachedByDisc(room.floor, *options_.reachable / map_.resolution, from);
+        const std::size_t after = room.floor.count();
+        if (after == 0)
+            fail("a disc with a radius of " + radius + " does not fit " +
+                 (from.empty() ? "into the room" : "over the inside point") +
+                 "; give --reachable a smaller one");
+        out_.note(areaText(map_.area(before - after)) + " of floor that no disc with a radius of " +
+                  radius + " reaches dropped");
+    }
+
+    /// The floor under walls that were added, and a cell beyond, so that they are the border.
+    void giveBack(RoomCells& room) const {
+        const auto isFree = [&](int x, int y) {
+            return map_.free.contains(x + room.offset.x, y + room.offset.y);
+        };
+        std::vector<CellPlace> under;
+        for (int y = 1; y + 1 < room.floor.height(); ++y)
+            for (int x = 1; x + 1 < room.floor.width(); ++x) {
+                if (!barrier_->contains(x + room.offset.x, y + room.offset.y) || !isFree(x, y))
+                    continue;
+                bool touches = false;
+                for (int v = y - 1; v <= y + 1; ++v)
+                    for (int u = x - 1; u <= x + 1; ++u)
+                        touches = touches || room.floor.contains(u, v);
+                if (touches) under.push_back({x, y});
+            }
+        for (const CellPlace at : under)
+            for (int v = at.y - 1; v <= at.y + 1; ++v)
+                for (int u = at.x - 1; u <= at.x + 1; ++u)
+                    if (isFree(u, v)) room.floor.insert(u, v);
+        // Cells that touch by a corner alone are no part of it.
+        const CellPieces pieces(room.floor, CellPieces::Joined::BySides);
+        const auto& list = pieces.list();
+        const auto largest = std::max_element(
+            list.begin(), list.end(),
+            [](const CellPiece& a, const CellPiece& b) { return a.cells < b.cells; });
+        room.floor = pieces.cellsOf(static_cast<std::size_t>(largest - list.begin()));
+    }
+
+    /// \param tolerance in cells
+    void write(const RoomCells& room, double tolerance, const std::vector<Choice>& choices) {
+        Region region = vectorised(room.floor, tolerance);
+        const CellPlace widest = widestPlace(room.floor);
+        const Point2 middle{widest.x + 0.5, widest.y + 0.5};
+        // Where simplification took the widest place away, another point of the room.
+        const Point2 within =
+            region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
+        const auto moved = [&](Point2 p) {
+            return map_.inMap({p.x + room.offset.x, p.y + room.offset.y});
+        };
+        for (Point2& corner : region.outline) corner = moved(corner);
+        for (Polygon& hole : region.holes)
+            for (Point2& corner : hole) corner = moved(corner);
+        warnOfExtent(region.outline);
+        out_.outline(region);
+        writeInside(region, moved(within), choices);
+    }
+
+    void writeInside(const Region& region, Point2 within, const std::vector<Choice>& choices) {
+        if (choices.empty()) return out_.inside(within);
+        bool any_option = false, any_inside = false;
+        for (const Choice& choice : choices) {
+            if (!choice.is_option) continue;
+            any_option = true;
+            if (region.locate(choice.point) != Side::Inside) {
+                out_.note(nameOf(choice) + " is too near to a wall and not kept");
+                continue;
+            }
+            any_inside = true;
+            out_.inside(choice.point);
+        }
+        if (any_option && !any_inside) out_.inside(within);
+    }
+
+    void warnOfExtent(const Polygon& outline) {
+        const auto by_x = [](Point2 a, Point2 b) { return a.x < b.x; };
+        const auto by_y = [](Point2 a, Point2 b) { return a.y < b.y; };
+        const auto [left, right] = std::minmax_element(outline.begin(), outline.end(), by_x);
+        const auto [low, high] = std::minmax_element(outline.begin(), outline.end(), by_y);
+        const double width = right->x - left->x, height = high->y - low->y;
+        const double extent = std::max(width, height);
+        if (extent >= kSmallRoom && extent <= kLargeRoom) return;
+        out_.warn("the room is " + formatFixed(width, 2) + " m x " + formatFixed(height, 2) +
+                  " m; is the resolution of " + formatDouble(map_.resolution) + " m a cell meant?");
+    }
+
+    const CellMap& map_;
+    const CellMapSource& source_;
+    const ImportOptions& options_;
+    ImportRecords& out_;
+    MapCells floor_;                   ///< free cells without barriers
+    std::optional<MapCells> barrier_;  ///< under walls that were added
+    std::vector<Choice> choices_;
+};
 
 }  // namespace
 
+Point2 CellMap::inMap(Point2 cells) const {
+    return map_from_grid * Point2{cells.x * resolution, cells.y * resolution};
+}
+
+Point2 CellMap::inCells(Point2 point) const {
+    const Vec2 way = point - map_from_grid.position;
+    const Vec2 right = unitVector(map_from_grid.heading);
+    return {dot(way, right) / resolution, cross(right, way) / resolution};
+}
+
+CellPlace CellMap::placeOf(Point2 point) const {
+    constexpr double kFar = 1e9;
+    const Point2 cells = inCells(point);
+    return {static_cast<int>(std::clamp(std::floor(cells.x), -kFar, kFar)),
+            static_cast<int>(std::clamp(std::floor(cells.y), -kFar, kFar))};
+}
+
+void checkCellMap(int width, int height, double resolution, const std::string& file) {
+    if (resolution * std::max(width, height) <= kLargestExtent) return;
+    throw FormatError(Diagnostic{displayName(file), 0, 0,
+                                 std::to_string(width) + " x " + std::to_string(height) +
+                                     " cells of " + formatDouble(resolution) + " m are more than " +
+                                     formatDouble(kLargestExtent) +
+                                     " m: is `resolution` in metres?"});
+}
+
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out) {
-    const MapCells room = largestPiece(map.free);
-    const std::size_t count = room.count();
-    if (count == 0)
-        throw FormatError(Diagnostic{source.file, 0, 0,
-                                     "no free cell among " + std::to_string(map.free.width()) +
-                                         " x " + std::to_string(map.free.height()) + ": " +
-                                         source.hint_if_no_free});
-    if (const std::size_t others = map.free.count() - count; others > 0)
-        out.note(countText(others, "free cell") + " apart from the room dropped; the room has " +
-                 std::to_string(count));
-    const double tolerance =
-        options.simplify ? *options.simplify / map.resolution : kDefaultSimplify;
-    const Region region = vectorised(room, tolerance);
-    out.region(inMap(map, region), inMap(map, insideOf(room, region)));
+    CellMapImport(map, source, options, out).run();
 }
 
 }  // namespace ispace

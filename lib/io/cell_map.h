@@ -16,7 +16,24 @@ struct CellMap {
     MapCells free, occupied;
     double resolution = 0;  ///< metres a cell
     Pose2 map_from_grid;    ///< the lower left corner of the cells
+
+    /// Places in cells, cell (x, y) being the square from (x, y) to (x + 1, y + 1), in the map's
+    /// metres, and back.
+    [[nodiscard]] Point2 inMap(Point2 cells) const;
+    [[nodiscard]] Point2 inCells(Point2 point) const;
+    /// Of a cell that is perhaps not in the grid.
+    [[nodiscard]] CellPlace placeOf(Point2 point) const;
+    [[nodiscard]] Point2 middleOf(CellPlace place) const {
+        return inMap({place.x + 0.5, place.y + 0.5});
+    }
+    /// In square metres.
+    [[nodiscard]] double area(std::size_t cells) const {
+        return static_cast<double>(cells) * resolution * resolution;
+    }
 };
+
+/// Refuses maps of more than 10 km. \throws FormatError
+void checkCellMap(int width, int height, double resolution, const std::string& file);
 
 /// What messages say about where a map comes from.
 struct CellMapSource {
@@ -24,11 +41,26 @@ struct CellMapSource {
     std::string hint_if_no_free;  ///< what helps where no cell is free
 };
 
-/// Writes the room of a map: the largest free region (4-connected; unknown is not free), its
-/// outline and its holes closed fences along the cell edges, simplified by at most
-/// ImportOptions::simplify (default one cell: slanted walls become straight lines through their
-/// stairs), and `inside` a point far from them.
-/// \throws FormatError if no cell is free
+/// Writes the rooms of a map: free regions (4-connected; unknown is not free), outlines and holes
+/// as closed fences, each with an `inside` point.
+///
+/// 1. ImportOptions::known_walls stand in the floor while rooms are chosen; the floor under them
+///    and a cell beyond comes back, so that they are the border. Openings to the picture's border
+///    of at most `close_gaps` are closed (gapCells()).
+/// 2. The rooms are the regions with the points of `inside` and `known_inside`; without any the
+///    likeliest one (likeliestRoom()) or, with RoomChoice::All, all that are closed.
+/// 3. What is below the map's noise goes (cleanRoom()), unless `simplify` is 0.
+/// 4. With `reachable` the floor is what a disc of that radius reaches.
+/// 5. Outlines follow the cells' edges, simplified by at most `simplify` (default one cell: slanted
+///    walls become straight lines through their stairs; two where the map is noisy).
+///
+/// The `inside` records of a room are the points of `inside` that chose it, else one far from the
+/// outline; rooms that only points of `known_inside` chose have theirs elsewhere.
+///
+/// Warns where less than half of the free cells is kept that are not outside, where a room leaves
+/// the picture, and of sizes that are no building's; notes tell what was closed and cleaned.
+/// \throws FormatError if no cell is free, for a point that is not on free floor, and for a disc
+/// that fits nowhere
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out);
 

@@ -2,7 +2,6 @@
 #include "io/occupancy.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace ispace {
@@ -21,6 +20,22 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
 
 std::size_t MapCells::count() const {
     return static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), 1));
+}
+
+MapCells difference(const MapCells& cells, const MapCells& others) {
+    MapCells rest = cells;
+    others.forEach([&rest](int x, int y) { rest.erase(x, y); });
+    return rest;
+}
+
+MapCells complement(const MapCells& cells) {
+    MapCells others(cells.width(), cells.height());
+    for (int y = 0; y < cells.height(); ++y) {
+        const std::span<const std::uint8_t> row = cells.row(y);
+        for (std::size_t x = 0; x < row.size(); ++x)
+            if (row[x] == 0) others.insert(static_cast<int>(x), y);
+    }
+    return others;
 }
 
 namespace {
@@ -61,49 +76,6 @@ std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule) 
         classify(grey, image.max_value, rule) != Cell::Free)
         return 0;
     return static_cast<std::size_t>(std::count(image.samples.begin(), image.samples.end(), grey));
-}
-
-namespace {
-
-constexpr std::array<CellPlace, 4> kNeighbours{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-
-/// Adds the 4-connected piece of `cells` that holds `seed` to `seen`.
-/// \return its size
-std::size_t flood(const MapCells& cells, CellPlace seed, MapCells& seen) {
-    std::vector<CellPlace> open{seed};
-    seen.insert(seed.x, seed.y);
-    std::size_t size = 0;
-    while (!open.empty()) {
-        const CellPlace cell = open.back();
-        open.pop_back();
-        ++size;
-        for (const CellPlace step : kNeighbours) {
-            const CellPlace next{cell.x + step.x, cell.y + step.y};
-            if (!cells.contains(next.x, next.y) || seen.contains(next.x, next.y)) continue;
-            seen.insert(next.x, next.y);
-            open.push_back(next);
-        }
-    }
-    return size;
-}
-
-}  // namespace
-
-MapCells largestPiece(const MapCells& cells) {
-    MapCells seen(cells.width(), cells.height());
-    std::size_t best_size = 0;
-    CellPlace best;
-    for (int y = 0; y < cells.height(); ++y)
-        for (int x = 0; x < cells.width(); ++x) {
-            if (!cells.contains(x, y) || seen.contains(x, y)) continue;
-            const std::size_t size = flood(cells, {x, y}, seen);
-            if (size <= best_size) continue;
-            best_size = size;
-            best = {x, y};
-        }
-    MapCells piece(cells.width(), cells.height());
-    if (best_size > 0) flood(cells, best, piece);
-    return piece;
 }
 
 CellPlace widestPlace(const MapCells& cells) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "io/picture.h"
@@ -27,6 +28,10 @@ enum class Cell : std::uint8_t { Free, Occupied, Unknown };
 /// Meaning of a sample out of 0 .. max_value. Both comparisons are strict, occupied comes first.
 Cell classify(int sample, int max_value, const OccupancyRule& rule);
 
+struct CellPlace {
+    int x = 0, y = 0;
+};
+
 /// A set of cells; column 0 is the left one, row 0 the bottom row.
 class MapCells {
   public:
@@ -46,16 +51,35 @@ class MapCells {
     /// \pre the cell lies in the grid
     void erase(int x, int y) { cells_[index(x, y)] = 0; }
     [[nodiscard]] std::size_t count() const;
+    /// One byte a cell, 1 if it is in the set.
+    [[nodiscard]] std::span<const std::uint8_t> row(int y) const {
+        return std::span(cells_).subspan(index(0, y), static_cast<std::size_t>(width_));
+    }
     /// Where (x, y) stands in a list of all cells, row by row from the bottom.
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                static_cast<std::size_t>(x);
     }
 
+    /// Calls visit(x, y) for each cell of the set, row by row.
+    template <typename Visit>
+    void forEach(Visit visit) const {
+        for (int y = 0; y < height_; ++y) {
+            const std::span<const std::uint8_t> cells = row(y);
+            for (std::size_t x = 0; x < cells.size(); ++x)
+                if (cells[x] != 0) visit(static_cast<int>(x), y);
+        }
+    }
+
   private:
     int width_, height_;
     std::vector<std::uint8_t> cells_;
 };
+
+/// The cells of the first set that are not in the second, of the same size.
+MapCells difference(const MapCells& cells, const MapCells& others);
+/// The cells of the grid that are not in the set.
+MapCells complement(const MapCells& cells);
 
 /// The free and the occupied cells of a map; the picture's top row becomes the highest row. Opacity
 /// counts as map_server has it: with Trinary it is averaged with the colours, with Scale what is
@@ -66,13 +90,6 @@ MapCells occupiedCells(const Picture& image, const OccupancyRule& rule);
 /// How many samples count as free that map_server writes for unknown: 205 of 255, which is as dark
 /// as 0.196. Rules written by Nav2 have a free_thresh of 0.25.
 std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule);
-
-/// The largest 4-connected piece, of equal ones the one that begins lowest, then leftmost. O(n).
-MapCells largestPiece(const MapCells& cells);
-
-struct CellPlace {
-    int x = 0, y = 0;
-};
 
 /// The cell furthest from all cells outside the set, by rings of eight neighbours; of equal ones
 /// the lowest, then leftmost. O(n). \pre not empty

@@ -14,15 +14,7 @@ namespace ispace {
 namespace {
 
 using testing::cellsOf;
-
-std::vector<std::string> rowsOf(const MapCells& cells) {
-    std::vector<std::string> rows;
-    for (int y = cells.height() - 1; y >= 0; --y) {
-        rows.emplace_back();
-        for (int x = 0; x < cells.width(); ++x) rows.back() += cells.contains(x, y) ? '.' : '#';
-    }
-    return rows;
-}
+using testing::rowsOf;
 
 TEST(Occupancy, TrinaryComparesStrictly) {
     OccupancyRule rule;  // 0.65 and 0.196
@@ -73,22 +65,6 @@ TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
     image.samples = {254, 0, 205, 254};
     EXPECT_EQ(rowsOf(freeCells(image, {})), (std::vector<std::string>{".#", "#."}));
     EXPECT_TRUE(freeCells(image, {}).contains(0, 1));
-}
-
-TEST(Occupancy, LargestPieceIsFourConnected) {
-    EXPECT_EQ(rowsOf(largestPiece(cellsOf({"..##.",  //
-                                           "..##.",  //
-                                           "##...",  //
-                                           "##..."}))),
-              (std::vector<std::string>{"####.",  //
-                                        "####.",  //
-                                        "##...",  //
-                                        "##..."}));
-    // Of equal ones the lowest, then leftmost.
-    EXPECT_EQ(rowsOf(largestPiece(cellsOf({".#.", "###", ".#."}))),
-              (std::vector<std::string>{"###", "###", ".##"}));
-    EXPECT_EQ(largestPiece(cellsOf({"##", "##"})).count(), 0U);
-    EXPECT_EQ(largestPiece(cellsOf({"."})).count(), 1U);
 }
 
 TEST(Occupancy, WidestPlace) {

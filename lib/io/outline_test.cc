@@ -15,6 +15,7 @@ namespace ispace {
 namespace {
 
 using testing::cellsOf;
+using testing::largestPiece;
 
 /// Noise, smoothed a little: blobs with holes, pinches and slits.
 MapCells randomBlob(std::mt19937_64& random, int size, unsigned density) {

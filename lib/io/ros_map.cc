@@ -28,10 +28,8 @@ namespace ispace {
 
 namespace {
 
-/// A millimetre a cell and ten kilometres of map: beyond them the numbers are no metres, or the map
-/// is no plan of a building.
+/// A millimetre a cell: below it the numbers are no metres.
 constexpr double kFinestResolution = 0.001;
-constexpr double kLargestExtent = 10000;
 
 /// What map.yaml says.
 struct MapHeader {
@@ -184,10 +182,10 @@ std::string readImage(const MapHeader& header, const std::string& path, const st
     }
 }
 
-/// Says so where the thresholds turn much of the picture from unknown to free.
-void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords& out) {
+/// Warns where the thresholds turn much of the picture from unknown to free.
+void warnOfUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords& out) {
     if (const std::size_t count = unknownCountedFree(image, rule); count > 0)
-        out.note(countText(count, "pixel") +
+        out.warn(countText(count, "pixel") +
                  " of shade 205, which map_server writes for unknown, count as free because "
                  "`free_thresh` is " +
                  formatDouble(rule.free_thresh) + "; with 0.196 they are unknown");
@@ -196,13 +194,8 @@ void noteUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords&
 CellMap readCells(const MapHeader& header, const std::string& path, const std::string& name,
                   ImportRecords& out) {
     const Picture image = parsePicture(readImage(header, path, name), path);
-    if (header.resolution * std::max(image.width, image.height) > kLargestExtent)
-        throw FormatError(
-            Diagnostic{path, 0, 0,
-                       std::to_string(image.width) + " x " + std::to_string(image.height) +
-                           " cells of " + formatDouble(header.resolution) + " m are more than " +
-                           formatDouble(kLargestExtent) + " m: is `resolution` in metres?"});
-    noteUnknown(image, header.rule, out);
+    checkCellMap(image.width, image.height, header.resolution, path);
+    warnOfUnknown(image, header.rule, out);
     return {freeCells(image, header.rule), occupiedCells(image, header.rule), header.resolution,
             header.map_from_grid};
 }

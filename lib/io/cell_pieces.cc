@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cell_pieces.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ispace {
+
+namespace {
+
+std::size_t rootOf(std::vector<std::size_t>& root, std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+}
+
+}  // namespace
+
+CellPieces::CellPieces(const MapCells& cells, Joined joined)
+    : width_(cells.width()), height_(cells.height()) {
+    findRuns(cells);
+    std::vector<std::size_t> root(runs_.size());
+    std::iota(root.begin(), root.end(), std::size_t{0});
+    joinRows(joined, root);
+    addUp(root);
+}
+
+void CellPieces::findRuns(const MapCells& cells) {
+    row_begin_.reserve(static_cast<std::size_t>(height_) + 1);
+    for (int y = 0; y < height_; ++y) {
+        row_begin_.push_back(runs_.size());
+        const std::span<const std::uint8_t> row = cells.row(y);
+        auto at = row.begin();
+        while ((at = std::find(at, row.end(), 1)) != row.end()) {
+            const auto end = std::find(at, row.end(), 0);
+            runs_.push_back(
+                {y, static_cast<int>(at - row.begin()), static_cast<int>(end - row.begin()) - 1});
+            at = end;
+        }
+    }
+    row_begin_.push_back(runs_.size());
+}
+
+/// Unites runs of neighbouring rows that touch; of two roots the earlier one stays.
+void CellPieces::joinRows(Joined joined, std::vector<std::size_t>& root) const {
+    const int reach = joined == Joined::ByCorners ? 1 : 0;
+    for (std::size_t y = 1; y + 1 < row_begin_.size(); ++y) {
+        std::size_t below = row_begin_[y - 1];
+        std::size_t above = row_begin_[y];
+        while (below < row_begin_[y] && above < row_begin_[y + 1]) {
+            const CellRun& low = runs_[below];
+            const CellRun& high = runs_[above];
+            if (low.first <= high.last + reach && high.first <= low.last + reach) {
+                const std::size_t a = rootOf(root, below);
+                const std::size_t b = rootOf(root, above);
+                root[std::max(a, b)] = std::min(a, b);
+            }
+            (low.last < high.last ? below : above) += 1;
+        }
+    }
+}
+
+void CellPieces::addUp(const std::vector<std::size_t>& root) {
+    std::vector<std::size_t> roots = root;
+    piece_of_.resize(runs_.size());
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+        const CellRun& run = runs_[i];
+        const std::size_t r = rootOf(roots, i);
+        if (r == i) {
+            piece_of_[i] = pieces_.size();
+            CellPiece& fresh = pieces_.emplace_back();
+            fresh.first = fresh.lowest = fresh.highest = {run.first, run.row};
+        } else {
+            piece_of_[i] = piece_of_[r];
+        }
+        CellPiece& piece = pieces_[piece_of_[i]];
+        const int length = run.last - run.first + 1;
+        piece.cells += static_cast<std::size_t>(length);
+        piece.lowest.x = std::min(piece.lowest.x, run.first);
+        piece.highest.x = std::max(piece.highest.x, run.last);
+        piece.highest.y = run.row;
+        const bool at_edge = run.row == 0 || run.row == height_ - 1;
+        const int ends = static_cast<int>(run.first == 0) +
+                         static_cast<int>(run.last == width_ - 1 && width_ > 1);
+        piece.border += static_cast<std::size_t>(at_edge ? length : ends);
+    }
+}
+
+std::optional<std::size_t> CellPieces::at(CellPlace place) const {
+    if (place.x < 0 || place.y < 0 || place.x >= width_ || place.y >= height_) return std::nullopt;
+    const auto y = static_cast<std::size_t>(place.y);
+    const auto begin = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y]);
+    const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y + 1]);
+    const auto run = std::partition_point(
+        begin, end, [&place](const CellRun& run) { return run.last < place.x; });
+    if (run == end || run->first > place.x) return std::nullopt;
+    return piece_of_[static_cast<std::size_t>(run - runs_.begin())];
+}
+
+double CellPieces::borderShare(std::size_t piece) const {
+    const int around = width_ == 1 || height_ == 1 ? width_ * height_ : 2 * (width_ + height_) - 4;
+    return static_cast<double>(pieces_[piece].border) / around;
+}
+
+MapCells CellPieces::cellsOf(std::size_t piece) const {
+    MapCells cells(width_, height_);
+    forEachRun([&](const CellRun& run, std::size_t of) {
+        if (of != piece) return;
+        for (int x = run.first; x <= run.last; ++x) cells.insert(x, run.row);
+    });
+    return cells;
+}
+
+}  // namespace ispace

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cell_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "base/number.h"
+#include "env/check.h"
+#include "io/cell_gaps.h"
+#include "io/cell_rooms.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kLeastOpening = 0.5;     ///< metres of the picture's border
+constexpr double kWidestDoor = 1.2;       ///< metres
+constexpr double kShareBehindDoor = 0.1;  ///< of the floor, that is worth a warning
+
+constexpr std::array<CellPlace, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+
+bool contains(const std::vector<std::size_t>& list, std::size_t value) {
+    return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+/// As an option takes it.
+std::string pointText(Point2 p) { return formatFixed(p.x, 2) + ',' + formatFixed(p.y, 2); }
+
+/// A run of floor along an edge of the picture.
+struct Opening {
+    int length = 0;
+    Point2 middle;  ///< in cells
+};
+
+std::vector<Opening> openingsOf(const CellMap& map, const RoomCells& room) {
+    std::vector<Opening> openings;
+    const auto follow = [&](CellPlace at, CellPlace step, int count) {
+        int length = 0;
+        for (int i = 0; i <= count; ++i) {
+            const CellPlace place{at.x + i * step.x, at.y + i * step.y};
+            if (i < count &&
+                room.floor.contains(place.x - room.offset.x, place.y - room.offset.y)) {
+                ++length;
+                continue;
+            }
+            if (length > 0) {
+                const double back = (length + 1) / 2.0;
+                openings.push_back(
+                    {length, {place.x + 0.5 - back * step.x, place.y + 0.5 - back * step.y}});
+            }
+            length = 0;
+        }
+    };
+    const int width = map.free.width(), height = map.free.height();
+    follow({0, 0}, {1, 0}, width);
+    follow({0, height - 1}, {1, 0}, width);
+    follow({0, 0}, {0, 1}, height);
+    follow({width - 1, 0}, {0, 1}, height);
+    return openings;
+}
+
+/// The largest part of a room that closed doors would part from the picture's border.
+struct BehindDoor {
+    std::size_t cells = 0;
+    CellPlace place;
+};
+
+BehindDoor behindDoors(const CellMap& map, const RoomCells& room) {
+    // In a grid that ends where the picture does.
+    MapCells floor(map.free.width(), map.free.height());
+    for (int y = 0; y < room.floor.height(); ++y)
+        for (int x = 0; x < room.floor.width(); ++x)
+            if (room.floor.contains(x, y)) floor.insert(x + room.offset.x, y + room.offset.y);
+    const MapCells cut = gapCells(floor, kWidestDoor / map.resolution);
+    const CellPieces pieces(difference(floor, cut), CellPieces::Joined::BySides);
+    BehindDoor result;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (pieces[i].border > 0 || pieces[i].cells <= result.cells) continue;
+        result = {pieces[i].cells, {}};
+        result.place = widestPlace(pieces.cellsOf(i));
+    }
+    return result;
+}
+
+void warnOfOpenings(const CellMap& map, const RoomCells& room, ImportRecords& out) {
+    std::vector<Opening> openings = openingsOf(map, room);
+    std::erase_if(openings, [&map](const Opening& opening) {
+        return opening.length * map.resolution < kLeastOpening;
+    });
+    if (openings.empty()) return;
+    const Opening widest =
+        *std::max_element(openings.begin(), openings.end(),
+                          [](const auto& a, const auto& b) { return a.length < b.length; });
+    out.warn(
+        "the room leaves the picture over " + formatFixed(widest.length * map.resolution, 2) +
+        " m at " + placeText(map.inMap(widest.middle)) +
+        (openings.size() == 1 ? "" : " and at " + countText(openings.size() - 1, "other place")) +
+        "; --fence closes it where it should end");
+}
+
+}  // namespace
+
+void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<std::size_t>& rooms,
+              const ImportOptions& options, ImportRecords& out) {
+    std::size_t kept = 0, all = 0, indoor = 0;
+    std::optional<std::size_t> largest;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::size_t cells = pieces[i].cells;
+        const bool is_room = contains(rooms, i);
+        all += cells;
+        if (is_room) kept += cells;
+        if (!is_room && pieces.borderShare(i) > kOutsideShare) continue;
+        indoor += cells;
+        if (!is_room && (!largest || cells > pieces[*largest].cells)) largest = i;
+    }
+    if (kept == all) return;
+    const bool is_chosen = !options.inside.empty() || !options.known_inside.empty();
+    if (is_chosen || !largest || 2 * kept >= indoor) {
+        out.note(countText(all - kept, "free cell") +
+                 " apart from the room dropped; the room has " + std::to_string(kept));
+        return;
+    }
+    const Point2 place = map.middleOf(widestPlace(pieces.cellsOf(*largest)));
+    out.warn("less than half of the free floor is kept, " + areaText(map.area(kept)) + " of " +
+             areaText(map.area(indoor)) + "; --inside " + pointText(place) +
+             " chooses the largest region left out, " + areaText(map.area(pieces[*largest].cells)) +
+             (options.rooms == RoomChoice::All ? "" : ", and --rooms all keeps every closed room"));
+}
+
+void warnOfBorder(const CellMap& map, const RoomCells& room, double border_share,
+                  ImportRecords& out) {
+    if (border_share <= kOutsideShare) return warnOfOpenings(map, room, out);
+    const BehindDoor inner = behindDoors(map, room);
+    const auto cells = static_cast<double>(inner.cells);
+    if (cells < kShareBehindDoor * static_cast<double>(room.floor.count())) return;
+    out.warn("the room runs along " + formatFixed(100 * border_share, 0) +
+             "% of the picture's border and may be the outside; --close-gaps " +
+             formatDouble(kWidestDoor) + " parts " + areaText(map.area(inner.cells)) + " at " +
+             placeText(map.middleOf(inner.place)) + " from it");
+}
+
+void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& out) {
+    const std::size_t filled = cleaning.speck_cells + cleaning.slit_cells;
+    if (filled + cleaning.spike_cells == 0) return;
+    out.note("below the map's noise: " + countText(cleaning.specks, "speck") + " and slits of " +
+             areaText(map.area(filled)) + " became floor, " + countText(cleaning.spikes, "spike") +
+             " of " + areaText(map.area(cleaning.spike_cells)) + " went; --simplify 0 keeps them");
+}
+
+void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
+              const std::vector<std::size_t>& rooms, double widest, ImportRecords& out) {
+    const CellPieces gaps(cut, CellPieces::Joined::ByCorners);
+    std::vector<bool> is_ours(gaps.size());
+    gaps.forEachRun([&](const CellRun& run, std::size_t gap) {
+        for (int x = run.first; x <= run.last; ++x)
+            for (const CellPlace side : kSides)
+                if (const auto piece = pieces.at({x + side.x, run.row + side.y});
+                    piece && contains(rooms, *piece))
+                    is_ours[gap] = true;
+    });
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+        if (!is_ours[i]) continue;
+        ++count;
+        const Point2 middle{(gaps[i].lowest.x + gaps[i].highest.x + 1) / 2.0,
+                            (gaps[i].lowest.y + gaps[i].highest.y + 1) / 2.0};
+        out.note("a gap of " + formatFixed(gaps[i].extent() * map.resolution, 2) +
+                 " m is closed at " + placeText(map.inMap(middle)));
+    }
+    out.note(countText(count, "gap") + " of up to " + formatDouble(widest) + " m closed");
+}
+
+}  // namespace ispace
