@@ -5,8 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <queue>
-#include <tuple>
 
 #include "io/cell_distance.h"
 #include "io/cell_pieces.h"
@@ -23,51 +21,43 @@ enum Owner : std::uint8_t { Nobody, Outside, Rooms };
 /// Floods free cells from those that have an owner, widest ways first.
 class WideningFlood {
   public:
-    WideningFlood(const MapCells& free, const std::vector<int>& clearance,
+    /// \param widest squared clearance that cells without an owner have at most
+    WideningFlood(const MapCells& free, const std::vector<int>& clearance, int widest,
                   std::vector<Owner>& owners)
-        : free_(free), clearance_(clearance), owners_(owners) {}
+        : free_(free),
+          clearance_(clearance),
+          owners_(owners),
+          open_(static_cast<std::size_t>(widest) + 1) {}
 
     void run() {
+        const std::vector<Owner> before = owners_;
         for (int y = 0; y < free_.height(); ++y)
             for (int x = 0; x < free_.width(); ++x)
-                if (owners_[free_.index(x, y)] != Nobody) pushAround({x, y}, kNoDistance);
-        while (!open_.empty()) {
-            const Step step = open_.top();
-            open_.pop();
-            Owner& owner = owners_[free_.index(step.to.x, step.to.y)];
-            if (owner != Nobody) continue;
-            owner = step.owner;
-            pushAround(step.to, step.width);
-        }
+                if (before[free_.index(x, y)] != Nobody) pushAround({x, y}, kNoDistance);
+        // Ways only get narrower. What finds a cell first comes the widest way, so it owns it.
+        for (std::size_t width = open_.size(); width-- > 0;)
+            for (std::size_t i = 0; i < open_[width].size(); ++i)
+                pushAround(open_[width][i], static_cast<int>(width));
     }
 
   private:
-    struct Step {
-        int width = 0;          ///< squared clearance of the narrowest cell on the way
-        std::size_t order = 0;  ///< of equally wide ways the one found first
-        CellPlace to;
-        Owner owner = Nobody;
-        friend bool operator<(const Step& a, const Step& b) {
-            return std::tie(a.width, b.order) < std::tie(b.width, a.order);
-        }
-    };
-
+    /// \param width squared clearance of the narrowest cell on the way so far
     void pushAround(CellPlace from, int width) {
         const Owner owner = owners_[free_.index(from.x, from.y)];
         for (const CellPlace side : kSides) {
             const CellPlace to{from.x + side.x, from.y + side.y};
             if (!free_.contains(to.x, to.y)) continue;
             const std::size_t i = free_.index(to.x, to.y);
-            if (owners_[i] == Nobody)
-                open_.push({std::min(width, clearance_[i]), ++order_, to, owner});
+            if (owners_[i] != Nobody) continue;
+            owners_[i] = owner;
+            open_[static_cast<std::size_t>(std::min(width, clearance_[i]))].push_back(to);
         }
     }
 
     const MapCells& free_;
     const std::vector<int>& clearance_;
     std::vector<Owner>& owners_;
-    std::priority_queue<Step> open_;
-    std::size_t order_ = 0;
+    std::vector<std::vector<CellPlace>> open_;  ///< by the squared clearance on the way
 };
 
 }  // namespace
@@ -87,7 +77,9 @@ MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height)
 
 MapCells gapCells(const MapCells& free, double width) {
     const std::vector<int> clearance = squaredDistances(free, Beyond::In);
-    const double half = (width + 1) / 2;
+    // Wider than the grid is as wide as it.
+    const double half =
+        (std::min(width, static_cast<double>(free.width() + free.height())) + 1) / 2;
     MapCells broad(free.width(), free.height());
     for (int y = 0; y < free.height(); ++y)
         for (int x = 0; x < free.width(); ++x)
@@ -98,7 +90,7 @@ MapCells gapCells(const MapCells& free, double width) {
         std::fill_n(owners.begin() + static_cast<std::ptrdiff_t>(free.index(run.first, run.row)),
                     run.last - run.first + 1, pieces[piece].border > 0 ? Outside : Rooms);
     });
-    WideningFlood(free, clearance, owners).run();
+    WideningFlood(free, clearance, static_cast<int>(half * half), owners).run();
     MapCells cut(free.width(), free.height());
     for (int y = 0; y < free.height(); ++y)
         for (int x = 0; x < free.width(); ++x) {

@@ -16,7 +16,7 @@ MapCells barrierCells(const std::vector<Segment2>& lines, int width, int height)
 /// are apart, where openings between cells that are not free count as closed if they are at most
 /// `width` cells wide, give or take one. Floor to which a disc of that diameter does not come
 /// belongs to the side from which the way to it is widest, so an opening is cut where it is
-/// narrowest; openings between inner rooms stay. O(cells log cells).
+/// narrowest; openings between inner rooms stay. O(cells + width squared).
 MapCells gapCells(const MapCells& free, double width);
 
 }  // namespace ispace
