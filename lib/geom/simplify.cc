@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
@@ -39,17 +40,21 @@ Point2 placeOf(Curves::Vertex_handle vertex) { return {vertex->point().x(), vert
 /// thousands of them, so each vertex gets a cost of its own, by its place among all vertices.
 class Cost {
   public:
-    Cost(const std::vector<Polygon>& curves, double tolerance) : most_(tolerance * tolerance) {
+    Cost(const std::vector<Polygon>& curves, double tolerance, std::vector<Point2> kept)
+        : most_(tolerance * tolerance), kept_(std::move(kept)) {
         for (const Polygon& curve : curves) order_.insert(order_.end(), curve.begin(), curve.end());
-        std::sort(order_.begin(), order_.end(), [](Point2 a, Point2 b) { return lexLess(a, b); });
+        std::sort(order_.begin(), order_.end(), lexLess);
+        std::sort(kept_.begin(), kept_.end(), lexLess);
     }
 
     boost::optional<double> operator()(
         const Curves& net, const Curves::Vertices_in_constraint_iterator& vertex) const {
+        if (std::binary_search(kept_.begin(), kept_.end(), placeOf(*vertex), lexLess))
+            return boost::none;
         const auto cost = ps::Squared_distance_cost()(net, vertex);
         if (!cost || *cost > most_ || isTight(net, vertex)) return boost::none;
-        const auto place = std::lower_bound(order_.begin(), order_.end(), placeOf(*vertex),
-                                            [](Point2 a, Point2 b) { return lexLess(a, b); });
+        const auto place =
+            std::lower_bound(order_.begin(), order_.end(), placeOf(*vertex), lexLess);
         const double share =
             static_cast<double>(place - order_.begin()) / static_cast<double>(order_.size());
         return *cost + (most_ > 0 ? 1e-6 * most_ : 1) * share;
@@ -71,7 +76,7 @@ class Cost {
     }
 
     double most_;
-    std::vector<Point2> order_;
+    std::vector<Point2> order_, kept_;
 };
 
 /// The curve from its lowest vertex on: CGAL keeps the first vertex, and that one is a corner.
@@ -91,7 +96,8 @@ bool isCurve(const Polygon& polygon) {
 
 }  // namespace
 
-std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double tolerance) {
+std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double tolerance,
+                                std::vector<Point2> kept) {
     Curves net;
     std::vector<Curves::Constraint_id> ids(curves.size(), Curves::Constraint_id(nullptr));
     for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -101,7 +107,8 @@ std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double toler
     }
     // The cost decides alone.
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    ps::simplify(net, Cost(curves, tolerance), ps::Stop_above_cost_threshold(kNever));
+    ps::simplify(net, Cost(curves, tolerance, std::move(kept)),
+                 ps::Stop_above_cost_threshold(kNever));
 
     std::vector<Polygon> result(curves);
     for (std::size_t i = 0; i < curves.size(); ++i) {

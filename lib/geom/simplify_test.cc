@@ -66,6 +66,13 @@ TEST(Simplified, takesTheStairsOutOfASlope) {
     EXPECT_LE(displacement(result[0], stairs), 0.75);
 }
 
+TEST(Simplified, keepsTheVerticesThatAreToStay) {
+    const Polygon notched{{0, 0}, {10, 0}, {10, 4}, {6, 4}, {5.5, 4.2}, {5, 4}, {0, 4}};
+    EXPECT_EQ(simplified({notched}, 0.5)[0].size(), 4U);
+    EXPECT_EQ(simplified({notched}, 0.5, {{5.5, 4.2}})[0].size(), 5U);
+    EXPECT_EQ(simplified({notched}, 0.5, {{6, 4}, {5.5, 4.2}, {5, 4}})[0].size(), 7U);
+}
+
 TEST(Simplified, losesNoCurveHoweverSmall) {
     const std::vector<Polygon> curves{
         test::box(0, 0, 10, 10), test::box(5, 5, 5.01, 5.01), {{7, 7}, {7.001, 7}, {7, 7.001}}};

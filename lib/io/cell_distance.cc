@@ -2,6 +2,7 @@
 #include "io/cell_distance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -137,7 +138,7 @@ MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<C
                              [](const auto& a, const auto& b) { return a.cells < b.cells; }) -
             list.begin()));
     }
-    const int steps = static_cast<int>(radius + 0.5);
+    const int steps = static_cast<int>(std::ceil(radius));
     for (const CellPlace place : from) {
         // The nearest middle whose disc covers the place.
         std::optional<std::size_t> nearest;

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "env/check.h"
+#include "geom/box.h"
 #include "io/cell_cleaning.h"
 #include "io/cell_distance.h"
 #include "io/cell_gaps.h"
@@ -142,6 +143,7 @@ class CellMapImport {
     void keepRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
         Cleaning cleaning;
         for (const std::size_t room : rooms) keepRoom(pieces, room, cleaning);
+        warnOfExtent();
         tellRest(map_, pieces, rooms, options_, out_);
         tellCleaning(map_, cleaning, out_);
     }
@@ -155,16 +157,43 @@ class CellMapImport {
             choices.push_back(choice);
             keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
         }
+        const MapCells raw = room.floor;
         double tolerance = options_.simplify.value_or(0) / map_.resolution;
         if (options_.simplify != 0) {
             const Cleaning own = cleanRoom(room, map_.resolution, keep);
             cleaning += own;
             if (!options_.simplify) tolerance = own.isRagged() ? kRaggedSimplify : kDefaultSimplify;
         }
+        const std::optional<MapCells> rigid = besideBarriers(room);
+        if (rigid)
+            rigid->forEach([&](int x, int y) {
+                if (raw.contains(x, y))
+                    room.floor.insert(x, y);
+                else
+                    room.floor.erase(x, y);
+            });
         if (options_.reachable) keepReachable(room, keep);
         if (pieces[piece].border > 0) warnOfBorder(map_, room, pieces.borderShare(piece), out_);
         if (barrier_) giveBack(room);
-        write(room, tolerance, choices);
+        write(room, tolerance, rigid, choices);
+    }
+
+    /// Cells of a room's grid within two of walls that were added. Nothing moves there, so that
+    /// these reach the walls of the map as they were drawn to.
+    [[nodiscard]] std::optional<MapCells> besideBarriers(const RoomCells& room) const {
+        constexpr int kNear = 2;
+        if (!barrier_) return std::nullopt;
+        MapCells cells(room.floor.width(), room.floor.height());
+        for (int y = -kNear; y < cells.height() + kNear; ++y)
+            for (int x = -kNear; x < cells.width() + kNear; ++x) {
+                if (!barrier_->contains(x + room.offset.x, y + room.offset.y)) continue;
+                for (int v = std::max(y - kNear, 0); v <= std::min(y + kNear, cells.height() - 1);
+                     ++v)
+                    for (int u = std::max(x - kNear, 0);
+                         u <= std::min(x + kNear, cells.width() - 1); ++u)
+                        cells.insert(u, v);
+            }
+        return cells;
     }
 
     /// With a rim for what is given back.
@@ -201,13 +230,13 @@ class CellMapImport {
 
     /// The floor under walls that were added, and a cell beyond, so that they are the border.
     void giveBack(RoomCells& room) const {
-        const auto isFree = [&](int x, int y) {
+        const auto is_free = [&](int x, int y) {
             return map_.free.contains(x + room.offset.x, y + room.offset.y);
         };
         std::vector<CellPlace> under;
         for (int y = 1; y + 1 < room.floor.height(); ++y)
             for (int x = 1; x + 1 < room.floor.width(); ++x) {
-                if (!barrier_->contains(x + room.offset.x, y + room.offset.y) || !isFree(x, y))
+                if (!barrier_->contains(x + room.offset.x, y + room.offset.y) || !is_free(x, y))
                     continue;
                 bool touches = false;
                 for (int v = y - 1; v <= y + 1; ++v)
@@ -218,7 +247,7 @@ class CellMapImport {
         for (const CellPlace at : under)
             for (int v = at.y - 1; v <= at.y + 1; ++v)
                 for (int u = at.x - 1; u <= at.x + 1; ++u)
-                    if (isFree(u, v)) room.floor.insert(u, v);
+                    if (is_free(u, v)) room.floor.insert(u, v);
         // Cells that touch by a corner alone are no part of it.
         const CellPieces pieces(room.floor, CellPieces::Joined::BySides);
         const auto& list = pieces.list();
@@ -229,8 +258,9 @@ class CellMapImport {
     }
 
     /// \param tolerance in cells
-    void write(const RoomCells& room, double tolerance, const std::vector<Choice>& choices) {
-        Region region = vectorised(room.floor, tolerance);
+    void write(const RoomCells& room, double tolerance, const std::optional<MapCells>& rigid,
+               const std::vector<Choice>& choices) {
+        Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
         const CellPlace widest = widestPlace(room.floor);
         const Point2 middle{widest.x + 0.5, widest.y + 0.5};
         // Where simplification took the widest place away, another point of the room.
@@ -242,7 +272,7 @@ class CellMapImport {
         for (Point2& corner : region.outline) corner = moved(corner);
         for (Polygon& hole : region.holes)
             for (Point2& corner : hole) corner = moved(corner);
-        warnOfExtent(region.outline);
+        for (const Point2 corner : region.outline) extent_.add(corner);
         out_.outline(region);
         writeInside(region, moved(within), choices);
     }
@@ -263,14 +293,11 @@ class CellMapImport {
         if (any_option && !any_inside) out_.inside(within);
     }
 
-    void warnOfExtent(const Polygon& outline) {
-        const auto by_x = [](Point2 a, Point2 b) { return a.x < b.x; };
-        const auto by_y = [](Point2 a, Point2 b) { return a.y < b.y; };
-        const auto [left, right] = std::minmax_element(outline.begin(), outline.end(), by_x);
-        const auto [low, high] = std::minmax_element(outline.begin(), outline.end(), by_y);
-        const double width = right->x - left->x, height = high->y - low->y;
-        const double extent = std::max(width, height);
-        if (extent >= kSmallRoom && extent <= kLargeRoom) return;
+    void warnOfExtent() {
+        const double width = extent_.width();
+        const double height = extent_.depth();
+        const double larger = std::max(width, height);
+        if (larger >= kSmallRoom && larger <= kLargeRoom) return;
         out_.warn("the room is " + formatFixed(width, 2) + " m x " + formatFixed(height, 2) +
                   " m; is the resolution of " + formatDouble(map_.resolution) + " m a cell meant?");
     }
@@ -282,6 +309,7 @@ class CellMapImport {
     MapCells floor_;                   ///< free cells without barriers
     std::optional<MapCells> barrier_;  ///< under walls that were added
     std::vector<Choice> choices_;
+    Box2 extent_;  ///< of the rooms written
 };
 
 }  // namespace

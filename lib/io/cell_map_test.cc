@@ -229,6 +229,24 @@ TEST(CellMap, OpenDoorToTheYardIsWarnedOfAndClosedByAFence) {
     EXPECT_EQ((Region{outline, {}}.locate({3.5, 1.98})), Side::Inside);
 }
 
+TEST(CellMap, FenceReachesTheWallsWhereItWasDrawnTo) {
+    // Between the jambs of a door, drawn to their corners, on a map that simplification moves.
+    for (const double simplify : {0.0, 0.05, 0.1, 0.2}) {
+        ImportOptions options;
+        options.simplify = simplify;
+        options.known_walls = {{{3, 1.95}, {4, 1.95}}};
+        const Imported house = import(openHouse().map(), options);
+        ASSERT_EQ(house.fences.size(), 1U);
+        const Region region{house.fences[0], {}};
+        // The floor goes on behind the fence and nowhere beside it.
+        EXPECT_EQ(region.locate({3.5, 1.93}), Side::Inside);
+        EXPECT_EQ(region.locate({2.99, 1.95}), Side::Outside);
+        EXPECT_EQ(region.locate({4.01, 1.95}), Side::Outside);
+        EXPECT_NE(region.locate({3, 1.95}), Side::Inside);
+        EXPECT_NE(region.locate({4, 1.95}), Side::Inside);
+    }
+}
+
 TEST(CellMap, GapsToTheYardCloseAndInnerDoorsStay) {
     ImportOptions options;
     options.close_gaps = 1.2;
@@ -293,6 +311,12 @@ TEST(CellMap, SizesOfNoBuildingAreSaid) {
     large.unknown();
     large.room(1, 1, 9, 9);
     EXPECT_TRUE(import(large.map()).warnings.empty());
+    // Of several rooms it is all that counts.
+    large.room(11, 1, 12.2, 2.2);
+    ImportOptions all;
+    all.rooms = RoomChoice::All;
+    EXPECT_EQ(import(large.map(), all).fences.size(), 2U);
+    EXPECT_TRUE(import(large.map(), all).warnings.empty());
     large.map().resolution = 20;
     EXPECT_TRUE(import(large.map()).warns("the room is 3200.00 m x 3200.00 m"));
 }

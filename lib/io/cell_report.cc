@@ -119,7 +119,9 @@ void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<st
     const bool is_chosen = !options.inside.empty() || !options.known_inside.empty();
     if (is_chosen || !largest || 2 * kept >= indoor) {
         out.note(countText(all - kept, "free cell") +
-                 " apart from the room dropped; the room has " + std::to_string(kept));
+                 (rooms.size() == 1 ? " apart from the room dropped; the room has "
+                                    : " apart from the rooms dropped; the rooms have ") +
+                 std::to_string(kept));
         return;
     }
     const Point2 place = map.middleOf(widestPlace(pieces.cellsOf(*largest)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/outline.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <iterator>
@@ -71,8 +72,16 @@ Polygon cornersOf(const Polygon& curve) {
     return corners;
 }
 
+/// True for the corners of rigid cells.
+bool isRigid(Point2 corner, const MapCells* rigid) {
+    if (rigid == nullptr) return false;
+    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+    return rigid->contains(x, y) || rigid->contains(x - 1, y) || rigid->contains(x, y - 1) ||
+           rigid->contains(x - 1, y - 1);
+}
+
 /// One curve of withoutStairs.
-Polygon withoutStairs(const Polygon& curve) {
+Polygon withoutStairs(const Polygon& curve, const MapCells* rigid) {
     const std::size_t n = curve.size();
     std::vector<double> run(n);  // length of edge i, from vertex i to the next
     std::vector<Turn> turn(n);   // at vertex i
@@ -86,7 +95,8 @@ Polygon withoutStairs(const Polygon& curve) {
     const auto is_stair = [&](std::size_t i) { return turn[i] != turn[(i + 1) % n]; };
     const auto is_step = [&](std::size_t i) {
         return run[i] == 1 && is_stair(i) && run[(i + n - 1) % n] < kLongRun &&
-               run[(i + 1) % n] < kLongRun;
+               run[(i + 1) % n] < kLongRun && !isRigid(curve[i], rigid) &&
+               !isRigid(curve[(i + 1) % n], rigid);
     };
     const auto yields = [&](std::size_t i) { return is_stair(i) || run[i] < kFace; };
     Polygon smooth;
@@ -111,20 +121,24 @@ std::vector<Polygon> boundaryCurves(const MapCells& cells) {
     return curves;
 }
 
-std::vector<Polygon> withoutStairs(const std::vector<Polygon>& curves) {
+std::vector<Polygon> withoutStairs(const std::vector<Polygon>& curves, const MapCells* rigid) {
     std::vector<Polygon> smooth;
     smooth.reserve(curves.size());
-    for (const Polygon& curve : curves) smooth.push_back(withoutStairs(curve));
+    for (const Polygon& curve : curves) smooth.push_back(withoutStairs(curve, rigid));
     return smooth;
 }
 
-Region vectorised(const MapCells& cells, double tolerance) {
+Region vectorised(const MapCells& cells, double tolerance, const MapCells* rigid) {
     std::vector<Polygon> curves = boundaryCurves(cells);
+    std::vector<Point2> kept;
+    for (const Polygon& curve : curves)
+        std::copy_if(curve.begin(), curve.end(), std::back_inserter(kept),
+                     [rigid](Point2 corner) { return isRigid(corner, rigid); });
     if (tolerance >= kStairTolerance) {
-        curves = withoutStairs(curves);
+        curves = withoutStairs(curves, rigid);
         tolerance -= kStairTolerance;
     }
-    if (tolerance > 0) curves = simplified(curves, tolerance);
+    if (tolerance > 0) curves = simplified(curves, tolerance, std::move(kept));
     Region region;
     region.outline = std::move(curves.front());
     region.holes.assign(std::make_move_iterator(curves.begin() + 1),

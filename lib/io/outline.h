@@ -21,11 +21,14 @@ std::vector<Polygon> boundaryCurves(const MapCells& cells);
 /// corners of faces that are no bump of a few cells stay, and so do steps beside runs long enough
 /// to be a wall of their own.
 /// \param curves as of boundaryCurves
-std::vector<Polygon> withoutStairs(const std::vector<Polygon>& curves);
+/// \param rigid cells whose corners keep their places; null: none
+std::vector<Polygon> withoutStairs(const std::vector<Polygon>& curves,
+                                   const MapCells* rigid = nullptr);
 
 /// The region that a 4-connected set of cells stands for, in cells, no edge further than
 /// `tolerance` cells from the cell edges; 0 gives the cell edges themselves. From half a cell on
 /// stairs go first. No hole is lost. \pre not empty
-Region vectorised(const MapCells& cells, double tolerance);
+/// \param rigid cells, set or not, whose corners keep their places; null: none
+Region vectorised(const MapCells& cells, double tolerance, const MapCells* rigid = nullptr);
 
 }  // namespace ispace

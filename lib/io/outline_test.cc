@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -228,6 +229,26 @@ TEST(Vectorised, KeepsAPillarOfOneCell) {
     EXPECT_EQ(region.area(), 80);
     ASSERT_EQ(region.holes.size(), 1U);
     EXPECT_EQ(region.holes[0].size(), 4U);
+}
+
+TEST(Vectorised, RigidCellsKeepTheirCorners) {
+    // A wall of a slope, and steps in it.
+    MapCells cells(40, 12);
+    for (int x = 0; x < 40; ++x)
+        for (int y = 0; y < 4 + x / 8; ++y) cells.insert(x, y);
+    const Region free = vectorised(cells, 2);
+    MapCells rigid(40, 12);
+    rigid.insert(16, 6);
+    const Region held = vectorised(cells, 2, &rigid);
+    const auto has = [](const Region& region, Point2 corner) {
+        return std::find(region.outline.begin(), region.outline.end(), corner) !=
+               region.outline.end();
+    };
+    for (const Point2 corner : {Point2{16, 5}, Point2{16, 6}}) {
+        EXPECT_TRUE(has(vectorised(cells, 0), corner));
+        EXPECT_EQ(has(held, corner), corner.y == 6);
+        EXPECT_FALSE(has(free, corner));
+    }
 }
 
 }  // namespace
