@@ -132,6 +132,15 @@ TEST(LikeliestRoom, SpecksAreNoRooms) {
     rows[12] = rows[10];
     const CellPieces pieces(cellsOf(rows), kSides);
     EXPECT_EQ(likeliestRoom(pieces, 0.1), 0U);
+    // Whatever the scale, a room that is not small against its yard is one.
+    EXPECT_EQ(likeliestRoom(CellPieces(cellsOf({".....",  //
+                                                ".###.",  //
+                                                ".#.#.",  //
+                                                ".###.",  //
+                                                "....."}),
+                                       kSides),
+                            0.01),
+              1U);
     EXPECT_FALSE(likeliestRoom(CellPieces(cellsOf({"#"}), kSides), 1));
     EXPECT_EQ(likeliestRoom(CellPieces(cellsOf({"#.#"}), kSides), 0.1), 0U);
 }

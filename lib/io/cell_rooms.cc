@@ -9,23 +9,24 @@ namespace ispace {
 
 namespace {
 
-constexpr double kLeastRoom = 1;         ///< m2
-constexpr double kLeastRoomWidth = 0.5;  ///< metres
+constexpr double kLeastRoom = 1;          ///< m2
+constexpr double kLeastRoomWidth = 0.5;   ///< metres
+constexpr double kLeastShare = 1.0 / 16;  ///< of the largest piece
 constexpr double kBorderWeight = 1.0 / 8;
 
 }  // namespace
 
 std::optional<std::size_t> likeliestRoom(const CellPieces& pieces, double resolution) {
-    const double least = kLeastRoom / (resolution * resolution);
-    const bool any_room = std::any_of(
-        pieces.list().begin(), pieces.list().end(),
-        [least](const CellPiece& piece) { return static_cast<double>(piece.cells) >= least; });
+    std::size_t largest = 0;
+    for (const CellPiece& piece : pieces.list()) largest = std::max(largest, piece.cells);
+    const double least = std::min(kLeastRoom / (resolution * resolution),
+                                  kLeastShare * static_cast<double>(largest));
     // By rank; of pieces without any, as a border all around, by size.
     std::optional<std::size_t> best;
     std::pair<double, std::size_t> best_rank;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const auto cells = static_cast<double>(pieces[i].cells);
-        if (any_room && cells < least) continue;
+        if (cells < least) continue;
         const double weight =
             pieces[i].border == 0 ? 1 : std::min(kBorderWeight, 1 - pieces.borderShare(i));
         const std::pair rank{weight * cells, pieces[i].cells};
