@@ -98,6 +98,17 @@ std::string formatFixed(double value, int decimals) {
     return text;
 }
 
+double tidy(double figure) {
+    constexpr int kDecimals = 11;  // behind the first digit
+    if (!std::isfinite(figure)) return figure;
+    std::array<char, kBuffer> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), figure,
+                                   std::chars_format::scientific, kDecimals)
+                         .ptr;
+    std::from_chars(buffer.data(), end, figure);
+    return figure;
+}
+
 std::string formatBytes(std::size_t bytes) {
     constexpr const char* kUnits[] = {" bytes", " kB", " MB", " GB", " TB"};
     auto number = static_cast<double>(bytes);

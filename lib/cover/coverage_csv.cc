@@ -15,9 +15,9 @@ std::string coverageCsv(const Coverage& coverage) {
         text += ',';
         text += std::to_string(cell / columns);
         text += ',';
-        appendDouble(text, center.x);
+        appendDouble(text, tidy(center.x));
         text += ',';
-        appendDouble(text, center.y);
+        appendDouble(text, tidy(center.y));
         text += target.indoor.test(cell) ? ",1" : ",0";
         text += target.free.test(cell) ? ",1," : ",0,";
         text += std::to_string(times[cell]);

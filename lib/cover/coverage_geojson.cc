@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/number.h"
 #include "cover/contour.h"
 #include "cover/coverage_files.h"
 #include "draw/feature_writer.h"
@@ -45,10 +46,12 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
 
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     FeatureWriter out;
-    out.json()
-        .key("coverage")
-        .value(coverage.report.coverage.exact ? coverage.report.coverage.exact
-                                              : coverage.report.coverage.grid);
+    const Figure& share = coverage.report.coverage;
+    out.json().key("coverage");
+    if (const auto known = share.exact ? share.exact : share.grid)
+        out.json().value(tidy(*known));
+    else
+        out.json().null();
     out.beginFeatures();
     out.begin("indoor", "indoor", "region");
     out.endAsArea(scene.environment.indoor().parts);
@@ -62,19 +65,21 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.begin("seen-" + std::to_string(k), "seen", "region")
             .key("sensors")
             .value(std::size_t{k});
-        out.json().key("area").value(totalArea(pieces));
+        out.json().key("area").value(tidy(totalArea(pieces)));
         out.endAsArea(pieces);
     }
     for (const SensorView& view : coverage.sensors) {
         out.begin(view.id, nameOf(view.kind), "placement");
-        out.json().key("heading").value(view.pose.heading.degrees());
+        out.json().key("heading").value(tidy(view.pose.heading.degrees()));
         out.endAsPoint(view.pose.position.onFloor());
         out.begin(view.id, "view", "region");
         out.endAsArea(viewOf(view, coverage.target.grid));
     }
     for (std::size_t i = 0; i < coverage.report.unseen.size(); ++i) {
         const UnseenSpot& spot = coverage.report.unseen[i];
-        out.begin("unseen-" + std::to_string(i + 1), "unseen", "spot").key("area").value(spot.area);
+        out.begin("unseen-" + std::to_string(i + 1), "unseen", "spot")
+            .key("area")
+            .value(tidy(spot.area));
         out.endAsPoint(spot.place);
     }
     return out.finish();

@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_writer.h"
+#include "base/number.h"
 #include "cover/coverage.h"
 
 namespace ispace {
 
 namespace {
 
+/// Null for what is not known.
+void write(JsonWriter& json, const char* key, const std::optional<double>& figure) {
+    json.key(key);
+    if (figure)
+        json.value(tidy(*figure));
+    else
+        json.null();
+}
+
+void write(JsonWriter& json, const char* key, std::vector<double> figures) {
+    for (double& figure : figures) figure = tidy(figure);
+    json.key(key).value(figures);
+}
+
 void write(JsonWriter& json, const char* key, const Figure& figure) {
     json.key(key).beginObject();
-    json.key("grid").value(figure.grid);
-    json.key("exact").value(figure.exact);
+    write(json, "grid", figure.grid);
+    write(json, "exact", figure.exact);
     json.endObject();
 }
 
@@ -21,9 +36,9 @@ void write(JsonWriter& json, const SensorFigures& sensor) {
         json.null();
     else
         json.value(sensor.model);
-    json.key("slice_area").value(sensor.slice_area);
-    json.key("exact_area").value(sensor.area.exact);
-    json.key("marginal_area").value(sensor.marginal.grid);
+    write(json, "slice_area", sensor.slice_area);
+    write(json, "exact_area", sensor.area.exact);
+    write(json, "marginal_area", sensor.marginal.grid);
     json.key("kind").value(nameOf(sensor.kind));
     write(json, "area", sensor.area);
     write(json, "marginal", sensor.marginal);
@@ -34,16 +49,16 @@ void write(JsonWriter& json, const SensorFigures& sensor) {
 void write(JsonWriter& json, const ZoneFigures& zone) {
     json.beginObject();
     json.key("id").value(zone.id);
-    json.key("area").value(zone.area);
+    write(json, "area", zone.area);
     write(json, "coverage", zone.coverage);
     json.endObject();
 }
 
 void write(JsonWriter& json, const UnseenSpot& spot) {
     json.beginObject();
-    json.key("x").value(spot.place.x);
-    json.key("y").value(spot.place.y);
-    json.key("area").value(spot.area);
+    write(json, "x", spot.place.x);
+    write(json, "y", spot.place.y);
+    write(json, "area", spot.area);
     json.endObject();
 }
 
@@ -71,24 +86,26 @@ std::string coverageJson(const CoverageReport& report) {
     json.beginObject();
     json.key("schema").value("ispace-coverage/1");
     json.key("digest").value(report.digest);
-    json.key("limits").value(
-        std::vector<double>{limits.low.x, limits.low.y, limits.high.x, limits.high.y});
+    write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
     json.key("grid").value(std::vector<int>{report.columns, report.rows});
     json.key("height").value(report.height);
     json.key("plane").value(report.plane);
-    json.key("indoor_area").value(report.indoor_area);
-    json.key("free_area").value(report.free_area);
+    write(json, "indoor_area", report.indoor_area);
+    write(json, "free_area", report.free_area);
     writeList(json, "sensors", report.sensors);
     write(json, "total_effective_area", report.total_effective_area);
     write(json, "overlap_area", report.overlap);
     write(json, "coverage", report.coverage);
     write(json, "free_coverage", report.free_coverage);
-    json.key("redundancy").value(report.redundancy);
-    json.key("redundancy_exact").value(report.redundancy_exact);
+    write(json, "redundancy", report.redundancy);
+    if (report.redundancy_exact)
+        write(json, "redundancy_exact", *report.redundancy_exact);
+    else
+        json.key("redundancy_exact").null();
     writeList(json, "zones", report.zones);
     json.key("pieces").beginObject();
     json.key("count").value(report.pieces);
-    json.key("largest_share").value(report.largest_piece);
+    write(json, "largest_share", report.largest_piece);
     json.endObject();
     writeList(json, "unseen", report.unseen);
     json.key("exact_missing");

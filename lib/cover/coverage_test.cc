@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cctype>
 #include <cmath>
 #include <numeric>
 
@@ -156,6 +157,20 @@ TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     EXPECT_EQ(low.indoor.count(), 2400U);
     EXPECT_EQ(low.free.count(), 1800U);
     EXPECT_EQ(makeTarget(scene.environment, 60, 40, 1.01).free.count(), 2400U);
+}
+
+TEST(CoverageJson, FiguresHaveNoDigitsThatRoundingMade) {
+    const Scene scene =
+        sceneOf("ispace size=6,4\nlaser id=l1 at=-1,0.3 range=3 fov=123\nlaser at=1.1,0 fov=77\n");
+    const std::string json = coverageJson(coverageOf(scene).report);
+    std::size_t digits = 0, most = 0;
+    for (const char c : json.substr(json.find("limits"))) {
+        const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+        if (is_digit && (digits > 0 || c != '0')) ++digits;
+        if (!is_digit && c != '.') digits = 0;
+        most = std::max(most, digits);
+    }
+    EXPECT_EQ(most, 12U) << json;
 }
 
 }  // namespace

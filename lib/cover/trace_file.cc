@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json_writer.h"
+#include "base/number.h"
 #include "base/utf8.h"
 #include "cover/json_line.h"
 
@@ -106,8 +107,8 @@ std::string writeTrace(const TraceFile& trace) {
              {pose.position.x, pose.position.y, pose.position.z, pose.heading.degrees(),
               pose.tilt.degrees(), pose.roll.degrees()})
             json.value(number);
-        json.endArray().key("value").value(tried.value);
-        if (tried.slice_area) json.key("slice_area").value(*tried.slice_area);
+        json.endArray().key("value").value(tidy(tried.value));
+        if (tried.slice_area) json.key("slice_area").value(tidy(*tried.slice_area));
         if (tried.is_chosen) json.key("chosen").value(true);
         json.endObject();
         text.append(json.text()).push_back('\n');

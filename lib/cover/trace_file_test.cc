@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "base/number.h"
 
 namespace ispace {
 namespace {
@@ -46,9 +47,9 @@ TEST(TraceFile, ReadsWhatItWrites) {
                                 Angle::degrees(any(random)),
                                 Angle::degrees(any(random)),
                                 Angle::degrees(any(random))},
-                               std::abs(any(random)) / 100,
+                               tidy(std::abs(any(random)) / 100),
                                i % 7 == 0,
-                               i % 3 == 0 ? std::optional(any(random)) : std::nullopt});
+                               i % 3 == 0 ? std::optional(tidy(any(random))) : std::nullopt});
     const TraceFile again = readTrace(writeTrace(trace), "t");
     EXPECT_EQ(again.history, trace.history);
     ASSERT_EQ(again.poses.size(), trace.poses.size());

@@ -14,15 +14,15 @@ namespace ispace {
 namespace {
 
 /// Places are whole nanometres: layouts are read by people, and what a sum leaves behind is noise.
-double tidy(double metres) {
+double onNanometres(double metres) {
     constexpr double kPerMetre = 1e9;
     return std::round(metres * kPerMetre) / kPerMetre;
 }
-Point2 tidy(Point2 place) { return {tidy(place.x), tidy(place.y)}; }
+Point2 onNanometres(Point2 place) { return {onNanometres(place.x), onNanometres(place.y)}; }
 
-std::vector<Site> tidy(std::vector<Site> sites) {
+std::vector<Site> onNanometres(std::vector<Site> sites) {
     for (Site& site : sites) {
-        site.place = tidy(site.place);
+        site.place = onNanometres(site.place);
         for (Angle& heading : site.headings) heading = wrapped(heading);
     }
     return sites;
@@ -38,7 +38,7 @@ std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<A
     std::vector<Site> sites;
     sites.reserve(places.size());
     for (const Point2 place : places) sites.push_back({place, headings});
-    return tidy(std::move(sites));
+    return onNanometres(std::move(sites));
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ struct CandidatePool::Data {
     [[nodiscard]] std::vector<double> heights() const {
         if (!options.mount.heights.empty()) return options.mount.heights;
         if (options.mount.on == MountOn::Ceiling)
-            return {tidy(environment.height() - kBelowCeiling)};
+            return {onNanometres(environment.height() - kBelowCeiling)};
         return {kScanHeight};
     }
 
@@ -119,13 +119,13 @@ struct CandidatePool::Data {
             case Strategy::Grid:
                 return sitesAt(gridPlaces(environment.limits(), gridFor(kind)), headings());
             case Strategy::Wall:
-                return tidy(wallSitesAt(height));
+                return onNanometres(wallSitesAt(height));
             case Strategy::Medial:
                 return sitesAt(medialPlaces(environment.freeFloor(height), density.lattice_step,
                                             environment.slice(height).sheets),
                                headings());
             case Strategy::List:
-                return tidy(options.list);
+                return onNanometres(options.list);
             case Strategy::Random:
                 return {};
             case Strategy::All:
@@ -144,7 +144,7 @@ struct CandidatePool::Data {
     [[nodiscard]] std::vector<Level> frameLevels() const {
         std::map<double, std::vector<Point2>> by_height;
         for (const Point3& place : framePlaces(environment, options.density.lattice_step))
-            by_height[tidy(place.z)].push_back(place.onFloor());
+            by_height[onNanometres(place.z)].push_back(place.onFloor());
         std::vector<Level> levels;
         levels.reserve(by_height.size());
         for (const auto& [height, places] : by_height)
@@ -248,7 +248,7 @@ struct CandidatePool::Data {
                     drawn.is_complete = false;
                     break;
                 }
-                const Point2 place = tidy(draw(k++));
+                const Point2 place = onNanometres(draw(k++));
                 if (!judge.isValid(place)) continue;
                 places.push_back(place);
                 ++drawn.places;

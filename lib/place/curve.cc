@@ -185,9 +185,9 @@ std::string curveCsv(const std::vector<CurvePoint>& points) {
     for (const CurvePoint& point : points) {
         text += std::to_string(point.sensors);
         text += ',';
-        appendDouble(text, point.value);
+        appendDouble(text, tidy(point.value));
         text += ',';
-        appendDouble(text, point.bound);
+        appendDouble(text, tidy(point.bound));
         text += '\n';
     }
     return text;

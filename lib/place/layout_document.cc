@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/number.h"
 #include "layout/schemas.h"
 
 namespace ispace {
@@ -11,10 +12,10 @@ namespace {
 
 Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     Record result(*sceneSchemas().find("result"));
-    result.set("coverage", Value(arrangement.coverage));
-    result.set("area", Value(arrangement.area));
-    if (arrangement.value) result.set("value", Value(*arrangement.value));
-    result.set("bound", Value(arrangement.bound));
+    result.set("coverage", Value(tidy(arrangement.coverage)));
+    result.set("area", Value(tidy(arrangement.area)));
+    if (arrangement.value) result.set("value", Value(tidy(*arrangement.value)));
+    result.set("bound", Value(tidy(arrangement.bound)));
     result.set("strategy", Value(parts.strategy));
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
