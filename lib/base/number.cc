@@ -98,12 +98,11 @@ std::string formatFixed(double value, int decimals) {
     return text;
 }
 
-double tidy(double figure) {
-    constexpr int kDecimals = 11;  // behind the first digit
+double tidy(double figure, int digits) {
     if (!std::isfinite(figure)) return figure;
     std::array<char, kBuffer> buffer;
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), figure,
-                                   std::chars_format::scientific, kDecimals)
+                                   std::chars_format::scientific, digits - 1)
                          .ptr;
     std::from_chars(buffer.data(), end, figure);
     return figure;

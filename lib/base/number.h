@@ -34,11 +34,11 @@ void appendFloat(std::string& out, float value);
 /// Fixed number of decimals; a result of minus zero is written without sign.
 std::string formatFixed(double value, int decimals);
 
-/// A computed figure as reports write it: the nearest number of 12 significant digits. Sums of
+/// A computed figure as reports write it: the nearest number of so many significant digits. Sums of
 /// areas and shares carry some 1e-15 of themselves as rounding, which would show as digits that
 /// mean nothing: 16.819200000000002 is 16.8192. Never changes the order of two figures, and what is
 /// no finite number stays what it is.
-double tidy(double figure);
+double tidy(double figure, int digits = 12);
 
 /// A size of memory for people, by powers of 1024: "812 bytes", "19.5 MB", "8 GB".
 std::string formatBytes(std::size_t bytes);

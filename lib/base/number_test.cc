@@ -167,6 +167,8 @@ TEST(Tidy, LeavesOutDigitsThatRoundingMade) {
     EXPECT_EQ(tidy(0.1 + 0.2), 0.3);
     EXPECT_EQ(tidy(-1e-7 / 3), -3.33333333333e-8);
     EXPECT_EQ(tidy(0), 0);
+    EXPECT_EQ(tidy(0.5695, 3), 0.57);
+    EXPECT_EQ(tidy(1234.5, 1), 1000);
     EXPECT_EQ(tidy(123456789012.0), 123456789012.0);
     EXPECT_EQ(tidy(1.0 / 3), 0.333333333333);
     EXPECT_EQ(tidy(std::numeric_limits<double>::max()), 1.79769313486e308);

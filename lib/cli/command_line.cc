@@ -84,6 +84,7 @@ struct CommandLine::Data {
     std::vector<std::string> unused_operands;
     std::vector<std::string>* operands = &unused_operands;
     std::size_t most_operands = 0;
+    std::map<std::string, std::string> renamed;  // options that there are not: hints
     std::function<void()> check = [] {};  // of options against each other, once all are known
 
     CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
@@ -95,6 +96,7 @@ struct CommandLine::Data {
         throw UsageError(message + " (see " + tool + " --help)");
     }
     void sortOut(const std::vector<std::string>& words);
+    [[nodiscard]] std::string hintFor(const std::string& unknown) const;
     /// Calls visit(entry, text) for the ordered options as they came.
     template <typename Visit>
     void forEachOrdered(Visit visit) const {
@@ -265,9 +267,21 @@ void CommandLine::choice(const std::string& names, std::string& variable,
     parsed(names, list, take, help, enters);
 }
 
+void CommandLine::renamed(const std::string& name, const std::string& hint) {
+    data_->renamed[name] = hint;
+}
+
 void CommandLine::operands(std::vector<std::string>& variable, std::size_t most) {
     data_->operands = &variable;
     data_->most_operands = most;
+}
+
+std::string CommandLine::Data::hintFor(const std::string& unknown) const {
+    if (const auto hint = renamed.find(unknown); hint != renamed.end()) return ": " + hint->second;
+    std::vector<std::string> known;
+    for (const Entry& entry : entries)
+        for (const std::string& name : entry.option->get_lnames()) known.push_back("--" + name);
+    return didYouMean(unknown, known);
 }
 
 void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
@@ -276,12 +290,7 @@ void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
         if (!options_ended && word == "--") {
             options_ended = true;
         } else if (!options_ended && word.size() > 1 && word.starts_with('-')) {
-            std::vector<std::string> known;
-            for (const Entry& entry : entries)
-                for (const std::string& name : entry.option->get_lnames())
-                    known.push_back("--" + name);
-            usage("unknown option " + shellQuote(word) +
-                  didYouMean(word.substr(0, word.find('=')), known));
+            usage("unknown option " + shellQuote(word) + hintFor(word.substr(0, word.find('='))));
         } else if (word.empty()) {
             usage("an operand is empty");
         } else {

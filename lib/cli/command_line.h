@@ -72,6 +72,8 @@ class CommandLine {
     /// One of a fixed set of words.
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
                 const std::string& help, Enters enters);
+    /// An option that there is not, though somebody may look for it: what to do instead.
+    void renamed(const std::string& name, const std::string& hint);
     /// The operands in order; at most `most`.
     void operands(std::vector<std::string>& variable, std::size_t most);
 

@@ -23,7 +23,7 @@ struct Tool {
     std::string strategy;
     std::optional<int> x;
     double height = 0.15;
-    int columns = 100, rows = 100;
+    CellWords cells;
     bool json = false;
     std::vector<std::string> edits;
 
@@ -33,7 +33,7 @@ struct Tool {
         line.choice("--strategy", strategy, {"grid", "wall"}, "how", Enters::History);
         line.count("-X", "N", x, 1, 100, "lines", Enters::History);
         line.meters("--height", height, 0, 10, "where", Enters::History);
-        addGridOption(line, "--grid", columns, rows, "cells");
+        addCellOptions(line, cells, "that count");
         for (const char* edit : {"--move", "--rotate"})
             line.ordered(
                 edit, "ID:BY",
@@ -67,8 +67,10 @@ TEST(CommandLine, OptionsAndOperandsInAnyOrder) {
     EXPECT_EQ(tool.words, (std::vector<std::string>{"a:2", "b"}));
     EXPECT_EQ(tool.x, 7);
     EXPECT_EQ(tool.height, 0.5);
-    EXPECT_EQ(tool.columns, 20);
-    EXPECT_EQ(tool.rows, 30);
+    const auto cells = tool.cells.choice();
+    ASSERT_TRUE(cells && std::holds_alternative<CellCount>(*cells));
+    EXPECT_EQ(std::get<CellCount>(*cells).columns, 20);
+    EXPECT_EQ(std::get<CellCount>(*cells).rows, 30);
     EXPECT_EQ(tool.common.output, "out.3dm");
     EXPECT_TRUE(tool.common.quiet);
     EXPECT_TRUE(tool.line.given("--output"));
@@ -126,6 +128,11 @@ TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
     EXPECT_NE(Tool().errorOf({"--height", "3deg"}), "");
     EXPECT_NE(Tool().errorOf({"--height", "-1"}), "");
     EXPECT_NE(Tool().errorOf({"--grid", "3,0"}), "");
+    // What was called so once, or is elsewhere.
+    for (const char* word : {"--reso", "--reso=100"})
+        EXPECT_NE(Tool().errorOf({word, "100"}).find("give cells as --grid P,Q or --cell M"),
+                  std::string::npos)
+            << Tool().errorOf({word, "100"});
     EXPECT_NE(Tool().errorOf({"--seed", "-1"}), "");
     EXPECT_NE(Tool().errorOf({"a", "b", "c"}).find("too many operands: c"), std::string::npos);
     EXPECT_NE(Tool().errorOf({""}), "");
@@ -142,9 +149,9 @@ TEST(CommandLine, HelpFitsEightyColumnsAndNamesEveryOption) {
     } catch (const TextRequested& request) {
         help = request.text;
     }
-    for (const char* name :
-         {"--help", "--version", "--sensor", "--strategy", "-X", "--height", "--grid", "--json",
-          "--output", "--quiet", "--verbose", "--threads", "--seed", "--progress", "--no-progress"})
+    for (const char* name : {"--help", "--version", "--sensor", "--strategy", "-X", "--height",
+                             "--grid", "--cell", "--json", "--output", "--quiet", "--verbose",
+                             "--threads", "--seed", "--progress", "--no-progress"})
         EXPECT_NE(help.find(name), std::string::npos) << name;
     std::size_t begin = 0;
     for (std::size_t end = help.find('\n'); end != std::string::npos;

@@ -100,9 +100,7 @@ std::string_view nameOf(ViewKind kind) {
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
     const Environment& environment = scene.environment;
     Coverage coverage;
-    coverage.target = options.cell
-                          ? makeTarget(environment, *options.cell, options.height)
-                          : makeTarget(environment, options.columns, options.rows, options.height);
+    coverage.target = makeTarget(environment, options.cells, options.height);
     const Grid& grid = coverage.target.grid;
     mustFit(scene, grid);
     coverage.sensors = viewsOf(scene, worlds, grid, options);
@@ -111,8 +109,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     CoverageReport& report = coverage.report;
     report.digest = scene.digest;
     report.limits = environment.limits();
-    report.columns = grid.columns;
-    report.rows = grid.rows;
+    report.grid = grid;
     report.height = options.height;
     report.plane = options.plane;
     report.indoor_area = environment.indoor().area();

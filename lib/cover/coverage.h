@@ -22,10 +22,9 @@ enum class CellRule {
 };
 
 struct CoverageOptions {
-    int columns = 100, rows = 100;    ///< over the limits; or:
-    std::optional<double> cell = {};  ///< edge of square cells, metres
-    double height = kScanHeight;      ///< at which free floor is judged
-    double plane = 0;                 ///< height of what rangers and ultrasound cover
+    CellChoice cells = RoomCells();
+    double height = kScanHeight;  ///< at which free floor is judged
+    double plane = 0;             ///< height of what rangers and ultrasound cover
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< closed forms beside the cells
 };
@@ -74,8 +73,8 @@ struct Comparison {
 /// The figures of DESIGN's `coverage --json`, and more.
 struct CoverageReport {
     std::string digest;
-    Box2 limits;
-    int columns = 0, rows = 0;
+    Box2 limits;  ///< of the room; square cells may reach beyond
+    Grid grid;
     double height = 0, plane = 0;
     double indoor_area = 0, free_area = 0;  ///< exact, m2
     std::vector<SensorFigures> sensors;     ///< lasers, rangers, receivers

@@ -306,7 +306,7 @@ TEST(GridOfBeams, CellsLieAmongTheEndsOfBeams) {
         const Scene scene = sceneOf("ispace size=12,12\n" + laser);
         Worlds worlds(scene.environment);
         return measureCoverage(scene, worlds,
-                               {.columns = 400, .rows = 400, .cells_by = CellRule::Beams})
+                               {.cells = CellCount{400, 400}, .cells_by = CellRule::Beams})
             .report;
     };
     // Five beams over half a turn: four triangles.

@@ -60,7 +60,7 @@ TEST(CoverageGeoJson, OutlinesCellsWhereRegionsAreNotKnown) {
 TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Scene scene = sceneOf(kHalfSeen);
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, {.cell = 0.05});
+    const Coverage coverage = measureCoverage(scene, worlds, {.cells = CellSize{0.05}});
     const CoverageRosMap map = coverageRosMap(coverage, 0.05, "plan.pgm");
     EXPECT_EQ(map.yaml,
               "image: \"plan.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-2, -2, 0]\n"
@@ -78,13 +78,45 @@ TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
 
 TEST(MakeTarget, SquareCellsMayReachBeyondTheLimits) {
     const Scene scene = sceneOf("ispace size=4,3");
-    const Target target = makeTarget(scene.environment, 0.7, kScanHeight);
+    const Target target = makeTarget(scene.environment, CellSize{0.7}, kScanHeight);
     EXPECT_EQ(target.grid.columns, 6);
     EXPECT_EQ(target.grid.rows, 5);
     EXPECT_NEAR(target.grid.cellArea(), 0.49, 1e-12);
     EXPECT_EQ(target.grid.limits.low, (Point2{-2, -1.5}));
-    EXPECT_EQ(makeTarget(scene.environment, 0.1, kScanHeight).grid.columns, 40);
-    EXPECT_EQ(makeTarget(scene.environment, 100, kScanHeight).grid.size(), 1U);
+    EXPECT_EQ(makeTarget(scene.environment, CellSize{0.1}, kScanHeight).grid.columns, 40);
+    EXPECT_EQ(makeTarget(scene.environment, CellSize{100}, kScanHeight).grid.size(), 1U);
+}
+
+/// The grid that follows a room of this size.
+Grid roomGrid(double width, double depth, int most = RoomCells().most) {
+    return gridOver({{-1, 2}, {-1 + width, 2 + depth}}, RoomCells{most});
+}
+
+double edgeOf(const Grid& grid) { return grid.limits.width() / grid.columns; }
+
+TEST(RoomCells, AreSquaresOfATenthOfAMetre) {
+    const Grid grid = roomGrid(30, 15);
+    EXPECT_EQ(grid.columns, 300);
+    EXPECT_EQ(grid.rows, 150);
+    EXPECT_EQ(cellsText(grid), "300 x 150 cells of 0.1 m");
+    EXPECT_EQ(roomGrid(10, 10).size(), 10'000U);
+}
+
+TEST(RoomCells, AreSmallerInSmallRoomsAndLargerInHugeBuildings) {
+    EXPECT_EQ(cellsText(roomGrid(8, 6)), "116 x 87 cells of 0.069 m");
+    EXPECT_EQ(cellsText(roomGrid(54, 56.95)), "416 x 439 cells of 0.13 m");
+    EXPECT_EQ(cellsText(roomGrid(54, 56.95, 40'000)), "193 x 204 cells of 0.28 m");
+    EXPECT_EQ(cellsText(roomGrid(30'000, 4'000)), "1200 x 160 cells of 25 m");
+    for (const double size : {1e-3, 0.02, 0.3, 1.0, 7.7, 44.7, 45.0, 300.0, 1e4, 1e6})
+        for (const double slender : {1.0, 3.7, 100.0, 1e4}) {
+            const Grid grid = roomGrid(size, size / slender);
+            EXPECT_NEAR(edgeOf(grid), grid.limits.depth() / grid.rows, 1e-9 * size);
+            EXPECT_LE(grid.size(), 200'000U) << size << " / " << slender;
+            EXPECT_TRUE(edgeOf(grid) <= 0.1 + 1e-9 || grid.size() > 150'000U)
+                << size << " / " << slender << ": " << cellsText(grid);
+            EXPECT_TRUE(grid.size() >= 10'000U || edgeOf(grid) <= 1.001e-4)
+                << size << " / " << slender << ": " << cellsText(grid);
+        }
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ std::string coverageJson(const CoverageReport& report) {
     json.key("schema").value("ispace-coverage/1");
     json.key("digest").value(report.digest);
     write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
-    json.key("grid").value(std::vector<int>{report.columns, report.rows});
+    json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
     json.key("height").value(report.height);
     json.key("plane").value(report.plane);
     write(json, "indoor_area", report.indoor_area);

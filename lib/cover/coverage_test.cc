@@ -53,7 +53,7 @@ TEST(Coverage, AreasAreExact) {
     EXPECT_NEAR(report.free_area, 23.5, 1e-12);
     EXPECT_EQ(report.height, kScanHeight);
     EXPECT_EQ(report.limits, (Box2{{-3, -2}, {3, 2}}));
-    EXPECT_EQ(report.columns, 100);
+    EXPECT_EQ(report.grid.columns, 100);
 }
 
 const char* const kOffice =
@@ -147,16 +147,16 @@ TEST(MakeTarget, RefusesGridsOfNoOrTooManyCells) {
     const Scene scene = sceneOf("ispace size=6,4");
     for (const auto& [columns, rows] : std::vector<std::pair<int, int>>{
              {0, 5}, {5, 0}, {-1, -1}, {kMostCells, 2}, {2, kMostCells}})
-        EXPECT_THROW(makeTarget(scene.environment, columns, rows, 0.15), UsageError)
+        EXPECT_THROW(makeTarget(scene.environment, CellCount{columns, rows}, 0.15), UsageError)
             << columns << ' ' << rows;
 }
 
 TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     const Scene scene = sceneOf("ispace size=6,4\ncube at=0,0 size=3,2,1\n");
-    const Target low = makeTarget(scene.environment, 60, 40, 0.15);
+    const Target low = makeTarget(scene.environment, CellCount{60, 40}, 0.15);
     EXPECT_EQ(low.indoor.count(), 2400U);
     EXPECT_EQ(low.free.count(), 1800U);
-    EXPECT_EQ(makeTarget(scene.environment, 60, 40, 1.01).free.count(), 2400U);
+    EXPECT_EQ(makeTarget(scene.environment, CellCount{60, 40}, 1.01).free.count(), 2400U);
 }
 
 TEST(CoverageJson, FiguresHaveNoDigitsThatRoundingMade) {

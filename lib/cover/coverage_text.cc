@@ -166,7 +166,7 @@ std::string coverageText(const CoverageReport& report) {
         {{"environment", printable(report.digest)},
          {"limits", "x " + metres(limits.low.x) + " to " + metres(limits.high.x) + " m, y " +
                         metres(limits.low.y) + " to " + metres(limits.high.y) + " m"},
-         {"grid", std::to_string(report.columns) + " x " + std::to_string(report.rows) + " cells"},
+         {"grid", cellsText(report.grid)},
          {"indoor area", area(report.indoor_area)},
          {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
         "l");

@@ -10,8 +10,7 @@ CoverageReport sampleReport() {
     CoverageReport report;
     report.digest = "sha256:0a";
     report.limits = {{-1, 0}, {3, 2.5}};
-    report.columns = 4;
-    report.rows = 5;
+    report.grid = {report.limits, 4, 5};
     report.height = 0.15;
     report.indoor_area = 10;
     report.free_area = 9.25;
@@ -74,7 +73,7 @@ TEST(CoverageJson, TellsOfAComparison) {
 TEST(CoverageText, IsAlignedWithUnitsAndPerCentSigns) {
     EXPECT_EQ(coverageText(sampleReport()), R"(environment  sha256:0a
 limits       x -1.00 to 3.00 m, y 0.00 to 2.50 m
-grid         4 x 5 cells
+grid         4 x 5 cells of 1 m x 0.5 m
 indoor area  10.00 m2
 free floor   9.25 m2 at 0.15 m
 

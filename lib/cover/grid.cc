@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/number.h"
 #include "cover/scanline.h"
 
 namespace ispace {
@@ -24,6 +25,14 @@ Point2 Grid::center(std::size_t cell) const {
 
 double Grid::cellArea() const {
     return limits.width() * limits.depth() / static_cast<double>(size());
+}
+
+std::string cellsText(const Grid& grid) {
+    constexpr int kDigits = 3;
+    const std::string x = formatDouble(tidy(grid.limits.width() / grid.columns, kDigits));
+    const std::string y = formatDouble(tidy(grid.limits.depth() / grid.rows, kDigits));
+    return std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells of " + x +
+           " m" + (x == y ? "" : " x " + y + " m");
 }
 
 std::size_t CellSet::count() const {

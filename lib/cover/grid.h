@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "env/slice.h"
@@ -34,6 +35,8 @@ struct Grid {
     [[nodiscard]] double cellArea() const;
     friend bool operator==(const Grid&, const Grid&) = default;
 };
+/// "57 x 50 cells of 0.1 m", "100 x 100 cells of 0.12 m x 0.1 m".
+std::string cellsText(const Grid& grid);
 
 /// A set of cells of one grid, 64 to a word.
 class CellSet {

@@ -62,7 +62,7 @@ LegendBlock figuresBlock(const CoverageReport& report, bool terse) {
              {},
              {},
              "Grid",
-             std::to_string(report.columns) + " × " + std::to_string(report.rows)});
+             std::to_string(report.grid.columns) + " × " + std::to_string(report.grid.rows)});
     return block;
 }
 

@@ -20,7 +20,7 @@ Environment room() {
 }
 
 TEST(Worth, IsOneIndoorsByDefault) {
-    const Target target = makeTarget(room(), 16, 12, kScanHeight);
+    const Target target = makeTarget(room(), CellCount{16, 12}, kScanHeight);
     EXPECT_TRUE(Worth().isUniform());
     const auto worths = worthOfCells(target, {});
     ASSERT_EQ(worths.size(), target.grid.size());
@@ -31,7 +31,7 @@ TEST(Worth, IsOneIndoorsByDefault) {
 TEST(Worth, GoesByTargetsAndTheLastWeight) {
     const Environment environment = room();
     const auto zone = [&environment](const char* text) { return readZone(text, environment); };
-    const Target target = makeTarget(environment, 37, 29, kScanHeight);
+    const Target target = makeTarget(environment, CellCount{37, 29}, kScanHeight);
     Worth worth;
     worth.targets = {zone("rect:-3,-2,1,2"), zone("poly:0,-3;4,-3;4,3")};
     worth.weights = {{zone("rect:-3,-2,0,0"), 2.5},
@@ -57,7 +57,8 @@ TEST(Worth, GoesByTargetsAndTheLastWeight) {
 
 TEST(Worth, OfCentresOnAnEdgeIsNotChanged) {
     const Environment environment = room();
-    const Target target = makeTarget(environment, 8, 6, kScanHeight);  // centres at halves
+    const Target target =
+        makeTarget(environment, CellCount{8, 6}, kScanHeight);  // centres at halves
     Worth worth;
     worth.weights = {{readZone("rect:-3.5,-2.5,-1.5,-0.5", environment), 7}};
     const auto worths = worthOfCells(target, worth);
@@ -68,7 +69,7 @@ TEST(Worth, OfCentresOnAnEdgeIsNotChanged) {
 
 TEST(Worth, OfATargetOutsideIsNothing) {
     const Environment environment = room();
-    const Target target = makeTarget(environment, 10, 10, kScanHeight);
+    const Target target = makeTarget(environment, CellCount{10, 10}, kScanHeight);
     Worth worth;
     worth.targets = {readZone("rect:10,10,12,12", environment)};
     for (const double one : worthOfCells(target, worth)) EXPECT_EQ(one, 0);

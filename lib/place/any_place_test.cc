@@ -27,7 +27,7 @@ std::size_t cellsSeenFrom(Point2 place, double heading, const Laser& laser, cons
     scene.lasers.push_back(
         {"l", laser, {{place.x, place.y, kScanHeight}, Angle::degrees(heading), {}, {}}});
     Worlds worlds(scene.environment);
-    const CoverageOptions options{.columns = grid.columns, .rows = grid.rows, .exact = false};
+    const CoverageOptions options{.cells = CellCount{grid.columns, grid.rows}, .exact = false};
     return measureCoverage(scene, worlds, options).sensors[0].cells.count();
 }
 

@@ -33,6 +33,10 @@ std::string_view nameOf(Optimizer optimizer) {
     return "exact";
 }
 
+bool isOfThesis(Strategy strategy) {
+    return strategy == Strategy::Grid || strategy == Strategy::Random || strategy == Strategy::Wall;
+}
+
 std::string_view nameOf(MountOn mount) {
     switch (mount) {
         case MountOn::Floor:
@@ -45,6 +49,13 @@ std::string_view nameOf(MountOn mount) {
             break;
     }
     return "ceiling";
+}
+
+CellChoice searchCells(const ArrangeOptions& options) {
+    constexpr int kMostSearched = 40'000;
+    if (options.cells) return *options.cells;
+    if (isOfThesis(options.strategy)) return CellCount{100, 100};
+    return RoomCells{kMostSearched};
 }
 
 }  // namespace ispace

@@ -29,6 +29,8 @@ constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimiz
 /// The words of the command line and of results.
 std::string_view nameOf(Strategy strategy);
 std::string_view nameOf(Optimizer optimizer);
+/// Ordinary Grid, Hierarchical Random, Along Wall.
+bool isOfThesis(Strategy strategy);
 
 /// What a sensor is fixed to.
 enum class MountOn { Floor, Wall, Frame, Ceiling };
@@ -77,9 +79,13 @@ struct ArrangeOptions {
     bool wants_curve = false, wants_trace = false;
 
     double plane = 0;                                ///< height of what rangers and receivers cover
-    int columns = 100, rows = 100;                   ///< cells over the limits while searching
+    std::optional<CellChoice> cells;                 ///< while searching; see searchCells()
     std::size_t most_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
     std::uint64_t seed = 0;
 };
+
+/// Cells while searching: those asked for; with the thesis' strategies its 100 x 100; else those of
+/// the room, in a large one fewer than a report has, so that a search stays quick.
+CellChoice searchCells(const ArrangeOptions& options);
 
 }  // namespace ispace

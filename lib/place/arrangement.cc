@@ -30,7 +30,7 @@ void mustFitInModel(const Problem& problem) {
     if (entries > kMostEntries)
         throw UsageError("--export-mps: the model has " + formatFixed(entries / 1e6, 0) +
                          " million entries, more than " + formatFixed(kMostEntries / 1e6, 0) +
-                         ": use fewer candidates (--candidates) or cells (--reso)");
+                         ": use fewer candidates (--candidates) or larger cells (--cell)");
 }
 
 void writeModel(const SceneProblem& model, std::ostream& mps) {
@@ -89,11 +89,12 @@ void measure(Arrangement& result, SceneProblem& model) {
     const ArrangeOptions& options = model.options();
     const CoverageOptions usual{.plane = options.plane, .exact = false};
     const Scene whole = withArranged(model.scene(), model.groups(), result.sensors);
-    const CoverageReport report = measureCoverage(whole, model.worlds(), usual).report;
+    const Coverage measured = measureCoverage(whole, model.worlds(), usual);
+    const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
     const bool is_coverage = options.worth.isUniform() && options.redundancy == 1 &&
-                             options.columns == usual.columns && options.rows == usual.rows;
+                             model.target().grid == measured.target.grid;
     if (!is_coverage) result.value = model.share(model.valueOf(model.coverageOf(result.sensors)));
 }
 
@@ -195,6 +196,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     result.is_complete = model.isComplete() && found.is_complete;
     result.candidates = model.candidates();
     result.bytes = model.bytes();
+    result.grid = model.target().grid;
     result.cost = tidyCost(costOf(problem, chosen));
     result.has_costs = std::any_of(problem.kinds.begin(), problem.kinds.end(),
                                    [](const Kind& kind) { return kind.cost != 1; });

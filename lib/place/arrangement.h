@@ -30,6 +30,7 @@ struct Arrangement {
     double bound = 1;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
+    Grid grid;                                        ///< the cells while searching
     bool is_complete = true;                          ///< false: cut by time or a signal
 
     /// Sensors that were to be placed and are not: there are fewer candidates, or none from which

@@ -29,6 +29,38 @@ TEST(Arrangement, ResultIsWhatCoverageMeasures) {
     }
 }
 
+TEST(Arrangement, ALargeRoomIsSearchedOnFewerCellsAndMeasuredAsEver) {
+    const Scene scene = roomScene("#env 1\nispace size=60,40\ncube at=3,2 size=7,5,2\n");
+    const auto groups = groupsOf(scene, {"laser,range=9:2"});
+    ArrangeOptions options = coarse();
+    options.density = {5, 5, 8};
+    const Arrangement large = arranged(scene, groups, options);
+    EXPECT_LE(large.grid.size(), 40'000U);
+    EXPECT_GT(large.grid.size(), 30'000U);
+    const CoverageReport report = reportOf(scene, groups, large);
+    EXPECT_GT(report.grid.size(), 150'000U);
+    EXPECT_EQ(report.coverage.grid, large.coverage);
+    ASSERT_TRUE(large.value);
+    EXPECT_DOUBLE_EQ(*large.value, large.candidate_value);
+    EXPECT_NEAR(*large.value, large.coverage, 0.005);
+    EXPECT_GE(large.bound, *large.value);
+}
+
+TEST(SearchCells, AreTheThesisWithItsStrategies) {
+    ArrangeOptions options;
+    for (const Strategy strategy : kStrategies) {
+        options.strategy = strategy;
+        options.cells.reset();
+        EXPECT_EQ(std::holds_alternative<CellCount>(searchCells(options)), isOfThesis(strategy));
+        options.cells = CellSize{0.5};
+        EXPECT_TRUE(std::holds_alternative<CellSize>(searchCells(options)));
+    }
+    options.strategy = Strategy::Wall;
+    options.cells.reset();
+    const Box2 limits{{0, 0}, {7, 3}};
+    EXPECT_EQ(gridOver(limits, searchCells(options)), (Grid{limits, 100, 100}));
+}
+
 TEST(Arrangement, SameForAnyNumberOfThreads) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser:2", "laser,range=3,fov=270:2"});

@@ -29,7 +29,7 @@ struct Pooled {
     Pooled(Scene made, const char* sensor, const ArrangeOptions& options)
         : scene(std::move(made)),
           worlds(scene.environment),
-          target(makeTarget(scene.environment, 50, 50, kScanHeight)),
+          target(makeTarget(scene.environment, CellCount{50, 50}, kScanHeight)),
           kinds(kindsOf(groupsOf(scene, {sensor}))) {
         CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
         target.indoor.forEach([&](std::size_t cell) { worth.left[cell] = 1; });
@@ -118,7 +118,7 @@ TEST(CandidatePool, FramesCarryWhatLooksDown) {
 CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     const Scene scene = roomScene();
     Worlds worlds(scene.environment);
-    const Target target = makeTarget(scene.environment, 50, 50, kScanHeight);
+    const Target target = makeTarget(scene.environment, CellCount{50, 50}, kScanHeight);
     ArrangeOptions options;
     options.strategy = Strategy::Random;
     options.first_places = count;
@@ -161,7 +161,7 @@ TEST(CandidatePool, NoRandomPlaceFoundSoFarIsNotThatThereIsNone) {
 /// All candidates of a laser in the room, on a lattice of 0.1 m and along walls, at these heights.
 CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Progress& progress) {
     Worlds worlds(scene.environment);
-    const Target target = makeTarget(scene.environment, 50, 50, kScanHeight);
+    const Target target = makeTarget(scene.environment, CellCount{50, 50}, kScanHeight);
     ArrangeOptions options;
     options.density = {0.1, 0.1, 2};
     options.mount.heights = std::move(heights);
@@ -285,7 +285,7 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     SilentProgress silent;
     const std::vector<Site> inside = validSites(SiteJudge(room, SiteRules()), everywhere, silent);
     Worlds worlds(room);
-    const Target target = makeTarget(room, 100, 100, kScanHeight);
+    const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;
     laser.max_range = 4;
     const CandidateViews views(room, worlds, target.grid, 0, laser,

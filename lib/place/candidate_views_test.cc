@@ -107,7 +107,7 @@ std::vector<Mounted> devices() {
 void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Site>& sites,
                 bool only_free, SliceSights* sights) {
     Worlds worlds(scene.environment);
-    const Target target = makeTarget(scene.environment, 40, 30, kScanHeight);
+    const Target target = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight);
     constexpr double kPlane = 0.1;
     const CandidateViews views(scene.environment, worlds, target.grid, kPlane, mounted.device,
                                mounted.mount, only_free ? &target.free : nullptr, sights);
@@ -131,7 +131,7 @@ void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Si
     }
     ASSERT_EQ(set.size(), count);
     const Coverage coverage = measureCoverage(
-        placed, worlds, {.columns = 40, .rows = 30, .plane = kPlane, .exact = false});
+        placed, worlds, {.cells = CellCount{40, 30}, .plane = kPlane, .exact = false});
     ASSERT_EQ(coverage.sensors.size(), count);
     std::size_t some = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -188,7 +188,7 @@ Laser fanOf(double range, double first, double span) {
 TEST(CandidateViews, HeadingsTooNearToBeTold) {
     Random random(32);
     const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
-    const Grid grid = makeTarget(scene.environment, 40, 30, kScanHeight).grid;
+    const Grid grid = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight).grid;
     for (int trial = 0; trial < 60; ++trial) {
         const double fov = std::vector<double>{0, 1, 90, 180, 270, 359, 102.8571429}[random() % 7];
         const double first = trial % 2 == 0 ? -fov / 2 : uniform(random, -180, 180);
@@ -235,7 +235,7 @@ TEST(CandidateViews, SevenFansThatMeetBetweenCells) {
 
 TEST(CandidateViews, FansThatRoundingsTear) {
     const Scene scene = sceneOf("ispace size=8,6\n");
-    const Grid grid = makeTarget(scene.environment, 40, 30, kScanHeight).grid;
+    const Grid grid = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight).grid;
     std::vector<Site> sites(6, {grid.center(grid.cell(30, 12)), {}});
     for (std::size_t i = 1; i < sites.size(); ++i)
         sites[i].place.y = std::nextafter(sites[i - 1].place.y, 9);

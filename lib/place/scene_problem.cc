@@ -25,8 +25,7 @@ std::vector<SensorDevice> devicesOf(const std::vector<SensorKind>& kinds) {
 }
 
 CoverageOptions searching(const ArrangeOptions& options) {
-    return {
-        .columns = options.columns, .rows = options.rows, .plane = options.plane, .exact = false};
+    return {.cells = searchCells(options), .plane = options.plane, .exact = false};
 }
 
 /// Why nothing counts. \pre all cells are worth 0
@@ -37,7 +36,7 @@ std::string nothingText(const Target& target, Worth worth) {
         std::any_of(unweighted.begin(), unweighted.end(), [](double cell) { return cell > 0; });
     return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
                      : "nothing to cover: no cell of the target lies indoors; use a larger zone or "
-                       "more cells (--reso)";
+                       "smaller cells (--cell)";
 }
 
 }  // namespace

@@ -121,6 +121,7 @@ std::vector<ThesisRow> thesisRows(const Scene& facilities, const Scene& tracking
     const auto with = [](Strategy strategy, Optimizer optimizer) {
         ArrangeOptions how;
         how.strategy = strategy;
+        how.cells = CellCount{100, 100};
         how.search.optimizer = optimizer;
         return how;
     };
@@ -191,6 +192,7 @@ std::vector<Plan> plans() {
 /// To within 1 % of the bound, or as near as it gets.
 Job jobOn(const Scene& scene, int sensors, int fov) {
     ArrangeOptions how;
+    how.cells = CellCount{100, 100};
     how.search.optimizer = Optimizer::Exact;
     how.search.gap = 0.01;
     return {&scene, "laser,range=4,fov=" + std::to_string(fov) + ":" + std::to_string(sensors),
@@ -220,7 +222,7 @@ void growing(benchmark::State& state, const Scene& scene, const CandidateDensity
              int cells) {
     Job job = jobOn(scene, 3, 180);
     job.how.density = density;
-    job.how.columns = job.how.rows = cells;
+    job.how.cells = CellCount{cells, cells};
     Result result = quickest(state, job);
     state.SetLabel(bench::leftCell(formatDouble(density.lattice_step) + "," +
                                        formatDouble(density.wall_step) + "," +

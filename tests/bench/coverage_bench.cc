@@ -59,7 +59,7 @@ Case makeCase(int columns, int rows, std::size_t sensors, const std::string& fol
 /// Cells and closed forms agree within the length of all boundaries times the size of a cell.
 void verify(const Case& test) {
     Worlds worlds(test.scene.environment);
-    const Coverage coverage = measureCoverage(test.scene, worlds, {.columns = 1000, .rows = 1000});
+    const Coverage coverage = measureCoverage(test.scene, worlds, {.cells = CellCount{1000, 1000}});
     double boundary = 0;
     for (const SensorView& view : coverage.sensors) boundary += perimeter(*view.region);
     const Grid& grid = coverage.target.grid;
@@ -86,13 +86,13 @@ void measure(benchmark::State& state, const Case& test, const std::string& folde
             benchmark::DoNotOptimize(measureCoverage(test.scene, worlds, options));
         });
     };
-    contest.add([&] { inside({.exact = false}); });
-    contest.add([&] { inside({}); });
+    contest.add([&] { inside({.cells = CellCount(), .exact = false}); });
+    contest.add([&] { inside({.cells = CellCount()}); });
     for (auto _ : state) {
-        one.keepQuicker(bench::runTool(words(test, {"-j", "1"}), "/dev/null"));
-        two.keepQuicker(bench::runTool(words(test, {"-j", "2"}), "/dev/null"));
-        drawn.keepQuicker(
-            bench::runTool(words(test, {"-j", "1", "-o", folder + "/map.png"}), "/dev/null"));
+        one.keepQuicker(bench::runTool(words(test, {"-j", "1", "--grid", "100"}), "/dev/null"));
+        two.keepQuicker(bench::runTool(words(test, {"-j", "2", "--grid", "100"}), "/dev/null"));
+        drawn.keepQuicker(bench::runTool(
+            words(test, {"-j", "1", "--grid", "100", "-o", folder + "/map.png"}), "/dev/null"));
         fine.keepQuicker(bench::runTool(words(test, {"-j", "1", "--grid", "1000"}), "/dev/null"));
         contest.round();
         state.SetIterationTime(one.wall);

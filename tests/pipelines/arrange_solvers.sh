@@ -38,9 +38,9 @@ assert abs(-cbc + met - ours * total) < 1e-3, (cbc, met, ours * total)
 END
 }
 
-check plain --sensor laser,range=2:2 --candidates 1,1,4 --reso 20,14
-check twice --sensor laser,range=3:2 --candidates 3,3,2 --redundancy 2 --reso 12,8
+check plain --sensor laser,range=2:2 --candidates 1,1,4 --grid 20,14
+check twice --sensor laser,range=3:2 --candidates 3,3,2 --redundancy 2 --grid 12,8
 check bought --sensor laser,range=2,cost=1 --sensor laser,range=3,fov=270,cost=2.5 --budget 4 \
-    --candidates 2,2,4 --reso 20,14
-check weighted --sensor laser,range=2:2 --candidates 1,1,4 --reso 20,14 \
+    --candidates 2,2,4 --grid 20,14
+check weighted --sensor laser,range=2:2 --candidates 1,1,4 --grid 20,14 \
     --weight corner=3 --zone rect:-3,-2,3,1

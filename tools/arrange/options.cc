@@ -221,7 +221,7 @@ void ArrangeCommand::addGoalOptions() {
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that rangers and ultrasound cover, 0 is the floor",
                  Enters::History);
-    addGridOption(line_, "--reso", how.columns, how.rows, "cells over the limits while searching");
+    addCellOptions(line_, words_.cells, "while searching");
 }
 
 void ArrangeCommand::addSearchOptions() {
@@ -268,6 +268,7 @@ void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     (void)outputFormat("", options_.common.output, {"3dm"});  // refuses another format's suffix
     settleStrategy();
+    how.cells = words_.cells.choice();
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     if (how.mount.on == MountOn::Frame &&
         (line_.given("--strategy") || line_.given("--effort") || line_.given("--z")))
@@ -322,8 +323,7 @@ void ArrangeCommand::settleStrategy() {
     only_with(Strategy::Wall, {"--times"});
     if (how.strategy == Strategy::List && options_.places_file.empty())
         throw UsageError("--strategy list: give the list with --places FILE");
-    const bool is_thesis = how.strategy == Strategy::Grid || how.strategy == Strategy::Random ||
-                           how.strategy == Strategy::Wall;
+    const bool is_thesis = isOfThesis(how.strategy);
     if (is_thesis && line_.given("--candidates"))
         throw UsageError(
             "--candidates is about --strategy all: the thesis' strategies have their "

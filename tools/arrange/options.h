@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/scene_options.h"
 #include "place/arrange_options.h"
 
 namespace ispace {
@@ -53,6 +54,7 @@ class ArrangeCommand {
     /// Words of options that become something else once all are known.
     struct Words {
         std::string effort, strategy, optimize, mount;
+        CellWords cells;
     };
     ArrangeToolOptions options_;
     Words words_;

@@ -22,7 +22,7 @@ std::string gapText(double value, double bound) {
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
     return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
            std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
-           std::to_string(how.columns) + " x " + std::to_string(how.rows) + " cells";
+           cellsText(arrangement.grid);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/history.h"
+#include "base/number.h"
 #include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
@@ -45,6 +46,16 @@ void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
     if (cameras > 0)
         warn(options, std::to_string(cameras) + (cameras == 1 ? " camera is" : " cameras are") +
                           " not measured");
+}
+
+/// Nobody asked for cells, and they are not as small as usual.
+void tellOfLargeCells(const CoverageToolOptions& options, const Grid& grid) {
+    const double edge = tidy(grid.limits.width() / grid.columns);
+    if (options.common.quiet || !std::holds_alternative<RoomCells>(options.measure.cells) ||
+        edge <= kRoomCell)
+        return;
+    std::cerr << "coverage: the room is large: cells are " << formatDouble(edge) << " m instead of "
+              << formatDouble(kRoomCell) << " m (--cell M makes them smaller)\n";
 }
 
 /// A layout may bring furniture, which is part of the comparison, but not another room.
@@ -85,7 +96,7 @@ void writeProduct(const CoverageToolOptions& options, const Scene& scene,
     } else if (options.format == "ros") {
         const std::string picture = withSuffix(output, ".pgm");
         const CoverageRosMap map =
-            coverageRosMap(measured.coverage, *options.measure.cell,
+            coverageRosMap(measured.coverage, std::get<CellSize>(options.measure.cells).edge,
                            std::filesystem::path(picture).filename().string());
         writeBoth(output, map.yaml, picture, map.pgm);
     } else {
@@ -124,6 +135,7 @@ void coverage(CoverageToolOptions options) {
     warnOfDoubts(options, input.scene);
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
+    tellOfLargeCells(options, report.grid);
     if (!options.format.empty()) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);

@@ -18,14 +18,12 @@ constexpr double kRosCell = 0.05;
 /// Words of options that become something else once they are read.
 struct Words {
     std::string to, cells_by, color, fans;
+    CellWords cells;
     std::vector<std::string> requirements;
 };
 
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
-    addGridOption(line, "--grid", measure.columns, measure.rows,
-                  "cells over the limits that figures count");
-    line.meters("--cell", measure.cell, 0.0001, 1000, "square cells of this size instead, e.g. 2cm",
-                Enters::History);
+    addCellOptions(line, words.cells, "that figures count");
     line.choice("--grid-of", words.cells_by, {"region", "beams"},
                 "a cell is seen if it lies in what a laser sees, or in the polygon of its beam "
                 "ends (default region)",
@@ -63,7 +61,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
             "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
     if (o.format == "ros" && line.given("--grid"))
         throw UsageError("a ROS map has square cells: give --cell instead of --grid");
-    if (o.format == "ros" && !o.measure.cell) o.measure.cell = kRosCell;
+    if (o.format == "ros" && !line.given("--cell")) o.measure.cells = CellSize{kRosCell};
     o.map.format = mapFormat(o.format);
     for (const char* option : {"--width", "--color", "--fans", "--trace"})
         if (line.given(option) && !isMap(o.format))
@@ -107,8 +105,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 
-    if (line.given("--grid") && line.given("--cell"))
-        throw UsageError("--grid and --cell both say how large cells are: give one of them");
+    if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
     if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
     if (words.color == "sensor") o.map.color = MapColor::Sensor;
     if (words.fans == "beams") o.map.fans = FanStyle::Beams;
