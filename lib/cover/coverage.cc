@@ -155,9 +155,9 @@ CellSet coveredCells(const Coverage& coverage) {
     return covered;
 }
 
-double coveredShare(const CellSet& covered, const CellSet& target) {
+std::optional<double> coveredShare(const CellSet& covered, const CellSet& target) {
     const std::size_t all = target.count();
-    if (all == 0) return 0;
+    if (all == 0) return std::nullopt;
     return static_cast<double>(countCommon(covered, target)) / static_cast<double>(all);
 }
 

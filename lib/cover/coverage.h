@@ -29,7 +29,8 @@ struct CoverageOptions {
     bool exact = true;  ///< closed forms beside the cells
 };
 
-/// A figure by cells and in closed form; one that is not computed is empty (null in JSON).
+/// A figure by cells and in closed form; one that is not known is empty (null in JSON), as a share
+/// by cells of what holds no centre of any.
 struct Figure {
     std::optional<double> grid, exact;
 };
@@ -50,7 +51,7 @@ struct SensorFigures {
 struct ZoneFigures {
     std::string id;
     double area = 0;       ///< of its indoor part, exact, m2
-    Figure coverage = {};  ///< of that part; 0 where there is none
+    Figure coverage = {};  ///< of that part; exact is 0 where there is none
 };
 
 /// A connected piece of floor that no sensor sees.
@@ -148,8 +149,9 @@ std::vector<std::uint32_t> timesSeen(const Coverage& coverage);
 /// Cells seen by any.
 CellSet coveredCells(const Coverage& coverage);
 
-/// Share of target cells that a union covers: eq. (4.7) on cells; 0 where the target is empty.
-double coveredShare(const CellSet& covered, const CellSet& target);
+/// Share of target cells that a union covers: eq. (4.7) on cells; nothing where the target has
+/// none.
+std::optional<double> coveredShare(const CellSet& covered, const CellSet& target);
 
 /// One JSON object and a newline, schema ispace-coverage/1.
 std::string coverageJson(const CoverageReport& report);

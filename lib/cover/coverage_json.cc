@@ -97,7 +97,10 @@ std::string coverageJson(const CoverageReport& report) {
     write(json, "overlap_area", report.overlap);
     write(json, "coverage", report.coverage);
     write(json, "free_coverage", report.free_coverage);
-    write(json, "redundancy", report.redundancy);
+    if (report.coverage.grid)
+        write(json, "redundancy", report.redundancy);
+    else
+        json.key("redundancy").null();
     if (report.redundancy_exact)
         write(json, "redundancy_exact", *report.redundancy_exact);
     else

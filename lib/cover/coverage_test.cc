@@ -132,6 +132,21 @@ TEST(Coverage, OneCellWillDo) {
     EXPECT_EQ(report.total_effective_area.grid, 24.0);
 }
 
+TEST(Coverage, WhatHoldsNoCentreOfACellIsNotKnownByCells) {
+    const Scene scene = sceneOf(
+        "ispace size=6,4\nzone id=gap at=0,0 size=0.02,0.03\nzone id=yard at=9,9 size=1,1\n"
+        "laser at=1,1 fov=360\n");
+    const CoverageReport report = coverageOf(scene, 60, 40).report;
+    EXPECT_FALSE(report.zones[0].coverage.grid);
+    EXPECT_NEAR(report.zones[0].coverage.exact.value_or(0), 1, 1e-6);
+    EXPECT_FALSE(report.zones[1].coverage.grid);
+    const std::string json = coverageJson(report);
+    EXPECT_NE(json.find(R"("coverage":{"grid":null,"exact":)"), std::string::npos) << json;
+    const std::string text = coverageText(report);
+    const std::string row = text.substr(text.find("zone gap"));
+    EXPECT_NE(row.substr(0, row.find('\n')).find(" -   100.00%"), std::string::npos) << text;
+}
+
 TEST(Coverage, NoIndoorCellIsNoShareAtAll) {
     // The only centre lies in the notch.
     const CoverageReport report =
@@ -139,8 +154,11 @@ TEST(Coverage, NoIndoorCellIsNoShareAtAll) {
                            "laser at=0.5,0.5 fov=360\n"),
                    1, 1)
             .report;
-    EXPECT_EQ(report.coverage.grid, 0.0);
-    EXPECT_EQ(report.redundancy, (std::vector<double>{0, 0}));
+    EXPECT_FALSE(report.coverage.grid);
+    EXPECT_FALSE(report.free_coverage.grid);
+    EXPECT_NE(coverageJson(report).find(R"("redundancy":null)"), std::string::npos);
+    EXPECT_NE(coverageText(report).find("seen by no sensor            -  "), std::string::npos)
+        << coverageText(report);
 }
 
 TEST(MakeTarget, RefusesGridsOfNoOrTooManyCells) {

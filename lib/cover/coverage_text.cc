@@ -78,10 +78,11 @@ void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
         --end;
     for (std::size_t k = 0; k < end; ++k) {
         const std::size_t last = k + 1 == kMostRows ? end - 1 : k;
-        Figure share{.grid = 0, .exact = {}};
+        Figure share;
+        if (report.coverage.grid) share.grid = 0;
         if (report.redundancy_exact) share.exact = 0;
         for (std::size_t i = k; i <= last; ++i) {
-            *share.grid += report.redundancy[i];
+            if (share.grid) *share.grid += report.redundancy[i];
             if (share.exact) *share.exact += exact(i);
         }
         rows.push_back(row(seenBy(k, last), share, percent));

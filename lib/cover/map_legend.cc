@@ -75,7 +75,8 @@ double shareOf(const std::vector<double>& shares, std::size_t first, std::size_t
 
 /// How much of the indoor floor is seen by first .. end - 1 sensors.
 Figure shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t end) {
-    Figure figure{shareOf(report.redundancy, first, end), {}};
+    Figure figure;
+    if (report.coverage.grid) figure.grid = shareOf(report.redundancy, first, end);
     if (report.redundancy_exact) figure.exact = shareOf(*report.redundancy_exact, first, end);
     return figure;
 }

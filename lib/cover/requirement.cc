@@ -21,7 +21,30 @@ double shareOfText(std::string_view text) {
 /// With all digits where two do not show that a share is below another.
 std::string percent(double share, double required) {
     const std::string text = formatFixed(100 * share, 2);
-    return text == formatFixed(100 * required, 2) ? formatPercent(share) : text + "%";
+    return text == formatFixed(100 * required, 2) ? formatPercent(tidy(share)) : text + "%";
+}
+
+/// What a requirement is about.
+struct Subject {
+    std::string what;
+    Figure share;
+    double area = 0;
+};
+
+Subject subjectOf(const Requirement& requirement, const CoverageReport& report) {
+    switch (requirement.of) {
+        case Requirement::Of::Free:
+            return {"free coverage", report.free_coverage, report.free_area};
+        case Requirement::Of::Zone: {
+            const ZoneFigures& zone = *std::find_if(
+                report.zones.begin(), report.zones.end(),
+                [&requirement](const ZoneFigures& one) { return one.id == requirement.zone; });
+            return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
+        }
+        case Requirement::Of::Indoor:
+            break;
+    }
+    return {"coverage", report.coverage, report.indoor_area};
 }
 
 /// With more digits where two would be 0.00.
@@ -52,30 +75,26 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
                      didYouMean(requirement.zone, known));
 }
 
-std::string shortfall(const Requirement& requirement, const CoverageReport& report) {
-    double share = report.coverage.grid.value_or(0), area = report.indoor_area;
-    std::string what = "coverage";
-    if (requirement.of == Requirement::Of::Free) {
-        share = report.free_coverage.grid.value_or(0);
-        area = report.free_area;
-        what = "free coverage";
-    } else if (requirement.of == Requirement::Of::Zone) {
-        const ZoneFigures& zone = *std::find_if(
-            report.zones.begin(), report.zones.end(),
-            [&requirement](const ZoneFigures& one) { return one.id == requirement.zone; });
-        share = zone.coverage.grid.value_or(0);
-        area = zone.area;
-        what = "coverage of zone " + printable(zone.id);
-    }
-    if (share >= requirement.share) return "";
-    what += " is " + percent(share, requirement.share) + ", below the required " +
-            formatPercent(requirement.share);
-    if (area <= 0) return what + ": it has no floor in the room";
-    what += ": " + squareMetres((requirement.share - share) * area) + " are missing";
-    if (requirement.of == Requirement::Of::Zone || report.unseen.empty()) return what;
+Verdict judge(const Requirement& requirement, const CoverageReport& report) {
+    constexpr double kExactError = 1e-7;
+    const auto [what, figure, area] = subjectOf(requirement, report);
+    if (!figure.exact && !figure.grid)
+        return {false, what +
+                           " is not known: no centre of a cell lies there, and exact figures are "
+                           "missing; use smaller cells (--cell)"};
+    const double share = figure.exact ? *figure.exact : *figure.grid;
+    std::string text = what + " is " + percent(share, requirement.share) +
+                       (figure.exact ? " (exact)" : " (by cells)");
+    const std::string required = formatPercent(requirement.share);
+    if (share >= requirement.share - (figure.exact ? kExactError : 0))
+        return {true, text + ", as required (" + required + ")"};
+    text += ", below the required " + required;
+    if (area <= 0) return {false, text + ": it has no floor in the room"};
+    text += ": " + squareMetres((requirement.share - share) * area) + " are missing";
+    if (requirement.of == Requirement::Of::Zone || report.unseen.empty()) return {false, text};
     const UnseenSpot& spot = report.unseen.front();
-    return what + "; the largest unseen spot has " + squareMetres(spot.area) + " around (" +
-           formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")";
+    return {false, text + "; the largest unseen spot has " + squareMetres(spot.area) + " around (" +
+                       formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")"};
 }
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 namespace ispace {
 
 /// What somebody asks of a layout: `95%` of the indoor region, `free:95%` of the free floor, or
-/// `zone:NAME=95%` of a zone. Figures by cells decide, as a layout's `result` has them.
+/// `zone:NAME=95%` of a zone.
 struct Requirement {
     enum class Of { Indoor, Free, Zone };
     Of of = Of::Indoor;
@@ -24,9 +24,17 @@ Requirement parseRequirement(std::string_view text);
 /// \throws UsageError if it is about a zone that the room does not have, with the nearest name
 void mustHaveZone(const Requirement& requirement, const Environment& environment);
 
-/// What is missing, as a sentence without end: "coverage is 50.00%, below the required 95%: 7.20 m2
-/// are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)"; "" if nothing is.
+/// Whether it is met, and a sentence without end that says by which figure: "coverage is 50.00%
+/// (exact), as required (40%)", or with what is missing: "coverage is 50.00% (by cells), below the
+/// required 95%: 7.20 m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".
+struct Verdict {
+    bool is_met = false;
+    std::string text;
+};
+
+/// The exact figure decides where it is known, else that by cells; a share of which neither is
+/// known is not met. An exact one may be short by what rounding takes, 1e-7.
 /// \pre mustHaveZone()
-std::string shortfall(const Requirement& requirement, const CoverageReport& report);
+Verdict judge(const Requirement& requirement, const CoverageReport& report);
 
 }  // namespace ispace

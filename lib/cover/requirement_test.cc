@@ -37,25 +37,66 @@ CoverageReport sampleReport() {
     return report;
 }
 
-std::string missing(const char* text) { return shortfall(parseRequirement(text), sampleReport()); }
-
-TEST(Shortfall, SaysWhatIsMissing) {
-    EXPECT_EQ(missing("50%"), "");
-    EXPECT_EQ(missing("60%"),
-              "coverage is 50.00%, below the required 60%: 2.00 m2 are missing; the largest unseen "
-              "spot has 3.50 m2 around (1.00, 2.00)");
-    EXPECT_EQ(missing("free:60%"), "");
-    EXPECT_EQ(missing("free:61%").substr(0, 40), "free coverage is 60.00%, below the requi");
-    EXPECT_EQ(missing("zone:door=100%"),
-              "coverage of zone door is 25.00%, below the required 100%: 1.50 m2 are missing");
-    EXPECT_EQ(missing("zone:yard=1%"),
-              "coverage of zone yard is 0.00%, below the required 1%: it has no floor in the room");
+Verdict verdict(const char* text, const CoverageReport& report = sampleReport()) {
+    return judge(parseRequirement(text), report);
+}
+std::string missing(const char* text) {
+    const Verdict judged = verdict(text);
+    return judged.is_met ? "" : judged.text;
 }
 
-TEST(Shortfall, ShowsDifferencesBelowTheSecondDecimal) {
+TEST(Judge, SaysWhatIsMissing) {
+    EXPECT_EQ(missing("50%"), "");
+    EXPECT_EQ(missing("60%"),
+              "coverage is 50.00% (by cells), below the required 60%: 2.00 m2 are missing; the "
+              "largest unseen spot has 3.50 m2 around (1.00, 2.00)");
+    EXPECT_EQ(missing("free:60%"), "");
+    EXPECT_EQ(missing("free:61%").substr(0, 51),
+              "free coverage is 60.00% (by cells), below the requi");
+    EXPECT_EQ(missing("zone:door=100%"),
+              "coverage of zone door is 25.00% (by cells), below the required 100%: 1.50 m2 are "
+              "missing");
+    EXPECT_EQ(missing("zone:yard=1%"),
+              "coverage of zone yard is 0.00% (exact), below the required 1%: it has no floor in "
+              "the room");
+}
+
+TEST(Judge, ShowsDifferencesBelowTheSecondDecimal) {
     CoverageReport report = sampleReport();
     report.coverage.grid = 0.949999;
-    EXPECT_EQ(shortfall(parseRequirement("95%"), report).substr(0, 20), "coverage is 94.9999%");
+    EXPECT_EQ(verdict("95%", report).text.substr(0, 20), "coverage is 94.9999%");
+}
+
+TEST(Judge, ExactFiguresDecideWhereTheyAreKnown) {
+    CoverageReport report = sampleReport();
+    report.coverage = {.grid = 0.1515, .exact = 0.1416};
+    EXPECT_FALSE(verdict("15%", report).is_met);
+    EXPECT_EQ(verdict("15%", report).text.substr(0, 30), "coverage is 14.16% (exact), be");
+    EXPECT_TRUE(verdict("14%", report).is_met);
+    EXPECT_EQ(verdict("14%", report).text, "coverage is 14.16% (exact), as required (14%)");
+    report.coverage = {.grid = 0.1416, .exact = 0.1515};
+    EXPECT_TRUE(verdict("15%", report).is_met);
+    report.coverage.exact.reset();
+    EXPECT_FALSE(verdict("15%", report).is_met);
+    // A zone that no cell is in; one of which nothing is known.
+    report.zones[0].coverage = {.grid = {}, .exact = 1};
+    EXPECT_TRUE(verdict("zone:door=100%", report).is_met);
+    report.zones[0].coverage = {};
+    EXPECT_FALSE(verdict("zone:door=0%", report).is_met);
+    EXPECT_EQ(verdict("zone:door=0%", report).text.substr(0, 37),
+              "coverage of zone door is not known: n");
+}
+
+TEST(Judge, WhatIsSeenWholeIsWhole) {
+    // Of an askew room exact areas are some 1e-9 off.
+    const Scene scene = sceneOf(
+        "fence path=0,0;7.1,2.3;4.9,8.2;-2.2,5.9 closed=yes\nlaser at=2.3,4.1 range=20 fov=360\n");
+    const CoverageReport report = coverageOf(scene).report;
+    ASSERT_TRUE(report.coverage.exact);
+    EXPECT_TRUE(verdict("100%", report).is_met) << *report.coverage.exact;
+    CoverageReport less = report;
+    less.coverage.exact = 1 - 1e-6;
+    EXPECT_FALSE(verdict("100%", less).is_met);
 }
 
 TEST(MustHaveZone, HintsAtTheZoneThatIsMeant) {

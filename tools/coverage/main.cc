@@ -108,8 +108,11 @@ void writeProduct(const CoverageToolOptions& options, const Scene& scene,
 void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
     std::string missing;
     for (const Requirement& requirement : options.requirements) {
-        const std::string text = shortfall(requirement, report);
-        if (!text.empty()) missing.append(missing.empty() ? "" : "; ").append(text);
+        const auto [is_met, text] = judge(requirement, report);
+        if (is_met)
+            talk(options.common, "coverage", text);
+        else
+            missing.append(missing.empty() ? "" : "; ").append(text);
     }
     if (!missing.empty()) throw UnmetError(missing);
 }

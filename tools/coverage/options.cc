@@ -80,8 +80,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
-               "exit with 3 if less is covered: 95% of the indoor floor, free:95%, zone:NAME=95%; "
-               "may be given several times",
+               "exit with 3 if less is covered, by exact figures where they are known: 95% of the "
+               "indoor floor, free:95%, zone:NAME=95%; may be given several times",
                Enters::History);
     line.text("--compare", "LAYOUT", o.other,
               "tell what is gained and lost beside this layout, in figures and on the map",
