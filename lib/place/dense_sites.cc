@@ -16,10 +16,12 @@ namespace ispace {
 
 namespace {
 
-void mustBeFew(double places, double step, const char* where) {
+/// `number` of --candidates is the step.
+void mustBeFew(double places, double step, const char* where, const char* number) {
     if (places <= kMostSites) return;
     throw UsageError("a step of " + formatDouble(step) + " m makes " + formatFixed(places, 0) +
-                     " places " + where + ": more than a million are too many, use a larger one");
+                     " places " + where + ": more than a million are too many, use a larger " +
+                     number + " in --candidates GRID,WALL,HEADINGS");
 }
 
 /// Lattice lines below `extent`, the first at half a step.
@@ -33,7 +35,7 @@ std::vector<Point2> latticePlaces(const Box2& limits, double step) {
     assert(step > 0);
     const double columns = linesBelow(limits.width(), step),
                  rows = linesBelow(limits.depth(), step);
-    mustBeFew(columns * rows, step, "of a lattice");
+    mustBeFew(columns * rows, step, "of a lattice", "GRID");
     std::vector<Point2> places;
     places.reserve(static_cast<std::size_t>(columns * rows));
     for (int row = 0; row < static_cast<int>(rows); ++row)
@@ -85,7 +87,7 @@ void addPlaces(const Polygon& curve, const Stretch& stretch, double step, double
                std::vector<Point2>& places) {
     if (!(stretch.length > 0)) return;
     const double count = placesOver(stretch.length, step);
-    mustBeFew(static_cast<double>(places.size()) + count, step, "along the walls");
+    mustBeFew(static_cast<double>(places.size()) + count, step, "along the walls", "WALL");
     std::size_t edge = stretch.first;
     double before = 0;  // length of the stretch up to the edge
     for (int i = 0; i < static_cast<int>(count); ++i) {

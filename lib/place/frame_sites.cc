@@ -35,7 +35,7 @@ std::vector<Point3> framePlaces(const Environment& environment, double step) {
             if (static_cast<double>(places.size()) + count > kMostSites)
                 throw UsageError("a step of " + formatDouble(step) +
                                  " m makes more than a million places under the frames: those are "
-                                 "too many, use a larger one");
+                                 "too many, use a larger GRID in --candidates GRID,WALL,HEADINGS");
             for (int i = 0; i < static_cast<int>(count); ++i) {
                 const Point2 place = a + ((i + 0.5) / count) * (b - a);
                 places.push_back({place.x, place.y, bar.bottom - kUnderBar});

@@ -41,7 +41,8 @@ std::vector<Kernel::Point_2> samplesOf(const std::vector<Polygon>& curves, Point
         wanted += perimeter(curve) / apart + static_cast<double>(curve.size());
     if (!(wanted <= kMostSamples))
         throw UsageError("a step of " + formatDouble(apart / kSampleShare) +
-                         " m is too small for a floor of this size: use a larger one");
+                         " m is too small for a floor of this size: use a larger GRID in "
+                         "--candidates GRID,WALL,HEADINGS");
     std::vector<Kernel::Point_2> samples;
     samples.reserve(static_cast<std::size_t>(wanted) + curves.size());
     for (const Polygon& curve : curves)

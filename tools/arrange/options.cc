@@ -56,6 +56,14 @@ double readShare(const std::string& text) {
     return *share;
 }
 
+/// A bare 1 is all to who thinks in fractions and a hundredth to who thinks in per cent.
+double readGap(const std::string& text) {
+    const double gap = readShare(text);
+    if (gap == 1 && !text.ends_with('%'))
+        throw UsageError('`' + text + "` could be 1% or all of it: write 1% or 0.01");
+    return gap;
+}
+
 /// "2G", "500M", "1.5 GB": bytes, by powers of 1024.
 std::size_t readBytes(const std::string& text) {
     const auto end = text.find_first_not_of("0123456789.");
@@ -234,7 +242,7 @@ void ArrangeCommand::addSearchOptions() {
     line_.count("--starts", "N", how.search.swap.starts, 0, kMostStarts, "random starts of swap",
                 Enters::History);
     line_.parsed(
-        "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readShare(text); },
+        "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readGap(text); },
         "end once value and bound are this near, e.g. 1%", Enters::History);
     line_.parsed(
         "--time-limit", "SECONDS",
