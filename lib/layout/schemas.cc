@@ -191,8 +191,10 @@ Schema resultSchema() {
                       "share of what counts (zones, weights, redundancy), where that is "
                       "not the coverage"),
                 share("bound",
-                      "no layout of the candidates has a greater value, or coverage where "
-                      "no value is written"),
+                      "no layout has a greater value, or coverage where no value is written: none "
+                      "of the candidates or, once sensors were refined, of any places"),
+                share("candidates_bound",
+                      "where sensors were refined: the same of the candidates, proven before"),
                 {.name = "strategy", .type = KeyType::Word, .help = "how places were proposed"},
                 {.name = "optimize", .type = KeyType::Word, .help = "how they were chosen"},
                 {.name = "candidates",

@@ -2,6 +2,7 @@
 // What an arrangement is to reach: zones, weights, redundancy, targets, budgets; and refining.
 #include <gtest/gtest.h>
 
+#include "base/number.h"
 #include "place/test_arrange.h"
 #include "place/test_progress.h"
 
@@ -156,6 +157,11 @@ TEST(ArrangeGoals, RefiningDoesNotLose) {
     const Arrangement before = arranged(scene, groups, plain);
     const Arrangement after = arranged(scene, groups, options);
     EXPECT_GT(after.refined_after, after.refined_before);
+    // Both bounds are kept.
+    const Record result = layoutDocument(partsOf(scene), nullptr, groups, after).records.back();
+    EXPECT_EQ(result.number("candidates_bound"), tidy(after.candidate_bound));
+    EXPECT_EQ(result.number("bound"), tidy(after.bound));
+    EXPECT_GE(after.bound, after.value.value_or(after.coverage));
     EXPECT_GE(after.coverage, before.coverage);
     EXPECT_EQ(after.candidate_bound, before.bound);
     EXPECT_GE(after.bound, after.coverage);

@@ -77,6 +77,7 @@ double boundOf(const SearchResult& result, const SceneProblem& model) {
 
 void refineIn(Arrangement& result, SceneProblem& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refineArranged(model, result.sensors, before, progress);
+    result.is_refined = true;
     result.refined_before = refined.before;
     result.refined_after = refined.after;
     result.is_complete = result.is_complete && !progress.stopped();

@@ -29,6 +29,7 @@ struct Arrangement {
     /// were moved off candidates, no such sensors at any places.
     double bound = 1;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
+    bool is_refined = false;                          ///< somebody asked for it
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     Grid grid;                                        ///< the cells while searching
     bool is_complete = true;                          ///< false: cut by time or a signal

@@ -16,6 +16,8 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     result.set("area", Value(tidy(arrangement.area)));
     if (arrangement.value) result.set("value", Value(tidy(*arrangement.value)));
     result.set("bound", Value(tidy(arrangement.bound)));
+    if (arrangement.is_refined)
+        result.set("candidates_bound", Value(tidy(arrangement.candidate_bound)));
     result.set("strategy", Value(parts.strategy));
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));

@@ -43,9 +43,11 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
     if (how.refine && arrangement.refined_after > arrangement.refined_before) {
         text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
                 formatFixed(arrangement.refined_after, 3) +
-                " m2 by exact area; bound over all places " + percent(arrangement.bound) + " (" +
-                gapText(arrangement.value.value_or(arrangement.coverage), arrangement.bound) +
-                ")\n";
+                " m2 by exact area, off the candidates; " +
+                (arrangement.bound < 1 ? "from any places at all at most " +
+                                             percent(arrangement.bound) + " can be covered"
+                                       : "for any places at all no bound below 100% is known") +
+                '\n';
     } else if (how.refine) {
         text += "arrange: refining found nothing better than " +
                 formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
