@@ -96,7 +96,9 @@ void measure(Arrangement& result, SceneProblem& model) {
     result.area = report.total_effective_area.grid.value_or(0);
     const bool is_coverage = options.worth.isUniform() && options.redundancy == 1 &&
                              model.target().grid == measured.target.grid;
-    if (!is_coverage) result.value = model.share(model.valueOf(model.coverageOf(result.sensors)));
+    const Coverage searched = model.coverageOf(result.sensors);
+    if (!is_coverage) result.value = model.share(model.valueOf(searched));
+    result.idle = model.idleIn(searched);
 }
 
 /// Worth of the first n of these sensors, each placed where it adds most of them: [n]. Where views
@@ -194,6 +196,10 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     SearchResult found = find(model, result, progress);
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
+    if (found.best.value > 0) {
+        model.spreadIdle(chosen);
+        found.best.value = ispace::valueOf(problem, chosen);
+    }
     result.is_complete = model.isComplete() && found.is_complete;
     result.candidates = model.candidates();
     result.bytes = model.bytes();

@@ -45,6 +45,9 @@ struct Arrangement {
     std::optional<double> least;
     bool is_exhausted = false;  ///< not reached, and all candidates together are worth no more
 
+    /// Ids of sensors that add nothing to what the others are worth, all of them together.
+    std::vector<std::string> idle;
+
     std::vector<CurvePoint> curve;
     std::vector<TriedPose> tried;
     /// Exact worth, m2; equal where refining found nothing better: then all stand on candidates.

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "place/any_place.h"
+#include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "place/scene_value.h"
 #include "place/whole_units.h"
@@ -161,6 +162,19 @@ std::uint64_t SceneProblem::valueOf(const Coverage& coverage) const {
 
 bool SceneProblem::isConnected(const Coverage& coverage) const {
     return ispace::isConnected(problem_, coverage, scene_);
+}
+
+std::vector<std::string> SceneProblem::idleIn(const Coverage& coverage) const {
+    return idleSensors(problem_, coverage, scene_, unit_);
+}
+
+void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
+    std::vector<Point3> standing;
+    for (const PlacedLaser& laser : scene_.lasers) standing.push_back(laser.pose.position);
+    for (const PlacedRanger& ranger : scene_.rangers) standing.push_back(ranger.pose.position);
+    for (const PlacedReceiver& receiver : scene_.receivers)
+        standing.push_back(receiver.pose.position);
+    ispace::spreadIdle(problem_, standing, chosen);
 }
 
 std::uint64_t SceneProblem::mostFromAnyPlace(const std::vector<int>& most) const {

@@ -61,6 +61,11 @@ class SceneProblem {
     [[nodiscard]] Coverage coverageOf(const std::vector<ArrangedSensor>& sensors);
     [[nodiscard]] std::uint64_t valueOf(const Coverage& coverage) const;
     [[nodiscard]] bool isConnected(const Coverage& coverage) const;
+    /// Ids of the arranged sensors that add nothing, see idleSensors().
+    [[nodiscard]] std::vector<std::string> idleIn(const Coverage& coverage) const;
+    /// Moves choices that add nothing apart. Not for what is worth nothing at all: those choices
+    /// may be some of the many that a demand takes.
+    void spreadIdle(std::vector<Choice>& chosen) const;
     /// No sensors of these numbers, at whatever places, are worth more; `most` by kind.
     [[nodiscard]] std::uint64_t mostFromAnyPlace(const std::vector<int>& most) const;
 

@@ -6,15 +6,11 @@
 
 namespace ispace {
 
-namespace {
-
 bool stands(const SensorView& view, const Scene& standing) {
     if (view.kind == ViewKind::Laser) return view.index < standing.lasers.size();
     if (view.kind == ViewKind::Ranger) return view.index < standing.rangers.size();
     return view.index < standing.receivers.size();
 }
-
-}  // namespace
 
 std::uint64_t valueOf(const Problem& problem, const Coverage& coverage, int unit) {
     std::vector<int> met(problem.cells());

@@ -9,6 +9,9 @@
 
 namespace ispace {
 
+/// True for a sensor of `standing` in a measured scene that has those first.
+bool stands(const SensorView& view, const Scene& standing);
+
 /// What a measured scene is worth to a problem whose cells it has: as valueOf() of its sensors.
 /// `unit`: the share of what is no receiver.
 std::uint64_t valueOf(const Problem& problem, const Coverage& coverage, int unit);

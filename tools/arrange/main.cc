@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/utf8.h"
 #include "cli/dependencies.h"
 #include "cli/file_stream.h"
 #include "cli/operands.h"
@@ -127,22 +128,41 @@ Numbers numbersOf(const Work& work) {
     return numbers;
 }
 
-/// Where nothing is covered there is a reason, which is worth a word.
-void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
-                   const Arrangement& arrangement) {
+/// Why nothing is covered; "" where something is.
+std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
     const auto [receivers, others] = numbersOf(work);
     const std::size_t together = others + receivers / kLeastReceivers;
     const auto times = static_cast<std::size_t>(work.how.redundancy);
     if (receivers > 0 && receivers < kLeastReceivers)
-        warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
-                          " receivers have to hear a tag, here are " + std::to_string(receivers));
-    else if (times > 1 && together < times)
-        warn(options, "nothing counts: floor has to be seen by " + std::to_string(times) +
-                          " sensors, and there are " + std::to_string(together));
-    else if (arrangement.coverage == 0 && !arrangement.sensors.empty())
-        warn(options,
-             "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
-             "`coverage` draws (-o map.png)");
+        return "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
+               " receivers have to hear a tag, here are " + std::to_string(receivers);
+    if (times > 1 && together < times)
+        return "nothing counts: floor has to be seen by " + std::to_string(times) +
+               " sensors, and there are " + std::to_string(together);
+    if (arrangement.coverage == 0 && !arrangement.sensors.empty())
+        return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
+               "`coverage` draws (-o map.png)";
+    return "";
+}
+
+/// The sensors that could as well be left out; "" if there are none.
+std::string idleText(const std::vector<std::string>& idle) {
+    constexpr std::size_t kMostNamed = 10;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(idle.size(), kMostNamed); ++i)
+        text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
+    if (idle.size() > kMostNamed)
+        text += " and " + std::to_string(idle.size() - kMostNamed) + " more";
+    if (idle.empty()) return "";
+    return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
+}
+
+/// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
+void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
+                   const Arrangement& arrangement) {
+    std::string text = reasonForNothing(work, arrangement);
+    if (text.empty()) text = idleText(arrangement.idle);
+    if (!text.empty()) warn(options, text);
 }
 
 void arrangeSensors(const ArrangeCommand& command) {

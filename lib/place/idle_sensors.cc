@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/idle_sensors.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "place/scene_value.h"
+
+namespace ispace {
+
+namespace {
+
+/// What one sensor sees, and its share of a cell's demand.
+struct CountedView {
+    CellSet cells;
+    int share = 1;
+};
+
+/// Shares that each cell has of the demand.
+using Met = std::vector<int>;
+
+void count(const CountedView& view, int times, Met& met) {
+    view.cells.forEach([&](std::size_t cell) { met[cell] += times * view.share; });
+}
+
+bool isNeeded(const Problem& problem, const CountedView& view, const Met& met) {
+    bool is_needed = false;
+    view.cells.forEach([&](std::size_t cell) {
+        is_needed = is_needed || (problem.weights[cell] > 0 && met[cell] >= problem.demand &&
+                                  met[cell] - view.share < problem.demand);
+    });
+    return is_needed;
+}
+
+/// The views without which the others are worth as much, ascending. `allows(left)`: whether these
+/// may be left alone; asked of what is not needed.
+std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const CountedView> views,
+                                   const std::function<bool(const std::vector<bool>&)>& allows) {
+    Met met(problem.met.begin(), problem.met.end());
+    met.resize(problem.cells());
+    for (const CountedView& view : views) count(view, 1, met);
+    std::vector<bool> left(views.size(), true);
+    std::vector<std::size_t> idle;
+    for (std::size_t i = views.size(); i-- > 0;) {
+        if (isNeeded(problem, views[i], met)) continue;
+        left[i] = false;
+        if (problem.is_connected && !allows(left)) {
+            left[i] = true;
+            continue;
+        }
+        count(views[i], -1, met);
+        idle.push_back(i);
+    }
+    std::reverse(idle.begin(), idle.end());
+    return idle;
+}
+
+CountedView viewOf(const Problem& problem, const Choice& choice) {
+    const Kind& kind = problem.kinds[choice.kind];
+    return {kind.candidates->cellsOf(choice.candidate), kind.share};
+}
+
+/// The sites of a kind, as places for sensors that add nothing.
+class SpareSites {
+  public:
+    SpareSites(const CandidateSet& candidates, std::span<const std::uint32_t> weights)
+        : candidates_(candidates),
+          distances_(candidates.sites(), std::numeric_limits<double>::infinity()),
+          sees_(candidates.sites()) {
+        std::vector<std::uint32_t> values(candidates.size());
+        candidates.priceAll(CellPrices(weights), values);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (values[i] > 0) sees_[candidates.siteOf(i)] = true;
+    }
+
+    /// A sensor stands there.
+    void occupy(Point3 place) {
+        for (std::size_t site = 0; site < distances_.size(); ++site) {
+            const Point3 own = candidates_.pose(candidates_.firstOf(site)).position;
+            distances_[site] = std::min(distances_[site], length(own - place));
+        }
+    }
+
+    /// The farthest from all sensors, the first among equals; nothing where each has one.
+    [[nodiscard]] std::optional<std::size_t> farthest() const {
+        std::optional<std::size_t> best;
+        for (std::size_t site = 0; site < distances_.size(); ++site)
+            if (distances_[site] > 0 && (!best || rank(site) > rank(*best))) best = site;
+        return best;
+    }
+
+    /// The candidate of a site that sees most at these prices.
+    [[nodiscard]] std::size_t bestAt(std::size_t site, const CellPrices& prices) const {
+        const std::size_t first = candidates_.firstOf(site);
+        std::vector<std::uint32_t> values(candidates_.firstOf(site + 1) - first);
+        candidates_.priceSite(site, prices, values);
+        return first + static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
+                                                values.begin());
+    }
+
+  private:
+    [[nodiscard]] std::pair<bool, double> rank(std::size_t site) const {
+        return {sees_[site], distances_[site]};
+    }
+
+    const CandidateSet& candidates_;
+    std::vector<double> distances_;
+    std::vector<bool> sees_;
+};
+
+/// Weights of the cells that few see: not even twice as many as they need.
+std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Met& met) {
+    std::vector<std::uint32_t> weights = problem.weights;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        if (met[i] >= 2 * problem.demand) weights[i] = 0;
+    return weights;
+}
+
+/// Where sensors stand, and what they see together.
+class Spread {
+  public:
+    Spread(const Problem& problem, std::span<const Point3> standing, std::span<const Choice> busy)
+        : problem_(problem), met_(problem.met.begin(), problem.met.end()) {
+        met_.resize(problem.cells());
+        sites_.reserve(problem.kinds.size());
+        for (const Kind& kind : problem.kinds)
+            sites_.emplace_back(*kind.candidates, problem.weights);
+        for (const Point3& place : standing) occupy(place);
+        for (const Choice& choice : busy) take(choice);
+    }
+
+    void take(const Choice& choice) {
+        count(viewOf(problem_, choice), 1, met_);
+        occupy(problem_.kinds[choice.kind].candidates->pose(choice.candidate).position);
+    }
+
+    /// A place for one more of this kind.
+    [[nodiscard]] std::optional<Choice> next(std::size_t kind) const {
+        const auto site = sites_[kind].farthest();
+        if (!site) return std::nullopt;
+        return Choice{kind, sites_[kind].bestAt(*site, CellPrices(weightsOfFew(problem_, met_)))};
+    }
+
+  private:
+    void occupy(Point3 place) {
+        for (SpareSites& sites : sites_) sites.occupy(place);
+    }
+
+    const Problem& problem_;
+    Met met_;
+    std::vector<SpareSites> sites_;  // by kind
+};
+
+}  // namespace
+
+std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Choice> chosen) {
+    std::vector<CountedView> views;
+    views.reserve(chosen.size());
+    for (const Choice& choice : chosen) views.push_back(viewOf(problem, choice));
+    return idleAmong(problem, views, [&](const std::vector<bool>& left) {
+        std::vector<Choice> rest;
+        for (std::size_t i = 0; i < chosen.size(); ++i)
+            if (left[i]) rest.push_back(chosen[i]);
+        return isConnected(problem, rest);
+    });
+}
+
+std::vector<std::string> idleSensors(const Problem& problem, const Coverage& coverage,
+                                     const Scene& standing, int unit) {
+    std::vector<const SensorView*> own;
+    std::vector<CountedView> views;
+    for (const SensorView& view : coverage.sensors) {
+        if (stands(view, standing)) continue;
+        own.push_back(&view);
+        views.push_back({view.cells, view.kind == ViewKind::Receiver ? 1 : unit});
+    }
+    const auto idle = idleAmong(problem, views, [&](const std::vector<bool>& left) {
+        Coverage rest;
+        for (const SensorView& view : coverage.sensors) {
+            const auto at = std::find(own.begin(), own.end(), &view) - own.begin();
+            if (stands(view, standing) || left[static_cast<std::size_t>(at)])
+                rest.sensors.push_back(view);
+        }
+        return isConnected(problem, rest, standing);
+    });
+    std::vector<std::string> ids;
+    ids.reserve(idle.size());
+    for (const std::size_t i : idle) ids.push_back(own[i]->id);
+    return ids;
+}
+
+void spreadIdle(const Problem& problem, std::span<const Point3> standing,
+                std::vector<Choice>& chosen) {
+    const std::vector<std::size_t> idle = idleChoices(problem, chosen);
+    if (idle.empty()) return;
+    std::vector<Choice> busy;
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (!std::binary_search(idle.begin(), idle.end(), i)) busy.push_back(chosen[i]);
+    Spread spread(problem, standing, busy);
+    for (const std::size_t i : idle) {
+        const Choice before = chosen[i];
+        if (const auto next = spread.next(before.kind)) {
+            chosen[i] = *next;
+            if (problem.is_connected && !isConnected(problem, chosen)) chosen[i] = before;
+        }
+        spread.take(chosen[i]);
+    }
+}
+
+}  // namespace ispace
