@@ -17,8 +17,9 @@
 namespace ispace {
 
 /// What sensors that do not scan in a level slice see of a level plane: by field of view, greatest
-/// range and occlusion by everything that stands (`mesh`: a RayWorld::ofEnvironment). The blind
-/// zone is not cut out. A place on the plane that a body covers is seen if sight reaches it.
+/// range and occlusion by everything that stands (`mesh`: a RayWorld::ofEnvironment, of Solid
+/// surfaces for receivers, of Opaque ones for all others, as for the exact regions). The blind zone
+/// is not cut out. A place on the plane that a body covers is seen if sight reaches it.
 ///
 /// By cells: centres, with rays of float32 as RayWorld::look has them.
 ///

@@ -98,8 +98,12 @@ class Viewer {
 
     void lookAtPlanes(const std::vector<std::size_t>& members) {
         if (members.empty()) return;
-        worlds_.prepareMesh();
-        const RayWorld& mesh = worlds_.mesh();
+        for (const std::size_t i : members) {
+            if (views_[i].kind == ViewKind::Receiver)
+                worlds_.prepareSound();
+            else
+                worlds_.prepareMesh();
+        }
         std::unique_ptr<const ShadowCaster> shadows;
         if (options_.exact) shadows = std::make_unique<ShadowCaster>(scene_.environment);
         SolidJudge judge(scene_.environment);
@@ -108,7 +112,7 @@ class Viewer {
             is_buried[i] = judge.isInside(views_[members[i]].pose.position) ? 1 : 0;
         tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t i) {
             SensorView& view = views_[members[i]];
-            lookAtPlane(view, mesh);
+            lookAtPlane(view);
             if (is_buried[i] != 0) {  // it sees nothing, as in a slice
                 view.cells = CellSet(grid_.size());
                 if (shadows != nullptr) view.region.emplace();
@@ -118,17 +122,17 @@ class Viewer {
         });
     }
 
-    void lookAtPlane(SensorView& view, const RayWorld& mesh) const {
+    void lookAtPlane(SensorView& view) const {
         const double plane = options_.plane;
         if (view.kind == ViewKind::Ranger) {
-            view.cells = cellsSeen(grid_, mesh, scene_.rangers[view.index], plane);
+            view.cells = cellsSeen(grid_, worlds_.mesh(), scene_.rangers[view.index], plane);
         } else if (view.kind == ViewKind::Receiver) {
-            view.cells = cellsHeard(grid_, mesh, scene_.receivers[view.index], plane);
+            view.cells = cellsHeard(grid_, worlds_.sound(), scene_.receivers[view.index], plane);
         } else {
             const PlacedLaser& sensor = scene_.lasers[view.index];
             view.beams = castBeams(worlds_.at(sensor.pose), sensor);
             view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
-                                         : cellsSeen(grid_, mesh, sensor, plane);
+                                         : cellsSeen(grid_, worlds_.mesh(), sensor, plane);
         }
     }
 

@@ -115,7 +115,7 @@ void add(Mesh mesh, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
 }
 
 void addAll(const Body& body, ShadowBody::Kind kind, std::vector<ShadowBody>& bodies) {
-    for (Mesh& mesh : meshesOf(body, false)) add(std::move(mesh), kind, bodies);
+    for (Mesh& mesh : meshesOf(body, Surfaces::Solid)) add(std::move(mesh), kind, bodies);
 }
 
 void addSheet(const Sheet& sheet, std::vector<ShadowBody>& bodies) {
@@ -137,12 +137,21 @@ void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies) {
     for (const double z : {prism.bottom, prism.top}) addPlate({prism.footprint, z}, bodies);
 }
 
-std::vector<ShadowBody> shadowBodiesOf(const Environment& environment) {
+std::vector<ShadowBody> clearBodiesOf(const Environment& environment) {
+    std::vector<ShadowBody> bodies;
+    for (const Element& element : environment.elements())
+        for (const Sheet& sheet : element.body.sheets)
+            if (!isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
+    return bodies;
+}
+
+std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment) {
     std::vector<ShadowBody> bodies;
     for (const Element& element : environment.elements()) {
         const Body& body = element.body;
         for (const Prism& prism : body.prisms) addPrism(prism, bodies);
-        for (const Sheet& sheet : body.sheets) addSheet(sheet, bodies);
+        for (const Sheet& sheet : body.sheets)
+            if (isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
         for (const Plate& plate : body.plates) addPlate(plate, bodies);
         addAll({{}, {}, {}, body.meshes}, ShadowBody::Kind::Loose, bodies);
     }

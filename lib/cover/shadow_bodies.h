@@ -29,8 +29,10 @@ struct ShadowBody {
 
 /// Adds a prism: as one body if it is convex, else face by face.
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies);
-/// Everything that stands, and as the last the floor.
-std::vector<ShadowBody> shadowBodiesOf(const Environment& environment);
+/// Clear glass, which throws shadows of sound alone.
+std::vector<ShadowBody> clearBodiesOf(const Environment& environment);
+/// Everything else that stands, and as the last the floor.
+std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment);
 
 /// An edge of a shadow, which lies on its left.
 struct ShadowEdge {

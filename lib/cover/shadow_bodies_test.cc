@@ -25,7 +25,7 @@ double shaded(const std::vector<ShadowBody>& bodies, Point3 sensor, double heigh
 
 std::vector<ShadowBody> bodiesOf(const std::string& lines) {
     std::vector<ShadowBody> bodies =
-        shadowBodiesOf(sceneOf("ispace size=40,40,0.01\n" + lines).environment);
+        opaqueBodiesOf(sceneOf("ispace size=40,40,0.01\n" + lines).environment);
     // Neither the walls nor the floor.
     std::erase_if(bodies, [](const ShadowBody& body) {
         return body.plan.width() >= 40 || body.plan.depth() >= 40;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "cover/plane_sweep.h"
@@ -13,15 +14,21 @@
 namespace ispace {
 
 struct ShadowCaster::Data {
-    std::vector<ShadowBody> bodies;
+    std::vector<ShadowBody> bodies;  ///< clear glass first, the floor last
+    std::size_t clear = 0;           ///< so many are of clear glass
 
-    [[nodiscard]] std::span<const ShadowBody> withoutFloor() const {
-        return std::span(bodies).first(bodies.size() - 1);
+    explicit Data(const Environment& environment) : bodies(clearBodiesOf(environment)) {
+        clear = bodies.size();
+        std::vector<ShadowBody> opaque = opaqueBodiesOf(environment);
+        std::move(opaque.begin(), opaque.end(), std::back_inserter(bodies));
     }
+    /// What throws shadows of sound and of light.
+    [[nodiscard]] std::span<const ShadowBody> solid() const { return bodies; }
+    [[nodiscard]] std::span<const ShadowBody> opaque() const { return solid().subspan(clear); }
 };
 
 ShadowCaster::ShadowCaster(const Environment& environment)
-    : data_(std::make_shared<const Data>(Data{shadowBodiesOf(environment)})) {}
+    : data_(std::make_shared<const Data>(environment)) {}
 
 namespace {
 
@@ -125,7 +132,8 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
     const ScanPlane plane(sensor.pose);
     if (plane.up() == 0) return std::vector<Curve>{};
     const bool is_over_floor = sensor.pose.position.z > kContact;
-    std::vector<Segment2> lines = cutsOf(is_over_floor ? data_->withoutFloor() : data_->bodies,
+    const std::span<const ShadowBody> opaque = data_->opaque();
+    std::vector<Segment2> lines = cutsOf(is_over_floor ? opaque.first(opaque.size() - 1) : opaque,
                                          plane.frame(), laser.max_range);
     if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
     const VisibilityMap map(lines);
@@ -146,11 +154,11 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
 }
 
 std::vector<Curve> ShadowCaster::regionSeen(const PlacedRanger& sensor, double height) const {
-    return regionInView(data_->bodies, FieldOfView(sensor), height);
+    return regionInView(data_->opaque(), FieldOfView(sensor), height);
 }
 
 std::vector<Curve> ShadowCaster::regionHeard(const PlacedReceiver& sensor, double height) const {
-    return regionInView(data_->bodies, FieldOfView(sensor), height);
+    return regionInView(data_->solid(), FieldOfView(sensor), height);
 }
 
 }  // namespace ispace

@@ -24,7 +24,7 @@ struct Sheet {
     Segment2 line;
     double bottom = 0, top = 0;
     Material material = Material::Wall;
-    bool clear = false;  ///< glass that beams pass: drawn, and stops robots, but in no slice
+    bool clear = false;  ///< glass: light passes it, sound and robots do not; in no slice
 };
 
 /// A level sheet without thickness at height z: floors, ceilings. Never part of a slice.

@@ -213,7 +213,7 @@ Slice Environment::slice(double height) const {
     Slice slice;
     slice.height = height;
     const auto add_sheet = [&](const Sheet& sheet, std::size_t /*owner*/) {
-        if (!sheet.clear) slice.sheets.push_back(sheet.line);
+        if (isAmong(Surfaces::Opaque, sheet)) slice.sheets.push_back(sheet.line);
     };
     const auto add_solid = [&](const Polygon& solid, std::size_t /*owner*/) {
         slice.solids.push_back(solid);

@@ -20,7 +20,7 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
     for (const Record& record : records) ++info.counts[record.keyword()];
     info.triangles = floorMesh(environment.indoor()).triangles.size();
     for (const Element& element : environment.elements())
-        for (const Mesh& mesh : meshesOf(element.body, false))
+        for (const Mesh& mesh : meshesOf(element.body, Surfaces::Solid))
             info.triangles += mesh.triangles.size();
     return info;
 }

@@ -71,7 +71,15 @@ void addPlate(Mesh& mesh, const Plate& plate) {
 
 }  // namespace
 
-std::vector<Mesh> meshesOf(const Body& body, bool with_visual) {
+bool isAmong(Surfaces surfaces, const Sheet& sheet) {
+    return !sheet.clear || surfaces != Surfaces::Opaque;
+}
+
+bool isAmong(Surfaces surfaces, const Plate& plate) {
+    return !plate.visual_only || surfaces == Surfaces::Drawn;
+}
+
+std::vector<Mesh> meshesOf(const Body& body, Surfaces surfaces) {
     std::vector<Mesh> meshes;
     const auto of = [&meshes](Material material) -> Mesh& {
         const auto found = std::find_if(meshes.begin(), meshes.end(), [material](const Mesh& mesh) {
@@ -85,9 +93,10 @@ std::vector<Mesh> meshesOf(const Body& body, bool with_visual) {
         return mesh;
     };
     for (const Prism& prism : body.prisms) addPrism(of(prism.material), prism);
-    for (const Sheet& sheet : body.sheets) addSheet(open(sheet.material), sheet);
+    for (const Sheet& sheet : body.sheets)
+        if (isAmong(surfaces, sheet)) addSheet(open(sheet.material), sheet);
     for (const Plate& plate : body.plates)
-        if (with_visual || !plate.visual_only) addPlate(open(plate.material), plate);
+        if (isAmong(surfaces, plate)) addPlate(open(plate.material), plate);
     meshes.insert(meshes.end(), body.meshes.begin(), body.meshes.end());
     return meshes;
 }

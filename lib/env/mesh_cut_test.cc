@@ -331,7 +331,7 @@ TEST(CutMeshes, AgreesWithPrisms) {
           "cylinder size=2,1,1 at=0,0,0.25", "barrier"}) {
         const Body body = bodyOf(record(line));
         Body as_mesh;
-        as_mesh.meshes = meshesOf(body, false);
+        as_mesh.meshes = meshesOf(body, Surfaces::Solid);
         std::vector<double> heights{0.15, 0.5, 1.02};
         for (const Prism& prism : body.prisms) {
             heights.push_back(prism.bottom);

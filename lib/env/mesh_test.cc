@@ -51,7 +51,8 @@ bool isClosed(const Mesh& mesh) {
 }
 
 TEST(Mesh, BoxIsClosedAndOutward) {
-    const auto meshes = meshesOf(bodyOf(record("cube at=5,6,1 size=2,3,4 heading=40")), true);
+    const auto meshes =
+        meshesOf(bodyOf(record("cube at=5,6,1 size=2,3,4 heading=40")), Surfaces::Drawn);
     ASSERT_EQ(meshes.size(), 1U);
     EXPECT_EQ(meshes[0].vertices.size(), 8U);
     EXPECT_EQ(meshes[0].triangles.size(), 12U);
@@ -59,11 +60,22 @@ TEST(Mesh, BoxIsClosedAndOutward) {
     EXPECT_NEAR(volume(meshes[0]), 24, 1e-9);
 }
 
+TEST(Mesh, ClearGlassIsSolidButNotOpaque) {
+    Body body;
+    body.sheets.push_back({{{0, 0}, {2, 0}}, 0, 1, Material::Wall, false});
+    body.sheets.push_back({{{2, 0}, {3, 0}}, 0, 1, Material::Glass, true});
+    EXPECT_EQ(meshesOf(body, Surfaces::Drawn).size(), 2U);
+    EXPECT_EQ(meshesOf(body, Surfaces::Solid).size(), 2U);
+    const auto opaque = meshesOf(body, Surfaces::Opaque);
+    ASSERT_EQ(opaque.size(), 1U);
+    EXPECT_EQ(opaque[0].material, Material::Wall);
+}
+
 TEST(Mesh, ConcaveFootprint) {
     Body body;
     body.prisms.push_back(
         {{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 0.5, 2, Material::Brick});
-    const auto meshes = meshesOf(body, false);
+    const auto meshes = meshesOf(body, Surfaces::Solid);
     ASSERT_EQ(meshes.size(), 1U);
     EXPECT_TRUE(isClosed(meshes[0]));
     EXPECT_NEAR(volume(meshes[0]), 5 * 1.5, 1e-12);
@@ -73,7 +85,7 @@ TEST(Mesh, ConcaveFootprint) {
 TEST(Mesh, CollinearVertexInTheFootprint) {
     Body body;
     body.prisms.push_back({{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}, 0, 1, Material::Box});
-    const auto meshes = meshesOf(body, false);
+    const auto meshes = meshesOf(body, Surfaces::Solid);
     EXPECT_TRUE(isClosed(meshes[0]));
     EXPECT_NEAR(volume(meshes[0]), 4, 1e-12);
 }
@@ -88,7 +100,7 @@ TEST(Mesh, EveryThingIsClosed) {
         for (const Prism& prism : body.prisms)
             expected += signedArea(prism.footprint) * (prism.top - prism.bottom);
         double found = 0;
-        for (const Mesh& mesh : meshesOf(body, true)) {
+        for (const Mesh& mesh : meshesOf(body, Surfaces::Drawn)) {
             EXPECT_TRUE(isClosed(mesh)) << line;
             found += volume(mesh);
         }
@@ -98,12 +110,12 @@ TEST(Mesh, EveryThingIsClosed) {
 
 TEST(Mesh, OpenIsWhatHasARim) {
     for (const char* line : {"desk", "wall from=0,0 to=2,1 thickness=0.1"})
-        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), true)) {
+        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), Surfaces::Drawn)) {
             EXPECT_FALSE(mesh.open) << line;
             EXPECT_TRUE(isWatertight(mesh)) << line;
         }
     for (const char* line : {"wall from=0,0 to=2,1", "floor", "ispace ceiling=yes"})
-        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), true)) {
+        for (const Mesh& mesh : meshesOf(bodyOf(record(line)), Surfaces::Drawn)) {
             EXPECT_TRUE(mesh.open) << line;
             EXPECT_FALSE(isWatertight(mesh)) << line;
         }
@@ -120,14 +132,14 @@ TEST(Mesh, WatertightCountsEachWay) {
 }
 
 TEST(Mesh, SheetsAreTwoTrianglesEach) {
-    const auto meshes = meshesOf(bodyOf(record("ispace size=4,3")), false);
+    const auto meshes = meshesOf(bodyOf(record("ispace size=4,3")), Surfaces::Solid);
     ASSERT_EQ(meshes.size(), 1U);
     EXPECT_EQ(meshes[0].triangles.size(), 8U);
     EXPECT_NEAR(area(meshes[0]), 14 * 2.5, 1e-9);
 }
 
 TEST(Mesh, MaterialsComeInOrderOfFirstUse) {
-    const auto meshes = meshesOf(bodyOf(record("desk")), false);
+    const auto meshes = meshesOf(bodyOf(record("desk")), Surfaces::Solid);
     ASSERT_EQ(meshes.size(), 2U);
     EXPECT_EQ(meshes[0].material, Material::Wood);
     EXPECT_EQ(meshes[1].material, Material::Metal);
@@ -136,8 +148,8 @@ TEST(Mesh, MaterialsComeInOrderOfFirstUse) {
 
 TEST(Mesh, PatternsOnlyWhereAskedFor) {
     const Body floor = bodyOf(record("floor kind=checker size=2,2"));
-    EXPECT_TRUE(meshesOf(floor, false).empty());
-    const auto meshes = meshesOf(floor, true);
+    EXPECT_TRUE(meshesOf(floor, Surfaces::Solid).empty());
+    const auto meshes = meshesOf(floor, Surfaces::Drawn);
     ASSERT_EQ(meshes.size(), 2U);
     EXPECT_NEAR(area(meshes[0]) + area(meshes[1]), 4, 1e-12);
     // Plates face up.
@@ -147,7 +159,7 @@ TEST(Mesh, PatternsOnlyWhereAskedFor) {
                                    mesh.vertices[t[2]] - mesh.vertices[t[0]])
                           .z,
                       0);
-    EXPECT_EQ(meshesOf(bodyOf(record("ispace ceiling=yes")), false).size(), 2U);
+    EXPECT_EQ(meshesOf(bodyOf(record("ispace ceiling=yes")), Surfaces::Solid).size(), 2U);
 }
 
 TEST(Mesh, FloorOfARegionWithHoles) {
@@ -156,7 +168,7 @@ TEST(Mesh, FloorOfARegionWithHoles) {
     EXPECT_EQ(mesh.material, Material::Floor);
     EXPECT_NEAR(area(mesh), 15, 1e-12);
     for (const Point3 p : mesh.vertices) EXPECT_EQ(p.z, 0);
-    EXPECT_TRUE(meshesOf({}, true).empty());
+    EXPECT_TRUE(meshesOf({}, Surfaces::Drawn).empty());
 }
 
 }  // namespace

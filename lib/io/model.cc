@@ -21,8 +21,11 @@ void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
 std::vector<ModelNode> modelOf(const Scene& scene, bool with_views) {
     std::vector<ModelNode> nodes;
     for (const Element& element : scene.environment.elements())
-        addNode(nodes,
-                {element.id, element.record.keyword(), {}, meshesOf(element.body, true), &element});
+        addNode(nodes, {element.id,
+                        element.record.keyword(),
+                        {},
+                        meshesOf(element.body, Surfaces::Drawn),
+                        &element});
     addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
     for (const Placed& placed : scene.placed) {
         std::vector<Mesh> meshes = figureOf(scene, placed);

@@ -111,7 +111,7 @@ Mesh uprights(Material material, std::vector<Polygon> footprints, double bottom,
     Body body;
     for (Polygon& footprint : footprints)
         body.prisms.push_back({std::move(footprint), bottom, top, material});
-    return std::move(meshesOf(body, true).front());
+    return std::move(meshesOf(body, Surfaces::Drawn).front());
 }
 
 using Figure = std::vector<Mesh>;

@@ -199,8 +199,9 @@ CandidateViews::CandidateViews(const Environment& environment, Worlds& worlds, c
         }
         data->sight = &sights->at(height);
     } else {
-        worlds.prepareMesh();
-        data->mesh = &worlds.mesh();
+        const bool hears = isReceiver(device);
+        hears ? worlds.prepareSound() : worlds.prepareMesh();
+        data->mesh = hears ? &worlds.sound() : &worlds.mesh();
         data->solids = SolidTree(environment.slice(height).solids);
     }
     data_ = std::move(data);

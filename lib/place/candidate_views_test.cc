@@ -24,7 +24,8 @@ double uniform(Random& random, double low, double high) {
 }
 
 std::string randomRoom(Random& random) {
-    std::string text = "ispace size=8,6\n";
+    std::string text = "ispace size=8,6\nwall id=w from=0.3,-2 to=0.3,2\n";
+    text.append("window wall=w offset=2 size=3\n");
     const auto number = [&random](double low, double high) {
         return formatDouble(std::round(uniform(random, low, high) * 8) / 8);
     };

@@ -69,7 +69,8 @@ ReadingTaker::~ReadingTaker() = default;
 
 void ReadingTaker::prepare(const ReadingJob& job) {
     const Sensors::Entry& entry = data_->sensors.order[job.sensor];
-    if (entry.kind != SensorKind::Laser) return data_->worlds.prepareMesh();
+    if (entry.kind == SensorKind::Tag) return data_->worlds.prepareSound();
+    if (entry.kind == SensorKind::Ranger) return data_->worlds.prepareMesh();
     const Laser& laser = data_->sensors.lasers[entry.index].laser;
     if (laser.sweep == SweepAxis::Tilt || laser.sweep == SweepAxis::Roll) {
         // One of its scans may be level.
@@ -104,7 +105,7 @@ Reading ReadingTaker::take(const ReadingJob& job) {
             break;
     }
     const UltrasoundOptions options{d.options.celsius, d.options.noise_seed};
-    return castBurst(d.worlds.mesh(), d.bodies, d.sensors.tags[entry.index], d.sensors.receivers,
+    return castBurst(d.worlds.sound(), d.bodies, d.sensors.tags[entry.index], d.sensors.receivers,
                      job.frame, job.time, options);
 }
 

@@ -121,5 +121,22 @@ TEST(LaserReader, GoesWithItsRobotAndDoesNotSeeIt) {
     EXPECT_NEAR(world.lasers()[0].pose.position.x, -0.9, 1e-12);
 }
 
+TEST(LaserReader, ATiltedOneOnARobotSeesThroughClearGlass) {
+    for (const char* const glass : {"clear", "opaque"}) {
+        const Scene room = scene(std::string("ispace size=8,6,2.5\ninside at=-3,0\n"
+                                             "wall id=w from=1,-2.9 to=1,2.9 height=2.5\n"
+                                             "window wall=w offset=2.9 size=3,0.1,2 sill=0.1 "
+                                             "glass=") +
+                                     glass + "\n",
+                                 "robot id=r1 at=-2,0\n"
+                                 "laser on=r1 at=0,0,1 tilt=3 range=20 fov=20 step=10\n"
+                                 "laser on=r1 at=0,0,1 range=20 fov=20 step=10\n");
+        World world(room, milliseconds(100));
+        const double expected = glass == std::string("clear") ? 6 : 3;
+        EXPECT_NEAR(world.reading(0).scan.ranges.at(1) * cos(Angle::degrees(3)), expected, 1e-5);
+        EXPECT_NEAR(world.reading(1).scan.ranges.at(1), expected, 1e-5);
+    }
+}
+
 }  // namespace
 }  // namespace ispace

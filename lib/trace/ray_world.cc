@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "env/mesh.h"
 #include "geom/box.h"
 #include "trace/embree_scene.h"
 #include "trace/flat_world.h"
@@ -97,10 +96,11 @@ RayWorld RayWorld::ofSlice(const Slice& slice, int packet_width) {
     return RayWorld(std::move(data));
 }
 
-RayWorld RayWorld::ofEnvironment(const Environment& environment, int packet_width) {
+RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfaces,
+                                 int packet_width) {
     std::vector<Mesh> meshes;
     for (const Element& element : environment.elements())
-        for (Mesh& mesh : meshesOf(element.body, false)) meshes.push_back(std::move(mesh));
+        for (Mesh& mesh : meshesOf(element.body, surfaces)) meshes.push_back(std::move(mesh));
     meshes.push_back(floorMesh(environment.indoor()));
     Box2 plan;
     for (const Mesh& mesh : meshes)

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "env/environment.h"
+#include "env/mesh.h"
 #include "geom/point.h"
 #include "trace/directions.h"
 #include "trace/ray_grid.h"
@@ -35,8 +36,10 @@ class RayWorld {
     ///        does best; it changes no result but as cast() says
     /// \throws std::runtime_error if Embree fails (no memory)
     static RayWorld ofSlice(const Slice& slice, int packet_width = 0);
-    /// All bodies and the floor, for rays of any direction.
-    static RayWorld ofEnvironment(const Environment& environment, int packet_width = 0);
+    /// These surfaces of all bodies and the floor, for rays of any direction: of light unless told
+    /// otherwise, which pass clear glass as level ones do.
+    static RayWorld ofEnvironment(const Environment& environment,
+                                  Surfaces surfaces = Surfaces::Opaque, int packet_width = 0);
     RayWorld(RayWorld&&) noexcept;
     RayWorld& operator=(RayWorld&&) noexcept;
     ~RayWorld();

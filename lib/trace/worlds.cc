@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trace/worlds.h"
 
+#include <algorithm>
 #include <cassert>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace ispace {
 
+namespace {
+
+bool hasClearGlass(const Environment& environment) {
+    return std::any_of(environment.elements().begin(), environment.elements().end(),
+                       [](const Element& element) {
+                           const std::vector<Sheet>& sheets = element.body.sheets;
+                           return std::any_of(sheets.begin(), sheets.end(),
+                                              [](const Sheet& sheet) { return sheet.clear; });
+                       });
+}
+
+}  // namespace
+
 // Only the thread that prepares adds worlds, so that it reads without a lock; others read on while
 // it builds one.
+
+Worlds::Worlds(const Environment& environment)
+    : environment_(&environment), has_clear_(hasClearGlass(environment)) {}
 
 void Worlds::prepare(const Pose3& pose) {
     if (!pose.isLevel()) return prepareMesh();
@@ -27,6 +45,14 @@ void Worlds::prepareMesh() {
     mesh_.emplace(std::move(mesh));
 }
 
+void Worlds::prepareSound() {
+    if (!has_clear_) return prepareMesh();
+    if (solid_) return;
+    RayWorld solid = RayWorld::ofEnvironment(*environment_, Surfaces::Solid);
+    const std::unique_lock lock(mutex_);
+    solid_.emplace(std::move(solid));
+}
+
 const RayWorld& Worlds::at(const Pose3& pose) const {
     if (pose.isLevel()) {
         const std::shared_lock lock(mutex_);
@@ -40,6 +66,13 @@ const RayWorld& Worlds::mesh() const {
     const std::shared_lock lock(mutex_);
     assert(mesh_);
     return *mesh_;
+}
+
+const RayWorld& Worlds::sound() const {
+    if (!has_clear_) return mesh();
+    const std::shared_lock lock(mutex_);
+    assert(solid_);
+    return *solid_;
 }
 
 }  // namespace ispace

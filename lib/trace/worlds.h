@@ -11,7 +11,7 @@
 namespace ispace {
 
 /// The ray worlds of one environment: one slice per height for level sensors, the mesh for all
-/// others.
+/// others, with and without clear glass.
 ///
 /// One thread prepares, for the poses that are to come; any thread asks at() for poses that were
 /// prepared, also while others are. A world stays where it is until the end.
@@ -21,22 +21,29 @@ class Worlds {
     /// the order of prepare(), are traced in the mesh.
     static constexpr std::size_t kMostSlices = 64;
 
-    explicit Worlds(const Environment& environment) : environment_(&environment) {}
+    explicit Worlds(const Environment& environment);
     void prepare(const Pose3& pose);
     /// For sensors that look in all directions.
     void prepareMesh();
+    /// For those that listen.
+    void prepareSound();
     /// The slice of a level pose's height if one is kept, else the mesh.
     /// \pre one of them was prepared: the slice by prepare() for a pose of this height, the mesh by
     ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMostSlices
     [[nodiscard]] const RayWorld& at(const Pose3& pose) const;
     /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh() const;
+    /// The mesh as sound meets it: clear glass stops it. Without such glass it is mesh().
+    /// \pre prepareSound()
+    [[nodiscard]] const RayWorld& sound() const;
 
   private:
     const Environment* environment_;
     mutable std::shared_mutex mutex_;  // of what follows; only prepare() adds to it
     std::map<double, RayWorld> slices_;
     std::optional<RayWorld> mesh_;
+    std::optional<RayWorld> solid_;  // where it is not the same as mesh_
+    bool has_clear_;
 };
 
 }  // namespace ispace

@@ -57,6 +57,25 @@ TEST(Worlds, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
     EXPECT_NE(&worlds.at(down), &worlds.at(low));
 }
 
+TEST(Worlds, SoundIsStoppedByClearGlassToo) {
+    const Scene plain = furnishedRoom();
+    Worlds of_plain(plain.environment);
+    of_plain.prepareSound();
+    EXPECT_EQ(&of_plain.sound(), &of_plain.mesh()) << "one world is enough without clear glass";
+    const Scene scene = testing::scene(
+        "ispace size=8,6,2.5\ninside at=-3,0\nwall id=w from=1,-2.9 to=1,2.9 height=2.5\n"
+        "window wall=w offset=2.9 size=3,0.1,2 sill=0.1\n");
+    Worlds worlds(scene.environment);
+    worlds.prepareMesh();
+    worlds.prepareSound();
+    const Point3 from{-2, 0, 1};
+    float light = 0, sound = 0;
+    worlds.mesh().cast(from, along({1, 0, 0}), 100, {&light, 1});
+    worlds.sound().cast(from, along({1, 0, 0}), 100, {&sound, 1});
+    EXPECT_EQ(light, 6);
+    EXPECT_EQ(sound, 3);
+}
+
 TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     const Scene scene = furnishedRoom();
     Worlds worlds(scene.environment);
@@ -155,7 +174,7 @@ TEST(Mesh, PacketWidthChangesNothing) {
     const Scene scene = furnishedRoom();
     std::vector<RayWorld> worlds;
     for (const int width : {16, 8, 4, 1})
-        worlds.push_back(RayWorld::ofEnvironment(scene.environment, width));
+        worlds.push_back(RayWorld::ofEnvironment(scene.environment, Surfaces::Opaque, width));
     std::mt19937_64 random(21);
     std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), z(0.05, 2.4), any(-1, 1);
     for (int i = 0; i < 100; ++i) {

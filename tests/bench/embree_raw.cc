@@ -42,7 +42,8 @@ struct alignas(64) Packet {
 std::vector<Mesh> meshesThatStop(const Environment& environment) {
     std::vector<Mesh> meshes{floorMesh(environment.indoor())};
     for (const Element& element : environment.elements())
-        for (Mesh& mesh : meshesOf(element.body, false)) meshes.push_back(std::move(mesh));
+        for (Mesh& mesh : meshesOf(element.body, Surfaces::Opaque))
+            meshes.push_back(std::move(mesh));
     return meshes;
 }
 
