@@ -14,7 +14,8 @@ namespace ispace {
 ///     r + bias + N(0, s0 + s1 r + s2 r^2)
 ///
 /// (a negative spread counts as 0), is lost with some probability, and is given in whole multiples
-/// of the resolution; then the device's range limits hold. What never returned stays no return.
+/// of the resolution. The device's range limits are about the true distance: what is out of range,
+/// or never returned, stays no return. What is measured beyond a limit is given as that limit.
 struct RangeNoise {
     double bias = 0;                       ///< metres
     std::array<double, 3> sigma{0, 0, 0};  ///< s0 in metres, s1 in m/m, s2 in m/m^2

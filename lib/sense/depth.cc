@@ -83,15 +83,28 @@ ISPACE_SIMD_CLONES void divide(float* values, const float* by, std::size_t count
     for (std::size_t i = 0; i < count; ++i) values[i] /= by[i];
 }
 
-/// Distances modulo the ambiguity.
-void wrap(std::span<float> distances, double ambiguity) {
-    for (float& distance : distances) {
-        if (distance == kNoReturn) continue;
+/// Which of the distances that light may have gone a phase stands for, and which of them are told.
+struct Phase {
+    double ambiguity;
+    float least, greatest;  ///< of what is told
+
+    [[nodiscard]] float wrapped(float distance) const {
         const double full = distance;
-        distance = static_cast<float>(full - ambiguity * std::floor(full / ambiguity));
-        if (distance >= static_cast<float>(ambiguity)) distance = 0;
+        const auto told = static_cast<float>(full - ambiguity * std::floor(full / ambiguity));
+        return told >= static_cast<float>(ambiguity) ? 0 : told;
     }
-}
+    [[nodiscard]] bool isTold(float wrapped) const {
+        return wrapped >= least && wrapped <= greatest;
+    }
+    /// Of what noise carried out of range, the limit it passed: the nearer one round the phase.
+    [[nodiscard]] float kept(float wrapped) const {
+        if (isTold(wrapped)) return wrapped;
+        const auto turn = static_cast<float>(ambiguity);
+        const float below = wrapped < least ? least - wrapped : least + turn - wrapped;
+        const float above = wrapped > greatest ? wrapped - greatest : wrapped + turn - greatest;
+        return below <= above ? least : greatest;
+    }
+};
 
 /// One picture in the making.
 class Exposure {
@@ -164,10 +177,15 @@ class Exposure {
         const std::span<float> values = frame_.depths;
         RangeNoise noise = noisy_ ? ranger_.noise : RangeNoise();
         if (ranger_.ambiguity > 0) {
+            const Phase phase{ranger_.ambiguity, static_cast<float>(least),
+                              static_cast<float>(greatest)};
+            for (float& value : values)
+                if (!(value < kNoReturn) || !phase.isTold(phase.wrapped(value))) value = kNoReturn;
             // What is added comes before the phase, whole units behind it.
             noise.resolution = 0;
             addNoise(noise, -kEverything, kEverything, key_, cosines_, values);
-            wrap(values, ranger_.ambiguity);
+            for (float& value : values)
+                if (value < kNoReturn) value = phase.kept(phase.wrapped(value));
             noise = RangeNoise();
             if (noisy_) noise.resolution = ranger_.noise.resolution;
             addNoise(noise, least, greatest, key_, {}, values);

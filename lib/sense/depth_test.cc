@@ -125,6 +125,48 @@ TEST(Depth, WholeUnitsAreWhatTheDeviceSays) {
     }
 }
 
+TEST(Depth, LimitsHoldBeforeNoise) {
+    // The wall is 3 m ahead of all pixels.
+    const auto returns = [](const std::string& figures) {
+        const Scene scene = testing::scene(kRoom,
+                                           "ranger at=5,3,1.25 fov=30,20 pixels=160,120 "
+                                           "measures=depth sigma=0.05 " +
+                                               figures + "\n");
+        const DepthFrame frame = frameOf(scene, 0, {.noise_seed = 1});
+        for (const float depth : frame.depths) {
+            if (!std::isfinite(depth)) continue;
+            EXPECT_GE(depth, static_cast<float>(scene.rangers[0].ranger.min_range));
+            EXPECT_LE(depth, static_cast<float>(scene.rangers[0].ranger.max_range));
+        }
+        return std::count_if(frame.depths.begin(), frame.depths.end(),
+                             [](float depth) { return std::isfinite(depth); });
+    };
+    constexpr std::ptrdiff_t kAll = 160 * 120;
+    EXPECT_EQ(returns("range=3.01,9"), 0);
+    EXPECT_EQ(returns("range=2.99,9"), kAll);
+    EXPECT_EQ(returns("range=1,2.99"), 0);
+    EXPECT_EQ(returns("range=1,3.01"), kAll);
+    // By phase it reads 1 m.
+    EXPECT_EQ(returns("range=1.01,1.9 ambiguity=2"), 0);
+    EXPECT_EQ(returns("range=0.99,1.9 ambiguity=2"), kAll);
+    EXPECT_EQ(returns("range=0.1,0.99 ambiguity=2"), 0);
+    EXPECT_EQ(returns("range=0.1,1.01 ambiguity=2"), kAll);
+}
+
+TEST(Depth, NoiseGoesRoundThePhase) {
+    // The wall 3 m ahead reads 0 m or, with noise the other way, nearly the whole ambiguity.
+    const Scene scene = testing::scene(kRoom,
+                                       "ranger at=5,3,1.25 fov=30,20 pixels=160,120 range=1.5 "
+                                       "measures=depth sigma=0.05 ambiguity=1.5\n");
+    std::size_t near = 0, far = 0;
+    for (const float depth : frameOf(scene, 0, {.noise_seed = 1}).depths) {
+        if (depth < 0.3F) ++near;
+        if (depth > 1.2F && depth <= 1.5F) ++far;
+    }
+    EXPECT_EQ(near + far, 160U * 120U);
+    EXPECT_NEAR(static_cast<double>(near), 9600, 5 * std::sqrt(4800));
+}
+
 TEST(Depth, SeesRobotsAndPeople) {
     const Scene scene = testing::scene(kRoom,
                                        "ranger at=1,3,0.1 pixels=41,31 range=9\n"

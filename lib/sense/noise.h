@@ -17,11 +17,12 @@ struct NoiseKey {
     Purpose purpose = Purpose::Range;
 };
 
-/// Adds a device's noise to what it measures: bias and spread, drop-out, resolution, in this order,
-/// then a range outside [min_range, max_range] (ends included, both as float32) is no return.
-/// +infinity stays. Vectorised; the same values for any processor. Element k draws element k of the
-/// key's sequence (its `normal` and `uniform`; `other` is that of bearingErrors), whatever the
-/// other elements are.
+/// What a device says of true ranges: one outside [min_range, max_range] (ends included, both as
+/// float32) is no return, as are infinity and what is not a number, whatever the noise; to all
+/// others noise is added: bias and spread, drop-out, resolution, in this order. What is measured
+/// beyond a limit then is told as that limit. Vectorised; the same values for any processor.
+/// Element k draws element k of the key's sequence (its `normal` and `uniform`; `other` is that of
+/// bearingErrors), whatever the other elements are.
 ///
 /// A return is lost with probability p = d + (1 - d) g: d is noise.dropout; g rises in proportion
 /// to the angle between beam and normal from 0 at graze_from to 1 at graze_to, or jumps there if

@@ -35,10 +35,11 @@ ISPACE_INLINE void spread(const Figures& figures, std::size_t count, const float
     }
     const auto [s0, s1, s2] = figures.sigma;
     for (std::size_t k = 0; k < count; ++k) {
-        // That of infinity may not be a number, which is no return in the end.
         const float r = ranges[k];
         const float sigma = s0 + r * (s1 + r * s2);
-        ranges[k] = r + (bias + 0.5F * (sigma + std::fabs(sigma)) * normal[k]);
+        const float measured = r + (bias + 0.5F * (sigma + std::fabs(sigma)) * normal[k]);
+        // The spread of infinity may not be a number.
+        ranges[k] = simd::choose(r < kNoReturn, measured, kNoReturn);
     }
 }
 
@@ -79,7 +80,7 @@ ISPACE_INLINE void quantise(const Figures& figures, std::size_t count, float* __
     }
 }
 
-/// What is not a number is no return.
+/// What is out of range, or not a number, is no return.
 ISPACE_INLINE void limit(const Figures& figures, std::size_t count, float* __restrict ranges) {
     const float low = figures.min_range;
     const float high = figures.max_range;
@@ -90,13 +91,28 @@ ISPACE_INLINE void limit(const Figures& figures, std::size_t count, float* __res
     }
 }
 
+/// Returns that noise carried out of range are at its end.
+ISPACE_INLINE void keepInRange(const Figures& figures, std::size_t count,
+                               float* __restrict ranges) {
+    const float low = figures.min_range;
+    const float high = figures.max_range;
+    for (std::size_t k = 0; k < count; ++k) {
+        const float r = ranges[k];
+        const float not_low = simd::choose(r > low, r, low);
+        const float within = simd::choose(not_low < high, not_low, high);
+        ranges[k] = simd::choose(r < kNoReturn, within, kNoReturn);
+    }
+}
+
 /// What a block of ranges goes through; arrays are null if not needed.
 ISPACE_INLINE void apply(const Figures& figures, std::size_t count, const float* normal,
                          const float* uniform, const float* cosines, float* ranges) {
-    if (normal != nullptr || figures.bias != 0) spread(figures, count, normal, ranges);
+    limit(figures, count, ranges);
+    const bool moves = normal != nullptr || figures.bias != 0;
+    if (moves) spread(figures, count, normal, ranges);
     if (uniform != nullptr) drop(figures, count, cosines, uniform, ranges);
     if (figures.resolution > 0) quantise(figures, count, ranges);
-    limit(figures, count, ranges);
+    if (moves || figures.resolution > 0) keepInRange(figures, count, ranges);
 }
 
 }  // namespace ispace::noise_loops

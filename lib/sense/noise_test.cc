@@ -73,7 +73,7 @@ TEST(Noise, WithoutAnyOnlyLimitsHold) {
 TEST(Noise, BiasMovesAll) {
     RangeNoise noise;
     noise.bias = -0.25;
-    EXPECT_EQ(noisy(noise, {1, 2.5F, kNone, 0.125F}), (Floats{0.75F, 2.25F, kNone, kNone}));
+    EXPECT_EQ(noisy(noise, {1, 2.5F, kNone, 0.125F}), (Floats{0.75F, 2.25F, kNone, 0}));
 }
 
 TEST(Noise, HasMeanAndSigmaOfItsRange) {
@@ -213,27 +213,43 @@ TEST(Noise, AResolutionTooFineIsNone) {
     }
 }
 
-TEST(Noise, LimitsComeLast) {
+TEST(Noise, LimitsAreAboutTheTrueRange) {
     RangeNoise noise;
     noise.resolution = 0.01;
-    // Rounded to the limit, which counts.
-    EXPECT_EQ(noisy(noise, {5.604F, 5.606F, 0.098F, 0.094F}, {}, kKey, 0.1, 5.6),
-              (Floats{5.6F, kNone, 0.1F, kNone}));
+    // No rounding brings back what is out of range, or loses what is in it.
+    EXPECT_EQ(noisy(noise, {5.604F, 5.598F, 0.098F, 0.104F}, {}, kKey, 0.1, 5.6),
+              (Floats{kNone, 5.6F, kNone, 0.1F}));
+    noise.resolution = 0;
     noise.sigma = {0.05, 0, 0};
-    const Floats result = noisy(noise, Floats(kMany, 5.6F), {}, kKey, 0.1, 5.6);
-    EXPECT_LE(*std::max_element(result.begin(), result.end(),
-                                [](float a, float b) { return b != kNone && a < b; }),
-              5.6F);
-    // All that is not rounded down to 5.6 or below: half, less a tenth of a sigma's density.
-    EXPECT_NEAR(shareLost(result), 0.5 * std::erfc(0.1 / std::sqrt(2.0)), 0.003);
+    for (const double bias : {0.0, 0.2, -0.2}) {
+        noise.bias = bias;
+        for (const float outside : {0.0F, 0.06F, 0.0999F, 5.6001F, 5.65F, kNone})
+            EXPECT_EQ(shareLost(noisy(noise, Floats(kMany, outside), {}, kKey, 0.1, 5.6)), 1)
+                << outside;
+        for (const float inside : {0.1F, 0.12F, 3.0F, 5.58F, 5.6F})
+            EXPECT_EQ(shareLost(noisy(noise, Floats(kMany, inside), {}, kKey, 0.1, 5.6)), 0)
+                << inside;
+    }
 }
 
-TEST(Noise, NegativeRangesAreNoReturn) {
+TEST(Noise, WhatIsMeasuredBeyondALimitIsTheLimit) {
     RangeNoise noise;
-    noise.sigma = {1, 0, 0};
+    noise.sigma = {0.05, 0, 0};
+    // As many as a normal distribution has beyond half a sigma.
+    const double share = 0.5 * std::erfc(0.5 / std::sqrt(2.0));
+    for (const bool far : {false, true}) {
+        const float limit = far ? 5.6F : 0.1F, range = far ? 5.575F : 0.125F;
+        const Floats result = noisy(noise, Floats(kMany, range), {}, kKey, 0.1, 5.6);
+        const auto [least, greatest] = std::minmax_element(result.begin(), result.end());
+        EXPECT_EQ(far ? *greatest : *least, limit);
+        EXPECT_NEAR(static_cast<double>(std::count(result.begin(), result.end(), limit)) / kMany,
+                    share, tolerance(share));
+    }
+    // No range is below 0.
     const Floats result = noisy(noise, Floats(kMany, 0.0F));
-    EXPECT_GE(*std::min_element(result.begin(), result.end()), 0);
-    EXPECT_NEAR(shareLost(result), 0.5, tolerance(0.5));
+    EXPECT_EQ(*std::min_element(result.begin(), result.end()), 0);
+    EXPECT_NEAR(static_cast<double>(std::count(result.begin(), result.end(), 0.0F)) / kMany, 0.5,
+                tolerance(0.5));
 }
 
 RangeNoise everything() {

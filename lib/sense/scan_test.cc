@@ -303,6 +303,29 @@ TEST_F(Rooms, AroundCylinders) {
     EXPECT_GT(on_cylinder, 1000);
 }
 
+TEST(Scan, LimitsHoldBeforeNoise) {
+    // A wall 2 m ahead, through which noise of 5 cm must make or lose no return.
+    const auto returns = [](const std::string& range) {
+        const Scene scene =
+            testing::scene(kRoom, "laser at=6,3 first=0 beams=1 sigma=0.05 range=" + range + "\n");
+        std::size_t count = 0;
+        for (int frame = 0; frame < 500; ++frame) {
+            const auto reading = testing::readings(scene, {.noise_seed = 4}, frame);
+            const float found = std::get<std::vector<Scan>>(reading.at(0)).at(0).ranges.at(0);
+            if (!std::isfinite(found)) continue;
+            ++count;
+            EXPECT_GE(found, static_cast<float>(scene.lasers[0].laser.min_range));
+            EXPECT_LE(found, static_cast<float>(scene.lasers[0].laser.max_range));
+        }
+        return count;
+    };
+    EXPECT_EQ(returns("2.01,9"), 0U);
+    EXPECT_EQ(returns("1.99,9"), 500U);
+    EXPECT_EQ(returns("0.1,1.99"), 0U);
+    EXPECT_EQ(returns("0.1,2.01"), 500U);
+    EXPECT_EQ(returns("2,2"), 500U);
+}
+
 TEST(SliceArea, HalfDiscInTheOpen) {
     // All 181 beams return nothing: 181 slices of one degree, as printed in the thesis.
     const std::vector<float> none(181, std::numeric_limits<float>::infinity());

@@ -66,8 +66,10 @@ struct UltrasoundOptions {
 /// nor a moving body is between them but those of the robots that carry the two. `environment` is
 /// that of the mesh.
 ///
-/// Noise of a distance depends on seed, tag, receiver and frame alone, not on what else hears; the
-/// angle that incidence is about is that between the sound and the receiver's axis.
+/// Noise changes nothing about who hears, but for drop-outs: what is measured beyond the range is
+/// given as its limit. Noise of a distance depends on seed, tag, receiver and frame alone, not on
+/// what else hears; the angle that incidence is about is that between the sound and the receiver's
+/// axis.
 Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
                 std::span<const PlacedReceiver> receivers, int frame, double time,
                 const UltrasoundOptions& options);

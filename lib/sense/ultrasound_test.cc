@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "layout/test_layout.h"
@@ -303,12 +304,20 @@ TEST(Burst, NoiseIsThatOfTheReceiver) {
     const double mean = sum / heard;
     EXPECT_NEAR(mean, 0.05, 5 * 0.02 / std::sqrt(heard));
     EXPECT_NEAR(std::sqrt(squares / heard - mean * mean), 0.02, 5 * 0.02 / std::sqrt(2.0 * heard));
-    // Measured beyond its range it is not heard.
+    // Measured beyond its range it is at its end; what is out of range no noise brings back.
     receiver.receiver.noise = {};
     receiver.receiver.noise.bias = 0.05;
     receiver.receiver.max_range = 2.04;
-    EXPECT_TRUE(burstOf(world, tag, {receiver}, {.noise_seed = 3}).heard.empty());
+    EXPECT_EQ(burstOf(world, tag, {receiver}, {.noise_seed = 3}).heard.at(0).distance,
+              static_cast<double>(2.04F));
     EXPECT_EQ(burstOf(world, tag, {receiver}).heard.size(), 1U);
+    receiver.receiver.noise.sigma = {0.1, 0, 0};
+    for (const auto& [least, greatest] : {std::pair{2.01, 8.0}, std::pair{0.0, 1.99}}) {
+        receiver.receiver.min_range = least;
+        receiver.receiver.max_range = greatest;
+        for (int frame = 0; frame < 2000; ++frame)
+            EXPECT_TRUE(burstOf(world, tag, {receiver}, {.noise_seed = 3}, frame).heard.empty());
+    }
 }
 
 TEST(Burst, NoiseIsLostFarFromTheAxis) {
