@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "sense/ultrasound.h"
 
@@ -34,18 +36,19 @@ struct Layout {
     [[nodiscard]] double extent() const { return std::sqrt(spread[2]); }
 };
 
-Layout layoutOf(std::span<const Point3> receivers) {
+Layout layoutOf(std::span<const Hearing> heard) {
     Layout layout;
-    const auto count = static_cast<double>(receivers.size());
-    for (const Point3 p : receivers) {
-        const Vec3 from_first = p - receivers[0];
+    const auto count = static_cast<double>(heard.size());
+    const Point3 first = heard.front().place;
+    for (const Hearing& one : heard) {
+        const Vec3 from_first = one.place - first;
         layout.middle = layout.middle + (1 / count) * from_first;
     }
-    layout.middle = receivers[0] + (layout.middle - Point3());
-    layout.places.reserve(receivers.size());
+    layout.middle = first + (layout.middle - Point3());
+    layout.places.reserve(heard.size());
     Matrix3d scatter = Matrix3d::Zero();
-    for (const Point3 p : receivers) {
-        const Vector3d place = vectorOf(p - layout.middle);
+    for (const Hearing& one : heard) {
+        const Vector3d place = vectorOf(one.place - layout.middle);
         layout.places.push_back(place);
         scatter += place * place.transpose() / count;
     }
@@ -157,49 +160,162 @@ Vector3d variances(const Matrix3d& normal) {
     return result;
 }
 
+/// How far a place is from the cone in which a receiver hears, in metres; 0 in it.
+double outsideOf(const Hearing& one, Point3 place) {
+    const Vec3 way = place - one.place;
+    const double distance = length(way), half = 0.5 * one.fov.radians();
+    if (half >= std::numbers::pi || distance == 0) return 0;
+    const double off_axis = std::acos(std::clamp(dot(one.axis, way) / distance, -1.0, 1.0));
+    if (off_axis <= half) return 0;
+    return distance * (off_axis - half < std::numbers::pi / 2 ? std::sin(off_axis - half) : 1);
+}
+
+/// A place that distances may mean.
+struct Candidate {
+    Vector3d x;         ///< from the middle of the receivers
+    double cost;        ///< sum of squared errors of distances
+    Vector3d variance;  ///< for distances with errors of 1
+    double outside;     ///< greatest distance from the cones of the receivers
+};
+
+/// Finds a tag that was heard.
+class Search {
+  public:
+    explicit Search(std::span<const Hearing> heard) : heard_(heard), layout_(layoutOf(heard)) {
+        for (const Hearing& one : heard_) {
+            towards_ += vectorOf(one.axis);
+            distances_.push_back(one.distance);
+            error_ += one.error * one.error / static_cast<double>(heard_.size());
+        }
+        error_ = std::sqrt(error_);
+        const double farthest = *std::max_element(distances_.begin(), distances_.end());
+        rounding_ = kRounding * (layout_.extent() + farthest);
+        fit_ = 1e-3 * rounding_;
+    }
+
+    std::optional<Fix> run() {
+        if (!(layout_.spread[1] > kLine * kLine * layout_.spread[2])) return std::nullopt;
+        findCandidates();
+        std::erase_if(candidates_, [this](const Candidate& one) { return !isHeard(one); });
+        if (candidates_.size() == 2) dropTheWorse();
+        if (candidates_.empty()) return std::nullopt;
+        if (candidates_.size() == 1) return fixOf(candidates_[0], Vector3d::Zero());
+        // The axes of the receivers say which, if they point to a side at all.
+        const double out = std::fabs(towards_.dot(layout_.axes.col(0)));
+        if (out > kAlong * towards_.norm())
+            return fixOf(candidates_[0], ambiguity(candidates_[0], candidates_[1]));
+        if (layout_.spread[0] <= kPlane * kPlane * layout_.spread[2]) return std::nullopt;
+        const std::size_t best = candidates_[0].cost <= candidates_[1].cost ? 0 : 1;
+        return fixOf(candidates_[best], ambiguity(candidates_[best], candidates_[1 - best]));
+    }
+
+  private:
+    /// More standard deviations than ever come up.
+    static constexpr double kClearly = 5;
+    /// Of places, relative to the distances.
+    static constexpr double kRounding = 1e-6;
+    /// Axes of receivers that point less to a side than this share.
+    static constexpr double kAlong = 1e-3;
+
+    [[nodiscard]] Point3 placeOf(const Vector3d& x) const {
+        return layout_.middle + Vec3{x[0], x[1], x[2]};
+    }
+
+    /// The best place on each side of the receivers' plane, that to which they look first.
+    void findCandidates() {
+        const Vector3d normal = layout_.axes.col(0);
+        const bool is_up = towards_.dot(normal) >= 0;
+        std::array<std::optional<Candidate>, 2> best;
+        const auto consider = [&](const Vector3d& start) {
+            const Vector3d x = refine(layout_, distances_, start);
+            const Linearised there = linearise(layout_, distances_, x);
+            std::optional<Candidate>& of_side = best[(x.dot(normal) >= 0) == is_up ? 0 : 1];
+            if (of_side && !(there.cost < of_side->cost)) return;
+            double outside = 0;
+            for (const Hearing& one : heard_)
+                outside = std::max(outside, outsideOf(one, placeOf(x)));
+            of_side = Candidate{x, there.cost, variances(there.normal), outside};
+        };
+        const Starts starts = startsOf(layout_, distances_);
+        for (const Vector3d& start : starts.mirrored) consider(start);
+        if (starts.spatial) consider(*starts.spatial);
+        for (const std::optional<Candidate>& of_side : best)
+            if (of_side) candidates_.push_back(*of_side);
+    }
+
+    /// Of two: that which fits clearly worse, else the only one that lies outside of a cone.
+    void dropTheWorse() {
+        const double clear = kClearly * error_ * kClearly * error_ + fit_ * fit_;
+        const auto fits_worse = [clear](const Candidate& one, const Candidate& other) {
+            return one.cost > 4 * other.cost && one.cost > other.cost + clear;
+        };
+        const auto is_out = [this](const Candidate& one, const Candidate& other) {
+            return one.outside > rounding_ && other.outside <= rounding_;
+        };
+        const Candidate &first = candidates_[0], &second = candidates_[1];
+        const bool drop_first =
+            fits_worse(first, second) || (is_out(first, second) && !fits_worse(second, first));
+        const bool drop_second =
+            fits_worse(second, first) || (is_out(second, first) && !fits_worse(first, second));
+        if (drop_first)
+            candidates_.erase(candidates_.begin());
+        else if (drop_second)
+            candidates_.pop_back();
+    }
+
+    /// True if all cones hold it, as far as errors tell.
+    [[nodiscard]] bool isHeard(const Candidate& candidate) const {
+        const double own = error_ > 0 ? error_ * std::sqrt(candidate.variance.sum()) : 0;
+        return candidate.outside <= kClearly * own + rounding_;
+    }
+
+    /// Squares of how many times an error of the distances becomes the way to the other place,
+    /// along each axis.
+    [[nodiscard]] Vector3d ambiguity(const Candidate& one, const Candidate& other) const {
+        const Vector3d way = other.x - one.x;
+        // A place in the plane is its own image.
+        if (way.norm() <= 4 * rounding_) return Vector3d::Zero();
+        double squares = 0;
+        for (const Vector3d& place : layout_.places) {
+            const double difference = (other.x - place).norm() - (one.x - place).norm();
+            squares += difference * difference;
+        }
+        Vector3d result = Vector3d::Zero();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double share = way[axis] * way[axis];
+            if (share <= 1e-9 * way.squaredNorm()) continue;
+            result[axis] =
+                squares > fit_ * fit_ ? share / squares : std::numeric_limits<double>::infinity();
+        }
+        return result;
+    }
+
+    [[nodiscard]] Fix fixOf(const Candidate& candidate, const Vector3d& more) const {
+        const Vector3d variance = candidate.variance + more;
+        Fix fix;
+        fix.position = placeOf(candidate.x);
+        fix.residual = std::sqrt(candidate.cost / static_cast<double>(heard_.size()));
+        fix.pdop = std::sqrt(variance.sum());
+        fix.hdop = std::sqrt(variance[0] + variance[1]);
+        fix.vdop = std::sqrt(variance[2]);
+        return fix;
+    }
+
+    std::span<const Hearing> heard_;
+    Layout layout_;
+    Vector3d towards_ = Vector3d::Zero();
+    std::vector<double> distances_;
+    double error_ = 0;                   // root mean square of those of the distances
+    double rounding_ = 0;                // of places, in metres
+    double fit_ = 0;                     // of distances to them
+    std::vector<Candidate> candidates_;  // the first on the side to which receivers look
+};
+
 }  // namespace
 
-std::optional<Fix> locate(std::span<const Point3> receivers, std::span<const double> distances,
-                          Vec3 towards) {
-    assert(receivers.size() == distances.size());
-    if (receivers.size() < kLeastReceivers) return std::nullopt;
-    const Layout layout = layoutOf(receivers);
-    if (!(layout.spread[1] > kLine * kLine * layout.spread[2])) return std::nullopt;
-
-    const auto count = static_cast<double>(receivers.size());
-    // The best place on each side of the receivers' plane, that of `towards` first.
-    const Vector3d normal = layout.axes.col(0);
-    const double out = vectorOf(towards).dot(normal);
-    const bool is_flat = layout.spread[0] <= kPlane * kPlane * layout.spread[2];
-    // Which of two mirror images it is nothing tells then.
-    constexpr double kAlong = 1e-3;
-    if (is_flat && std::fabs(out) <= kAlong * vectorOf(towards).norm()) return std::nullopt;
-    const bool is_up = out >= 0;
-    std::array<Vector3d, 2> places;
-    std::array<double, 2> errors{std::numeric_limits<double>::infinity(),
-                                 std::numeric_limits<double>::infinity()};
-    const auto consider = [&](const Vector3d& start) {
-        const Vector3d x = refine(layout, distances, start);
-        const double error = std::sqrt(linearise(layout, distances, x).cost / count);
-        const std::size_t side = (x.dot(normal) >= 0) == is_up ? 0 : 1;
-        if (!(error < errors[side])) return;
-        places[side] = x;
-        errors[side] = error;
-    };
-    const Starts starts = startsOf(layout, distances);
-    for (const Vector3d& start : starts.mirrored) consider(start);
-    if (starts.spatial) consider(*starts.spatial);
-
-    const bool is_far_side = errors[0] > 2 * errors[1] + 1e-9 * layout.extent();
-    const Vector3d& x = places[is_far_side ? 1 : 0];
-    const Vector3d variance = variances(linearise(layout, distances, x).normal);
-    Fix fix;
-    fix.position = layout.middle + Vec3{x[0], x[1], x[2]};
-    fix.residual = errors[is_far_side ? 1 : 0];
-    fix.pdop = std::sqrt(variance.sum());
-    fix.hdop = std::sqrt(variance[0] + variance[1]);
-    fix.vdop = std::sqrt(variance[2]);
-    return fix;
+std::optional<Fix> locate(std::span<const Hearing> heard) {
+    if (heard.size() < kLeastReceivers) return std::nullopt;
+    return Search(heard).run();
 }
 
 }  // namespace ispace

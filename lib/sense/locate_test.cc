@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -23,6 +24,17 @@ std::vector<double> distancesTo(const Points& receivers, Point3 place) {
     distances.reserve(receivers.size());
     for (const Point3 receiver : receivers) distances.push_back(distance(receiver, place));
     return distances;
+}
+
+/// The place by receivers that all have one cone, of half a space unless told otherwise.
+std::optional<Fix> locate(const Points& receivers, const std::vector<double>& distances, Vec3 axis,
+                          double fov = 180, double error = 0) {
+    std::vector<Hearing> heard;
+    const double size = length(axis);
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        heard.push_back({receivers[i], size > 0 ? (1 / size) * axis : axis, Angle::degrees(fov),
+                         distances[i], error});
+    return ispace::locate(heard);
 }
 
 /// A square grid at a ceiling.
@@ -130,7 +142,7 @@ TEST(Locate, ReceiversAnywhereTellTheSideThemselves) {
         }
         const Point3 tag = origin + (random.place({-20, -20, -10}, {20, 20, 10}) - Point3());
         for (const Vec3 towards : {kDown, Vec3{0, 0, 1}}) {
-            const auto fix = locate(receivers, distancesTo(receivers, tag), towards);
+            const auto fix = locate(receivers, distancesTo(receivers, tag), towards, 360);
             ASSERT_TRUE(fix);
             ASSERT_LT(distance(fix->position, tag), 1e-3) << round;
         }
@@ -182,7 +194,7 @@ TEST(Locate, DilutionInClosedForm) {
 TEST(Locate, ResidualInClosedForm) {
     // In the middle of four at once too far or too near, only a wrong length stays.
     const Points receivers{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    const auto fix = locate(receivers, std::vector<double>(6, 1.25), kDown);
+    const auto fix = locate(receivers, std::vector<double>(6, 1.25), kDown, 360);
     ASSERT_TRUE(fix);
     EXPECT_LT(distance(fix->position, {0, 0, 0}), 1e-8);
     EXPECT_NEAR(fix->residual, 0.25, 1e-12);
@@ -196,15 +208,19 @@ struct Errors {
     Fix exact;
 };
 Errors errorsOf(const Points& receivers, Point3 tag, double sigma, int rounds, unsigned seed) {
+    const auto located = [&receivers, sigma](const std::vector<double>& distances) {
+        const bool is_ceiling = receivers[0].z == receivers[1].z;
+        return locate(receivers, distances, kDown, is_ceiling ? 180 : 360, sigma).value();
+    };
     Random random(seed);
     const auto exact = distancesTo(receivers, tag);
     Errors errors;
-    errors.exact = locate(receivers, exact, kDown).value();
+    errors.exact = located(exact);
     Vec3 sum;
     for (int round = 0; round < rounds; ++round) {
         auto noisy = exact;
         for (double& d : noisy) d += sigma * random.normal();
-        const Fix fix = locate(receivers, noisy, kDown).value();
+        const Fix fix = located(noisy);
         const Vec3 error = fix.position - tag;
         errors.across += (error.x * error.x + error.y * error.y) / rounds;
         errors.up += error.z * error.z / rounds;
@@ -250,7 +266,15 @@ TEST(Locate, ACrookedCeilingIsAPlaneAsFarAsNoiseTells) {
     for (int round = 0; round < 1000; ++round) {
         auto distances = distancesTo(receivers, tag);
         for (double& d : distances) d += 0.01 * random.normal();
-        if (locate(receivers, distances, kDown).value().position.z > 2.5) ++above;
+        const Fix fix = locate(receivers, distances, kDown, 360, 0.01).value();
+        if (fix.position.z > 2.5) ++above;
+        // It may as well be above: that a centimetre means so much is told.
+        const Fix sure = locate(receivers, distances, kDown, 180, 0.01).value();
+        EXPECT_EQ(sure.position, fix.position);
+        EXPECT_LT(sure.pdop, 2);
+        EXPECT_GT(fix.pdop, 100);
+        EXPECT_GT(fix.vdop, 100);
+        EXPECT_NEAR(fix.pdop, std::hypot(fix.hdop, fix.vdop), 1e-9 * fix.pdop);
     }
     EXPECT_EQ(above, 0);
 }
@@ -263,7 +287,7 @@ TEST(Locate, NoiseBeyondThePlaneStaysFinite) {
         const Point3 tag = random.place({-1, -1, 2.3}, {3, 3, 2.5});
         auto distances = distancesTo(receivers, tag);
         for (double& d : distances) d = std::max(0.0, d + 0.05 * random.normal());
-        const Fix fix = locate(receivers, distances, kDown).value();
+        const Fix fix = locate(receivers, distances, kDown, 180, 0.05).value();
         ASSERT_LT(distance(fix.position, tag), 1);
         ASSERT_LE(fix.position.z, 2.5 + 1e-6);
         ASSERT_LT(fix.residual, 0.1);
@@ -285,13 +309,69 @@ TEST(Locate, NoiseBeyondThePlaneStaysFinite) {
     }
 }
 
+TEST(Locate, NoPlaceIsBehindReceiversThatAreNearlyInOnePlane) {
+    // One receiver hangs lower by a little, as they do; distances err by a centimetre.
+    constexpr double kSigma = 0.01, kFov = 120;
+    Random random(8);
+    for (const double lower : {0.0, 0.001, 0.01, 0.05}) {
+        Points receivers = ceiling(2, 2, 2, 2.5);
+        receivers[3].z -= lower;
+        int heard = 0, found = 0;
+        for (int round = 0; round < 5000; ++round) {
+            const Point3 tag = random.place({-1, -1, 0}, {3, 3, 2.3});
+            const auto hears = [&](Point3 receiver) {
+                return receiver.z - tag.z >=
+                       distance(receiver, tag) * std::cos(Angle::degrees(60).radians());
+            };
+            if (!std::all_of(receivers.begin(), receivers.end(), hears)) continue;
+            ++heard;
+            auto distances = distancesTo(receivers, tag);
+            for (double& d : distances) d += kSigma * random.normal();
+            const auto fix = locate(receivers, distances, kDown, kFov, kSigma);
+            if (!fix) continue;
+            ++found;
+            EXPECT_LT(fix->position.z, 2.5) << lower << ' ' << round;
+            EXPECT_LT(distance(fix->position, tag), 8 * kSigma * fix->pdop)
+                << lower << ' ' << round;
+        }
+        EXPECT_GT(heard, 1000);
+        EXPECT_EQ(found, heard) << lower;
+    }
+}
+
+TEST(Locate, ConesDecideBetweenMirrorImages) {
+    // All look to the lower image.
+    std::vector<Hearing> heard;
+    const Point3 tag{1, 1, 0.5};
+    for (const Point3 place :
+         {Point3{0, 0, 1}, Point3{2, 0, 1}, Point3{2, 2, 1}, Point3{0, 2, 1}}) {
+        const Vec3 inwards = tag - place;
+        heard.push_back(
+            {place, (1 / length(inwards)) * inwards, Angle::degrees(20), distance(place, tag), 0});
+    }
+    EXPECT_LT(distance(ispace::locate(heard).value().position, tag), 1e-6);
+    // All of space is heard: the axes still say which, and the dilution that they say no more.
+    for (Hearing& one : heard) one.fov = Angle::degrees(360);
+    const Fix fix = ispace::locate(heard).value();
+    EXPECT_LT(distance(fix.position, tag), 1e-6);
+    EXPECT_TRUE(std::isinf(fix.pdop));
+    EXPECT_TRUE(std::isinf(fix.vdop));
+    EXPECT_TRUE(std::isfinite(fix.hdop));
+    // Neither image is heard.
+    for (Hearing& one : heard) {
+        one.axis = {0, 0, 1};
+        one.fov = Angle::degrees(20);
+    }
+    EXPECT_FALSE(ispace::locate(heard));
+}
+
 TEST(Locate, AxesAlongTheReceiversPlaneTellNoSide) {
     const std::vector<Point3> receivers = {{0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
     const Point3 tag{0.5, 0.7, 0.4};
     std::vector<double> distances;
     for (const Point3& receiver : receivers) distances.push_back(length(tag - receiver));
-    EXPECT_FALSE(locate(receivers, distances, {1, 0, 0}));
-    EXPECT_FALSE(locate(receivers, distances, {}));
+    EXPECT_FALSE(locate(receivers, distances, {1, 0, 0}, 360));
+    EXPECT_FALSE(locate(receivers, distances, {}, 360));
     EXPECT_NEAR(locate(receivers, distances, {0, 0, -1})->position.z, 0.4, 1e-9);
     EXPECT_NEAR(locate(receivers, distances, {0, 0, 1})->position.z, 1.6, 1e-9);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "base/random.h"
@@ -86,21 +87,24 @@ std::optional<double> distanceHeard(const RayWorld& environment, const MovingBod
     return static_cast<double>(range);
 }
 
+/// About what a distance errs by.
+double errorOf(const RangeNoise& noise, double distance) {
+    const auto& [s0, s1, s2] = noise.sigma;
+    const double sigma = std::max(0.0, s0 + distance * (s1 + distance * s2));
+    return std::hypot(sigma, noise.bias, noise.resolution);
+}
+
 std::optional<Fix> fixOf(std::span<const TimeOfFlight> heard,
-                         std::span<const PlacedReceiver> receivers) {
-    std::vector<Point3> places;
-    std::vector<double> distances;
-    places.reserve(heard.size());
-    distances.reserve(heard.size());
-    Vec3 towards;
+                         std::span<const PlacedReceiver> receivers, bool has_noise) {
+    std::vector<Hearing> hearings;
+    hearings.reserve(heard.size());
     for (const TimeOfFlight& flight : heard) {
-        const Pose3& pose = receivers[flight.receiver].pose;
-        const Vec3 axis = pose.beam({});
-        towards = {towards.x + axis.x, towards.y + axis.y, towards.z + axis.z};
-        places.push_back(pose.position);
-        distances.push_back(flight.distance);
+        const PlacedReceiver& placed = receivers[flight.receiver];
+        const double error = has_noise ? errorOf(placed.receiver.noise, flight.distance) : 0;
+        hearings.push_back({placed.pose.position, placed.pose.beam({}), placed.receiver.fov,
+                            flight.distance, error});
     }
-    return locate(places, distances, towards);
+    return locate(hearings);
 }
 
 /// Eq. (3.7)-(3.10) of the thesis, whose floor is x-z.
@@ -135,7 +139,7 @@ Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const P
     if (tag.tag.is_simple) {
         burst.simple = simplePlace(tag, frame, options.noise_seed);
     } else {
-        burst.fix = fixOf(burst.heard, receivers);
+        burst.fix = fixOf(burst.heard, receivers, options.noise_seed.has_value());
     }
     return burst;
 }

@@ -28,23 +28,38 @@ struct Fix {
     Point3 position;
     double residual = 0;  ///< root mean square of measured less computed distances, metres
     /// Dilution of precision: how many times the error of a distance becomes that of the place, in
-    /// space, across the floor and upright; sqrt of the trace of (J^T J)^-1 and of its parts.
+    /// space, across the floor and upright; sqrt of the trace of (J^T J)^-1 and of its parts. Where
+    /// the distances leave two places (mirror images), with the way to the other one over what
+    /// distances to the two differ by, squared and added: +infinity where they do not differ.
     double pdop = 0, hdop = 0, vdop = 0;
 };
 
 /// Least receivers for a fix (thesis 3.4.3).
 constexpr std::size_t kLeastReceivers = 4;
 
+/// What a receiver knows that heard a burst.
+struct Hearing {
+    Point3 place;         ///< of the receiver
+    Vec3 axis;            ///< of the cone in which it hears, of unit length
+    Angle fov;            ///< full angle of the cone
+    double distance = 0;  ///< measured
+    double error = 0;     ///< standard deviation of that; 0: exact
+};
+
 /// The place whose distances to the receivers fit best: Gauss-Newton (Levenberg-Marquardt) from the
-/// linear solution; of the two mirror images of receivers in one plane (a ceiling) the one on the
-/// side that `towards` points to, on average the axes of the receivers. So it is for receivers
-/// nearly in one plane, unless the other side fits clearly better. Nothing with fewer than
-/// kLeastReceivers, where they do not fix a place (in one line), or where `towards` runs along the
-/// one plane they are in, which leaves both images. A place in the plane of the
+/// linear solution, on each side of the plane that fits the receivers best. Receivers near one
+/// plane (a ceiling) leave two mirror images. Of the two places
+/// - one that lies outside of a receiver's cone, by more than five times its own error, is none;
+/// - one that fits clearly worse, by more than five standard deviations, is none;
+/// - one within all cones goes before one that is not;
+/// - and if both are, that on the side to which the axes of the receivers point on average is
+///   taken, and the dilution of precision tells that there is another.
+///
+/// Nothing with fewer than kLeastReceivers, where they do not fix a place (in one line), where no
+/// place is left, or where two are and the axes point along the plane. A place in the plane of the
 /// receivers has a dilution of precision beyond all bounds across that plane, which may be
-/// +infinity. \pre as many distances as receivers, all finite
-std::optional<Fix> locate(std::span<const Point3> receivers, std::span<const double> distances,
-                          Vec3 towards);
+/// +infinity. \pre distances are finite
+std::optional<Fix> locate(std::span<const Hearing> heard);
 
 /// One burst of a tag.
 struct Burst {
