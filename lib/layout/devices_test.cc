@@ -66,6 +66,16 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
     EXPECT_EQ(testing::devices().find("nothing"), nullptr);
 }
 
+TEST(Devices, FiguresThatWereMisreadOnce) {
+    const auto laser = [](const std::string& model) {
+        const Record record = readRecord("laser model=" + model, "line", sceneSchemas());
+        return laserOf(record, testing::devices());
+    };
+    // Webots tells noise as a share of the greatest range: 0.0043 of 3.5 m.
+    EXPECT_NEAR(laser("lds-01").noise.sigma[0], 0.0043 * 3.5, 1e-4);
+    EXPECT_EQ(laser("lds-01").noise.sigma[1], 0);
+}
+
 TEST_F(DeviceFolder, ReadsFilesInOrderOfNamesAndNothingElse) {
     write("b.3dm", "laser model=two" + kTail);
     write("a.3dm", "laser model=three range=2" + kTail + "laser model=one" + kTail);
