@@ -177,6 +177,18 @@ TEST(ExactCoverage, ClosedForms) {
     const CoverageReport disc = report("ispace size=12,12\nlaser at=0,0 range=4 fov=360\n");
     EXPECT_NEAR(*disc.sensors[0].area.exact, 16 * kPi, 1e-9);
     EXPECT_NEAR(*disc.coverage.exact, 16 * kPi / 144, 1e-7);
+    // Beams that close the circle leave no wedge, level or not, nor between cells.
+    for (const char* const laser : {"first=0 beams=360", "first=-180 beams=800 step=0.45"}) {
+        const std::string beams = std::string(" range=4 ") + laser + "\n";
+        const CoverageReport around = report("ispace size=12,12\nlaser at=0,0" + beams);
+        EXPECT_NEAR(*around.sensors[0].area.exact, 16 * kPi, 1e-9) << laser;
+        EXPECT_EQ(around.coverage.grid, disc.coverage.grid) << laser;
+        const CoverageReport tilted = report("ispace size=12,12,9\nlaser at=0,0,4 tilt=30" + beams);
+        EXPECT_NEAR(*tilted.sensors[0].area.exact, 16 * kPi * std::sqrt(0.75), 1e-3) << laser;
+        const CoverageReport full =
+            report("ispace size=12,12,9\nlaser at=0,0,4 tilt=30 range=4 fov=360\n");
+        EXPECT_EQ(tilted.coverage.grid, full.coverage.grid) << laser;
+    }
     // Two discs of radius 2, their middles 2 apart: the lens has 2 r2 acos(d/2r) - d/2
     // sqrt(4r2-d2).
     const CoverageReport two =

@@ -85,7 +85,7 @@ class Fan {
 std::optional<FanArc> fanArc(const Laser& laser, Angle heading) {
     // Larger angles round by more than change() looks for.
     constexpr double kLargest = 1e6;
-    if (seesAround(laser) ||
+    if (laser.seesAround() ||
         std::abs(heading.degrees()) + std::abs(laser.first.degrees()) > kLargest)
         return {};
     const FanLimits limits = fanLimits(laser, heading);
@@ -96,10 +96,6 @@ std::optional<FanArc> fanArc(const Laser& laser, Angle heading) {
     const std::optional<Angle> beyond = fan.change(limits.first + limits.span + slack, false);
     if (!beyond) return {};
     return FanArc{*first, *beyond};
-}
-
-bool seesAround(const Laser& laser) {
-    return fanLimits(laser, {}).span >= Angle::degrees(360 - kSlack / 2);
 }
 
 }  // namespace ispace

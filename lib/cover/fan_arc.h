@@ -22,7 +22,4 @@ struct FanArc {
 /// change from 180 to -180 degrees. O(1), some tens of evaluations.
 std::optional<FanArc> fanArc(const Laser& laser, Angle heading);
 
-/// True if it sees in all directions, whatever it faces.
-bool seesAround(const Laser& laser);
-
 }  // namespace ispace

@@ -110,13 +110,13 @@ TEST(FanArc, SidesThatMeetButForRoundings) {
 TEST(FanArc, NoneOfWholeTurnsAndWhereItIsTorn) {
     for (const double span : {360.0, 360 - 1e-10}) {
         const Laser laser = fanOf(-180, span);
-        EXPECT_TRUE(seesAround(laser));
+        EXPECT_TRUE(laser.seesAround());
         EXPECT_FALSE(fanArc(laser, Angle()).has_value());
     }
-    EXPECT_FALSE(seesAround(fanOf(-180, 360 - 1e-8)));
+    EXPECT_FALSE(fanOf(-180, 360 - 1e-8).seesAround());
     EXPECT_TRUE(fanArc(fanOf(-180, 360 - 1e-8), Angle()).has_value());
     // Too narrow a gap to look for its sides, and too large an angle.
-    EXPECT_FALSE(seesAround(fanOf(-180, 360 - 1.5e-9)));
+    EXPECT_FALSE(fanOf(-180, 360 - 1.5e-9).seesAround());
     EXPECT_FALSE(fanArc(fanOf(-180, 360 - 1.5e-9), Angle()).has_value());
     EXPECT_FALSE(fanArc(laserWith(4, -90, 180), Angle::degrees(1e7)).has_value());
     // Its end is at 180 degrees, where differences round in another way than at -180.

@@ -34,8 +34,8 @@ double cosineOfHalf(Angle span) { return span >= Angle::degrees(360) ? -1 : cos(
 }  // namespace
 
 BearingWindow::BearingWindow(const Laser& laser, Angle more)
-    : middle(unitVector(0.5 * (laser.first + laser.last() + more))),
-      cosine(cosineOfHalf(laser.last() - laser.first + std::max(more, -more))) {}
+    : middle(unitVector(laser.first + 0.5 * (laser.span() + more))),
+      cosine(cosineOfHalf(laser.span() + std::max(more, -more))) {}
 
 bool BearingWindow::holds(Vec3 local) const {
     const double distance = std::sqrt(local.x * local.x + local.y * local.y);

@@ -54,7 +54,7 @@ CellSet cellsOfFan(const CellParts& parts, const std::vector<Angle>& limits, con
                    double heading, std::size_t cells) {
     const std::optional<FanArc> arc = fanArc(laser, Angle::degrees(heading));
     if (!arc) {
-        EXPECT_TRUE(seesAround(laser));
+        EXPECT_TRUE(laser.seesAround());
         return cellsOf(parts, 0, parts.size(), cells);
     }
     const std::size_t begin = indexOf(limits, arc->first), end = indexOf(limits, arc->beyond);

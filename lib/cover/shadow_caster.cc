@@ -138,8 +138,7 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
     if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
     const VisibilityMap map(lines);
     const VisibleRegion seen = map.look({0, 0}, laser.max_range);
-    const Curve curve =
-        onPlan(outlineOf(sectorOf(seen, laser.first, laser.last() - laser.first)), plane);
+    const Curve curve = onPlan(outlineOf(sectorOf(seen, laser.first, laser.span())), plane);
     if (curve.empty()) return std::vector<Curve>{};
     const Point2 foot = sensor.pose.position.onFloor();
     if (is_over_floor) return std::vector<Curve>{movedBy(foot - Point2{}, curve)};

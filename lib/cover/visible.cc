@@ -48,12 +48,14 @@ class FanFilter {
         // The lesser of the fan and the gap beside it is convex.
         from_ = unitVector(is_gap_ ? last : limits.first);
         to_ = unitVector(is_gap_ ? limits.first : last);
+        is_whole_ = limits.span >= Angle::degrees(360);
         is_line_ = limits.span >= Angle::degrees(360 - 1e-3) || limits.span <= Angle::degrees(1e-3);
     }
     enum class Answer { Yes, No, Unsure };
     [[nodiscard]] Answer operator()(Vec2 offset) const {
         constexpr double kMargin = 1e-6;  // radians: far more than what rounds
         const double margin = kMargin * (std::abs(offset.x) + std::abs(offset.y));
+        if (is_whole_) return Answer::Yes;
         if (is_line_) return Answer::Unsure;
         const double left = cross(from_, offset), right = cross(offset, to_);
         if (left > margin && right > margin) return is_gap_ ? Answer::No : Answer::Yes;
@@ -63,7 +65,7 @@ class FanFilter {
 
   private:
     Vec2 from_, to_;
-    bool is_gap_ = false, is_line_ = false;
+    bool is_gap_ = false, is_line_ = false, is_whole_ = false;
 };
 
 }  // namespace
@@ -74,12 +76,7 @@ bool scansSlice(const PlacedLaser& sensor) {
 }
 
 FanLimits fanLimits(const Laser& laser, Angle heading) {
-    Angle span = laser.last() - laser.first;
-    if (laser.sweep == SweepAxis::Heading)
-        span = laser.sweep_span >= Angle::degrees(360)
-                   ? laser.sweep_span
-                   : span + static_cast<double>(laser.scans() - 1) * laser.sweep_step;
-    return {heading + laser.first, std::min(span, Angle::degrees(360))};
+    return {heading + laser.first, laser.sweptSpan()};
 }
 
 std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
@@ -146,8 +143,7 @@ CellSet cellsAmongBeams(const Grid& grid, const PlacedLaser& sensor, std::span<c
         const Vec3 beam = sensor.pose.beam(sensor.laser.bearing(static_cast<int>(k)));
         outline.push_back((origin + range * beam).onFloor());
     }
-    const Angle span = sensor.laser.last() + sensor.laser.step - sensor.laser.first;
-    if (span < Angle::degrees(360 - 1e-9)) outline.push_back(origin.onFloor());
+    if (sensor.laser.span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
     const std::vector<Polygon> curves = {std::move(outline)};
     return cellsWithin(grid, curves);
 }

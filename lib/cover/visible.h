@@ -14,8 +14,7 @@ namespace ispace {
 /// vertical if it sweeps. Others are a matter of plane_view.h.
 bool scansSlice(const PlacedLaser& sensor);
 
-/// The directions that a laser sees as it stands: from its first beam to its last, in a sweep of
-/// headings on to the last of the last scan and, if it goes all around, on to the first again.
+/// The directions that a laser sees as it stands: those of Laser::sweptSpan().
 struct FanLimits {
     Angle first;  ///< in the world
     Angle span;   ///< at most a full turn

@@ -32,7 +32,7 @@ View viewOf(const Scene& scene, const Placed& placed) {
     const Record& record = scene.records[placed.record];
     if (record.keyword() == "laser") {
         const Laser& laser = scene.lasers[placed.index].laser;
-        return {laser.first, laser.last(), laser.max_range};
+        return {laser.first, laser.first + laser.span(), laser.max_range};
     }
     const auto about = [](Angle span, double range) {
         return View{-0.5 * span, 0.5 * span, range};

@@ -31,7 +31,7 @@ void describe(const Record& device, Row& row) {
     if (kind == "laser") {
         const Laser laser = withFigures(Laser(), device);
         range = limitsText(laser.min_range, laser.max_range);
-        fov = degreesText(laser.last() - laser.first);
+        fov = degreesText(laser.span());
         size = std::to_string(laser.beams);
         rate = formatDouble(laser.rate);
     } else if (kind == "ranger") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/laser.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/number.h"
@@ -14,6 +15,8 @@ namespace {
 /// Slack of divisions and comparisons in degrees: fov=0.3 step=0.1 are four beams, not three.
 constexpr double kSlack = 1e-9;
 
+constexpr Angle kTurn = Angle::degrees(360);
+
 /// Numbers of beams within a span, both ends included; a double as it may be huge.
 double beamsWithin(double span, double step) { return std::floor(span / step + kSlack) + 1; }
 
@@ -26,6 +29,7 @@ double scansWithin(const Laser& laser) {
 void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
     const bool fov = record.has("fov"), step = record.has("step"), beams = record.has("beams");
     const double old_span = (laser.last() - laser.first).degrees();
+    const bool was_closed = laser.span() >= kTurn && old_span < 360 - kSlack;
     double count = laser.beams;
     if (step) laser.step = record.angle("step");
     // Beams spread over a field of view.
@@ -35,7 +39,8 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
         laser.first = -0.5 * record.angle("fov");
         count = beamsWithin(record.number("fov"), laser.step.degrees());
     } else if (step) {
-        count = beamsWithin(old_span, laser.step.degrees());
+        count = was_closed ? std::ceil(360 / laser.step.degrees() - kSlack)
+                           : beamsWithin(old_span, laser.step.degrees());
     }
     if (record.has("first")) laser.first = record.angle("first");
     if (beams) {
@@ -111,10 +116,28 @@ double Laser::timeOf(int beam) const {
 
 double Laser::duration() const { return timeOf(spin > 0 ? beams - 1 : 0); }
 
+Angle Laser::span() const {
+    constexpr double kWidestGap = 1.01;  // in steps
+    const Angle beside = last() - first;
+    const bool is_closed = beams > 2 && kTurn - beside <= kWidestGap * step;
+    return is_closed ? kTurn : beside;
+}
+
+Angle Laser::sweptSpan() const {
+    if (sweep != SweepAxis::Heading) return span();
+    if (sweep_span >= kTurn) return kTurn;
+    return std::min(span() + static_cast<double>(scans() - 1) * sweep_step, kTurn);
+}
+
+bool Laser::seesAround() const {
+    return (sweep == SweepAxis::None || sweep == SweepAxis::Heading) &&
+           sweptSpan() >= Angle::degrees(360 - kSlack / 2);
+}
+
 bool Laser::sees(Angle bearing) const {
     double beyond_first = std::fmod((bearing - first).degrees(), 360.0);
     if (beyond_first < 0) beyond_first += 360;
-    return beyond_first <= (last() - first).degrees() + kSlack || beyond_first >= 360 - kSlack;
+    return beyond_first <= span().degrees() + kSlack || beyond_first >= 360 - kSlack;
 }
 
 Laser withFigures(Laser base, const Record& record) {

@@ -44,7 +44,17 @@ struct Laser {
 
     [[nodiscard]] Angle bearing(int beam) const { return first + static_cast<double>(beam) * step; }
     [[nodiscard]] Angle last() const { return bearing(beams - 1); }
-    /// True if a direction at `bearing` (any turn) lies between first and last beam, ends included
+    /// The sector that a scan looks into, counter-clockwise from `first`: up to the last beam, or a
+    /// full turn if the beams close the circle. They do if beams * step reaches 360 degrees, give
+    /// or take a hundredth of a step: last and first beam then are neighbours as any others. Two
+    /// beams close none.
+    [[nodiscard]] Angle span() const;
+    /// The sector that a level laser looks into with its sweep of headings; at most a full turn.
+    [[nodiscard]] Angle sweptSpan() const;
+    /// True if a level laser looks in all directions, so that its heading does not matter; never if
+    /// it nods or rolls.
+    [[nodiscard]] bool seesAround() const;
+    /// True if a direction at `bearing` (any turn) lies in the sector of a scan, ends included
     /// (within 1e-9 degrees).
     [[nodiscard]] bool sees(Angle bearing) const;
     /// Scans of a sweep; 1 without.
@@ -78,10 +88,10 @@ Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor)
 /// Figures of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
 /// of them, or explicit `beams` spread over it; an explicit `step` alone keeps the model's first
-/// beam and span; `first` alone keeps number and step; `beams` alone keeps first beam and step. One
-/// number in `range` is the maximum. An explicit `rate` alone lets a model's beam spin faster or
-/// slower with it. \throws FormatError with all findings: an unknown model (with the nearest name),
-/// min above max,
+/// beam and span (or full turn); `first` alone keeps number and step; `beams` alone keeps first
+/// beam and step. One number in `range` is the maximum. An explicit `rate` alone lets a model's
+/// beam spin faster or slower with it. \throws FormatError with all findings: an unknown model
+/// (with the nearest name), min above max,
 ///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
 ///         a scan that takes longer than the next is due
 Laser laserOf(const Record& record, const DeviceCatalogue& devices);

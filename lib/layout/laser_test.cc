@@ -132,6 +132,43 @@ TEST(LaserOf, BeamErrors) {
     EXPECT_EQ(std::count(both.begin(), both.end(), '\n'), 2);
 }
 
+TEST(Laser, BeamsWhoseStepsReachATurnCloseTheCircle) {
+    for (const char* const keys :
+         {"model=lds-01", "model=rplidar-a1", "model=rplidar-a2", "model=rplidar-a3", "fov=360",
+          "fov=360 step=0.25", "fov=360 step=0.7", "first=-180 beams=360", "first=17 beams=360",
+          "first=0 beams=1080 step=0.3333333333333333", "first=0 beams=1080 step=0.333333",
+          "first=-180 beams=3 step=120", "model=lds-01 step=0.5", "model=rplidar-a2 step=1",
+          "model=lds-01 first=-90"}) {
+        const Laser round = laser(keys);
+        EXPECT_TRUE(round.seesAround()) << keys;
+        EXPECT_EQ(round.span(), Angle::degrees(360)) << keys;
+        for (const double bearing : {-180.0, -179.5, 0.0, 179.99, 359.5})
+            EXPECT_TRUE(round.sees(Angle::degrees(bearing))) << keys << ' ' << bearing;
+        EXPECT_LE((round.last() - round.first).degrees(), 360 + 1e-9) << keys;
+    }
+    EXPECT_EQ(laser("model=lds-01 step=0.5").beams, 720);
+    EXPECT_EQ(laser("model=lds-01 step=0.7").beams, 515);
+    for (const char* const keys : {"", "fov=358", "fov=359 step=0.5", "first=0 beams=359",
+                                   "model=utm-30lx", "fov=180 step=180", "first=0 beams=1",
+                                   "model=lds-01 fov=300", "model=lds-01 beams=300"}) {
+        const Laser open = laser(keys);
+        EXPECT_FALSE(open.seesAround()) << keys;
+        EXPECT_EQ(open.span(), open.last() - open.first) << keys;
+        EXPECT_FALSE(open.sees(open.first - Angle::degrees(0.5))) << keys;
+    }
+}
+
+TEST(Laser, ASweepOfHeadingsMayLookAroundToo) {
+    EXPECT_TRUE(laser("sweep=heading").seesAround());
+    EXPECT_EQ(laser("sweep=heading").span(), Angle::degrees(180)) << "of one scan";
+    EXPECT_EQ(laser("sweep=heading sweep_span=90").sweptSpan(), Angle::degrees(270));
+    EXPECT_FALSE(laser("sweep=heading sweep_span=90").seesAround());
+    EXPECT_TRUE(laser("sweep=heading sweep_span=180").seesAround());
+    EXPECT_TRUE(laser("fov=360 sweep=heading sweep_span=90").seesAround());
+    // A heading matters to what nods.
+    EXPECT_FALSE(laser("fov=360 sweep=tilt").seesAround());
+}
+
 TEST(LaserOf, ModelGivesTheFiguresAndExplicitKeysWin) {
     const Laser urg = laser("model=urg-04lx");
     EXPECT_EQ(urg.model, "urg-04lx");

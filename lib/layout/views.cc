@@ -45,7 +45,7 @@ struct Limits {
 
 Mesh fanOf(const Laser& laser, Limits limits) {
     Mesh mesh{Material::View, {}, {}, true};
-    const Angle span = laser.last() - laser.first;
+    const Angle span = laser.span();
     addSheet(mesh, piecesOf(span), 1, [&](double u, double v) {
         return (limits.near + v * (limits.far - limits.near)) *
                directionOf(laser.first + u * span, {});
@@ -57,7 +57,7 @@ Mesh fanOf(const Laser& laser, Limits limits) {
 Mesh sweptOf(const PlacedLaser& sensor, Limits limits) {
     const Laser& laser = sensor.laser;
     Mesh mesh{Material::View, {}, {}, true};
-    const Angle span = laser.last() - laser.first;
+    const Angle span = laser.span();
     const Frame3 frame(sensor.pose);
     addSheet(mesh, piecesOf(span), piecesOf(laser.sweep_span), [&](double u, double v) {
         const double scans = v * (laser.sweep_span.degrees() / laser.sweep_step.degrees());

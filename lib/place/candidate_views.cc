@@ -36,7 +36,7 @@ struct Fans {
 
     Fans(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
         ranges.resize(headings.size());
-        if (seesAround(laser)) return;
+        if (laser.seesAround()) return;
         std::vector<FanArc> arcs;
         arcs.reserve(headings.size());
         for (const Angle heading : headings) {
@@ -114,7 +114,7 @@ bool looksRound(const SensorDevice& device, const Pose3& mount) {
         return ranger->projection == Projection::Spherical &&
                ranger->fov_x >= Angle::degrees(360) && mount.isLevel();
     return scansSlice(PlacedLaser{"", std::get<Laser>(device), mount}) &&
-           seesAround(std::get<Laser>(device));
+           std::get<Laser>(device).seesAround();
 }
 
 }  // namespace

@@ -372,7 +372,7 @@ bool ExactWorth::turns(std::size_t sensor) const {
     const Movable& movable = data_->movables[sensor];
     const bool level = movable.pose.isLevel();
     if (const auto* laser = std::get_if<Laser>(&movable.device))
-        return !level || fanLimits(*laser, Angle()).span < Angle::degrees(360);
+        return !level || !laser->seesAround();
     if (const auto* ranger = std::get_if<Ranger>(&movable.device))
         return !level || ranger->projection != Projection::Spherical ||
                ranger->fov_x < Angle::degrees(360);

@@ -203,12 +203,14 @@ TEST(ExactWorth, WholeTurnsDoNotTurn) {
     Ranger head;
     head.projection = Projection::Spherical;
     head.fov_x = Angle::degrees(360);
-    const std::vector<Movable> movables = {at("w", whole, 0, 0, 0), at("v", whole, 0, 0, 0, 1, -20),
-                                           at("h", laserOfRange(4, 359), 0, 0, 0),
+    const std::vector<Movable> movables = {at("w", whole, 0, 0, 0),
+                                           at("v", whole, 0, 0, 0, 1, -20),
+                                           at("h", laserOfRange(4, 358), 0, 0, 0),
+                                           at("c", laserOfRange(4, 359), 0, 0, 0),
                                            at("r", head, 1, 1, 0, 1),
                                            at("p", Ranger(), 1, 1, 0, 2, -90)};
     const ExactWorth worth(sceneOf(kRoom), movables, {}, {});
-    const std::vector<bool> turns = {false, true, true, false, true};
+    const std::vector<bool> turns = {false, true, true, false, false, true};
     for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(worth.turns(i), turns[i]) << i;
 }
 

@@ -46,14 +46,9 @@ struct Layout {
     }
 };
 
-/// Of a laser that looks all around no beam stands for both ends.
-bool looksAround(const Laser& laser) {
-    return (laser.last() - laser.first + laser.step).degrees() >= 360 - 1e-6;
-}
-
 void drawView(Canvas& canvas, const Laser& laser, double extent) {
-    const Angle from = onPage(laser.first), to = onPage(laser.last());
-    if (looksAround(laser)) {
+    const Angle from = onPage(laser.first), to = onPage(laser.first + laser.span());
+    if (laser.span() >= Angle::degrees(360)) {
         canvas.fillCircle({}, extent, kView);
         return;
     }
@@ -124,7 +119,7 @@ std::string subtitle(const Laser& laser, const Scan& scan) {
                                     [](float range) { return std::isfinite(range); });
     std::string text = std::to_string(hits);
     text.append(" of ").append(std::to_string(scan.ranges.size())).append(" beams return · ");
-    text.append(degrees(looksAround(laser) ? Angle::degrees(360) : laser.last() - laser.first));
+    text.append(degrees(laser.span()));
     text.append(" field of view · ");
     return text.append("range ")
         .append(metres(laser.min_range))
