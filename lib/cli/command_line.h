@@ -135,10 +135,17 @@ class ThreadLimit {
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
 std::string shareFolder();
 
-/// Format of a product: `to` if given, else the suffix of `output` (in any case) if it is one of
-/// `known`, else the first of `known`. \throws UsageError for the suffix of another format
-std::string outputFormat(const std::string& to, const std::string& output,
-                         const std::vector<std::string>& known);
+/// The usual suffix of a format of another name: {"log", "carmen"}; "": it has none.
+struct SuffixOf {
+    std::string suffix, format;
+};
+
+/// Format of a product: `to` if given, else the one whose name or usual suffix `output` ends with,
+/// in any case, else, where that has no suffix, the first of `known`.
+/// \param to nothing for a tool without --to \throws UsageError for any other suffix
+std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
+                         const std::vector<std::string>& known,
+                         const std::vector<SuffixOf>& others = {});
 
 /// Refuses binary data for a terminal. \throws UsageError
 void refuseTerminal(const std::string& output, const std::string& what);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -200,15 +201,40 @@ TEST(IsStream, KnowsWhatCannotBeReadAgain) {
 }
 
 TEST(OutputFormat, IsToldByOptionThenSuffixThenDefault) {
-    const std::vector<std::string> known{"glb", "env"};
+    const std::vector<std::string> known{"glb", "env", "yaml"};
     EXPECT_EQ(outputFormat("", "x.ENV", known), "env");
+    EXPECT_EQ(outputFormat("", "x.yml", known), "yaml");
     EXPECT_EQ(outputFormat("glb", "x.csv", known), "glb");
-    for (const char* other : {"x.csv", "x.png", "x.yaml"})
-        EXPECT_THROW(outputFormat("", other, known), UsageError) << other;
+    EXPECT_EQ(outputFormat("glb", "x.mcap", known), "glb");
     EXPECT_EQ(outputFormat("env", "x.glb", known), "env");
-    EXPECT_EQ(outputFormat("", "x.env", known), "env");
-    EXPECT_EQ(outputFormat("", "x.txt", known), "glb");
-    EXPECT_EQ(outputFormat("", "-", known), "glb");
+    for (const char* plain : {"-", "x", "x.", ".glb", "out.d/x", "/dev/stdout", "/dev/null"})
+        EXPECT_EQ(outputFormat("", plain, known), "glb") << plain;
+    const std::filesystem::path folder = testing::TempDir() + "/readings.d";
+    std::filesystem::create_directory(folder);
+    EXPECT_EQ(outputFormat("", folder.string(), known), "glb");
+}
+
+TEST(OutputFormat, RefusesASuffixThatNoFormatHas) {
+    const std::vector<std::string> known{"png", "ros", "carmen"};
+    const std::vector<SuffixOf> others{{"", "ros"}, {"log", "carmen"}};
+    EXPECT_EQ(outputFormat({}, "x.log", known, others), "carmen");
+    EXPECT_EQ(outputFormat({}, "x.carmen", known, others), "carmen");
+    EXPECT_EQ(outputFormat({}, "x.ros", known, others), "ros");
+    for (const char* other : {"x.csv", "x.mcap", "x.sdf", "x.foo", "x.png.gz", "x.yaml", "x.5"})
+        EXPECT_THROW(outputFormat({}, other, known, others), UsageError) << other;
+    const auto message = [&](const std::optional<std::string>& to, const char* output) {
+        try {
+            outputFormat(to, output, known, others);
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(message({}, "a/x.mcap"),
+              "a/x.mcap: no format has the suffix `.mcap`, wanted .png or .log");
+    EXPECT_EQ(message("", "x.pgn"),
+              "x.pgn: no format has the suffix `.pgn`, wanted .png or .log, or --to FORMAT, did "
+              "you mean `.png`?");
 }
 
 TEST(RunTool, ChoosesTheExitStatus) {

@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/suggest.h"
 #include "base/utf8.h"
 #include "cli/command_line.h"
 
@@ -86,27 +86,48 @@ std::string shareFolder() {
     return (program.parent_path().parent_path() / "share" / "ispace").string();
 }
 
-std::string outputFormat(const std::string& to, const std::string& output,
-                         const std::vector<std::string>& known) {
-    if (!to.empty()) return to;
+namespace {
+
+/// Without its dot, in lower case; "" for streams, folders and names without one.
+std::string suffixOf(const std::string& output) {
+    std::error_code ignored;
+    if (output == "-" || std::filesystem::is_directory(output, ignored)) return "";
     std::string suffix = std::filesystem::path(output).extension().string();
+    if (suffix.starts_with('.')) suffix.erase(0, 1);
     for (char& c : suffix)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (suffix == ".yml") suffix = ".yaml";
-    for (const std::string& format : known)
-        if (suffix == '.' + format) return format;
-    // A suffix that names another format is a mistake, not a wish for the default.
-    constexpr const char* kOthers[] = {
-        ".glb",  ".env",  ".3dm", ".yaml", ".yml",  ".json", ".jsonl", ".csv",     ".png", ".svg",
-        ".pdf",  ".html", ".obj", ".stl",  ".ply",  ".pcd",  ".pgm",   ".geojson", ".dxf", ".jpg",
-        ".jpeg", ".bmp",  ".gif", ".tif",  ".tiff", ".ps",   ".eps",   ".map",     ".3ds", ".dae",
-        ".fbx",  ".gltf", ".zip", ".dwg",  ".step", ".ifc",  ".blend"};
-    if (std::find(std::begin(kOthers), std::end(kOthers), suffix) != std::end(kOthers)) {
-        std::string list;
-        for (const std::string& format : known) list += (list.empty() ? "" : ", ") + format;
-        throw UsageError(output + ": " + suffix.substr(1) + " is not written here; known: " + list);
+    return suffix == "yml" ? "yaml" : suffix;
+}
+
+/// "a, b or c"
+std::string listOf(const std::vector<std::string>& words) {
+    std::string list;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) list += i + 1 == words.size() ? " or " : ", ";
+        list += words[i];
     }
-    return known.front();
+    return list;
+}
+
+}  // namespace
+
+std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
+                         const std::vector<std::string>& known,
+                         const std::vector<SuffixOf>& others) {
+    if (to && !to->empty()) return *to;
+    const std::string suffix = suffixOf(output);
+    if (suffix.empty()) return known.front();
+    std::vector<std::string> wanted;
+    for (const std::string& format : known) {
+        const auto other = std::find_if(others.begin(), others.end(),
+                                        [&](const SuffixOf& o) { return o.format == format; });
+        const std::string& usual = other == others.end() ? format : other->suffix;
+        if (suffix == format || suffix == usual) return format;
+        if (!usual.empty()) wanted.push_back('.' + usual);
+    }
+    throw UsageError(output + ": no format has the suffix " + excerpt('.' + suffix) + ", wanted " +
+                     listOf(wanted) + (to ? ", or --to FORMAT" : "") +
+                     didYouMean('.' + suffix, wanted));
 }
 
 void refuseTerminal(const std::string& output, const std::string& what) {

@@ -18,6 +18,12 @@ for tool in $tools; do
     expect_error 2 "$tool" "$data/room.env" --threads many
     expect_error 2 "$tool" "$data/room.env" --threads -1
     expect_error 2 "$tool" "$data/room.env" --output
+    # A suffix that no format has is a slip, whatever else it may be the suffix of.
+    for suffix in mcap sdf foo; do
+        [ "$tool" = simrun ] && continue # has no -o
+        expect_error 2 "$tool" "$data/room.env" "${extra[@]}" -o "out.$suffix"
+        grep -q "suffix .\.$suffix., wanted \." err || fail "$tool does not name formats: $(cat err)"
+    done
     expect_error 2 "$tool" - - "${extra[@]}"
     # envc joins any number of inputs.
     [ "$tool" = envc ] || expect_error 2 "$tool" a.env b.3dm c.env "${extra[@]}"

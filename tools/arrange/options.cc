@@ -274,7 +274,7 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    (void)outputFormat("", options_.common.output, {"3dm"});  // refuses another format's suffix
+    (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
     settleStrategy();
     how.cells = words_.cells.choice();
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
@@ -365,7 +365,7 @@ void ArrangeCommand::settleFiles() const {
                              *file);
     }
     if (!options_.curve_file.empty())
-        (void)outputFormat("", options_.curve_file, {"csv", "png", "svg", "pdf"});
+        (void)outputFormat({}, options_.curve_file, {"csv", "png", "svg", "pdf"});
 }
 
 }  // namespace ispace

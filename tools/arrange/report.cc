@@ -86,7 +86,7 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
 
 void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve) {
     const std::string& file = options.curve_file;
-    const std::string format = outputFormat("", file, {"csv", "png", "svg", "pdf"});
+    const std::string format = outputFormat({}, file, {"csv", "png", "svg", "pdf"});
     if (format == "csv") {
         writeAll(file, curveCsv(curve));
         return;

@@ -55,7 +55,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
     const std::string suffix = std::filesystem::path(o.common.output).extension().string();
     const bool is_yaml = suffix == ".yaml" || suffix == ".yml";
-    o.format = to.empty() && is_yaml ? "ros" : outputFormat(to, o.common.output, kFormats);
+    o.format = outputFormat(to, o.common.output, kFormats, {{"yaml", "ros"}});
     if (o.format == "ros" && !is_yaml)
         throw UsageError(
             "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");

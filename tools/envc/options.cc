@@ -130,6 +130,12 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("FILE.mtl holds the materials of an OBJ: name the model FILE.obj");
 }
 
+std::string productFormat(const std::string& to, const EnvcOptions& options) {
+    // A YAML file of a slice can only be a map; of a room it is its records.
+    const std::vector<SuffixOf> ros{{options.slice ? "yaml" : "", "ros"}};
+    return outputFormat(to, options.common.output, options.slice ? kMaps : kModels, ros);
+}
+
 }  // namespace
 
 EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
@@ -152,8 +158,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if (options.inputs.empty()) options.inputs.emplace_back("-");
     if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
-    if (!options.info && !options.check)
-        options.format = outputFormat(to, options.common.output, options.slice ? kMaps : kModels);
+    if (!options.info && !options.check) options.format = productFormat(to, options);
     if (options.slice && std::find(kMaps.begin(), kMaps.end(), options.format) == kMaps.end())
         throw UsageError("--slice is written as svg, png, geojson or ros, not " + options.format);
     checkCombination(line, options);

@@ -29,8 +29,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
-    o.format = outputFormat(to_, o.common.output, readingFormats());
-    if (to_.empty() && o.common.output.ends_with(".log")) o.format = "carmen";
+    o.format = outputFormat(to_, o.common.output, readingFormats(), {{"log", "carmen"}});
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
