@@ -34,7 +34,7 @@ deps:
 demo:
 	@.ci/deps build
 	@$(MAKE) --no-print-directory $(BUILD)/configured
-	$(call build,$(BUILD)) --target tools
+	$(call build,$(BUILD)) --target tools manual
 	@PATH="$$PWD/$(BUILD)/bin:$$PATH" share/examples/demo.sh $(BUILD)/demo
 
 check:

@@ -14,6 +14,12 @@ done
 for format in env 3dm yaml; do
     [ -s "moved/share/man/man5/ispace-$format.5" ] || fail "no man page of the format $format"
 done
+if command -v man >/dev/null; then
+    for page in $tools ispace-env ispace-3dm ispace-yaml; do
+        man -M moved/share/man -w "$page" >page && grep -q moved "page" ||
+            fail "man does not find $page: $(cat page)"
+    done
+fi
 [ "$(ls moved/bin | wc -l)" -eq 5 ] || fail "more than the tools in bin: $(ls moved/bin)"
 if find moved -type l | grep .; then fail "links installed"; fi
 

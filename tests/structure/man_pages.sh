@@ -49,6 +49,10 @@ for tool in $tools; do
         fail "$tool: an example fails: $(cat err "$tool/examples.sh")"
 done
 
+# A build for `make demo` has both sections, too.
+make -C "$source_dir" -n demo BUILD="$binary_dir" >demo
+grep -q -- '--target tools manual$' demo || fail "make demo builds no manual: $(cat demo)"
+
 # Section 5: every keyword and key that the tools know is there, and the examples are what they say.
 formats=$binary_dir/share/man/man5
 for format in env 3dm yaml; do
