@@ -226,14 +226,15 @@ void CommandLine::count(const std::string& names, const std::string& value, int&
 
 namespace {
 
-double metersFrom(const std::string& text, double lowest, double highest) {
+double quantityFrom(const std::string& text, Unit unit, double lowest, double highest) {
+    const bool is_time = unit == Unit::Time;
     KeySpec key;
-    key.name = "length";
-    key.unit = Unit::Length;
+    key.name = is_time ? "time" : "length";
+    key.unit = unit;
     const double value = std::get<double>(parseValue(key, text));
     if (value < lowest || value > highest)
         throw UsageError('`' + text + "` is not from " + formatDouble(lowest) + " to " +
-                         formatDouble(highest) + " metres");
+                         formatDouble(highest) + (is_time ? " seconds" : " metres"));
     return value;
 }
 
@@ -242,7 +243,7 @@ double metersFrom(const std::string& text, double lowest, double highest) {
 void CommandLine::meters(const std::string& names, std::optional<double>& variable, double lowest,
                          double highest, const std::string& help, Enters enters) {
     const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = metersFrom(s, lowest, highest);
+        variable = quantityFrom(s, Unit::Length, lowest, highest);
     };
     parsed(names, "M", take, help, enters);
 }
@@ -250,9 +251,17 @@ void CommandLine::meters(const std::string& names, std::optional<double>& variab
 void CommandLine::meters(const std::string& names, double& variable, double lowest, double highest,
                          const std::string& help, Enters enters) {
     const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = metersFrom(s, lowest, highest);
+        variable = quantityFrom(s, Unit::Length, lowest, highest);
     };
     parsed(names, "M", take, help + " (default " + formatDouble(variable) + " m)", enters);
+}
+
+void CommandLine::duration(const std::string& names, std::optional<double>& variable, double lowest,
+                           double highest, const std::string& help, Enters enters) {
+    const auto take = [&variable, lowest, highest](const std::string& s) {
+        variable = quantityFrom(s, Unit::Time, lowest, highest);
+    };
+    parsed(names, "TIME", take, help, enters);
 }
 
 void CommandLine::choice(const std::string& names, std::string& variable,

@@ -69,6 +69,9 @@ class CommandLine {
                 double highest, const std::string& help, Enters enters);
     void meters(const std::string& names, double& variable, double lowest, double highest,
                 const std::string& help, Enters enters);
+    /// A time in seconds (suffixes s, ms, us, ns, min, h), within [lowest, highest].
+    void duration(const std::string& names, std::optional<double>& variable, double lowest,
+                  double highest, const std::string& help, Enters enters);
     /// One of a fixed set of words.
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
                 const std::string& help, Enters enters);

@@ -193,6 +193,24 @@ TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
     EXPECT_EQ(behind.operands, std::vector<std::string>{"-MD"});
 }
 
+TEST(CommandLine, TakesTimesWithUnits) {
+    const auto limit = [](const char* text) {
+        CommandLine line("tool", "", "");
+        std::optional<double> seconds;
+        line.duration("--limit", seconds, 0, 3600, "how long", Enters::History);
+        const char* const argv[] = {"tool", "--limit", text};
+        line.parse(3, argv);
+        return seconds.value();
+    };
+    EXPECT_EQ(limit("2"), 2);
+    EXPECT_EQ(limit("2s"), 2);
+    EXPECT_EQ(limit("500ms"), 0.5);
+    EXPECT_EQ(limit("1.5min"), 90);
+    EXPECT_EQ(limit("1h"), 3600);
+    for (const char* bad : {"", "1m", "2 s", "61min", "-1", "soon"})
+        EXPECT_THROW(limit(bad), UsageError) << bad;
+}
+
 TEST(IsStream, KnowsWhatCannotBeReadAgain) {
     for (const char* stream : {"-", "/dev/stdin", "/dev/fd/3", "/proc/self/fd/0", "/dev/null"})
         EXPECT_TRUE(isStream(stream)) << stream;

@@ -3,57 +3,17 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numbers>
+#include <cmath>
 #include <optional>
 #include <span>
 
 #include "base/number.h"
+#include "base/unit.h"
 #include "base/utf8.h"
 
 namespace ispace {
 
 namespace {
-
-struct Suffix {
-    std::string_view name;
-    int exponent;            // power of ten to the unit's first name
-    bool is_radian = false;  // the one suffix that is no power of ten
-};
-
-constexpr Suffix kLength[] = {{"m", 0}, {"km", 3}, {"cm", -2}, {"mm", -3}};
-constexpr Suffix kAngle[] = {{"deg", 0}, {"rad", 0, true}};
-constexpr Suffix kArea[] = {{"m2", 0}};
-constexpr Suffix kTime[] = {{"s", 0}, {"ms", -3}, {"us", -6}};
-constexpr Suffix kFrequency[] = {{"Hz", 0}};
-
-std::span<const Suffix> suffixesOf(Unit unit) {
-    switch (unit) {
-        case Unit::Length:
-            return kLength;
-        case Unit::Angle:
-            return kAngle;
-        case Unit::Area:
-            return kArea;
-        case Unit::Time:
-            return kTime;
-        case Unit::Frequency:
-            return kFrequency;
-        case Unit::None:
-        case Unit::Share:
-            break;
-    }
-    return {};
-}
-
-std::string wantedSuffixes(std::span<const Suffix> suffixes) {
-    if (suffixes.empty()) return "a number without unit";
-    std::string names;
-    for (std::size_t i = 0; i < suffixes.size(); ++i) {
-        if (i > 0) names += i + 1 == suffixes.size() ? " or " : ", ";
-        names += suffixes[i].name;
-    }
-    return names;
-}
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -118,20 +78,17 @@ double parseNumber(const KeySpec& key, std::string_view text) {
     const std::string_view suffix = text.substr(length);
     if (length == 0 || !(suffix.empty() || isLetter(suffix.front())))
         refuseValue(key, excerpt(text) + " is not a number");
-    const std::span<const Suffix> suffixes = suffixesOf(key.unit);
+    const std::span<const UnitSuffix> suffixes = suffixesOf(key.unit);
     const auto unit = std::find_if(suffixes.begin(), suffixes.end(),
-                                   [&](const Suffix& s) { return s.name == suffix; });
+                                   [&](const UnitSuffix& s) { return s.name == suffix; });
     if (!suffix.empty() && unit == suffixes.end())
         refuseValue(key, excerpt(text) + " has the unit " + excerpt(suffix) + ", wanted " +
-                             wantedSuffixes(suffixes));
+                             (suffixes.empty() ? "a number without unit" : suffixNames(key.unit)));
     const std::string_view digits = text.substr(0, length);
-    std::optional<double> number;
-    if (suffix.empty()) {
-        number = parseDouble(digits);
-    } else {
-        number = parseScaled(digits, unit->exponent);
-        if (number && unit->is_radian) number = *number * (180 / std::numbers::pi);
-    }
+    std::optional<double> number =
+        suffix.empty() ? parseDouble(digits) : parseScaled(digits, unit->exponent);
+    if (number && !suffix.empty()) *number *= unit->factor;
+    if (number && !std::isfinite(*number)) number.reset();
     if (!number) refuseValue(key, excerpt(text) + " is beyond the range of numbers");
     return *number;
 }

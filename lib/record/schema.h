@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/unit.h"
 #include "record/value.h"
 
 namespace ispace {
@@ -24,17 +25,6 @@ enum class KeyType {
     Tuple,      ///< `a,b[,c]`, blanks around numbers allowed where quoted; lengths also as sizes
                 ///< are spoken, "8 × 8", "8x8x2.5", "8 * 8"; Tuple
     TupleList,  ///< `a,b;c,d;…`, not empty; TupleList
-};
-
-/// Unit of a key's numbers. A number may carry a suffix; without one it is in the first unit named.
-enum class Unit {
-    None,
-    Length,     ///< m; also km, cm, mm
-    Angle,      ///< deg; also rad
-    Area,       ///< m2
-    Time,       ///< s; also ms, us
-    Frequency,  ///< Hz
-    Share,      ///< fraction 0..1 in Value; text "95%" or "0.95", a bare number above 1 is refused
 };
 
 /// What a key says about where a record stands and what it belongs to: what moves, parts and

@@ -48,6 +48,9 @@ TEST(Number, TakesTheSuffixesOfItsUnit) {
     EXPECT_EQ(number(period, "100ms"), 0.1);
     EXPECT_EQ(number(period, "7us"), 7e-6);
     EXPECT_EQ(number(period, "2s"), 2);
+    EXPECT_EQ(number(period, "50ns"), 5e-8);
+    EXPECT_EQ(number(period, "0.1min"), 6);
+    EXPECT_EQ(number(period, "1.5h"), 5400);
     EXPECT_EQ(number(keyOf("result", "area"), "3m2"), 3);
     EXPECT_EQ(number(keyOf("result", "rate"), "40Hz"), 40);
 }
@@ -60,6 +63,10 @@ TEST(Number, RefusesOtherSuffixes) {
     EXPECT_EQ(refusal(height, "5cmx"), "`5cmx` has the unit `cmx`, wanted m, km, cm or mm");
     EXPECT_EQ(refusal(height, "0x10"), "`0x10` has the unit `x10`, wanted m, km, cm or mm");
     EXPECT_EQ(refusal(keyOf("laser", "fov"), "5cm"), "`5cm` has the unit `cm`, wanted deg or rad");
+    EXPECT_EQ(refusal(keyOf("laser", "period"), "5m"),
+              "`5m` has the unit `m`, wanted s, ms, us, ns, min or h");
+    EXPECT_EQ(refusal(keyOf("laser", "period"), "1e308h"),
+              "`1e308h` is beyond the range of numbers");
     EXPECT_EQ(refusal(keyOf("result", "factor"), "5m"),
               "`5m` has the unit `m`, wanted a number without unit");
 }

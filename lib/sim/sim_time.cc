@@ -1,36 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/sim_time.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/number.h"
+#include "base/unit.h"
 
 namespace ispace {
 
 namespace {
 
 constexpr std::int64_t kMost = kLongestTime.count();
+constexpr int kNanoseconds = 9;  // powers of ten to a second
 constexpr std::uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 
-/// Powers of ten from nanoseconds to the unit at the end of `text`, which is cut off.
-int takeUnit(std::string_view& text) {
-    struct Unit {
-        std::string_view name;
-        int exponent;
-    };
-    constexpr Unit kUnits[] = {{"ms", 6}, {"us", 3}, {"ns", 0}, {"s", 9}};
-    for (const Unit& unit : kUnits) {
-        if (!text.ends_with(unit.name)) continue;
-        text.remove_suffix(unit.name.size());
-        return unit.exponent;
-    }
-    return 9;
+/// The unit at the end of `text`, which is cut off; seconds if there is none.
+std::optional<UnitSuffix> takeUnit(std::string_view& text) {
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto first = std::find_if_not(text.rbegin(), text.rend(), is_letter).base();
+    const std::string_view name = text.substr(static_cast<std::size_t>(first - text.begin()));
+    text.remove_suffix(name.size());
+    for (const UnitSuffix& unit : suffixesOf(Unit::Time))
+        if (name.empty() || name == unit.name) return unit;
+    return std::nullopt;
 }
 
-/// The number times 10^exponent, half rounded up, digit by digit: a double cannot hold every
-/// nanosecond of a hundred years.
+constexpr std::int64_t powerOfTen(int exponent) {
+    std::int64_t power = 1;
+    for (; exponent > 0; --exponent) power *= 10;
+    return power;
+}
+
+/// The number times factor times 10^exponent, half rounded up, digit by digit: a double cannot hold
+/// every nanosecond of a hundred years.
 /// \pre the text is a number, not negative, and the result is far below 2^63
-std::int64_t scaledInteger(std::string_view text, int exponent) {
+std::int64_t scaledInteger(std::string_view text, int exponent, std::int64_t factor) {
     const auto mark = text.find_first_of("eE");
     std::int64_t power = exponent - 1;
     if (mark != std::string_view::npos) power += parseInteger(text.substr(mark + 1)).value_or(0);
@@ -39,18 +44,20 @@ std::int64_t scaledInteger(std::string_view text, int exponent) {
     const auto point = mantissa.find('.');
     power += static_cast<std::int64_t>(point == std::string_view::npos ? mantissa.size() : point);
 
-    std::int64_t total = 0;
+    constexpr int kDigits = 15;  // of a fraction; those behind are cut off
+    std::int64_t total = 0, fraction = 0;
     for (const char c : mantissa) {
         if (c == '.') continue;
-        const int digit = c - '0';
+        const std::int64_t digit = factor * (c - '0');
         if (power >= 0)
             total = total * 10 + digit;
-        else if (power == -1)
-            total += digit >= 5 ? 1 : 0;
+        else if (power >= -kDigits)
+            fraction += digit * powerOfTen(kDigits + static_cast<int>(power));
         --power;
     }
     for (; power >= 0 && total > 0; --power) total *= 10;
-    return total;
+    constexpr std::int64_t kOne = powerOfTen(kDigits);
+    return total + (fraction + kOne / 2) / kOne;
 }
 
 /// `value` in decimal, at least `width` digits.
@@ -76,11 +83,12 @@ double seconds(SimTime time) {
 }
 
 std::optional<SimTime> parseSimTime(std::string_view text) {
-    const int exponent = takeUnit(text);
+    const auto unit = takeUnit(text);
+    if (!unit || text.starts_with('-')) return std::nullopt;
+    const int exponent = unit->exponent + kNanoseconds;
     const auto rough = parseScaled(text, exponent);
-    if (!rough || text.starts_with('-') || *rough > 2.0 * static_cast<double>(kMost))
-        return std::nullopt;
-    const std::int64_t nanoseconds = scaledInteger(text, exponent);
+    if (!rough || *rough * unit->factor > 2.0 * static_cast<double>(kMost)) return std::nullopt;
+    const auto nanoseconds = scaledInteger(text, exponent, static_cast<std::int64_t>(unit->factor));
     if (nanoseconds > kMost) return std::nullopt;
     return SimTime(nanoseconds);
 }

@@ -18,8 +18,8 @@ constexpr SimTime kLongestTime = std::chrono::hours(24) * 36525;
 /// The nearest double, for formats that want seconds as a number.
 double seconds(SimTime time);
 
-/// "2.5", "5ms", "200us": seconds without unit, rounded to nanoseconds. Nothing for what is no
-/// number, negative, or above a hundred years.
+/// "2.5", "5ms", "2min": the units of Unit::Time, seconds without one, rounded to nanoseconds.
+/// Nothing for what is no number, negative, or above a hundred years.
 std::optional<SimTime> parseSimTime(std::string_view text);
 
 /// Exact and shortest, in seconds: "0.005".

@@ -37,6 +37,10 @@ TEST(ParseSimTime, TakesUnits) {
     EXPECT_EQ(parseSimTime("200us"), nanoseconds(200'000));
     EXPECT_EQ(parseSimTime("7ns"), nanoseconds(7));
     EXPECT_EQ(parseSimTime("1e3us"), nanoseconds(1'000'000));
+    EXPECT_EQ(parseSimTime("1min"), std::chrono::seconds(60));
+    EXPECT_EQ(parseSimTime("0.1min"), std::chrono::seconds(6));
+    EXPECT_EQ(parseSimTime("1.5h"), std::chrono::minutes(90));
+    EXPECT_EQ(parseSimTime("876600h"), std::chrono::seconds(kHundredYears));
 }
 
 TEST(ParseSimTime, RoundsToNanosecondsOnce) {
@@ -47,19 +51,24 @@ TEST(ParseSimTime, RoundsToNanosecondsOnce) {
     EXPECT_EQ(parseSimTime("0.05ns"), nanoseconds(0));
     EXPECT_EQ(parseSimTime("0.0000000009999"), nanoseconds(1));
     EXPECT_EQ(parseSimTime("9.9999999999"), nanoseconds(10'000'000'000));
+    EXPECT_EQ(parseSimTime("0.00000000001min"), nanoseconds(1));  // 0.6 ns
+    EXPECT_EQ(parseSimTime("0.000000000025h"), nanoseconds(90));
+    EXPECT_EQ(parseSimTime("1e-13h"), nanoseconds(0));
 }
 
 TEST(ParseSimTime, EndsAtAHundredYears) {
     EXPECT_EQ(parseSimTime("3155760000"), std::chrono::seconds(kHundredYears));
     EXPECT_FALSE(parseSimTime("3155760000.000000001"));
     EXPECT_FALSE(parseSimTime("9223372036854775807ns"));
+    EXPECT_FALSE(parseSimTime("876600.1h"));
     EXPECT_FALSE(parseSimTime("1e300"));
+    EXPECT_FALSE(parseSimTime("1e300h"));
     EXPECT_FALSE(parseSimTime("1e99999999999"));
 }
 
 TEST(ParseSimTime, RefusesWhatIsNoTime) {
     for (const char* bad : {"",    " ",   "s",    "ms",   "-1",  "-0",  "+-1",   "1 s",  " 1",
-                            "1 ",  "1m",  "1h",   "1S",   "1ss", "1es", "e5s",   ".",    "1,5",
+                            "1 ",  "1m",  "1hr",  "1S",   "1ss", "1es", "e5s",   ".",    "1,5",
                             "nan", "inf", "infs", "0x10", "1e",  "--1", "1.2.3", "1e1e1"})
         EXPECT_FALSE(parseSimTime(bad)) << bad;
 }

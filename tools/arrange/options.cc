@@ -244,12 +244,10 @@ void ArrangeCommand::addSearchOptions() {
     line_.parsed(
         "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readGap(text); },
         "end once value and bound are this near, e.g. 1%", Enters::History);
-    line_.parsed(
-        "--time-limit", "SECONDS",
-        [this](const std::string& text) {
-            options_.time_limit = readNumber(text, 0, 1e9, "a number of seconds from 0 on");
-        },
-        "end with the best so far after this time, marked complete=no", Enters::History);
+    constexpr double kLongestWait = 1e9;
+    line_.duration("--time-limit", options_.time_limit, 0, kLongestWait,
+                   "end with the best so far after this time (500ms, 2s, 1min), marked complete=no",
+                   Enters::History);
     line_.flag("--refine", how.refine,
                "go on from the best in continuous place and heading, by exact area",
                Enters::History);

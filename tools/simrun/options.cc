@@ -46,15 +46,15 @@ void SimrunCommand::declareRun() {
         "as fast as it can, or waits for STEP requests (default real)",
         Enters::Nothing);
     line_.parsed(
-        "--dt", "SECONDS",
+        "--dt", "TIME",
         [&o](const std::string& text) {
             o.step = simTime(text, World::kShortestStep, World::kLongestStep);
         },
-        "length of a step (default 0.005)", Enters::History);
+        "length of a step (default 5ms)", Enters::History);
     line_.parsed(
-        "--until", "SECONDS",
+        "--until", "TIME",
         [&o](const std::string& text) { o.until = simTime(text, SimTime(0), kLongestTime); },
-        "end the run at this simulated time", Enters::History);
+        "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
     line_.text("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);
