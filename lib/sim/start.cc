@@ -13,41 +13,56 @@ namespace ispace {
 
 namespace {
 
-double apart(const PlacedRobot& a, const PlacedRobot& b) {
-    return distance(a.pose.position, b.pose.position);
-}
+struct Disc {
+    Point2 place;
+    double radius;
+};
 
-/// Finds robots that stand in others before them in the scene.
+/// Finds who stands in whom: of robots those before them in the scene, and people.
 class Neighbours {
   public:
-    explicit Neighbours(std::span<const PlacedRobot> robots) : robots_(robots) {
+    Neighbours(std::span<const PlacedRobot> robots, std::span<const Person> people)
+        : robots_(robots.size()) {
         double reach = 0;
         std::vector<Point2> places;
-        places.reserve(robots.size());
-        for (const PlacedRobot& robot : robots) {
-            places.push_back(robot.pose.position);
-            reach = std::max(reach, robot.model.radius);
-        }
+        const auto add = [&](Point2 place, double radius) {
+            discs_.push_back({place, radius});
+            places.push_back(place);
+            reach = std::max(reach, radius);
+        };
+        for (const PlacedRobot& robot : robots) add(robot.pose.position, robot.model.radius);
+        for (const Person& person : people) add(person.place, person.radius);
         grid_.rebuild(places, reach);
     }
 
-    /// The first one that robot `i` stands in.
-    [[nodiscard]] std::optional<std::size_t> before(std::size_t i) const {
-        const Point2 place = robots_[i].pose.position;
-        const double radius = robots_[i].model.radius;
-        const Vec2 margin{radius, radius};
-        std::size_t first = i;
-        grid_.forEachNear({place - margin, place + margin}, [&](std::size_t other) {
-            const PlacedRobot& robot = robots_[other];
-            if (other < first &&
-                distance(place, robot.pose.position) < radius + robot.model.radius - kTouch)
-                first = other;
-        });
-        return first < i ? std::optional(first) : std::nullopt;
+    /// The first robot that robot `i` stands in.
+    [[nodiscard]] std::optional<std::size_t> robotBefore(std::size_t i) const {
+        return firstOver(i, 0, i);
+    }
+    /// The first person, counted behind the robots.
+    [[nodiscard]] std::optional<std::size_t> person(std::size_t i) const {
+        return firstOver(i, robots_, discs_.size());
+    }
+    [[nodiscard]] double apart(std::size_t i, std::size_t j) const {
+        return distance(discs_[i].place, discs_[j].place);
     }
 
   private:
-    std::span<const PlacedRobot> robots_;
+    [[nodiscard]] std::optional<std::size_t> firstOver(std::size_t i, std::size_t begin,
+                                                       std::size_t end) const {
+        const auto& [place, radius] = discs_[i];
+        const Vec2 margin{radius, radius};
+        std::size_t first = end;
+        grid_.forEachNear({place - margin, place + margin}, [&](std::size_t other) {
+            if (other >= begin && other < first &&
+                apart(i, other) < discs_[i].radius + discs_[other].radius - kTouch)
+                first = other;
+        });
+        return first < end ? std::optional(first) : std::nullopt;
+    }
+
+    std::size_t robots_;
+    std::vector<Disc> discs_;
     FloorGrid grid_;
 };
 
@@ -63,9 +78,13 @@ ObstacleSets obstaclesOf(const Scene& scene) {
     return sets;
 }
 
-void checkStart(const Scene& scene, const ObstacleSets& obstacles) {
+void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles) {
     Diagnostics findings;
-    const Neighbours neighbours(scene.robots);
+    const Neighbours neighbours(scene.robots, people);
+    const auto distanceText = [&](std::size_t i, std::size_t other) {
+        return "overlap: their centres are " + formatFixed(neighbours.apart(i, other), 3) +
+               " m apart, less than their radii together";
+    };
     // Full findings end it: robots on one heap would be looked at in pairs.
     for (std::size_t i = 0; i < scene.robots.size() && !findings.full(); ++i) {
         const PlacedRobot& robot = scene.robots[i];
@@ -76,12 +95,13 @@ void checkStart(const Scene& scene, const ObstacleSets& obstacles) {
                 name + " stands in " + scene.environment.elements()[*element].id +
                 " (its radius is " + formatDouble(robot.model.radius) + " m)"));
         }
-        if (const auto other = neighbours.before(i)) {
+        if (const auto other = neighbours.robotBefore(i))
             findings.add(robot.place.finding("robots " + scene.robots[*other].id + " and " +
-                                             robot.id + " overlap: their centres are " +
-                                             formatFixed(apart(robot, scene.robots[*other]), 3) +
-                                             " m apart, less than their radii together"));
-        }
+                                             robot.id + ' ' + distanceText(i, *other)));
+        if (const auto other = neighbours.person(i))
+            findings.add(robot.place.finding(name + " and human " +
+                                             std::string(people[*other - scene.robots.size()].id) +
+                                             ' ' + distanceText(i, *other)));
     }
     findings.throwIfAny();
 }

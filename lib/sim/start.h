@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <span>
 
 #include "layout/scene.h"
 #include "sim/collision.h"
+#include "sim/people.h"
 
 namespace ispace {
 
@@ -12,7 +14,8 @@ namespace ispace {
 using ObstacleSets = std::map<double, Obstacles>;
 ObstacleSets obstaclesOf(const Scene& scene);
 
-/// \throws FormatError with all findings if a robot stands in something, or in another robot
-void checkStart(const Scene& scene, const ObstacleSets& obstacles);
+/// \throws FormatError with all findings if a robot stands in something, in another robot or in
+///         somebody
+void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles);
 
 }  // namespace ispace

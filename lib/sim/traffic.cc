@@ -14,12 +14,15 @@ std::vector<std::size_t> settlingOrder(std::span<const PlacedRobot> robots) {
     return order;
 }
 
-Traffic::Traffic(std::span<const PlacedRobot> robots, std::span<const std::size_t> order,
-                 double duration)
-    : rank_(robots.size()), places_(robots.size()) {
+Traffic::Traffic(std::span<const PlacedRobot> robots, std::span<const Person> people,
+                 std::span<const std::size_t> order, double duration)
+    : rank_(robots.size() + people.size()), places_(rank_.size()) {
+    // Robots get their own ranks below; people are settled after all of them.
+    std::iota(rank_.begin(), rank_.end(), std::size_t{0});
     for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = k;
     for (const PlacedRobot& robot : robots)
         reach_ = std::max(reach_, robot.model.radius + robot.model.max_speed * duration);
+    for (const Person& person : people) reach_ = std::max(reach_, person.radius);
 }
 
 void Traffic::rebuild(std::span<const Move> moves) {

@@ -12,6 +12,7 @@
 #include "sim/friction.h"
 #include "sim/lasers.h"
 #include "sim/motion.h"
+#include "sim/people.h"
 #include "sim/start.h"
 #include "sim/traffic.h"
 
@@ -58,6 +59,11 @@ struct World::Data {
     [[nodiscard]] const std::vector<Element>& elements() const {
         return scene->environment.elements();
     }
+    /// Id of a robot, or of a person behind the robots.
+    [[nodiscard]] std::string_view idOf(std::size_t mover) const {
+        const std::vector<PlacedRobot>& robots = scene->robots;
+        return mover < robots.size() ? robots[mover].id : people[mover - robots.size()].id;
+    }
     void propose(std::size_t robot);
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t robot);
     void settle();
@@ -70,12 +76,14 @@ struct World::Data {
     std::int64_t steps = 0;
 
     std::map<std::string_view, std::size_t> robot_index, laser_index;
+    std::vector<Person> people;
     ObstacleSets obstacles;
     FrictionMap friction;
     std::vector<std::size_t> order;  // in which moves are settled
     std::vector<Motion> motions;
+    std::vector<Motion> standing;  // of people
     std::vector<Mover> movers;
-    std::vector<Move> moves;
+    std::vector<Move> moves;  // of robots, then of people, who stay
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
     LaserReader lasers;
@@ -89,15 +97,17 @@ World::Data::Data(const Scene& room, SimTime length)
       step_length(length),
       robot_index(indexById(room.robots)),
       laser_index(indexById(room.lasers)),
+      people(peopleOf(room)),
       obstacles(obstaclesOf(room)),
       friction(room.environment),
       order(settlingOrder(room.robots)),
       motions(room.robots.size()),
+      standing(people.size()),
       movers(room.robots.size()),
-      moves(room.robots.size()),
-      traffic(room.robots, order, seconds(length)),
+      moves(room.robots.size() + people.size()),
+      traffic(room.robots, people, order, seconds(length)),
       lasers(room) {
-    checkStart(room, obstacles);
+    checkStart(room, people, obstacles);
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const PlacedRobot& robot = room.robots[i];
         motions[i].pose = {robot.pose.position, wrapped(robot.pose.heading)};
@@ -107,6 +117,13 @@ World::Data::Data(const Scene& room, SimTime length)
         moves[i].limits = &movers[i].limits;
         moves[i].duration = seconds(length);
         moves[i].radius = robot.model.radius;
+    }
+    for (std::size_t i = 0; i < people.size(); ++i) {
+        standing[i].pose.position = people[i].place;
+        Move& move = moves[motions.size() + i];
+        move.from = &standing[i];
+        move.radius = people[i].radius;
+        move.to = {.motion = standing[i]};
     }
     lasers.read(time, motions);
 }
@@ -155,7 +172,8 @@ void World::Data::settle() {
         if (movers[robot].blocked) {
             collide({robot, std::nullopt, elements()[*movers[robot].blocked].id, time});
         } else if (const auto other = traffic.hit(moves, robot)) {
-            collide({robot, other, scene->robots[*other].id, time});
+            const bool is_robot = *other < motions.size();
+            collide({robot, is_robot ? other : std::nullopt, idOf(*other), time});
         }
     }
 }
@@ -259,7 +277,7 @@ void World::step() {
     data.collisions.clear();
     data.time += data.step_length;
     ++data.steps;
-    for (std::size_t i = 0; i < data.moves.size(); ++i) data.propose(i);
+    for (std::size_t i = 0; i < data.motions.size(); ++i) data.propose(i);
     data.settle();
     data.apply();
     data.lasers.read(data.time, data.motions);

@@ -40,8 +40,8 @@ struct CommandEnd {
 /// A robot ran into something and its step was cancelled.
 struct Collision {
     std::size_t robot = 0;
-    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: what stands there
-    std::string_view into;             ///< id of that robot, or of the element that stands there
+    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: who or what stands there
+    std::string_view into;             ///< id of that robot, person or element
     SimTime time{};
 };
 
@@ -57,10 +57,10 @@ struct SensorReading {
 /// Robots and sensors in an environment, in fixed steps.
 ///
 /// A step from t to t + dt: every robot proposes a move by its command from its state at t; moves
-/// are settled in the order of the robots' ids, one that would run into the environment or another
-/// robot is cancelled; sensors that are due at t + dt are read. Commands take effect when they are
-/// given, between steps. The same commands between the same steps give the same world, for any
-/// number of threads.
+/// are settled in the order of the robots' ids, one that would run into the environment, another
+/// robot or somebody is cancelled; sensors that are due at t + dt are read. Commands take effect
+/// when they are given, between steps. The same commands between the same steps give the same
+/// world, for any number of threads.
 ///
 /// A robot in motion follows eq. (5.1)-(5.4) of the thesis exactly: accelerations are constant
 /// between the moments where a speed reaches its goal, which may lie within a step.
@@ -71,7 +71,8 @@ class World {
     static constexpr SimTime kShortestStep = std::chrono::microseconds(1);
 
     /// Sensors take their first reading at time 0. The scene must outlive the world.
-    /// \throws FormatError with all findings if a robot stands in something, or in another robot
+    /// \throws FormatError with all findings if a robot stands in something, in another robot or in
+    ///         somebody
     /// \pre kShortestStep <= step <= kLongestStep
     World(const Scene& scene, SimTime step);
     ~World();

@@ -17,7 +17,19 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The furnished room with robots of different sizes at random free places, some with a laser.
+/// Radius of somebody 1.7 m tall.
+constexpr double kPerson = 0.255;
+
+/// A row of free places for people.
+std::vector<Point2> peopleIn(const Obstacles& obstacles) {
+    std::vector<Point2> places;
+    for (double x = -4; x <= 4; x += 1)
+        if (!obstacles.overlap({x, 0.5}, kPerson)) places.push_back({x, 0.5});
+    return places;
+}
+
+/// The furnished room with people, and robots of different sizes at random free places, some with a
+/// laser.
 Scene crowdedRoom(std::size_t count, unsigned seed) {
     const std::string text = readAll(ISPACE_SOURCE_DIR "/share/scenes/facilities.env");
     const Document document = readRecordText(text, "facilities.env", sceneSchemas());
@@ -25,9 +37,14 @@ Scene crowdedRoom(std::size_t count, unsigned seed) {
     const Obstacles obstacles(empty.environment.band(0, 0.5));
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> place(-4.8, 4.8), radius(0.1, 0.25), any(-180, 180);
+    const std::vector<Point2> people = peopleIn(obstacles);
     std::vector<std::pair<Point2, double>> placed;
     std::string layout;
-    while (placed.size() < count) {
+    for (const Point2& p : people) {
+        layout += "human at=" + formatDouble(p.x) + "," + formatDouble(p.y) + "\n";
+        placed.emplace_back(p, kPerson);
+    }
+    while (placed.size() < count + people.size()) {
         const Point2 p{place(random), place(random)};
         const double r = radius(random);
         if (obstacles.overlap(p, r)) continue;
@@ -77,7 +94,8 @@ void drive(World& world, std::mt19937_64& random) {
 }
 
 /// By brute force; every solid and sheet at every robot's height.
-void expectNoOverlap(const World& world, const std::vector<Band>& bands) {
+void expectNoOverlap(const World& world, const std::vector<Band>& bands,
+                     const std::vector<Point2>& people) {
     for (std::size_t i = 0; i < world.robots().size(); ++i) {
         const Point2 p = world.status(i).pose.position;
         const double radius = world.robots()[i].model.radius;
@@ -86,6 +104,8 @@ void expectNoOverlap(const World& world, const std::vector<Band>& bands) {
             [&](const Segment2& line) { nearest = std::min(nearest, distance(p, line)); });
         ASSERT_GE(nearest, radius - 2e-9) << i << " at " << world.steps();
         for (const Polygon& solid : bands[i].solids) ASSERT_EQ(locate(solid, p), Side::Outside);
+        for (const Point2& person : people)
+            ASSERT_GE(distance(p, person), radius + kPerson - 2e-9) << i << " at " << world.steps();
         for (std::size_t j = 0; j < i; ++j) {
             ASSERT_GE(distance(p, world.status(j).pose.position),
                       radius + world.robots()[j].model.radius - 2e-9)
@@ -99,20 +119,28 @@ TEST(WorldRandom, NothingEverOverlaps) {
     std::vector<Band> bands;
     for (const PlacedRobot& robot : room.robots)
         bands.push_back(room.environment.band(0, robot.model.height));
+    std::vector<Point2> people;
+    for (const Placed& placed : room.placed)
+        if (room.records[placed.record].keyword() == "human")
+            people.push_back(placed.pose.position.onFloor());
+    ASSERT_GE(people.size(), 3U);
     for (const SimTime step : {milliseconds(20), milliseconds(250)}) {
         World world(room, step);
         std::mt19937_64 random(7);
-        std::size_t with_things = 0, with_robots = 0, done = 0;
+        std::size_t with_things = 0, with_robots = 0, with_people = 0, done = 0;
         while (world.time() < std::chrono::seconds(20)) {
             drive(world, random);
             world.step();
-            for (const Collision& collision : world.collisions())
+            for (const Collision& collision : world.collisions()) {
                 ++(collision.other ? with_robots : with_things);
+                with_people += collision.into.starts_with("human");
+            }
             for (const CommandEnd& end : world.ends()) done += end.outcome == Outcome::Done;
-            ASSERT_NO_FATAL_FAILURE(expectNoOverlap(world, bands));
+            ASSERT_NO_FATAL_FAILURE(expectNoOverlap(world, bands, people));
         }
         EXPECT_GT(with_things, 5U);
         EXPECT_GT(with_robots, 5U);
+        EXPECT_GT(with_people, 1U);
         EXPECT_GT(done, 5U);
     }
 }

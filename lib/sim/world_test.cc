@@ -205,6 +205,47 @@ TEST(World, LongStepsDoNotGoThroughWalls) {
     EXPECT_LE(world.status(0).pose.position.x, 0.7);
 }
 
+TEST(World, PeopleStallRobotsAsThingsDo) {
+    // 0.15 of her height about her: the robot comes as near as 0.6 m.
+    const Scene room = scene(kRoom, "robot id=r1 at=-2,0\nhuman id=ann at=1,0 height=2\n");
+    for (const SimTime step : {kStep, SimTime(seconds(1))}) {
+        World world(room, step);
+        const int id = world.command(0, {Verb::Forward, 5});
+        runToStall(world, 0);
+        EXPECT_LE(world.status(0).pose.position.x, 0.4 + 1e-9);
+        EXPECT_GT(world.status(0).pose.position.x, 0.4 - 0.5 * ispace::seconds(step) - 1e-9);
+        EXPECT_EQ(world.status(0).speed, 0);
+        ASSERT_EQ(world.collisions().size(), 1U);
+        EXPECT_EQ(world.collisions()[0].other, std::nullopt);
+        EXPECT_EQ(world.collisions()[0].into, "ann");
+        ASSERT_EQ(world.ends().size(), 1U);
+        EXPECT_EQ(world.ends()[0].id, id);
+        EXPECT_EQ(world.ends()[0].outcome, Outcome::Stall);
+        // It may leave, and pass beside her.
+        world.command(0, {Verb::Left, 90});
+        run(world, seconds(4));
+        world.command(0, {Verb::Forward, 1});
+        run(world, seconds(6));
+        world.command(0, {Verb::Right, 90});
+        run(world, seconds(4));
+        world.command(0, {Verb::Forward, 2});
+        run(world, seconds(8));
+        EXPECT_FALSE(world.status(0).stall);
+        EXPECT_GT(world.status(0).pose.position.x, 1.3);
+    }
+}
+
+TEST(World, RobotsMustNotStandInPeople) {
+    const auto text = [](const std::string& layout) {
+        return findings([&] { return World(scene(kRoom, layout), kStep); });
+    };
+    // Touching is allowed, and people may stand together.
+    EXPECT_EQ(text("human height=1 at=0.45,0\nhuman height=1 at=0.5,0\nrobot id=a\n"), "");
+    EXPECT_EQ(text("human id=h at=0.5,0\nrobot id=a\n"),
+              "room.3dm:3:1: error: robot a and human h overlap: their centres are 0.500 m apart, "
+              "less than their radii together\n");
+}
+
 TEST(World, RobotsMeetHeadOn) {
     const Scene room = scene(kRoom, "robot id=r2 at=-1,0\nrobot id=r10 at=1,0 heading=180\n");
     World world(room, kStep);
