@@ -177,7 +177,7 @@ std::string coverageText(const CoverageReport& report) {
     if (report.comparison) text += comparisonText(report);
     text += "\n";
     if (report.sensors.empty())
-        text += "no sensor is placed\n";
+        text += "no laser, ranger or ultrasonic receiver is placed\n";
     else
         text += sensorTable(report.sensors) + "\n" + piecesText(report);
     return text;

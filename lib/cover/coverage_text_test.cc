@@ -124,7 +124,7 @@ TEST(CoverageText, ManySensorsShareARow) {
 TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
     CoverageReport report = sampleReport();
     report.sensors.clear();
-    EXPECT_NE(coverageText(report).find("\nno sensor is placed\n"), std::string::npos);
+    EXPECT_NE(coverageText(report).find("\nno laser, ranger or ultrasonic receiver is placed\n"), std::string::npos);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "cli/search_watch.h"
+#include "layout/left_out.h"
 #include "layout/schemas.h"
 #include "place/layout_document.h"
 #include "place/problem.h"
@@ -24,6 +25,9 @@
 namespace {
 
 using namespace ispace;
+
+/// Sensors that stay without a place.
+constexpr std::string_view kUnplaced[] = {"camera"};
 
 /// What is read before the search.
 struct Work {
@@ -79,6 +83,11 @@ Work read(const ArrangeToolOptions& options) {
         input.layout = withoutPlaces(*input.layout, options.fixed);
         input.scene = makeScene(input.environment, &*input.layout, devices);
     }
+    const auto is_pending = [&records = input.scene.records](std::size_t i) {
+        return !records[i].has("at") && !records[i].has("on");
+    };
+    for (const std::string& phrase : leftOut(input.scene, kUnplaced, "placed", is_pending))
+        warn(options, phrase);
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);
     if (work.groups.empty())

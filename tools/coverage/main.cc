@@ -15,6 +15,7 @@
 #include "cover/coverage_files.h"
 #include "cover/trace_file.h"
 #include "coverage/options.h"
+#include "layout/left_out.h"
 #include "sense/doubts.h"
 #include "sense/ultrasound.h"
 
@@ -39,13 +40,8 @@ void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
     if (const std::size_t count = scene.receivers.size(); count > 0 && count < kLeastReceivers)
         warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
                           " receivers have to hear a tag, here are " + std::to_string(count));
-    const auto cameras =
-        std::count_if(scene.placed.begin(), scene.placed.end(), [&scene](const Placed& placed) {
-            return scene.records[placed.record].keyword() == "camera";
-        });
-    if (cameras > 0)
-        warn(options, std::to_string(cameras) + (cameras == 1 ? " camera is" : " cameras are") +
-                          " not measured");
+    constexpr std::string_view kUnmeasured[] = {"camera"};
+    for (const std::string& phrase : leftOut(scene, kUnmeasured, "measured")) warn(options, phrase);
 }
 
 /// Nobody asked for cells, and they are not as small as usual.

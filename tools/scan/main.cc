@@ -11,6 +11,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "layout/device_table.h"
+#include "layout/left_out.h"
 #include "scan/delivery.h"
 #include "scan/options.h"
 #include "scan/pose_sensor.h"
@@ -22,6 +23,8 @@ namespace {
 using namespace ispace;
 
 constexpr std::string_view kKinds[] = {"laser", "ranger", "ultrasound", "tag"};
+/// What a scene may hold and nobody reads.
+constexpr std::string_view kUnread[] = {"camera"};
 
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     Sensors sensors = sensorsOf(input.scene, options.select);
@@ -32,7 +35,8 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
             "need a place");
     const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
     throw FormatError(
-        {displayName(file), 0, 0, "no placed sensor: give one `at=x,y`, or let arrange place it"});
+        {displayName(file), 0, 0,
+         "no placed laser, ranger or tag: give one `at=x,y`, or let arrange place it"});
 }
 
 /// Counts the poses that are inside something solid.
@@ -113,6 +117,10 @@ void scan(const ScanCommand& command) {
     const SceneInput input = readScene(requestOf(options));
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
+    const auto is_selected = [&](std::size_t i) {
+        return isSelected(scene.ids[i], options.select);
+    };
+    if (!moves) warn(options, leftOut(scene, kUnread, "simulated", is_selected));
     const Sensors sensors =
         moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
     if (!moves) warn(options, doubtsAbout(scene, sensors, options.select));

@@ -2,8 +2,11 @@
 #include "simrun/warnings.h"
 
 #include <iostream>
+#include <string_view>
+#include <variant>
 
 #include "base/number.h"
+#include "layout/left_out.h"
 
 namespace ispace {
 
@@ -30,12 +33,25 @@ void CollisionLog::tell() {
     }
 }
 
-void warnOfPending(const Scene& scene, bool quiet) {
+void warnOfLeftOut(const Scene& scene, bool quiet) {
     if (quiet) return;
     for (const PendingSensor& sensor : scene.pending)
-        std::cerr << kWarning << sensor.id
-                  << " has no place and is left out: give it `at` or `on`, or let arrange place "
-                     "it\n";
+        if (std::holds_alternative<Laser>(sensor.device))
+            std::cerr << kWarning << sensor.id
+                      << " has no place and is left out: give it `at` or `on`, or let arrange "
+                         "place it\n";
+    constexpr std::string_view kKinds[] = {"ranger", "camera", "ultrasound", "tag", "mat", "gate"};
+    std::vector<std::string> phrases = leftOut(scene, kKinds, "simulated");
+    for (const char* key : {"path", "walk"}) {
+        std::vector<std::string> ids;
+        for (std::size_t i = 0; i < scene.records.size(); ++i) {
+            const Record& record = scene.records[i];
+            const bool goes = record.keyword() == "robot" || record.keyword() == "human";
+            if (goes && record.has(key)) ids.push_back(scene.ids[i]);
+        }
+        if (!ids.empty()) phrases.push_back(leftOutText(key, "simulated", ids));
+    }
+    for (const std::string& phrase : phrases) std::cerr << kWarning << phrase << '\n';
 }
 
 }  // namespace ispace

@@ -19,7 +19,7 @@ class CollisionLog {
     int count_ = 0;
 };
 
-/// Sensors that nobody has placed yet take no part.
-void warnOfPending(const Scene& scene, bool quiet);
+/// Says what takes no part: lasers without a place, and what is not simulated yet.
+void warnOfLeftOut(const Scene& scene, bool quiet);
 
 }  // namespace ispace
