@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "cover/json_line.h"
+#include "sense/pose_json.h"
 
 namespace ispace {
 
@@ -61,9 +62,9 @@ Pose3 readPose(JsonLine& line) {
         line.fail("a pose has six numbers, x,y,z,heading,tilt,roll, found " +
                   std::to_string(count));
     return {{numbers[0], numbers[1], numbers[2]},
-            Angle::degrees(numbers[3]),
-            Angle::degrees(numbers[4]),
-            Angle::degrees(numbers[5])};
+            Angle::radians(numbers[3]),
+            Angle::radians(numbers[4]),
+            Angle::radians(numbers[5])};
 }
 
 double readShare(JsonLine& line) {
@@ -101,13 +102,9 @@ std::string writeTrace(const TraceFile& trace) {
     std::string text = header.take() + '\n';
     for (const TriedPose& tried : trace.poses) {
         JsonWriter json;
-        const Pose3& pose = tried.pose;
-        json.beginObject().key("sensor").value(tried.sensor).key("pose").beginArray();
-        for (const double number :
-             {pose.position.x, pose.position.y, pose.position.z, pose.heading.degrees(),
-              pose.tilt.degrees(), pose.roll.degrees()})
-            json.value(number);
-        json.endArray().key("value").value(tidy(tried.value));
+        json.beginObject().key("sensor").value(tried.sensor);
+        addPose(json, tried.pose);
+        json.key("value").value(tidy(tried.value));
         if (tried.slice_area) json.key("slice_area").value(tidy(*tried.slice_area));
         if (tried.is_chosen) json.key("chosen").value(true);
         json.endObject();

@@ -23,7 +23,7 @@ struct TriedPose {
 /// The "assist info" of the thesis' Sensor Arranger as JSONL: a header object
 /// {"schema":"ispace-trace/1","history":[...]}, then a line a pose,
 /// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, of lasers with "slice_area", and with
-/// "chosen":true where a sensor was placed. Degrees, as in layouts.
+/// "chosen":true where a sensor was placed. Metres and radians, as in every JSON pose.
 struct TraceFile {
     History history;
     std::vector<TriedPose> poses;

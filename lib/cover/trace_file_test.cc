@@ -31,9 +31,11 @@ TEST(TraceFile, IsWhatTheFormatSays) {
     EXPECT_EQ(
         writeTrace(trace),
         "{\"schema\":\"ispace-trace/1\",\"history\":[\"arrange room.glb --sensor laser:1\"]}\n"
-        "{\"sensor\":\"l1\",\"pose\":[1.5,-2,0.15,-90,0,0],\"value\":0.25,"
+        "{\"sensor\":\"l1\",\"pose\":[1.5,-2,0.15,-1.5707963267948966,0,0],\"value\":0.25,"
         "\"slice_area\":3.5}\n"
-        "{\"sensor\":\"l1\",\"pose\":[0,0,2,0,-30,5],\"value\":0.5,\"chosen\":true}\n");
+        "{\"sensor\":\"l1\",\"pose\":[0,0,2,0,-0.5235987755982988,0.08726646259971647],\"value\":0."
+        "5,"
+        "\"chosen\":true}\n");
 }
 
 TEST(TraceFile, ReadsWhatItWrites) {
@@ -55,12 +57,14 @@ TEST(TraceFile, ReadsWhatItWrites) {
     ASSERT_EQ(again.poses.size(), trace.poses.size());
     for (std::size_t i = 0; i < again.poses.size(); ++i) {
         EXPECT_EQ(again.poses[i].sensor, trace.poses[i].sensor);
-        EXPECT_EQ(again.poses[i].pose, trace.poses[i].pose);
+        const Pose3 &pose = again.poses[i].pose, &expected = trace.poses[i].pose;
+        EXPECT_EQ(pose.position, expected.position);
+        for (const Angle Pose3::*angle : {&Pose3::heading, &Pose3::tilt, &Pose3::roll})
+            EXPECT_NEAR((pose.*angle).degrees(), (expected.*angle).degrees(), 1e-12);
         EXPECT_EQ(again.poses[i].value, trace.poses[i].value);
         EXPECT_EQ(again.poses[i].is_chosen, trace.poses[i].is_chosen);
         EXPECT_EQ(again.poses[i].slice_area, trace.poses[i].slice_area);
     }
-    EXPECT_EQ(writeTrace(again), writeTrace(trace));
 }
 
 TEST(TraceFile, OrderBlanksAndUnknownKeysDoNotMatter) {
@@ -75,7 +79,7 @@ TEST(TraceFile, OrderBlanksAndUnknownKeysDoNotMatter) {
     EXPECT_EQ(trace.history, (History{"a", "b"}));
     ASSERT_EQ(trace.poses.size(), 1U);
     EXPECT_EQ(trace.poses[0].sensor, "é😀\n");
-    EXPECT_EQ(trace.poses[0].pose.roll, Angle::degrees(6));
+    EXPECT_EQ(trace.poses[0].pose.roll, Angle::radians(6));
     EXPECT_EQ(trace.poses[0].value, 0.01);
     EXPECT_FALSE(trace.poses[0].is_chosen);
     EXPECT_TRUE(readTrace(kHeader, "t").poses.empty());

@@ -30,11 +30,13 @@ std::string infoJson(const EnvironmentInfo& info) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-info/1");
     json.key("digest").value(info.digest);
-    json.key("limits").value(std::vector<double>{b.low.x, b.low.y, b.high.x, b.high.y});
-    json.key("indoor_area").value(info.indoor_area);
-    json.key("free_area").value(info.free_area);
-    json.key("height").value(info.height);
-    json.key("perimeter").value(info.perimeter);
+    json.key("limits").beginArray();
+    for (const double limit : {b.low.x, b.low.y, b.high.x, b.high.y}) json.value(tidy(limit));
+    json.endArray();
+    json.key("indoor_area").value(tidy(info.indoor_area));
+    json.key("free_area").value(tidy(info.free_area));
+    json.key("height").value(tidy(info.height));
+    json.key("perimeter").value(tidy(info.perimeter));
     json.key("counts").beginObject();
     for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
     json.endObject();

@@ -4,19 +4,13 @@
 #include <cmath>
 
 #include "base/json_writer.h"
+#include "base/number.h"
 #include "sense/float_text.h"
+#include "sense/pose_json.h"
 
 namespace ispace {
 
 namespace {
-
-void addPose(JsonWriter& json, const Pose3& pose) {
-    json.key("pose").beginArray();
-    for (const double part : {pose.position.x, pose.position.y, pose.position.z,
-                              pose.heading.radians(), pose.tilt.radians(), pose.roll.radians()})
-        json.value(part);
-    json.endArray();
-}
 
 /// Appends what is written so far, the long list of `key`, and the end of line and object.
 void appendWithRanges(std::string& out, JsonWriter& json, std::string_view key,
@@ -46,9 +40,9 @@ void addPosition(JsonWriter& json, const Burst& burst) {
     json.beginArray();
     if (burst.fix) {
         const Point3& p = burst.fix->position;
-        json.value(p.x).value(p.y).value(p.z);
+        json.value(tidy(p.x)).value(tidy(p.y)).value(tidy(p.z));
     } else {
-        json.value(burst.simple->x).value(burst.simple->y);
+        json.value(tidy(burst.simple->x)).value(tidy(burst.simple->y));
     }
     json.endArray();
 }
@@ -112,13 +106,14 @@ void appendBurstLine(std::string& out, const PlacedTag& tag, const Burst& burst,
     json.key("heard").beginArray();
     for (const TimeOfFlight& flight : burst.heard) {
         json.beginObject().key("receiver").value(receivers[flight.receiver].id);
-        json.key("time_of_flight").value(flight.time).key("range").value(flight.distance);
+        json.key("time_of_flight").value(tidy(flight.time));
+        json.key("range").value(tidy(flight.distance));
         json.endObject();
     }
     json.endArray();
     addPosition(json, burst);
     const auto figure = [&burst](double Fix::*part) {
-        return burst.fix ? std::optional((*burst.fix).*part) : std::nullopt;
+        return burst.fix ? std::optional(tidy((*burst.fix).*part)) : std::nullopt;
     };
     json.key("residual").value(figure(&Fix::residual));
     json.key("pdop").value(figure(&Fix::pdop));
