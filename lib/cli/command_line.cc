@@ -10,6 +10,7 @@
 #include "base/history.h"
 #include "base/number.h"
 #include "base/suggest.h"
+#include "base/version.h"
 #include "cli/dependencies.h"
 #include "cli/run_tool.h"
 #include "record/schema.h"
@@ -326,8 +327,8 @@ void CommandLine::parse(int argc, const char* const* argv) {
     }
     if (d.help) throw TextRequested{helpText()};
     if (d.version)
-        throw TextRequested{d.tool + " (ispace) " ISPACE_VERSION
-                                     "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
+        throw TextRequested{d.tool + " (ispace) " + std::string(version()) +
+                            "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
     d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
     std::vector<std::string> rest = d.app.remaining();
     rest.insert(rest.end(), tail.begin(), tail.end());

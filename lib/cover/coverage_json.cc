@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_writer.h"
 #include "base/number.h"
+#include "base/version.h"
 #include "cover/coverage.h"
 
 namespace ispace {
@@ -83,8 +84,7 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 std::string coverageJson(const CoverageReport& report) {
     const Box2& limits = report.limits;
     JsonWriter json;
-    json.beginObject();
-    json.key("schema").value("ispace-coverage/1");
+    beginReport(json, "ispace-coverage/1", "coverage");
     json.key("digest").value(report.digest);
     write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
     json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "base/version.h"
 #include "cover/coverage.h"
 
 namespace ispace {
@@ -39,24 +40,25 @@ CoverageReport sampleReport() {
 TEST(CoverageJson, HasTheKeysInTheirOrder) {
     EXPECT_EQ(
         coverageJson(sampleReport()),
-        R"({"schema":"ispace-coverage/1","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
-        R"("grid":[4,5],"height":0.15,"plane":0,"indoor_area":10,"free_area":9.25,"sensors":[)"
-        R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":3.375,)"
-        R"("marginal_area":1.25,"kind":"laser","area":{"grid":3.25,"exact":3.375},)"
-        R"("marginal":{"grid":1.25,"exact":1.5},"overlap":{"grid":2,"exact":1.875}},)"
-        R"({"id":"t","model":null,"slice_area":null,"exact_area":null,"marginal_area":0,)"
-        R"("kind":"ranger","area":{"grid":12,"exact":null},"marginal":{"grid":0,"exact":null},)"
-        R"("overlap":{"grid":12,"exact":null}}],)"
-        R"("total_effective_area":{"grid":8,"exact":null},"overlap_area":{"grid":2,"exact":null},)"
-        R"("coverage":{"grid":0.8,"exact":0.8125},)"
-        R"("free_coverage":{"grid":0.875,"exact":null},"redundancy":[0.2,0.8,0],)"
-        R"("redundancy_exact":null,"zones":[)"
-        R"({"id":"door","area":1.5,"coverage":{"grid":0.5,"exact":0.25}},)"
-        R"({"id":"far","area":0,"coverage":{"grid":0,"exact":0}}],)"
-        R"("pieces":{"count":2,"largest_share":0.75},)"
-        R"("unseen":[{"x":1,"y":2,"area":1.5},{"x":0.5,"y":0.25,"area":0.5}],)"
-        R"("exact_missing":null})"
-        "\n");
+        R"({"schema":"ispace-coverage/1","tool":"coverage","version":")" + std::string(version()) +
+            R"(","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
+            R"("grid":[4,5],"height":0.15,"plane":0,"indoor_area":10,"free_area":9.25,"sensors":[)"
+            R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":3.375,)"
+            R"("marginal_area":1.25,"kind":"laser","area":{"grid":3.25,"exact":3.375},)"
+            R"("marginal":{"grid":1.25,"exact":1.5},"overlap":{"grid":2,"exact":1.875}},)"
+            R"({"id":"t","model":null,"slice_area":null,"exact_area":null,"marginal_area":0,)"
+            R"("kind":"ranger","area":{"grid":12,"exact":null},"marginal":{"grid":0,"exact":null},)"
+            R"("overlap":{"grid":12,"exact":null}}],)"
+            R"("total_effective_area":{"grid":8,"exact":null},"overlap_area":{"grid":2,"exact":null},)"
+            R"("coverage":{"grid":0.8,"exact":0.8125},)"
+            R"("free_coverage":{"grid":0.875,"exact":null},"redundancy":[0.2,0.8,0],)"
+            R"("redundancy_exact":null,"zones":[)"
+            R"({"id":"door","area":1.5,"coverage":{"grid":0.5,"exact":0.25}},)"
+            R"({"id":"far","area":0,"coverage":{"grid":0,"exact":0}}],)"
+            R"("pieces":{"count":2,"largest_share":0.75},)"
+            R"("unseen":[{"x":1,"y":2,"area":1.5},{"x":0.5,"y":0.25,"area":0.5}],)"
+            R"("exact_missing":null})"
+            "\n");
 }
 
 TEST(CoverageJson, TellsOfAComparison) {
@@ -124,7 +126,8 @@ TEST(CoverageText, ManySensorsShareARow) {
 TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
     CoverageReport report = sampleReport();
     report.sensors.clear();
-    EXPECT_NE(coverageText(report).find("\nno laser, ranger or ultrasonic receiver is placed\n"), std::string::npos);
+    EXPECT_NE(coverageText(report).find("\nno laser, ranger or ultrasonic receiver is placed\n"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "base/json_writer.h"
 #include "base/number.h"
+#include "base/version.h"
 #include "env/mesh.h"
 #include "geom/boolean.h"
 
@@ -28,7 +29,7 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
 std::string infoJson(const EnvironmentInfo& info) {
     const Box2& b = info.limits;
     JsonWriter json;
-    json.beginObject().key("schema").value("ispace-info/1");
+    beginReport(json, "ispace-info/1", "envc");
     json.key("digest").value(info.digest);
     json.key("limits").beginArray();
     for (const double limit : {b.low.x, b.low.y, b.high.x, b.high.y}) json.value(tidy(limit));

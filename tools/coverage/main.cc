@@ -129,6 +129,8 @@ void coverage(CoverageToolOptions options) {
     if (!options.format.empty()) refuseReplacing(files, {options.common.output});
     if (options.format == "ros")
         refuseReplacing(files, {withSuffix(options.common.output, ".pgm")});
+    refuseReplacing(files, {options.report});
+    if (!options.report.empty()) mustBeWritable(options.report);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
     warnOfDoubts(options, input.scene);
@@ -141,6 +143,7 @@ void coverage(CoverageToolOptions options) {
         writeProduct(options, input.scene, measured);
         writeDependencies(options.common, files);
     }
+    if (!options.report.empty()) writeAll(options.report, coverageJson(report));
     writeAll("-", options.json ? coverageJson(report) : coverageText(report));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +

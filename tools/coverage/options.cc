@@ -68,6 +68,18 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
             throw UsageError(std::string(option) + " is about pictures, not about " + o.format);
 }
 
+void checkReport(const CoverageToolOptions& o) {
+    if (o.report.empty()) throw UsageError("--report: an empty name is given");
+    if (o.report == "-")
+        throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
+    static_cast<void>(outputFormat({}, o.report, {"json"}));  // refuses another suffix
+    const auto place = [](const std::string& file) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+    };
+    if (o.common.output != "-" && place(o.report) == place(o.common.output))
+        throw UsageError("--report and --output name the same file, " + o.report);
+}
+
 }  // namespace
 
 CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
@@ -78,6 +90,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                      "stdin unless ENV holds placed sensors. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
+    line.text("--report", "FILE", o.report, "write the report there, too, as JSON (.json)",
+              Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact figures where they are known: 95% of the "
@@ -113,6 +127,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     for (const std::string& text : words.requirements)
         o.requirements.push_back(parseRequirement(text));
     checkProduct(line, o, words.to);
+    if (line.given("--report")) checkReport(o);
     return o;
 }
 

@@ -17,6 +17,7 @@ struct CoverageToolOptions {
     std::vector<Requirement> requirements;
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
+    std::string report;  ///< file for the report as JSON besides stdout; "" for none
     std::string format;  ///< of the product; "" without one
     std::string trace;   ///< file of what a search tried, for the map; "" for none
     MapOptions map;

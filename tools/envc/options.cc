@@ -162,6 +162,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if (options.slice && std::find(kMaps.begin(), kMaps.end(), options.format) == kMaps.end())
         throw UsageError("--slice is written as svg, png, geojson or ros, not " + options.format);
     checkCombination(line, options);
+    if (options.info && !options.json)
+        options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";
     options.history_line = line.historyLine(options.inputs);
     return options;
 }
