@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# All JSON that the tools write, over all scenes and in all golden cases, is what share/schemas says:
+# no key that is not described there, none missing.
+. "$(dirname "$0")/common.sh"
+
+python3 -c 'from jsonschema import Draft202012Validator' 2>/dev/null || skip "no python3-jsonschema"
+validate="$source_dir/tests/schemas/validate.py"
+schemas=$source_dir/share/schemas
+python3 "$validate" --self-test "$schemas" || fail "the schemas themselves"
+
+# Everything that tools say aside is for the other tests.
+exec 3>&2 2>talk
+for scene in "$scenes"/*.env; do
+    name=$(basename "$scene" .env)
+    envc "$scene" -q --info --json >"$name.info.json"
+    envc "$scene" -q -o "$name.geojson"
+    envc "$scene" -q --slice 0.15 -o "$name.slice.geojson"
+    layout=$scenes/$name.3dm
+    [ -f "$layout" ] || continue
+    coverage "$scene" "$layout" -q --json -o "$name.seen.geojson" >"$name.coverage.json"
+    scan "$scene" "$layout" -q --frames 2 --noise -o "$name.jsonl"
+done
+for layout in ultrasound ranger; do
+    scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"
+    coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null
+done
+coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json >compared.json
+arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
+    --trace tried.jsonl -o best.3dm
+simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
+exec 2>&3
+
+python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \
+    "$source_dir"/tests/*/*.out >log || fail "$(head -n 40 log)"
+# What the figures are held to is not nothing.
+[ "$(ls ./*.json ./*.jsonl ./*.geojson | wc -l)" -gt 30 ] || fail "few outputs: $(ls)"
+
+# The test can fail: a key more, and a report without its version.
+sed 's/"height":/"hight":0,"height":/' catalogue.info.json >bad.json
+! python3 "$validate" "$schemas" bad.json >log || fail "a key that is not described passes"
+grep -q hight log || fail "$(cat log)"
