@@ -23,16 +23,24 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return d[a.size()][b.size()];
 }
 
+std::string lowered(std::string_view word) {
+    std::string lower(word);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
+}
+
 }  // namespace
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known) {
     constexpr std::size_t kLongest = 64;
     if (word.size() > kLongest) return "";
+    const std::string lower = lowered(word);
     std::string best;
     std::size_t best_distance =
         std::max<std::size_t>(1, std::max<std::size_t>(word.size(), 3) / 3) + 1;
     for (const std::string& candidate : known) {
-        const std::size_t distance = editDistance(word, candidate);
+        const std::size_t distance = editDistance(lower, lowered(candidate));
         if (distance < best_distance && distance < candidate.size()) {
             best = candidate;
             best_distance = distance;

@@ -8,7 +8,8 @@
 namespace ispace {
 
 /// The known word a person most likely meant, or "" if none is near: at most a third of the
-/// letters differ (insertions, deletions, substitutions and swaps of neighbours).
+/// letters differ (insertions, deletions, substitutions and swaps of neighbours), whatever their
+/// case.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
 /// ", did you mean `height`?" or, with nothing near, "": to be put behind a message.

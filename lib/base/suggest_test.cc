@@ -14,6 +14,8 @@ TEST(Suggest, FindsTheWordThatWasMeant) {
     EXPECT_EQ(nearestWord("sizes", kKeys), "size") << "a letter too many";
     EXPECT_EQ(nearestWord("heading", kKeys), "heading");
     EXPECT_EQ(nearestWord("hedding", kKeys), "heading");
+    EXPECT_EQ(nearestWord("HEIGHT", kKeys), "height") << "in capitals";
+    EXPECT_EQ(nearestWord("rplidar-A1", {"RPLidar-A2", "RPLidar-A1"}), "RPLidar-A1");
 }
 
 TEST(Suggest, IsSilentWhereNothingIsNear) {

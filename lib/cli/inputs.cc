@@ -107,7 +107,8 @@ void addEnvironment(std::vector<Document>& documents, const InputRequest& reques
         const auto reference = environmentReference(document);
         if (!reference || reference->file.empty()) continue;
         // Names are relative to the current folder by now.
-        Document environment = parseInput(readRaw(reference->file), request, request.import);
+        const RawInput raw{reference->file, bytesReferenced(*reference, reference->file)};
+        Document environment = parseInput(raw, request, request.import);
         if (environment.kind != DocumentKind::Environment)
             throw FormatError(reference->record.finding(
                 "file", reference->file + " is a layout, not an environment"));

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/utf8.h"
 #include "cli/command_line.h"
 #include "io/input.h"
 #include "layout/schemas.h"
@@ -98,7 +100,8 @@ class OperandReader {
         const fs::path folder =
             layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
         const std::string operand = (folder / reference->file).string();
-        Document document = ispace::read(operand);
+        Document document = parseDocument(bytesReferenced(*reference, operand), operand,
+                                          ImportOptions(), sceneSchemas());
         if (document.kind != DocumentKind::Environment)
             throw FormatError(
                 reference->record.finding("file", operand + " is a layout, not an environment"));
@@ -112,6 +115,18 @@ class OperandReader {
 };
 
 }  // namespace
+
+std::string bytesReferenced(const EnvironmentReference& reference, const std::string& file) {
+    try {
+        return readAll(file);
+    } catch (const std::system_error& error) {
+        throw FormatError(reference.record.finding(
+            "file", "environment " + excerpt(file) +
+                        " cannot be opened: " + error.code().message() +
+                        "; names are relative to the folder of the layout: if it was moved, give "
+                        "the environment, too"));
+    }
+}
 
 void checkDigest(const Document& layout, std::span<const Record> environment,
                  const std::string& environment_operand) {

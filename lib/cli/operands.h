@@ -51,6 +51,10 @@ struct OtherLayout {
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
                             bool any_environment);
 
+/// The file of an environment that a layout names. \throws FormatError at the layout's line if it
+/// cannot be read
+std::string bytesReferenced(const EnvironmentReference& reference, const std::string& file);
+
 /// \throws FormatError if `layout` names another digest than that of `environment`'s records
 void checkDigest(const Document& layout, std::span<const Record> environment,
                  const std::string& environment_operand);

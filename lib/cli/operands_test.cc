@@ -73,7 +73,7 @@ TEST_F(Operands, TheLayoutNamesItsEnvironmentRelativeToItself) {
     writeLayout("nameless.3dm", "");
     EXPECT_THROW(readScene({{"nameless.3dm"}}), UsageError);
     writeLayout("lost.3dm", "environment file=nowhere.glb\n");
-    EXPECT_THROW(readScene({{"lost.3dm"}}), std::system_error);
+    EXPECT_THROW(readScene({{"lost.3dm"}}), FormatError);
     writeLayout("circular.3dm", "environment file=circular.3dm\n");
     EXPECT_THROW(readScene({{"circular.3dm"}}), FormatError);
 }
