@@ -65,17 +65,17 @@ TEST(CellSet, AgreesWithPlainBits) {
 
 TEST(CellsIn, WholeGridWhereTheRegionIsItsLimits) {
     const Grid grid{{{0, 0}, {4, 4}}, 10, 10};
-    EXPECT_EQ(cellsIn(grid, {square(0, 0, 4), {}}).count(), 100U);
-    EXPECT_EQ(cellsIn(grid, {square(-9, -9, 99), {}}).count(), 100U);
-    EXPECT_EQ(cellsIn(grid, {square(5, 5, 9), {}}).count(), 0U);
+    EXPECT_EQ(cellsIn(grid, {{{square(0, 0, 4), {}}}}).count(), 100U);
+    EXPECT_EQ(cellsIn(grid, {{{square(-9, -9, 99), {}}}}).count(), 100U);
+    EXPECT_EQ(cellsIn(grid, {{{square(5, 5, 9), {}}}}).count(), 0U);
     EXPECT_EQ(cellsIn(grid, {}).count(), 0U);
 }
 
 TEST(CellsIn, CentresOnTheBoundaryAreOutside) {
     const Grid grid{{{0, 0}, {4, 4}}, 4, 4};  // centres at .5
-    EXPECT_EQ(cellsIn(grid, {square(0.5, 0.5, 2), {}}).count(), 1U);
+    EXPECT_EQ(cellsIn(grid, {{{square(0.5, 0.5, 2), {}}}}).count(), 1U);
     const Polygon hole = {{1.5, 1.5}, {1.5, 2.5}, {2.5, 2.5}, {2.5, 1.5}};
-    EXPECT_EQ(cellsIn(grid, {square(0, 0, 4), {hole}}).count(), 12U);
+    EXPECT_EQ(cellsIn(grid, {{{square(0, 0, 4), {hole}}}}).count(), 12U);
 }
 
 TEST(CellsBlocked, CentresOnTheEdgeAreBlockedAndSolidsMayOverlap) {
@@ -109,7 +109,7 @@ TEST(CellsIn, AgreesWithLocateForAnyCurves) {
                         1 + static_cast<int>(random() % 20)};
         const bool lattice = trial % 2 == 0;
         const Region region{randomCurve(random, lattice), {}};
-        const CellSet inside = cellsIn(grid, region);
+        const CellSet inside = cellsIn(grid, {{region}});
         Slice slice;
         slice.solids = {region.outline, randomCurve(random, lattice)};
         const CellSet blocked = cellsBlocked(grid, slice);
@@ -130,7 +130,7 @@ TEST(CellsIn, AgreesWithLocateForRegionsWithHoles) {
     for (int i = 0; i < 37; ++i)
         round.push_back({5 + 2 * std::sin(-i / 37.0 * 6.283), 5 + 2 * std::cos(-i / 37.0 * 6.283)});
     const Region region{{{0, 0}, {10, 1}, {9, 10}, {4, 8}, {1, 9}}, {round, square(1, 1, 1)}};
-    const CellSet inside = cellsIn(grid, region);
+    const CellSet inside = cellsIn(grid, {{region}});
     for (std::size_t cell = 0; cell < grid.size(); ++cell)
         ASSERT_EQ(inside.test(cell), region.locate(grid.center(cell)) == Side::Inside);
     EXPECT_GT(inside.count(), 500U);

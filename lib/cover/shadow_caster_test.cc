@@ -267,7 +267,7 @@ struct Furnished {
         std::vector<bool> inside(grid.size());  // by the even-odd rule
         for (const Polygon& polygon : polygons) {
             const Region region{polygon, {}};
-            const CellSet more = cellsIn(grid, region);
+            const CellSet more = cellsIn(grid, {{region}});
             more.forEach([&](std::size_t cell) { inside[cell] = !inside[cell]; });
         }
         std::size_t wrong = 0;

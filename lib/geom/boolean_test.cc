@@ -24,8 +24,8 @@ TEST(Difference, withoutSolidsIsTheRegion) {
     const auto pieces = difference(kRoom, {});
     ASSERT_EQ(pieces.size(), 1U);
     EXPECT_EQ(pieces[0].outline, kRoom.outline);
-    EXPECT_TRUE(difference({}, {}).empty());
-    EXPECT_TRUE(difference({}, std::vector<Polygon>{test::box(0, 0, 1, 1)}).empty());
+    EXPECT_TRUE(difference(Region{}, {}).empty());
+    EXPECT_TRUE(difference(Region{}, std::vector<Polygon>{test::box(0, 0, 1, 1)}).empty());
     EXPECT_EQ(totalArea({}), 0);
 }
 

@@ -147,7 +147,7 @@ TEST(Overlap, SharedPlaceOfCuts) {
 TEST(IndoorIndex, AnswersAsTheRegionDoes) {
     const Region region{{{0, 0}, {8, 0}, {8, 4}, {4, 4}, {4, 8}, {0, 8}},
                         {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
-    const IndoorIndex index(region);
+    const IndoorIndex index({{region}});
     std::mt19937_64 random(11);
     // Half metres: through vertices and along edges.
     std::uniform_int_distribution<int> half(-2, 18);
@@ -163,11 +163,11 @@ TEST(IndoorIndex, AnswersAsTheRegionDoes) {
     EXPECT_FALSE(index.isOut({2.999999999, 2}));
     EXPECT_TRUE(index.hasEdgeIn({{7, 1}, {9, 2}}));
     EXPECT_FALSE(index.hasEdgeIn({{6, 1}, {7, 2}}));
-    EXPECT_EQ(IndoorIndex(Region()).locate({0, 0}), Side::Outside);
+    EXPECT_EQ(IndoorIndex({}).locate({0, 0}), Side::Outside);
     // Left of the origin as well.
     const Region west{{{-9, 0}, {-8, 0}, {-8, 1}, {-9, 1}}, {}};
-    EXPECT_EQ(IndoorIndex(west).locate({-8.5, 0.5}), Side::Inside);
-    EXPECT_EQ(IndoorIndex(west).locate({-7.5, 0.5}), Side::Outside);
+    EXPECT_EQ(IndoorIndex({{west}}).locate({-8.5, 0.5}), Side::Inside);
+    EXPECT_EQ(IndoorIndex({{west}}).locate({-7.5, 0.5}), Side::Outside);
 }
 
 }  // namespace
