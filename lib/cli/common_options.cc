@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/suggest.h"
+#include "base/program.h"
 #include "base/utf8.h"
 #include "cli/command_line.h"
 
@@ -81,9 +82,7 @@ ThreadLimit::ThreadLimit(int threads)
 ThreadLimit::~ThreadLimit() = default;
 
 std::string shareFolder() {
-    std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-    return (program.parent_path().parent_path() / "share" / "ispace").string();
+    return (std::filesystem::path(programPrefix()) / "share" / "ispace").string();
 }
 
 namespace {

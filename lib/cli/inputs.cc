@@ -46,9 +46,9 @@ struct RawInput {
     bool is_plan = false;
 };
 
-RawInput readRaw(const std::string& input) {
+RawInput readRaw(const std::string& input, const ImportOptions& import) {
     RawInput raw{input, input == "-" ? readStdin() : readAll(input)};
-    raw.is_plan = isPlan(raw.bytes, input, sceneSchemas());
+    raw.is_plan = isPlan(raw.bytes, input, import, sceneSchemas());
     return raw;
 }
 
@@ -78,7 +78,7 @@ void addKnown(std::span<const Record> records, ImportOptions& import) {
 /// All inputs in their order; plans are read last, as they need to know what the others say.
 std::vector<Document> parseInputs(const InputRequest& request) {
     std::vector<RawInput> raw;
-    for (const std::string& input : request.inputs) raw.push_back(readRaw(input));
+    for (const std::string& input : request.inputs) raw.push_back(readRaw(input, request.import));
     std::vector<Document> documents(raw.size());
     ImportOptions import = request.import;
     addKnown(request.added, import);

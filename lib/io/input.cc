@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/utf8.h"
 #include "io/aria_map.h"
+#include "io/bare_map.h"
 #include "io/dxf.h"
 #include "io/glb.h"
 #include "io/house_expo.h"
 #include "io/mesh_file.h"
+#include "io/picture.h"
 #include "io/ros_map.h"
 #include "record/lexer.h"
 #include "record/text.h"
@@ -22,7 +25,8 @@ namespace ispace {
 namespace {
 
 constexpr const char* kWanted =
-    "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, HouseExpo JSON, an ARIA map, DXF or a mesh";
+    "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
+    "MovingAI map, DXF, SVG, IFC or a mesh";
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// UTF-8 without control characters other than those of plain text.
@@ -68,16 +72,37 @@ bool isRecordLine(std::string_view line, const Schemas& schemas) {
     return equals != 0 && equals < rest.find_first_of(" \t:{[\"'");
 }
 
+/// First bytes of files that are known but not read, and what they are.
+constexpr std::pair<std::string_view, const char*> kForeign[] = {
+    {"%PDF-",
+     "a PDF: if it was drawn, not scanned, convert it to SVG, for example with `pdftocairo -svg "
+     "FILE plan.svg`, or to a picture with `pdftoppm -png`"},
+    {"%!PS", "PostScript: convert it to PDF with `ps2pdf`, then to SVG with `pdftocairo -svg`"},
+    {"8BPS", "a Photoshop picture: convert it, for example with `convert FILE[0] plan.png`"},
+    {"gimp xcf", "a GIMP picture: export it as PNG"},
+    {"GIF8", "a GIF picture: convert it, for example with `convert FILE plan.png`"},
+    {std::string_view("\0\0\0\x0cjP  ", 8),
+     "a JPEG 2000 picture: convert it, for example with `convert FILE plan.png`"},
+    {std::string_view("\xff\xfe\xff\x0e"
+                      "S\0k\0e\0t\0c\0h\0U\0p\0",
+                      20),
+     "a SketchUp model: export it as COLLADA, and cut walls from it with --slice-walls"},
+    {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+     "an OLE file, as Revit (.rvt) and Visio (.vsd) write: export it as IFC, DXF or SVG"},
+    {std::string_view("PK\3\4", 4),
+     "a zip archive: unpack it; of a drawing of Visio or LibreOffice export SVG"},
+    {"BLENDER", "a Blender scene: export it as glTF or COLLADA"},
+    {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
+};
+
 /// What a well-known foreign file is, with the way in; "" for others.
 std::string foreignFile(std::string_view bytes) {
-    if (bytes.starts_with("P2") || bytes.starts_with("P5"))
-        return "a PGM picture: name the map.yaml that goes with it";
-    if (bytes.starts_with("\x89PNG"))
-        return "a PNG picture: for a ROS map name the map.yaml that goes with it";
     if (bytes.starts_with("AutoCAD Binary DXF"))
-        return "binary DXF: save it as ASCII DXF, in AutoCAD with `SAVEAS`, type DXF, options";
+        return "binary DXF: save it as ASCII DXF, for example with LibreCAD or FreeCAD";
     if (bytes.starts_with("AC10") && bytes.size() > 6 && bytes[4] >= '0' && bytes[4] <= '9')
-        return "a DWG drawing: save it as ASCII DXF, or convert it, for example with `dwg2dxf`";
+        return "a DWG drawing: convert it to DXF, for example with `dwg2dxf FILE` (LibreDWG)";
+    for (const auto& [magic, what] : kForeign)
+        if (bytes.starts_with(magic)) return what;
     return "";
 }
 
@@ -137,6 +162,8 @@ constexpr InputFormat kFormatsByMagic[] = {
     {false, holdsBytes<isRecordText>, readRecords},
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
+    {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
+    {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {false, holdsBytes<isMeshFile>, readMesh},
 };
 
@@ -182,8 +209,8 @@ const InputFormat* formatOf(const Source& source, Refuse refuse) {
 
 }  // namespace
 
-bool isPlan(std::string_view bytes, const std::string& operand, const Schemas& schemas) {
-    const ImportOptions options;
+bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
+            const Schemas& schemas) {
     const InputFormat* format = formatOf({withoutMark(bytes), operand, options, schemas},
                                          [](int /*line*/, const std::string& /*message*/) {});
     return format != nullptr && format->is_plan;

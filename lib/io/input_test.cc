@@ -38,19 +38,13 @@ TEST(Input, ToldApartByContent) {
 
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
-        "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, HouseExpo JSON, an ARIA map, DXF or a "
-        "mesh";
+        "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
+        "MovingAI map, DXF, SVG, IFC or a mesh";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :
          {"\x7f\x45LF\x02\x01\x00"s, "\xff\xfe\x23\x00"s, "a\x01"s, "\x00"s})
         EXPECT_EQ(errorOf(junk), "room: error: not an environment or layout: " + wanted);
-    EXPECT_EQ(errorOf("P5\n2 2\n255\nabcd"),
-              "room: error: not an environment or layout but a PGM picture: name the map.yaml that "
-              "goes with it");
-    EXPECT_EQ(errorOf("\x89PNG\r\n\x1a\n"),
-              "room: error: not an environment or layout but a PNG picture: for a ROS map name the "
-              "map.yaml that goes with it");
 }
 
 TEST(Input, ImportsToldApartByContent) {
@@ -81,11 +75,42 @@ TEST(Input, ImportsToldApartByContent) {
 TEST(Input, OtherFormatsGetAHint) {
     EXPECT_NE(errorOf("AutoCAD Binary DXF\r\n\x1a\0"s).find("but binary DXF: save it as ASCII DXF"),
               std::string::npos);
-    EXPECT_NE(errorOf("AC1027\0\0"s).find("but a DWG drawing: save it as ASCII DXF"),
+    EXPECT_NE(errorOf("AC1027\0\0"s).find("but a DWG drawing: convert it to DXF"),
               std::string::npos);
     EXPECT_NE(errorOf("{\"type\": \"FeatureCollection\", \"features\": []}").find("but GeoJSON"),
               std::string::npos);
     EXPECT_NE(errorOf("{\"id\": 1}").find("error"), std::string::npos);
+}
+
+TEST(Input, PicturesAlone) {
+    const std::string pgm = "P5\n3 1\n255\n\xff\xff\xff";
+    EXPECT_NE(errorOf(pgm).find("room: error: a picture does not say how large its pixels are"),
+              std::string::npos);
+    ImportOptions options;
+    options.resolution = 2;
+    EXPECT_EQ(parseDocument(pgm, "room.pgm", options, sceneSchemas()).records.size(), 2U);
+    EXPECT_TRUE(isPlan(pgm, "room.pgm", options, sceneSchemas()));
+    EXPECT_TRUE(isPlan("type octile\nheight 1\n", "arena.map", options, sceneSchemas()));
+}
+
+TEST(Input, FormatsThatAreNotReadAreNamed) {
+    const std::vector<std::pair<std::string, std::string>> files{
+        {"%PDF-1.7\n", "but a PDF: if it was drawn, not scanned, convert it to SVG"},
+        {"%!PS-Adobe-3.0", "but PostScript: convert it"},
+        {"8BPS\0\1"s, "but a Photoshop picture: convert it"},
+        {"gimp xcf v011\0"s, "but a GIMP picture: export it as PNG"},
+        {"GIF89a", "but a GIF picture: convert it"},
+        {"\0\0\0\x0cjP  \r\n"s, "but a JPEG 2000 picture: convert it"},
+        {"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0U\0p\0 \0"s, "but a SketchUp model: export it"},
+        {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0"s, "but an OLE file, as Revit"},
+        {"PK\3\4\x14", "but a zip archive: unpack it"},
+        {"BLENDER-v293", "but a Blender scene: export it"},
+        {"\x1f\x8b\x08", "but compressed with gzip: unpack it"},
+    };
+    for (const auto& [bytes, wanted] : files)
+        EXPECT_NE(errorOf(bytes).find("room: error: not an environment or layout " + wanted),
+                  std::string::npos)
+            << errorOf(bytes);
 }
 
 TEST(Input, RecordsWithoutMagicLine) {

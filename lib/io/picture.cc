@@ -3,34 +3,24 @@
 
 #include "base/error.h"
 #include "io/pgm.h"
+#include "io/picture_module.h"
 #include "io/png_picture.h"
 
 namespace ispace {
 
-namespace {
-
-/// What a picture is that neither reader knows; "" for others.
-std::string otherFormat(std::string_view bytes) {
-    const auto begins = [bytes](std::string_view magic) { return bytes.starts_with(magic); };
-    if (begins("\xff\xd8\xff")) return "JPEG";
-    if (begins("GIF8")) return "GIF";
-    if (begins("II*") || begins("MM")) return "TIFF";
-    if (begins("BM")) return "BMP";
-    if (begins("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return "WebP";
-    for (const char* magic : {"P1", "P3", "P4", "P6", "P7"})
-        if (begins(magic)) return std::string("PNM (") + magic + ')';
-    return "";
+bool isPicture(std::string_view bytes) {
+    const bool is_pgm = (bytes.starts_with("P2") || bytes.starts_with("P5")) && bytes.size() > 2 &&
+                        std::string_view(" \t\r\n#").find(bytes[2]) != std::string_view::npos;
+    return is_pgm || isPng(bytes) || !foreignPicture(bytes).empty();
 }
-
-}  // namespace
 
 Picture parsePicture(std::string_view bytes, const std::string& name) {
     if (isPng(bytes)) return parsePng(bytes, name);
-    if (const std::string format = otherFormat(bytes); !format.empty())
-        throw FormatError(Diagnostic{displayName(name), 0, 0,
-                                     "a " + format +
-                                         " picture, wanted PNG or PGM: convert it, for example "
-                                         "with `convert FILE map.png`"});
+    if (!foreignPicture(bytes).empty()) return decodePicture(bytes, name);
+    if (bytes.starts_with("GIF8"))
+        throw FormatError(
+            Diagnostic{displayName(name), 0, 0,
+                       "a GIF picture: convert it, for example with `convert FILE map.png`"});
     return parsePgm(bytes, name);
 }
 

@@ -17,9 +17,13 @@ struct Picture {
     std::vector<std::uint8_t> opacity;   ///< 0 .. 255 for each sample; empty: all opaque
 };
 
-/// Reads a PNG or PGM picture, told apart by content.
+/// True if the bytes begin like a picture that parsePicture reads.
+bool isPicture(std::string_view bytes);
+
+/// Reads a picture, told apart by content: PNG, PGM, and through OpenCV JPEG, BMP, TIFF, WebP, PBM
+/// and PPM.
 /// \param name the picture's file, for messages
-/// \throws FormatError, with a hint for formats that are not read (JPEG, BMP, …)
+/// \throws FormatError
 Picture parsePicture(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

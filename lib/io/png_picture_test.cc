@@ -80,12 +80,8 @@ TEST(PngPicture, NamesWhatIsWrong) {
     damaged[45] = static_cast<char>(damaged[45] + 1);  // within the samples
     EXPECT_EQ(errorOf(damaged).find("map.png: error: bad PNG picture: "), 0U) << errorOf(damaged);
     EXPECT_EQ(errorOf(pngFile(2, 8, 0, {})).find("map.png: error: bad PNG picture: "), 0U);
-    EXPECT_EQ(errorOf("\xff\xd8\xff\xe0"),
-              "map.png: error: a JPEG picture, wanted PNG or PGM: convert it, for example with "
-              "`convert FILE map.png`");
-    EXPECT_NE(errorOf("BMxxxx").find("a BMP picture"), std::string::npos);
-    EXPECT_NE(errorOf("P6\n1 1\n255\nabc").find("a PNM (P6) picture"), std::string::npos);
-    EXPECT_NE(errorOf("RIFFxxxxWEBPVP8 ").find("a WebP picture"), std::string::npos);
+    EXPECT_NE(errorOf("GIF89a").find("map.png: error: a GIF picture: convert it"),
+              std::string::npos);
     EXPECT_NE(errorOf("nonsense").find("wrong magic"), std::string::npos);
 }
 

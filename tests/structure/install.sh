@@ -37,6 +37,8 @@ grep -q 'model=urg-04lx' best.3dm || fail "no device in the layout"
 scan room.glb best.3dm | tail -n 1 | grep -q '"ranges":' || fail "no scan"
 coverage room.glb best.3dm -o map.png
 [ -s map.png ] || fail "no map"
+# The module that decodes pictures lies beside the programs.
+envc "$data/pictures/room.jpg" --resolution 0.05 --info | grep -q 'indoor area' || fail "no JPEG is read"
 # A scene with a mesh beside it.
 envc "$share/scenes/catalogue.env" -o catalogue.glb
 

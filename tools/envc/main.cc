@@ -29,6 +29,9 @@ namespace {
 using namespace ispace;
 namespace fs = std::filesystem;
 
+/// Metres a cell of a ROS map, unless --resolution says otherwise.
+constexpr double kMapResolution = 0.05;
+
 /// Records become records without a look at what they describe.
 bool isRecordFormat(const std::string& format) {
     return format == "env" || format == "3dm" || format == "yaml";
@@ -76,9 +79,9 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
         writeAll(output, writeObj(scene, "").obj);
     } else if (format == "ros") {
         const std::string picture = withSuffix(output, ".pgm");
-        const RosMapFiles files =
-            writeRosMap(scene, options.slice.value_or(kScanHeight), options.resolution,
-                        fs::path(picture).filename().string());
+        const RosMapFiles files = writeRosMap(scene, options.slice.value_or(kScanHeight),
+                                              options.import.resolution.value_or(kMapResolution),
+                                              fs::path(picture).filename().string());
         writeBoth(output, files.yaml, picture, files.pgm);
     } else if (format == "stl") {
         writeAll(output, writeStl(scene));

@@ -30,7 +30,9 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
     };
     line.parsed("--slice", "M", take_slice, "write the map of obstacles at this height instead",
                 Enters::History);
-    line.meters("--resolution", options.resolution, 0.001, 100, "edge of the cells of a ROS map",
+    line.meters("--resolution", options.import.resolution, 0.001, 100,
+                "of a picture: metres a pixel; of a ROS map to write: edge of its cells "
+                "(default 0.05 m)",
                 Enters::History);
     line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
@@ -70,6 +72,18 @@ Point2 pointFrom(const std::string& text) {
     return {at[0], at[1]};
 }
 
+Pose2 poseFrom(const std::string& text) {
+    KeySpec key;
+    key.name = "origin";
+    key.type = KeyType::Tuple;
+    key.min_count = 2;
+    key.max_count = 3;
+    key.lower = -kFarthestPlan;
+    key.upper = kFarthestPlan;
+    const Tuple at = std::get<Tuple>(parseValue(key, text));
+    return {{at[0], at[1]}, Angle::degrees(at.size() > 2 ? at[2] : 0)};
+}
+
 /// Which part of a plan is the room.
 void addRoomOptions(CommandLine& line, EnvcOptions& options) {
     ImportOptions& import = options.import;
@@ -88,6 +102,10 @@ void addRoomOptions(CommandLine& line, EnvcOptions& options) {
 }
 
 void addImportOptions(CommandLine& line, ImportOptions& import) {
+    const auto take_origin = [&import](const std::string& text) { import.origin = poseFrom(text); };
+    line.parsed("--origin", "X,Y[,DEG]", take_origin,
+                "place of a picture's lower left corner, and its turn about it (default 0,0)",
+                Enters::History);
     line.meters("--wall-height", import.wall_height, 0.001, 1000, "height of walls of plans",
                 Enters::History);
     line.meters("--wall-thickness", import.wall_thickness, 0, 100,

@@ -17,7 +17,6 @@ struct EnvcOptions {
     std::string format;               ///< of the product; "" with info or check
     bool info = false, json = false, check = false;
     std::optional<double> slice;  ///< height of the obstacle map, which is the product then
-    double resolution = 0.05;     ///< metres a cell of a ROS map
     int width = 1200;             ///< pixels of a PNG
     bool any_environment = false;
     ImportOptions import;
