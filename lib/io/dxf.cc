@@ -16,6 +16,7 @@
 #include "geom/predicates.h"
 #include "io/dxf_shapes.h"
 #include "io/import_records.h"
+#include "io/line_plan.h"
 #include "io/near_segments.h"
 #include "io/plan_openings.h"
 #include "io/plan_rooms.h"
@@ -93,8 +94,8 @@ struct SortedShapes {
 
 class LayerSorter {
   public:
-    LayerSorter(const DxfDrawing& drawing, const ImportOptions& options)
-        : hidden_(drawing.hidden_layers), options_(options) {}
+    LayerSorter(const std::set<std::string>& hidden, const ImportOptions& options)
+        : hidden_(hidden), options_(options) {}
 
     SortedShapes sort(std::vector<PlanShape> shapes) {
         SortedShapes sorted;
@@ -325,6 +326,21 @@ class DxfPlan {
     PlanRooms rooms_;
 };
 
+/// \return the floor that is kept, in square metres
+double writeSorted(const SortedShapes& shapes, const LayerSorter& sorter, const std::string& name,
+                   const ImportOptions& options, std::function<std::string(double)> unit_hint,
+                   ImportRecords& out) {
+    if (shapes.walls.empty())
+        fail(name, (options.wall_layers.empty() ? "no line to make a wall of"
+                                                : "no line on the layers of walls") +
+                       std::string("; layers with lines: ") + sorter.all());
+    return withFileName(name, [&] {
+        DxfPlan plan(shapes, name, options, std::move(unit_hint), out);
+        plan.write(out, options);
+        return plan.area();
+    });
+}
+
 /// A drawing's document in a unit, and the floor it comes to.
 struct DxfImport {
     Document document;
@@ -341,26 +357,17 @@ class DxfImporter {
         ImportRecords out(schemas_, name_, options);
         const LengthUnit& unit = unitOf(drawing_, name_, options, out);
         MissingBlocks missing;
-        LayerSorter sorter(drawing_, options);
+        LayerSorter sorter(drawing_.hidden_layers, options);
         const SortedShapes shapes = sorter.sort(
             shapesOf(drawing_, unit.metres, name_, options.most_points, missing,
                      [&sorter](const std::string& layer) { return sorter.isUsed(layer); }));
         sorter.note(out);
         if (!drawing_.left_out.empty()) out.note("entities left out: " + listed(drawing_.left_out));
         if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
-        if (shapes.walls.empty())
-            fail(name_, (options.wall_layers.empty() ? "no line to make a wall of"
-                                                     : "no line on the layers of walls") +
-                            std::string("; layers with lines: ") + sorter.all());
         const auto hint = [&](double extent) {
             return hints ? unitHint(extent, unit, options) : std::string();
         };
-        double area = 0;
-        withFileName(name_, [&] {
-            DxfPlan plan(shapes, name_, options, hint, out);
-            plan.write(out, options);
-            area = plan.area();
-        });
+        const double area = writeSorted(shapes, sorter, name_, options, hint, out);
         return {out.take(), area};
     }
 
@@ -394,6 +401,14 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
                  const Schemas& schemas) {
     const DxfDrawing drawing = readDrawing(bytes, name);
     return DxfImporter(drawing, name, schemas).import(options, true).document;
+}
+
+void writeLinePlan(std::vector<PlanShape> shapes, const std::set<std::string>& hidden_layers,
+                   const std::string& name, const ImportOptions& options, ImportRecords& out) {
+    LayerSorter sorter(hidden_layers, options);
+    const SortedShapes sorted = sorter.sort(std::move(shapes));
+    sorter.note(out);
+    writeSorted(sorted, sorter, name, options, {}, out);
 }
 
 }  // namespace ispace

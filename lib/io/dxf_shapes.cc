@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "io/curves.h"
 #include "io/import_records.h"
 
 namespace ispace {
@@ -20,41 +21,12 @@ constexpr int kDeepest = 16;                    // blocks in blocks
 constexpr std::size_t kFreePoints = 10'000;     // whatever the file's size …
 constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
 
-/// Sagitta of the pieces of an arc, in metres, and their least and largest number in a full circle.
-constexpr double kArcTolerance = 0.001;
-constexpr double kFewestPieces = 8, kMostPieces = 7200;  // for 10 km
-
 /// Beyond these a bulge is a straight line, or a circle of which an end is missing.
 constexpr double kLeastBulge = 1e-9, kLargestBulge = 1e4;
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-/// Points of one frame in another; linear, so circles may become ellipses.
-struct Frame {
-    Vec2 x{1, 0}, y{0, 1};
-    Vec2 origin;
-
-    [[nodiscard]] Vec2 operator*(Vec2 v) const { return v.x * x + v.y * y; }
-    [[nodiscard]] Point2 operator*(Point2 p) const {
-        const Vec2 v = *this * Vec2{p.x, p.y} + origin;
-        return {v.x, v.y};
-    }
-    [[nodiscard]] Frame operator*(const Frame& inner) const {
-        return {*this * inner.x, *this * inner.y, *this * inner.origin + origin};
-    }
-    /// No length grows by more.
-    [[nodiscard]] double largestScale() const { return std::hypot(length(x), length(y)); }
-};
-
-constexpr Frame kMirror{{-1, 0}, {0, 1}, {}};
-
-/// In how many pieces an arc of so many radians is cut.
-int piecesOf(double sweep, double radius) {
-    const double share = std::min(1.0, kArcTolerance / radius);
-    const double per_turn =
-        std::clamp(std::numbers::pi / std::acos(1 - share), kFewestPieces, kMostPieces);
-    return std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kFullTurn * per_turn - 1e-9)));
-}
+constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
 class Expander {
   public:
@@ -69,7 +41,7 @@ class Expander {
           missing_(missing) {}
 
     std::vector<PlanShape> expand(double metres_per_unit) {
-        const Frame metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
+        const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
         add(drawing_.entities, metres, "", 0);
         return std::move(shapes_);
     }
@@ -91,10 +63,10 @@ class Expander {
         budget_ -= points;
     }
 
-    void add(const std::vector<DxfEntity>& entities, const Frame& outer, const std::string& layer,
+    void add(const std::vector<DxfEntity>& entities, const Affine& outer, const std::string& layer,
              int depth) {
         for (const DxfEntity& entity : entities) {
-            const Frame frame = entity.mirrored ? outer * kMirror : outer;
+            const Affine frame = entity.mirrored ? outer * kMirror : outer;
             const bool inherits = depth > 0 && entity.layer == "0";
             const std::string& own = inherits ? layer : entity.layer;
             if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
@@ -104,7 +76,7 @@ class Expander {
         }
     }
 
-    void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Frame& outer,
+    void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
                    const std::string& layer, int depth) {
         const auto block = drawing_.blocks.find(insert.block);
         if (block == drawing_.blocks.end()) {
@@ -122,12 +94,12 @@ class Expander {
                 spend(entity, 1);
                 const Point2 at = insert.at + (column * insert.column_step) * along +
                                   (row * insert.row_step) * across;
-                const Frame placed{x, y, at - (Point2() + base.x * x + base.y * y)};
+                const Affine placed{x, y, at - (Point2() + base.x * x + base.y * y)};
                 add(block->second.entities, outer * placed, layer, depth + 1);
             }
     }
 
-    void addShape(const DxfEntity& entity, const Frame& frame, const std::string& layer,
+    void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer,
                   int depth) {
         shape_ = {};
         shape_.layer = layer;
@@ -151,7 +123,7 @@ class Expander {
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
     }
 
-    void addPolyline(const DxfPolyline& polyline, const Frame& frame) {
+    void addPolyline(const DxfPolyline& polyline, const Affine& frame) {
         const auto& vertices = polyline.vertices;
         Polygon& points = shape_.path.points;
         shape_.path.closed = polyline.closed && vertices.size() > 1;
@@ -164,7 +136,7 @@ class Expander {
     }
 
     /// What lies between a vertex and the next one.
-    void addPiece(const DxfPolyline::Vertex& from, Point2 to, const Frame& frame) {
+    void addPiece(const DxfPolyline::Vertex& from, Point2 to, const Affine& frame) {
         PlanChord chord{{frame * from.at, frame * to}, {}};
         const double bulge = from.bulge;
         const Vec2 along = to - from.at;
@@ -173,7 +145,7 @@ class Expander {
             const Point2 center = from.at + 0.5 * along + aside * perpendicular(along);
             const Vec2 spoke = from.at - center;
             const double sweep = 4 * std::atan(bulge);
-            const int count = piecesOf(sweep, length(spoke) * frame.largestScale());
+            const int count = arcPieces(sweep, length(spoke) * frame.largestScale());
             for (int i = 1; i < count; ++i)
                 shape_.path.points.push_back(frame * (center + turned(spoke, sweep * i / count)));
             chord.center = frame * center;
@@ -185,13 +157,13 @@ class Expander {
         return std::cos(radians) * v + std::sin(radians) * perpendicular(v);
     }
 
-    void addArc(const DxfEntity& entity, const DxfArc& arc, const Frame& frame) {
+    void addArc(const DxfEntity& entity, const DxfArc& arc, const Affine& frame) {
         if (arc.radius == 0) return;  // shows nothing, as a line of no length
         if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
         const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
         double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
         if (degrees <= 0) degrees += 360;
-        const int count = piecesOf(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
+        const int count = arcPieces(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
         shape_.path.closed = full;
         for (int i = 0; i < count + (full ? 0 : 1); ++i) {
             const Angle angle =
@@ -203,13 +175,13 @@ class Expander {
                 {{shape_.path.points.front(), shape_.path.points.back()}, frame * arc.center});
     }
 
-    void addEllipse(const DxfEllipse& ellipse, const Frame& frame) {
+    void addEllipse(const DxfEllipse& ellipse, const Affine& frame) {
         double sweep = std::fmod(ellipse.to - ellipse.from, kFullTurn);
         if (sweep <= 1e-9) sweep += kFullTurn;
         const bool full = sweep > kFullTurn - 1e-6;
         const double radius = std::max(length(ellipse.major), length(ellipse.minor));
         if (!(radius > 0)) return;
-        const int count = piecesOf(sweep, radius * frame.largestScale());
+        const int count = arcPieces(sweep, radius * frame.largestScale());
         shape_.path.closed = full;
         for (int i = 0; i < count + (full ? 0 : 1); ++i) {
             const double t = ellipse.from + sweep * i / count;

@@ -16,6 +16,7 @@
 #include "io/mesh_file.h"
 #include "io/picture.h"
 #include "io/ros_map.h"
+#include "io/svg.h"
 #include "record/lexer.h"
 #include "record/text.h"
 #include "record/yaml.h"
@@ -163,6 +164,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
     {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
+    {true, holdsBytes<isSvg>, importPlan<readSvg>},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {false, holdsBytes<isMeshFile>, readMesh},
 };

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves of drawings, and how they lie in the plan.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// Points of one frame in another; linear, so circles may become ellipses.
+struct Affine {
+    Vec2 x{1, 0}, y{0, 1};
+    Vec2 origin;
+
+    [[nodiscard]] Vec2 operator*(Vec2 v) const { return v.x * x + v.y * y; }
+    [[nodiscard]] Point2 operator*(Point2 p) const {
+        const Vec2 v = *this * Vec2{p.x, p.y} + origin;
+        return {v.x, v.y};
+    }
+    [[nodiscard]] Affine operator*(const Affine& inner) const {
+        return {*this * inner.x, *this * inner.y, *this * inner.origin + origin};
+    }
+    /// No length grows by more.
+    [[nodiscard]] double largestScale() const { return std::hypot(length(x), length(y)); }
+};
+
+/// How far straight pieces may be off their curve, in metres.
+constexpr double kCurveSagitta = 0.001;
+
+/// In how many straight pieces an arc of so many radians is cut: within kCurveSagitta for radii to
+/// 10 km, none longer than an eighth of the circle.
+int arcPieces(double sweep, double radius);
+
+/// A cubic Bézier curve in metres.
+using CubicCurve = std::array<Point2, 4>;
+
+/// Adds the points behind the first that stand for the curve within kCurveSagitta; the last is the
+/// curve's own.
+void appendCubic(const CubicCurve& curve, Polygon& points);
+
+/// The centre, where the curve is as good as an arc of a circle, as drawing programs write them.
+std::optional<Point2> arcCenter(const CubicCurve& curve);
+
+}  // namespace ispace

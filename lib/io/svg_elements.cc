@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/svg_elements.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/number.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+std::optional<std::vector<double>> tryNumbers(std::string_view text) {
+    try {
+        return parseSvgNumbers(text);
+    } catch (const SvgError&) {
+        return std::nullopt;
+    }
+}
+
+double radius(pugi::xml_node node, const char* key) {
+    const double value = svgNumber(node, key);
+    if (value < 0) throw SvgError(std::string(key) + " is " + formatDouble(value));
+    return value;
+}
+
+}  // namespace
+
+std::string_view svgName(pugi::xml_node node) {
+    const std::string_view name = node.name();
+    const std::size_t colon = name.find(':');
+    return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+std::string_view svgTrimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+std::string_view svgProperty(pugi::xml_node node, std::string_view key) {
+    std::string_view rest = node.attribute("style").value();
+    while (!rest.empty()) {
+        const std::string_view part = rest.substr(0, rest.find(';'));
+        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+        const std::size_t colon = part.find(':');
+        if (colon != std::string_view::npos && svgTrimmed(part.substr(0, colon)) == key)
+            return svgTrimmed(part.substr(colon + 1));
+    }
+    return svgTrimmed(node.attribute(std::string(key).c_str()).value());
+}
+
+SvgStyle svgStyle(pugi::xml_node node, SvgStyle style) {
+    if (const auto value = svgProperty(node, "visibility"); !value.empty() && value != "inherit")
+        style.visible = value == "visible";
+    if (const auto value = svgProperty(node, "fill"); !value.empty() && value != "inherit")
+        style.no_fill = value == "none" || value == "transparent";
+    if (const auto value = svgProperty(node, "stroke"); !value.empty() && value != "inherit") {
+        style.no_stroke = value == "none" || value == "transparent";
+        style.has_stroke = !style.no_stroke;
+    }
+    return style;
+}
+
+double svgNumber(pugi::xml_node node, const char* key, double standard) {
+    const std::string_view text = svgTrimmed(node.attribute(key).value());
+    if (text.empty()) return standard;
+    if (const auto numbers = tryNumbers(text); numbers && numbers->size() == 1)
+        return numbers->front();
+    const auto metres = parseSvgMetres(text);
+    if (!metres)
+        throw SvgError(std::string(key) + ": found " + excerpt(text) + ", wanted a number");
+    return *metres / *parseSvgMetres("1");  // 5mm is so many units of a pixel
+}
+
+std::optional<SvgBox> svgViewBox(pugi::xml_node node) {
+    const pugi::xml_attribute attribute = node.attribute("viewBox");
+    if (!attribute) return std::nullopt;
+    const std::vector<double> v = parseSvgNumbers(attribute.value());
+    if (v.size() != 4 || !(v[2] > 0) || !(v[3] > 0))
+        throw SvgError("viewBox: wanted x, y, width and height");
+    return SvgBox{v[0], v[1], v[2], v[3]};
+}
+
+std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind) {
+    if (kind == "path") return parseSvgPath(node.attribute("d").value());
+    if (kind == "line") {
+        const Point2 from{svgNumber(node, "x1"), svgNumber(node, "y1")};
+        return {{from, {SvgLine{{svgNumber(node, "x2"), svgNumber(node, "y2")}}}, false}};
+    }
+    if (kind == "circle" || kind == "ellipse") {
+        const double rx = radius(node, kind == "circle" ? "r" : "rx");
+        const double ry = radius(node, kind == "circle" ? "r" : "ry");
+        if (rx == 0 || ry == 0) return {};
+        return {svgEllipse({svgNumber(node, "cx"), svgNumber(node, "cy")}, rx, ry)};
+    }
+    if (kind == "rect") {
+        const double width = radius(node, "width"), height = radius(node, "height");
+        if (width == 0 || height == 0) return {};
+        const bool has_rx = node.attribute("rx"), has_ry = node.attribute("ry");
+        return {svgRectangle({svgNumber(node, "x"), svgNumber(node, "y")}, width, height,
+                             radius(node, has_rx ? "rx" : "ry"),
+                             radius(node, has_ry ? "ry" : "rx"))};
+    }
+    const std::vector<double> numbers = parseSvgNumbers(node.attribute("points").value());
+    if (numbers.size() % 2 != 0) throw SvgError("points: a number is missing");
+    if (numbers.size() < 4) return {};
+    SvgSubpath path{{numbers[0], numbers[1]}, {}, kind == "polygon"};
+    for (std::size_t i = 2; i < numbers.size(); i += 2)
+        path.pieces.emplace_back(SvgLine{{numbers[i], numbers[i + 1]}});
+    return {path};
+}
+
+}  // namespace ispace

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Plans that others draw or convert: areas of an SVG against what librsvg paints, and of a map whose
+# picture ImageMagick writes anew.
+. "$(dirname "$0")/common.sh"
+
+area() { envc "$@" --info --json | sed -n 's/.*"indoor_area":\([0-9.e+-]*\).*/\1/p'; }
+
+# expect_near FOUND WANTED SHARE WHAT
+expect_near() {
+    awk -v f="$1" -v w="$2" -v s="$3" 'BEGIN { d = f - w; if (d < 0) d = -d; exit !(w > 0 && d <= s * w) }' ||
+        fail "$4: $1 m2 instead of $2"
+}
+
+# 10 m x 8 m, 100 pixels a metre; each shape is filled white on black, so that its pixels are floor.
+if command -v rsvg-convert >/dev/null; then
+    count=0
+    while IFS= read -r shape; do
+        cat >shape.svg <<END2
+<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="10000mm" height="8000mm" viewBox="0 0 100 80">
+<rect width="100" height="80" fill="black"/><g fill="white" transform="translate(3 2)">$shape</g></svg>
+END2
+        sed 's/10000mm/1000/; s/8000mm/800/' shape.svg >small.svg
+        rsvg-convert small.svg -o shape.png
+        expect_near "$(area shape.svg)" "$(area shape.png --resolution 0.01)" 0.01 "$shape"
+        count=$((count + 1))
+    done <<'END2'
+<path d="M10 40a20 10 30 1 1 30 20z"/>
+<path d="M10 40A30,20 -20 0040,60L60 20z"/>
+<path d="M10 10c20-15 50 20 70 0s5 50-10 55-45-40-60-5z"/>
+<path d="M10 10q30 20 60 0t5 40l-40 10z"/>
+<path d="M10 10H80V60H10Z"/>
+<rect x="10" y="10" width="60" height="40" rx="12" ry="7"/>
+<ellipse cx="45" cy="35" rx="30" ry="12" transform="rotate(25 45 35)"/>
+<circle cx="30" cy="30" r="20" transform="matrix(1.2 .3 -.2 .9 5 4)"/>
+<polygon points="10,10 80,20 60,60 20,50" transform="skewX(-10) translate(8)"/>
+<defs><symbol id="s" viewBox="0 0 10 10"><rect x="1" y="2" width="8" height="5"/></symbol></defs><use xlink:href="#s" x="10" y="5" width="60" height="50"/>
+<svg x="10" y="10" width="60" height="30" viewBox="0 0 20 20"><path d="M2 2L18 5 12 18z"/></svg>
+END2
+    [ "$count" -eq 11 ] || fail "only $count shapes"
+    echo "svg: $count shapes as librsvg paints them"
+fi
+
+if command -v convert >/dev/null; then
+    map=$data/pictures/map.yaml
+    wanted=$(area "$data/pictures/room.pgm" --resolution 0.05)
+    if [ -e "${ISPACE_TEST_DATA:-}/turtlebot3.yaml" ]; then
+        map=$ISPACE_TEST_DATA/turtlebot3.yaml
+        wanted=$(area "$map")
+    fi
+    picture=$(dirname "$map")/$(sed -n 's/^image: *//p' "$map")
+    for format in png bmp jpg tif webp ppm; do
+        convert "$picture" "copy.$format"
+        sed "s/^image:.*/image: copy.$format/" "$map" >copy.yaml
+        expect_near "$(area copy.yaml)" "$wanted" 0.01 "$format"
+    done
+    echo "pictures: bmp jpg tif webp ppm"
+fi
