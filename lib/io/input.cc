@@ -14,6 +14,7 @@
 #include "io/glb.h"
 #include "io/house_expo.h"
 #include "io/mesh_file.h"
+#include "io/mesh_walls.h"
 #include "io/picture.h"
 #include "io/ros_map.h"
 #include "io/svg.h"
@@ -80,6 +81,8 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
      "FILE plan.svg`, or to a picture with `pdftoppm -png`"},
     {"%!PS", "PostScript: convert it to PDF with `ps2pdf`, then to SVG with `pdftocairo -svg`"},
     {"8BPS", "a Photoshop picture: convert it, for example with `convert FILE[0] plan.png`"},
+    {"ISO-10303-21",
+     "a STEP file without a building (IFC): export it as STL or OBJ, for example with FreeCAD"},
     {"gimp xcf", "a GIMP picture: export it as PNG"},
     {"GIF8", "a GIF picture: convert it, for example with `convert FILE plan.png`"},
     {std::string_view("\0\0\0\x0cjP  ", 8),
@@ -143,6 +146,15 @@ Document importPlan(const Source& source) {
 Document readMesh(const Source& source) {
     return meshDocument(source.operand, source.options, source.schemas);
 }
+Document readWalls(const Source& source) {
+    return readMeshWalls(source.operand, source.options, source.schemas);
+}
+/// A mesh that is cut into walls is a plan; a model of ours stays what it is.
+bool isCutMesh(const Source& source) {
+    const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
+                         isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
+    return source.options.slice_walls && is_mesh && !isRecordText(source.bytes);
+}
 Document readGlbOrMesh(const Source& source) {
     return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)
                                        : readMesh(source);
@@ -159,12 +171,14 @@ bool isHouseExpo(const Source& source) {
 
 /// Formats that their first bytes tell, text or not.
 constexpr InputFormat kFormatsByMagic[] = {
+    {true, isCutMesh, readWalls},
     {false, holdsBytes<isGlb>, readGlbOrMesh},
     {false, holdsBytes<isRecordText>, readRecords},
     {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
     {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
     {true, holdsBytes<isSvg>, importPlan<readSvg>},
+    {true, holdsBytes<isIfc>, importPlan<readIfc>},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {false, holdsBytes<isMeshFile>, readMesh},
 };

@@ -90,6 +90,10 @@ TEST(Input, PicturesAlone) {
     options.resolution = 2;
     EXPECT_EQ(parseDocument(pgm, "room.pgm", options, sceneSchemas()).records.size(), 2U);
     EXPECT_TRUE(isPlan(pgm, "room.pgm", options, sceneSchemas()));
+    const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_FALSE(isPlan(mesh, "room.obj", options, sceneSchemas()));
+    options.slice_walls = 1;
+    EXPECT_TRUE(isPlan(mesh, "room.obj", options, sceneSchemas()));
     EXPECT_TRUE(isPlan("type octile\nheight 1\n", "arena.map", options, sceneSchemas()));
 }
 
@@ -104,6 +108,7 @@ TEST(Input, FormatsThatAreNotReadAreNamed) {
         {"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0U\0p\0 \0"s, "but a SketchUp model: export it"},
         {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0"s, "but an OLE file, as Revit"},
         {"PK\3\4\x14", "but a zip archive: unpack it"},
+        {"ISO-10303-21;\nFILE_SCHEMA(('AP214'));", "but a STEP file without a building"},
         {"BLENDER-v293", "but a Blender scene: export it"},
         {"\x1f\x8b\x08", "but compressed with gzip: unpack it"},
     };

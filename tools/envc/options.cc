@@ -16,17 +16,21 @@ const std::vector<std::string> kModels{"glb", "env",     "3dm", "yaml", "obj",
                                        "stl", "geojson", "svg", "png",  "ros"};
 const std::vector<std::string> kMaps{"svg", "png", "geojson", "ros"};
 
+double heightFrom(const std::string& text) {
+    KeySpec key;
+    key.name = "height";
+    key.unit = Unit::Length;
+    key.lower = -1000;
+    key.upper = 1000;
+    return std::get<double>(parseValue(key, text));
+}
+
 void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {
     line.choice("--to", to, kModels,
                 "format of the product (default: suffix of FILE, else glb, or svg with --slice)",
                 Enters::History);
     const auto take_slice = [&options](const std::string& text) {
-        KeySpec key;
-        key.name = "height";
-        key.unit = Unit::Length;
-        key.lower = -1000;
-        key.upper = 1000;
-        options.slice = std::get<double>(parseValue(key, text));
+        options.slice = heightFrom(text);
     };
     line.parsed("--slice", "M", take_slice, "write the map of obstacles at this height instead",
                 Enters::History);
@@ -119,6 +123,13 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 Enters::History);
     line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
     line.choice("--up", import.up, {"auto", "x", "y", "z"}, "axis of a mesh that points up",
+                Enters::History);
+    const auto take_cut = [&import](const std::string& text) {
+        import.slice_walls = heightFrom(text);
+    };
+    line.parsed("--slice-walls", "M", take_cut,
+                "cut a mesh of a room at this height into walls (default: only IFC is cut, 1.2 m "
+                "above its lowest storey)",
                 Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);
