@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "geom/polygon.h"
 
@@ -40,6 +43,21 @@ using CubicCurve = std::array<Point2, 4>;
 /// Adds the points behind the first that stand for the curve within kCurveSagitta; the last is the
 /// curve's own.
 void appendCubic(const CubicCurve& curve, Polygon& points);
+
+/// A B-spline in metres, rational where weights differ.
+struct SplineCurve {
+    int degree = 3;
+    std::vector<double> knots;  ///< controls.size() + degree + 1, none below the one before
+    std::vector<Point2> controls;
+    std::vector<double> weights;  ///< one a control, above 0; empty: all the same
+};
+
+/// What is wrong with the numbers of a spline, or "".
+std::string splineFault(const SplineCurve& spline);
+
+/// Points of the spline from its begin to its end, with straight pieces within kCurveSagitta; stops
+/// behind `most`. \pre splineFault() is ""
+Polygon splinePoints(const SplineCurve& spline, std::size_t most);
 
 /// The centre, where the curve is as good as an arc of a circle, as drawing programs write them.
 std::optional<Point2> arcCenter(const CubicCurve& curve);

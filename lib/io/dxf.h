@@ -10,8 +10,9 @@
 
 namespace ispace {
 
-/// Reads a plan from ASCII DXF: LINE, LWPOLYLINE and POLYLINE with bulges, ARC, CIRCLE and ELLIPSE
-/// in model space, and INSERTs of blocks with them, in the unit of ImportOptions::units, else of
+/// Reads a plan from ASCII DXF: LINE, LWPOLYLINE and POLYLINE with bulges, ARC, CIRCLE, ELLIPSE
+/// and SPLINE in model space, and INSERTs of blocks with them, in the unit of ImportOptions::units,
+/// else of
 /// `$INSUNITS`.
 ///
 /// - Layers: those that a glob of door_layers or window_layers names hold such symbols, those of

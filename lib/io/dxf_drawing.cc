@@ -65,6 +65,18 @@ class Collector : public DL_CreationAdapter {
             target_->empty() ? nullptr : std::get_if<DxfPolyline>(&target_->back().shape);
         if (polyline != nullptr) polyline->vertices.push_back({{vertex.x, vertex.y}, vertex.bulge});
     }
+    void addSpline(const DL_SplineData& spline) override {
+        add(DxfSpline{static_cast<int>(spline.degree), {}, {}, {}});
+    }
+    void addKnot(const DL_KnotData& knot) override {
+        if (DxfSpline* spline = lastSpline()) spline->knots.push_back(knot.k);
+    }
+    void addControlPoint(const DL_ControlPointData& point) override {
+        DxfSpline* spline = lastSpline();
+        if (spline == nullptr) return;
+        spline->controls.push_back({point.x, point.y});
+        spline->weights.push_back(point.w);
+    }
     void addInsert(const DL_InsertData& insert) override {
         add(DxfInsert{printable(insert.name),
                       {insert.ipx, insert.ipy},
@@ -78,6 +90,9 @@ class Collector : public DL_CreationAdapter {
     }
 
   private:
+    [[nodiscard]] DxfSpline* lastSpline() const {
+        return target_->empty() ? nullptr : std::get_if<DxfSpline>(&target_->back().shape);
+    }
     [[nodiscard]] bool isMirrored() { return getExtrusion()->getDirection()[2] < 0; }
     template <typename Shape>
     void add(Shape shape) {
@@ -94,9 +109,12 @@ class Collector : public DL_CreationAdapter {
 std::size_t DxfDrawing::size() const {
     const auto size_of = [](const std::vector<DxfEntity>& all) {
         std::size_t size = all.size();
-        for (const DxfEntity& entity : all)
+        for (const DxfEntity& entity : all) {
             if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
                 size += polyline->vertices.size();
+            else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
+                size += spline->controls.size();
+        }
         return size;
     };
     std::size_t size = size_of(entities);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "io/curves.h"
 
 namespace ispace {
 
@@ -37,6 +38,9 @@ struct DxfEllipse {
     double from = 0, to = 0;
 };
 
+/// A spline by its control points; its numbers are sound, see splineFault().
+using DxfSpline = SplineCurve;
+
 /// A block put somewhere, perhaps many times in a grid.
 struct DxfInsert {
     std::string block;
@@ -48,7 +52,7 @@ struct DxfInsert {
 };
 
 struct DxfEntity {
-    std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfInsert> shape;
+    std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert> shape;
     std::string layer;
     bool mirrored = false;  ///< seen from below: x is turned about
     int line = 0;           ///< of the file

@@ -28,6 +28,9 @@ constexpr double kFullTurn = 2 * std::numbers::pi;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
+/// Ends of a spline this near, in metres, make it closed.
+constexpr double kSameEnd = 1e-6;
+
 class Expander {
   public:
     Expander(const DxfDrawing& drawing, const std::string& name, std::size_t most,
@@ -115,6 +118,8 @@ class Expander {
             addArc(entity, *arc, frame);
         else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
             addEllipse(*ellipse, frame);
+        else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
+            addSpline(entity, *spline, frame);
         spend(entity, shape_.path.points.size());
         for (const Point2 p : shape_.path.points)
             if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
@@ -188,6 +193,15 @@ class Expander {
             shape_.path.points.push_back(frame * (ellipse.center + std::cos(t) * ellipse.major +
                                                   std::sin(t) * ellipse.minor));
         }
+    }
+
+    void addSpline(const DxfEntity& entity, DxfSpline spline, const Affine& frame) {
+        for (Point2& control : spline.controls) control = frame * control;
+        Polygon& points = shape_.path.points;
+        points = splinePoints(spline, budget_);
+        if (points.size() > budget_) spend(entity, points.size());  // refuses
+        shape_.path.closed = distance(points.front(), points.back()) <= kSameEnd;
+        if (shape_.path.closed) points.pop_back();
     }
 
     const DxfDrawing& drawing_;

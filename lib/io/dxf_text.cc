@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "io/curves.h"
+#include "io/dxf_groups.h"
 
 namespace ispace {
 
@@ -22,56 +24,6 @@ constexpr double kLargest = 1e12;  // of any number that counts: drawings end fa
 /// A normal this near to the z axis is upright.
 constexpr double kUpright = 1e-6;
 
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r";
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
-
-/// A group code and its value.
-struct Group {
-    int code = 0;
-    std::string_view value;
-    int line = 0;  // of the value
-};
-
-/// Takes a file apart into groups, two lines each.
-class GroupReader {
-  public:
-    GroupReader(std::string_view bytes, const std::string& name) : rest_(bytes), name_(name) {}
-
-    /// Nothing at the end of the file.
-    std::optional<Group> next() {
-        if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) return std::nullopt;
-        const std::string_view code = nextLine();
-        const auto number = parseInteger(code);
-        if (!number || *number < -5 || *number > 1071)
-            fail(line_, "found " + excerpt(code) + ", wanted a group code");
-        if (rest_.empty())
-            fail(line_, "truncated: group code " + std::string(code) + " without value");
-        const std::string_view value = nextLine();
-        return Group{static_cast<int>(*number), value, line_};
-    }
-
-    [[noreturn]] void fail(int line, const std::string& message) const {
-        throw FormatError(Diagnostic{displayName(name_), line, line == 0 ? 0 : 1, message});
-    }
-    [[nodiscard]] int line() const { return line_; }
-
-  private:
-    std::string_view nextLine() {
-        ++line_;
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        const std::string_view line = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
-        return trimmed(line);
-    }
-
-    std::string_view rest_;
-    const std::string& name_;
-    int line_ = 0;
-};
-
 /// What is kept of an entity.
 struct Kind {
     std::string_view name;
@@ -79,12 +31,13 @@ struct Kind {
     bool upright_only = true;  // its coordinates lie in the plane that its normal tells
 };
 
-const std::array<Kind, 10>& kinds() {
-    static const std::array<Kind, 10> all{{
+const std::array<Kind, 11>& kinds() {
+    static const std::array<Kind, 11> all{{
         {"LINE", {10, 20, 11, 21}, {}, false},
         {"ARC", {10, 20, 40, 50, 51}, {}},
         {"CIRCLE", {10, 20, 40}, {}},
         {"ELLIPSE", {10, 20, 11, 21, 40}, {41, 42}, false},
+        {"SPLINE", {}, {71}, false},
         {"INSERT", {2, 10, 20}, {41, 42, 44, 45, 50, 70, 71}},
         {"LWPOLYLINE", {}, {70}},
         {"POLYLINE", {}, {70}},
@@ -123,7 +76,8 @@ struct Entity {
     int line = 0;
     std::map<int, std::string_view> texts;
     std::map<int, double> numbers;
-    std::vector<Vertex> vertices;
+    std::vector<Vertex> vertices;        // of a spline its control points
+    std::vector<double> knots, weights;  // of a spline
 
     [[nodiscard]] double number(int code, double standard) const {
         const auto it = numbers.find(code);
@@ -229,6 +183,9 @@ class DxfChecker {
         const int code = group.code;
         const bool has_vertices = kind.name == "LWPOLYLINE" || kind.name == "VERTEX";
         if (has_vertices && contains(kVertex, code)) return addVertexGroup(group);
+        if (kind.name == "SPLINE" && (code == 10 || code == 20)) return addVertexGroup(group);
+        if (kind.name == "SPLINE" && (code == 40 || code == 41))
+            return (code == 40 ? entity_.knots : entity_.weights).push_back(real(group));
         if (!contains(kind.required, code) && !contains(kind.optional, code) &&
             !contains(kCommon, code))
             return;
@@ -270,6 +227,8 @@ class DxfChecker {
         if (entity_.number(67, 0) != 0) return "in paper space";
         if (entity_.number(60, 0) != 0) return "invisible";
         if (entity_.is("POLYLINE") && (entity_.flags() & kMesh) != 0) return "mesh";
+        if (entity_.is("SPLINE") && entity_.vertices.empty())
+            return "SPLINE without control points";
         if (entity_.kind->upright_only && !side()) return "not in the plane of the plan";
         return "";
     }
@@ -288,6 +247,8 @@ class DxfChecker {
             writeEntity(kind.name);
         } else if (const std::string reason = reasonToLeaveOut(); !reason.empty()) {
             ++out_.left_out[reason];
+        } else if (kind.name == "SPLINE") {
+            writeSpline();
         } else if (kind.name == "POLYLINE") {
             polyline_ = entity_;
         } else {
@@ -327,13 +288,39 @@ class DxfChecker {
         write(70, static_cast<double>(entity_.flags() & kClosed));
         write(90, static_cast<double>(entity_.vertices.size()));
         for (const Vertex& vertex : entity_.vertices) {
-            if (!vertex.x || !vertex.y)
-                groups_.fail(vertex.line,
-                             "a vertex without group " + std::string(vertex.x ? "20" : "10"));
-            write(10, *vertex.x);
-            write(20, *vertex.y);
+            const Point2 at = placeOf(vertex);
+            write(10, at.x);
+            write(20, at.y);
             write(42, vertex.bulge);
         }
+    }
+
+    [[nodiscard]] Point2 placeOf(const Vertex& vertex) const {
+        if (!vertex.x || !vertex.y)
+            groups_.fail(vertex.line,
+                         "a vertex without group " + std::string(vertex.x ? "20" : "10"));
+        return {*vertex.x, *vertex.y};
+    }
+
+    /// \pre a SPLINE with control points has ended
+    void writeSpline() {
+        SplineCurve spline{
+            static_cast<int>(entity_.number(71, 3)), entity_.knots, {}, entity_.weights};
+        for (const Vertex& vertex : entity_.vertices) spline.controls.push_back(placeOf(vertex));
+        if (const std::string fault = splineFault(spline); !fault.empty())
+            groups_.fail(entity_.line, "SPLINE: " + fault);
+        writeEntity("SPLINE");
+        const auto count = [](std::size_t size) { return static_cast<double>(size); };
+        write(72, count(spline.knots.size()));
+        write(73, count(spline.controls.size()));
+        write(74, 0.0);
+        for (const double knot : spline.knots) write(40, knot);
+        for (std::size_t i = 0; i < spline.controls.size(); ++i) {
+            write(10, spline.controls[i].x);
+            write(20, spline.controls[i].y);
+            write(30, 0.0);
+        }
+        for (const double weight : spline.weights) write(41, weight);
     }
 
     static std::string lineAsHandle(int line) {

@@ -45,6 +45,21 @@ inline std::string polyline(const std::string& layer, bool closed,
     return text;
 }
 
+/// Weights only where they are given.
+inline std::string spline(const std::string& layer, int degree, std::initializer_list<double> knots,
+                          std::initializer_list<DxfCorner> controls,
+                          std::initializer_list<double> weights = {}) {
+    std::string text = group(0, "SPLINE") + group(8, layer) + group(70, "8") +
+                       group(71, std::to_string(degree)) + group(72, std::to_string(knots.size())) +
+                       group(73, std::to_string(controls.size())) + group(74, "0") +
+                       group(42, "1e-9") + group(43, "1e-9");
+    for (const double knot : knots) text += group(40, knot);
+    for (const double weight : weights) text += group(41, weight);
+    for (const auto& [x, y, bulge] : controls)
+        text += group(10, x) + group(20, y) + group(30, "0.0");
+    return text;
+}
+
 /// The same as POLYLINE, VERTEX, SEQEND.
 inline std::string oldPolyline(const std::string& layer, bool closed,
                                std::initializer_list<DxfCorner> corners) {

@@ -41,6 +41,32 @@ END2
     echo "svg: $count shapes as librsvg paints them"
 fi
 
+# Splines that ezdxf makes of ellipses and of points, and flattens itself.
+if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
+    /usr/bin/python3 - >wanted <<'END2'
+import ezdxf
+from ezdxf.math import BSpline, ConstructionArc, Vec3, fit_points_to_cad_cv, rational_bspline_from_ellipse, ConstructionEllipse
+
+def area(points):
+    return abs(sum(p.x * q.y - q.x * p.y for p, q in zip(points, points[1:] + points[:1]))) / 2
+
+ellipse = rational_bspline_from_ellipse(ConstructionEllipse(major_axis=(4000, 1000), ratio=0.5))
+points = [(0, 0), (3000, -1500), (7000, 500), (6000, 5000), (2500, 3000), (-1000, 4000), (0, 0)]
+smooth = fit_points_to_cad_cv([Vec3(p) for p in points])
+for name, spline in (("ellipse", ellipse), ("smooth", smooth)):
+    drawing = ezdxf.new("R2000", units=4)
+    entity = drawing.modelspace().add_spline()
+    entity.apply_construction_tool(spline)
+    drawing.saveas(name + ".dxf")
+    print(name, area(list(spline.flattening(0.01))) / 1e6)
+END2
+    while read -r name wanted; do
+        expect_near "$(area "$name.dxf")" "$wanted" 0.001 "the spline $name"
+    done <wanted
+    [ "$(wc -l <wanted)" -eq 2 ] || fail "not two splines"
+    echo "dxf: splines as ezdxf flattens them"
+fi
+
 if command -v convert >/dev/null; then
     map=$data/pictures/map.yaml
     wanted=$(area "$data/pictures/room.pgm" --resolution 0.05)
