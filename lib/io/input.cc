@@ -151,9 +151,10 @@ Document readWalls(const Source& source) {
 }
 /// A mesh that is cut into walls is a plan; a model of ours stays what it is.
 bool isCutMesh(const Source& source) {
+    if (!source.options.slice_walls) return false;
     const bool is_mesh = (isGlb(source.bytes) && !glbHasRecords(source.bytes)) ||
                          isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
-    return source.options.slice_walls && is_mesh && !isRecordText(source.bytes);
+    return is_mesh && !isRecordText(source.bytes);
 }
 Document readGlbOrMesh(const Source& source) {
     return glbHasRecords(source.bytes) ? readGlb(source.bytes, source.operand, source.schemas)

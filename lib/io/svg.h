@@ -20,7 +20,8 @@ bool isSvg(std::string_view bytes);
 ///   ImportOptions::units instead says what one unit of the drawing's own coordinates is.
 /// - Layers: the innermost group that a glob names, by label (Inkscape) or id, else the Inkscape
 ///   layer, else the outermost group that has a name.
-/// - What shows nothing is left out: `display: none`, hidden, drawn with neither stroke nor fill;
+/// - What shows nothing is left out: `display: none`, hidden, drawn with neither stroke nor fill
+///   (also by rules of `style` elements with one name, class or id);
 ///   so are definitions, text, pictures, and a rectangle that is the page's background.
 /// - Curves are cut to pieces 1 mm off at most.
 ///

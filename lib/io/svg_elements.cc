@@ -25,6 +25,22 @@ double radius(pugi::xml_node node, const char* key) {
     return value;
 }
 
+/// Rules of drawings are short; files may try to make each look-up a long one.
+constexpr std::size_t kLongestRule = 4096;
+
+/// The value of a property in `a: b; c: d`, or ""; the last one counts.
+std::string_view declared(std::string_view rest, std::string_view key) {
+    std::string_view value;
+    while (!rest.empty()) {
+        const std::string_view part = rest.substr(0, rest.find(';'));
+        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+        const std::size_t colon = part.find(':');
+        if (colon != std::string_view::npos && svgTrimmed(part.substr(0, colon)) == key)
+            value = svgTrimmed(part.substr(colon + 1));
+    }
+    return value;
+}
+
 }  // namespace
 
 std::string_view svgName(pugi::xml_node node) {
@@ -39,24 +55,54 @@ std::string_view svgTrimmed(std::string_view text) {
     return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
-std::string_view svgProperty(pugi::xml_node node, std::string_view key) {
-    std::string_view rest = node.attribute("style").value();
-    while (!rest.empty()) {
-        const std::string_view part = rest.substr(0, rest.find(';'));
-        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
-        const std::size_t colon = part.find(':');
-        if (colon != std::string_view::npos && svgTrimmed(part.substr(0, colon)) == key)
-            return svgTrimmed(part.substr(colon + 1));
-    }
+std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet) {
+    if (const auto own = declared(node.attribute("style").value(), key); !own.empty()) return own;
+    if (const auto ruled = sheet.property(node, key); !ruled.empty()) return ruled;
     return svgTrimmed(node.attribute(std::string(key).c_str()).value());
 }
 
-SvgStyle svgStyle(pugi::xml_node node, SvgStyle style) {
-    if (const auto value = svgProperty(node, "visibility"); !value.empty() && value != "inherit")
+void SvgSheet::add(std::string_view css) {
+    std::string text(css);
+    for (std::size_t at = 0; (at = text.find("/*", at)) != std::string::npos;)
+        text.erase(at, std::min(text.find("*/", at), text.size() - 2) + 2 - at);
+    for (std::string_view rest = text; !rest.empty();) {
+        std::string_view selectors = rest.substr(0, rest.find('{'));
+        rest.remove_prefix(std::min(selectors.size() + 1, rest.size()));
+        const std::string_view body = rest.substr(0, rest.find('}'));
+        rest.remove_prefix(std::min(body.size() + 1, rest.size()));
+        while (!selectors.empty()) {
+            const std::string_view part = selectors.substr(0, selectors.find(','));
+            selectors.remove_prefix(std::min(part.size() + 1, selectors.size()));
+            std::string& rule = rules_[std::string(svgTrimmed(part))];
+            if (rule.size() + body.size() < kLongestRule) (rule += body) += ';';
+        }
+    }
+}
+
+std::string_view SvgSheet::property(pugi::xml_node node, std::string_view key) const {
+    if (rules_.empty()) return {};
+    const auto find = [&](const std::string& selector) {
+        const auto rule = rules_.find(selector);
+        return rule == rules_.end() ? std::string_view() : declared(rule->second, key);
+    };
+    if (const auto value = find('#' + std::string(node.attribute("id").value())); !value.empty())
+        return value;
+    for (std::string_view names = node.attribute("class").value(); !names.empty();) {
+        const std::string_view name = names.substr(0, names.find(' '));
+        names.remove_prefix(std::min(name.size() + 1, names.size()));
+        if (const auto value = find('.' + std::string(name)); !value.empty()) return value;
+    }
+    return find(std::string(svgName(node)));
+}
+
+SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet) {
+    if (const auto value = svgProperty(node, "visibility", sheet);
+        !value.empty() && value != "inherit")
         style.visible = value == "visible";
-    if (const auto value = svgProperty(node, "fill"); !value.empty() && value != "inherit")
+    if (const auto value = svgProperty(node, "fill", sheet); !value.empty() && value != "inherit")
         style.no_fill = value == "none" || value == "transparent";
-    if (const auto value = svgProperty(node, "stroke"); !value.empty() && value != "inherit") {
+    if (const auto value = svgProperty(node, "stroke", sheet);
+        !value.empty() && value != "inherit") {
         style.no_stroke = value == "none" || value == "transparent";
         style.has_stroke = !style.no_stroke;
     }

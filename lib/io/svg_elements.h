@@ -2,8 +2,11 @@
 // Inside lib/io only: what the attributes of SVG's elements say.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,8 +17,21 @@ namespace ispace {
 /// What is inherited, as far as it makes things show.
 struct SvgStyle {
     bool visible = true;
-    bool no_fill = false, no_stroke = false;  ///< by its own words: style sheets may say otherwise
+    bool no_fill = false, no_stroke = false;  ///< where it is said: no word is no reason
     bool has_stroke = false;
+};
+
+/// Rules of `style` elements with one plain selector: an element's name, .class or #id.
+class SvgSheet {
+  public:
+    /// Adds the rules of a style element; others than those are passed over.
+    void add(std::string_view css);
+    /// What they say of a property; "" if nothing. Ids win over classes, these over names, later
+    /// rules over earlier ones.
+    [[nodiscard]] std::string_view property(pugi::xml_node node, std::string_view key) const;
+
+  private:
+    std::map<std::string, std::string, std::less<>> rules_;  // declarations by selector
 };
 
 /// Without the prefix of a name space.
@@ -24,11 +40,11 @@ std::string_view svgName(pugi::xml_node node);
 /// Without blanks around.
 std::string_view svgTrimmed(std::string_view text);
 
-/// A property, of `style` or as an attribute; "" if it is not set.
-std::string_view svgProperty(pugi::xml_node node, std::string_view key);
+/// A property, of `style`, by rules or as an attribute; "" if it is not set.
+std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet);
 
 /// The style of an element in one with this style.
-SvgStyle svgStyle(pugi::xml_node node, SvgStyle style);
+SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet);
 
 /// An attribute in the element's own coordinates; lengths with units come in pixels.
 /// \throws SvgError

@@ -53,12 +53,12 @@ class SvgReader {
         if (!result) fail(lineAt(result.offset), std::string("bad XML: ") + result.description());
         const pugi::xml_node root = file_.document_element();
         if (svgName(root) != "svg") fail(lineOf(root), "no `svg` at the root");
-        listIds(root);
+        listElements(root);
         total_ = kFreePoints + kPointsPerElement * count_;
         budget_ = std::min(options_.most_points, total_);
         at(root, [&] {
             page_frame_ = pageOf(root);
-            addChildren(root, page_frame_, svgStyle(root, {}), 0);
+            addChildren(root, page_frame_, svgStyle(root, {}, sheet_), 0);
         });
         return std::move(drawing_);
     }
@@ -83,13 +83,16 @@ class SvgReader {
         }
     }
 
-    /// Elements by id, and how many there are; a list instead of recursion, for deep nests.
-    void listIds(pugi::xml_node root) {
+    /// Elements by id, how many there are, and rules of style; a list instead of recursion, for
+    /// deep nests.
+    void listElements(pugi::xml_node root) {
         for (pugi::xml_node node = root; node;) {
             if (node.type() == pugi::node_element) {
                 ++count_;
                 if (const pugi::xml_attribute id = node.attribute("id"))
                     ids_.emplace(id.value(), node);
+                if (svgName(node) == "style")
+                    for (const pugi::xml_node text : node.children()) sheet_.add(text.value());
             }
             if (node.first_child()) {
                 node = node.first_child();
@@ -145,7 +148,7 @@ class SvgReader {
         const bool is_group = kGroups.contains(kind), is_shape = kShapes.contains(kind);
         if (kOthers.contains(kind)) ++drawing_.left_out[std::string(kind)];
         if (!is_group && !is_shape && kind != "use") return;
-        if (svgProperty(node, "display") == "none") {
+        if (svgProperty(node, "display", sheet_) == "none") {
             ++drawing_.left_out["elements that are not displayed"];
             return;
         }
@@ -154,7 +157,7 @@ class SvgReader {
                            " deep: does one use itself?");
         spend(1);
         const Affine frame = outer * parseSvgTransform(node.attribute("transform").value());
-        const SvgStyle style = svgStyle(node, outer_style);
+        const SvgStyle style = svgStyle(node, outer_style, sheet_);
         names_.push_back(node);
         if (is_shape)
             addShape(node, kind, frame, style);
@@ -192,7 +195,7 @@ class SvgReader {
             frame * Affine{{1, 0}, {0, 1}, {svgNumber(node, "x"), svgNumber(node, "y")}};
         if (svgName(target->second) == "symbol")
             addChildren(target->second, placed * viewportOf(target->second, node),
-                        svgStyle(target->second, style), depth);
+                        svgStyle(target->second, style, sheet_), depth);
         else
             addElement(target->second, placed, style, depth + 1);
     }
@@ -326,6 +329,7 @@ class SvgReader {
     pugi::xml_document file_;
     std::unordered_map<std::string, pugi::xml_node> ids_;
     std::size_t count_ = 0, total_ = 0, budget_ = 0;
+    SvgSheet sheet_;
     SvgBox page_;
     Affine page_frame_;
     std::vector<pugi::xml_node> names_;  // elements around, and the one itself

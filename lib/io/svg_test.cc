@@ -207,6 +207,19 @@ TEST(Svg, LeavesOutWhatShowsNothing) {
         EXPECT_EQ(textOf(page(nothing + room)),
                   "#env 1\nfence path=1,9;5,9;5,6;1,6 closed=yes\ninside at=3,7.5\n")
             << nothing;
+    const std::string css =
+        "<style>/* .a{display:none} */ .b, g.c{fill:none;stroke : none} .d{display:none}"
+        "#e{visibility:hidden}.f{display:none}.f{display:inline}ellipse{display:none}</style>";
+    for (const char* hidden :
+         {"<rect class='b' width='9' height='9'/>",
+          "<g class='x d'><rect width='9' height='9'/></g>", "<rect id='e' width='9' height='9'/>",
+          "<ellipse cx='9' cy='5' rx='4' ry='4'/>"})
+        EXPECT_NEAR(areaOf(page(css + hidden + room)), 12, 1e-9) << hidden;
+    for (const char* shown :
+         {"<rect class='a' width='9' height='9'/>", "<rect class='f' width='9' height='9'/>",
+          "<rect class='b' style='stroke:red' width='9' height='9'/>",
+          "<g class='d' style='display:inline'><rect width='9' height='9'/></g>"})
+        EXPECT_NEAR(areaOf(page(css + shown)), 81, 1e-9) << shown;
     // A frame is drawn.
     EXPECT_NEAR(areaOf(page("<rect width='20' height='10' stroke='black'/>")), 200, 1e-9);
 }
@@ -262,7 +275,8 @@ TEST(Svg, BombsAndNests) {
 
 TEST(Svg, SurvivesDamage) {
     surviveDamage(
-        "<svg width='9m' height='9mm' viewBox='0 0 9 9'>\n<defs><rect id='r' rx='.1' width='2' "
+        "<svg width='9m' height='9mm' viewBox='0 0 9 "
+        "9'>\n<style>.a,#r{fill:none}/*c*/</style>\n<defs><rect id='r' rx='.1' width='2' "
         "height='1'/></defs>\n"
         "<g transform='scale(2)rotate(3 4 5)' inkscape:label='W'>\n<path d='M1 1h4v3A2 1 9 0 1 1 "
         "4C1 2 3 4 5 6Q1 2 3 4T1 1z'/>\n"
