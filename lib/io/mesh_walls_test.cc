@@ -36,7 +36,7 @@ class Boxes {
         return *this;
     }
     [[nodiscard]] std::string write(const std::string& name) const {
-        const std::string path = testing::TempDir() + name;
+        std::string path = testing::TempDir() + name;
         writeAll(path, text_);
         return path;
     }

@@ -93,8 +93,9 @@ std::optional<Size> sizeOfTiff(std::string_view bytes) {
     for (std::size_t i = 0; entries && i < static_cast<std::size_t>(*entries); ++i) {
         constexpr std::int64_t kWidth = 256, kHeight = 257, kShort = 3;
         const std::size_t at = first + 2 + 12 * i;
-        const auto tag = file.number(at, 2), type = file.number(at + 2, 2);
+        const std::int64_t tag = file.number(at, 2).value_or(0);
         if (tag != kWidth && tag != kHeight) continue;
+        const auto type = file.number(at + 2, 2);
         const auto value = file.number(at + 8, type == kShort ? 2 : 4);
         (tag == kWidth ? size.first : size.second) = value.value_or(0);
     }

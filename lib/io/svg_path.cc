@@ -199,11 +199,11 @@ class PathParser {
         add(arcBetween(from, to, rx, ry, degrees, large, positive), 'A');
     }
 
-    void add(SvgPiece piece, char kind) {
+    void add(const SvgPiece& piece, char kind) {
         // Behind a Z without M a new path begins where the last one began.
         if (paths_.back().closed) paths_.push_back({at_, {}, false});
         at_ = std::visit([](const auto& p) { return p.to; }, piece);
-        paths_.back().pieces.push_back(std::move(piece));
+        paths_.back().pieces.push_back(piece);
         last_ = kind;
     }
 

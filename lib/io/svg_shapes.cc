@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 #include <pugixml.hpp>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -27,6 +26,16 @@ constexpr std::size_t kPointsPerElement = 1000;  // … and for each element in 
 
 /// Radii that differ by less, as shares, are those of a circle.
 constexpr double kRound = 0.01;
+
+constexpr std::array<std::string_view, 4> kGroups{"g", "a", "switch", "svg"};
+constexpr std::array<std::string_view, 7> kShapes{"path", "line",   "polyline", "polygon",
+                                                  "rect", "circle", "ellipse"};
+constexpr std::array<std::string_view, 3> kOthers{"text", "image", "foreignObject"};
+
+template <typename List>
+bool isOneOf(const List& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// Of the page; what is larger is no background but a drawing with a bad page.
 constexpr double kLargestBackground = 1.1;
@@ -140,13 +149,9 @@ class SvgReader {
 
     void addElement(pugi::xml_node node, const Affine& outer, const SvgStyle& outer_style,
                     int depth) {
-        static const std::set<std::string_view> kGroups{"g", "a", "switch", "svg"};
-        static const std::set<std::string_view> kShapes{"path", "line",   "polyline", "polygon",
-                                                        "rect", "circle", "ellipse"};
-        static const std::set<std::string_view> kOthers{"text", "image", "foreignObject"};
         const std::string_view kind = svgName(node);
-        const bool is_group = kGroups.contains(kind), is_shape = kShapes.contains(kind);
-        if (kOthers.contains(kind)) ++drawing_.left_out[std::string(kind)];
+        const bool is_group = isOneOf(kGroups, kind), is_shape = isOneOf(kShapes, kind);
+        if (isOneOf(kOthers, kind)) ++drawing_.left_out[std::string(kind)];
         if (!is_group && !is_shape && kind != "use") return;
         if (svgProperty(node, "display", sheet_) == "none") {
             ++drawing_.left_out["elements that are not displayed"];

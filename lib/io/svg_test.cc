@@ -64,16 +64,16 @@ TEST(Svg, PathCommands) {
 }
 
 TEST(Svg, Curves) {
-    const double kPi = std::numbers::pi;
+    const double pi = std::numbers::pi;
     // Half discs of radius 2, either way about; pieces lie inside by a millimetre at most.
     for (const char* half : {"M2 5A2 2 0 0 1 6 5Z", "M2 5a2 2 0 1 1 4 0z", "M6 5A2,2 0 00 2,5z",
                              "M2 5A1 1 0 0 1 6 5Z"})
-        EXPECT_NEAR(areaOf(path(half)), 2 * kPi, 0.007) << half;
-    EXPECT_NEAR(areaOf(path("M2 5A4 2 90 0 1 6 5Z")), 4 * kPi, 0.02);
-    EXPECT_NEAR(areaOf(page("<circle cx=\"10\" cy=\"5\" r=\"2\"/>")), 4 * kPi, 0.014);
-    EXPECT_NEAR(areaOf(page("<ellipse cx=\"10\" cy=\"5\" rx=\"3\" ry=\"1\"/>")), 3 * kPi, 0.014);
+        EXPECT_NEAR(areaOf(path(half)), 2 * pi, 0.007) << half;
+    EXPECT_NEAR(areaOf(path("M2 5A4 2 90 0 1 6 5Z")), 4 * pi, 0.02);
+    EXPECT_NEAR(areaOf(page("<circle cx=\"10\" cy=\"5\" r=\"2\"/>")), 4 * pi, 0.014);
+    EXPECT_NEAR(areaOf(page("<ellipse cx=\"10\" cy=\"5\" rx=\"3\" ry=\"1\"/>")), 3 * pi, 0.014);
     EXPECT_NEAR(areaOf(page("<rect x=\"1\" y=\"1\" width=\"6\" height=\"4\" rx=\"1\"/>")),
-                24 - (4 - kPi), 0.007);
+                24 - (4 - pi), 0.007);
     // A parabola's segment is two thirds of its box; the same as cubic, and smoothly joined.
     EXPECT_NEAR(areaOf(path("M2 5Q4 1 6 5Z")), 2.0 / 3 * 4 * 2, 0.007);
     EXPECT_NEAR(areaOf(path("M2 5Q3 3 4 5T6 5Z")), 2 * 2.0 / 3 * 2, 2.7);
@@ -260,7 +260,8 @@ TEST(Svg, BombsAndNests) {
     EXPECT_NE(errorOf(page(deep)).find("nested more than 200 deep"), std::string::npos);
     for (int i = 1; i < 12; ++i) {
         const std::string use = "<use href='#x" + std::to_string(i - 1) + "'/>";
-        bomb += "<g id='x" + std::to_string(i) + "'>";
+        bomb += "<g id='x";
+        bomb += std::to_string(i) + "'>";
         for (int k = 0; k < 10; ++k) bomb += use;
         bomb += "</g>";
     }
