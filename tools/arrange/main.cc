@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "cli/dependencies.h"
 #include "cli/file_stream.h"
 #include "cli/operands.h"
@@ -154,23 +153,11 @@ std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
     return "";
 }
 
-/// The sensors that could as well be left out; "" if there are none.
-std::string idleText(const std::vector<std::string>& idle) {
-    constexpr std::size_t kMostNamed = 10;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(idle.size(), kMostNamed); ++i)
-        text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
-    if (idle.size() > kMostNamed)
-        text += " and " + std::to_string(idle.size() - kMostNamed) + " more";
-    if (idle.empty()) return "";
-    return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
-}
-
 /// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
 void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
                    const Arrangement& arrangement) {
     std::string text = reasonForNothing(work, arrangement);
-    if (text.empty()) text = idleText(arrangement.idle);
+    if (text.empty()) text = idleText(arrangement);
     if (!text.empty()) warn(options, text);
 }
 

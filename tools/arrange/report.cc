@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/report.h"
 
+#include <algorithm>
+
 #include "base/file.h"
 #include "base/number.h"
+#include "base/utf8.h"
 
 namespace ispace {
 
@@ -82,6 +85,18 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
                "; all candidates together see no more: try denser ones (--candidates), other "
                "places (--mount, --z) or sensors";
     return text + "; allow more sensors (:COUNT), or denser candidates";
+}
+
+std::string idleText(const Arrangement& arrangement) {
+    constexpr std::size_t kMostNamed = 10;
+    const std::vector<std::string>& idle = arrangement.idle;
+    if (idle.empty()) return "";
+    std::string text;
+    for (std::size_t i = 0; i < std::min(idle.size(), kMostNamed); ++i)
+        text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
+    if (idle.size() > kMostNamed)
+        text += " and " + std::to_string(idle.size() - kMostNamed) + " more";
+    return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
 }
 
 void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve) {

@@ -15,6 +15,9 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
 /// Why a target was not reached, as a sentence without end.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
+/// The sensors that could as well be left out, as a sentence without end; "" if there are none.
+std::string idleText(const Arrangement& arrangement);
+
 /// Writes --curve's file in the format of its suffix.
 void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve);
 
