@@ -218,7 +218,7 @@ void addOpenings(std::vector<Schema>& out) {
                       .upper = kFarthest});
     KeySpec glass{.name = "glass",
                   .type = KeyType::Choice,
-                  .help = "clear: beams pass; opaque: they stop; none: an open hole",
+                  .help = "clear: light passes; opaque: nothing does; none: an open hole",
                   .default_value = "clear",
                   .choices = {"clear", "opaque", "none"}};
     window.push_back(std::move(glass));
