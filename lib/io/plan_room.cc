@@ -52,19 +52,39 @@ DrawnItem coveringItem(const Element& element) {
     return item;
 }
 
-DrawnItem zoneItem(const PlanDrawing& plan, const Element& element, std::size_t index) {
+DrawnItem zoneItem(const Element& element, std::size_t index) {
     const Color color = seriesColor(index);
     const Polygon outline = zoneOutline(element.record);
     DrawnItem item{PlanLayer::Zones, element.id, titleOf(element)};
     item.paths.push_back({{outline}, true, color.faded(0.13), Stroke{color, 0.09, {0.5, 0.35}}});
-    const double em = plan.metres();
-    const Point2 corner = bounds(outline).low;
-    DrawnText name{{corner.x + 0.5 * em, corner.y + 0.55 * em}, element.id};
-    name.size = 0.85;
-    name.color = mixed(color, kInk, 0.35);
-    name.halo = true;
-    item.texts.push_back(std::move(name));
     return item;
+}
+
+/// Its id in the lower left corner of what the plan shows of it, moved in where it would run over
+/// the edge.
+void addZoneName(PlanDrawing& plan, const Element& element, std::size_t index) {
+    const Box2 zone = bounds(zoneOutline(element.record));
+    const Box2& box = plan.box;
+    const Point2 corner{std::max(zone.low.x, box.low.x), std::max(zone.low.y, box.low.y)};
+    if (corner.x >= std::min(zone.high.x, box.high.x) ||
+        corner.y >= std::min(zone.high.y, box.high.y))
+        return;
+    constexpr double kSize = 0.85;
+    const double em = plan.metres();
+    const TextStyle style{kSize * plan.em, false, Align::Left, kInk, {}};
+    const double width = textWidth(element.id, style) * em / plan.em;
+    const auto within = [em](double begin, double low, double high) {
+        return std::max(low + em / 4, std::min(begin, high - em / 4));
+    };
+    DrawnText name{{within(corner.x + 0.5 * em, box.low.x, box.high.x - width),
+                    within(corner.y + 0.55 * em, box.low.y, box.high.y - em)},
+                   element.id};
+    name.size = kSize;
+    name.color = mixed(seriesColor(index), kInk, 0.35);
+    name.halo = true;
+    DrawnItem item{PlanLayer::Labels, "", ""};
+    item.texts.push_back(std::move(name));
+    plan.items.push_back(std::move(item));
 }
 
 /// A pen finer where walls are made of short pieces, as in maps that robots made.
@@ -176,9 +196,10 @@ void addRoom(PlanDrawing& plan, const Scene& scene) {
         const std::string& keyword = element.record.keyword();
         if (keyword == "floor")
             plan.items.push_back(coveringItem(element));
-        else if (keyword == "zone")
-            plan.items.push_back(zoneItem(plan, element, zones++));
-        else if (isOpening(element))
+        else if (keyword == "zone") {
+            plan.items.push_back(zoneItem(element, zones));
+            addZoneName(plan, element, zones++);
+        } else if (isOpening(element))
             plan.items.push_back(openingItem(plan, element, lines[i], pen));
         else if (isRoom(element) && keyword != "inside")
             plan.items.push_back(wallItem(element, pen));

@@ -233,6 +233,44 @@ TEST(PlanSvg, LayersHoldElementsWithNamesOfTheirOwn) {
     EXPECT_NE(plan.find("<title>t1: table, from 0 to 0.7 m</title>"), std::string::npos);
 }
 
+/// Where on the page the text of a zone's name begins.
+struct NamePlace {
+    double x = 0, y = 0;
+};
+std::optional<NamePlace> nameOf(const std::string& plan, const std::string& id) {
+    const std::size_t end = plan.find('>' + id + "</text>");
+    if (end == std::string::npos) return std::nullopt;
+    const std::string text = plan.substr(plan.rfind("<text ", end), 60);
+    return NamePlace{parseDouble(valuesOf(text, "x").front()).value(),
+                     parseDouble(valuesOf(text, "y").front()).value()};
+}
+
+TEST(PlanSvg, NamesOfZonesStayOnThePlan) {
+    const std::string plan =
+        svg("ispace size=8,6\n"
+            "zone id=within at=0,0 size=6,4\nzone id=reaches_far_out at=-9,1 size=14,3\n"
+            "zone id=narrow_at_the_edge at=3.9,-1 size=0.2,1\nzone id=below at=0,-6 size=2,8\n"
+            "zone id=elsewhere at=20,0 size=2,2\n",
+            "room");
+    const auto within = nameOf(plan, "within"), out = nameOf(plan, "reaches_far_out");
+    const auto edge = nameOf(plan, "narrow_at_the_edge"), below = nameOf(plan, "below");
+    ASSERT_TRUE(within && out && edge && below);
+    EXPECT_FALSE(nameOf(plan, "elsewhere"));
+    const std::size_t view = plan.find("viewBox=\"0 0 ") + 13;
+    const double page = parseDouble(plan.substr(view, plan.find(' ', view) - view)).value();
+    // The room lies within the page's margins.
+    EXPECT_GT(out->x, 0.02 * page);
+    EXPECT_LT(out->x, within->x);
+    EXPECT_LT(edge->x, 0.92 * page);
+    EXPECT_GT(edge->x, within->x);
+    EXPECT_GT(below->y, within->y);
+    const std::size_t rest = plan.find(' ', view) + 1;
+    const double height = parseDouble(plan.substr(rest, plan.find('"', rest) - rest)).value();
+    EXPECT_LT(below->y, 0.95 * height);
+    // Above the walls.
+    EXPECT_GT(plan.find(">within</text>"), plan.find("inkscape:label=\"labels\""));
+}
+
 TEST(PlanSvg, TextIsEscapedAndIdsAreUnique) {
     const std::string plan =
         svg("ispace id=layer-walls size=2,2\ncube id=a/b at=0.3,0\ncube id=a@b at=-0.3,0\n",
