@@ -5,16 +5,22 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "env/texts.h"
+#include "geom/planar_map.h"
 #include "layout/check_doors.h"
 #include "layout/check_parts.h"
 
 namespace ispace {
 
 namespace {
+
+/// An end of a wall this near to another was meant to meet it, in metres.
+constexpr double kLooseReach = 0.2;
 
 /// All findings of a scene, record by record.
 class SceneCheck {
@@ -38,10 +44,36 @@ class SceneCheck {
                 ++placed;
             }
         }
+        checkLooseEnds();
         return findings_;
     }
 
   private:
+    /// Ends of walls that hang in the room just before another wall.
+    void checkLooseEnds() {
+        const Environment& environment = context_.scene.environment;
+        const std::vector<Segment2>& lines = environment.wallLines();
+        std::set<std::pair<double, double>> ends;
+        std::optional<Closing> narrowest;
+        for (const Closing& gap : closings(lines, {}, kLooseReach)) {
+            const Point2 middle = gap.line.a + 0.5 * (gap.line.b - gap.line.a);
+            if (environment.indoor().locate(middle) != Side::Inside) continue;
+            if (!narrowest) narrowest = gap;  // they come by width
+            for (const Point2 p : {gap.line.a, gap.line.b}) {
+                const auto meets = [p](const Segment2& line) { return line.a == p || line.b == p; };
+                if (std::count_if(lines.begin(), lines.end(), meets) == 1) ends.insert({p.x, p.y});
+            }
+        }
+        if (!narrowest) return;
+        const Diagnostic place = context_.finding(0, "");
+        findings_.add({place.file, 0, 0,
+                       std::to_string(ends.size()) +
+                           (ends.size() == 1 ? " loose end of a wall" : " loose ends of walls") +
+                           ", the narrowest gap " + lengthText(narrowest->width) + " m near " +
+                           placeText(narrowest->line.a) + "; make them meet",
+                       Severity::Warning});
+    }
+
     void checkWalls(std::size_t element) {
         for (const WallCrossing& crossing : crossings_) {
             if (crossing.a != element) continue;

@@ -17,7 +17,10 @@ namespace ispace {
 ///   zones of which nothing is in it.
 /// - Robots and people (as circles) that stand in things or in each other; sensors and tags inside
 ///   solids.
-/// - Walls that cross.
+/// - Walls that cross, and ends of walls that hang in the room less than 0.2 m before another.
+///
+/// What is placed and cannot work as it stands is an error; what the environment bears though it is
+/// probably not meant is a warning.
 ///
 /// O(n log n) for n things that stand beside each other.
 Diagnostics checkScene(const Scene& scene);

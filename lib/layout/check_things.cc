@@ -70,7 +70,9 @@ std::string CheckContext::placedName(std::size_t placed) const {
 }
 
 Diagnostic CheckContext::finding(std::size_t i, const std::string& message) const {
-    return element(i).record.finding(name(i) + message);
+    Diagnostic diagnostic = element(i).record.finding(name(i) + message);
+    diagnostic.severity = Severity::Warning;
+    return diagnostic;
 }
 
 std::string wayText(double way) { return formatFixed(std::ceil(100 * way - 1e-6) / 100, 2) + " m"; }

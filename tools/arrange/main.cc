@@ -77,6 +77,7 @@ Work read(const ArrangeToolOptions& options) {
         added.push_back(readSensorSpec(spec, kArrangedKinds, sceneSchemas(), devices));
     Work work{readScene({options.operands, options.any_environment, false}), {}, options.how, {}};
     SceneInput& input = work.input;
+    ispace::warn(options.common, "arrange", input.environment.warnings);
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.layout = withoutPlaces(*input.layout, options.fixed);

@@ -116,6 +116,7 @@ void checkRequired(const CoverageToolOptions& options, const CoverageReport& rep
 void coverage(CoverageToolOptions options) {
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene({options.operands, options.any_environment, true});
+    ispace::warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
     if (!options.other.empty()) {

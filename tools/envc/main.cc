@@ -54,7 +54,7 @@ Document readModel(const EnvcOptions& options) {
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadMeshes(document, "");
     document.history.push_back(options.history_line);
-    warn(options.common, "envc", document.warnings);
+    if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
     return document;
 }
@@ -110,7 +110,14 @@ void compile(const EnvcOptions& options, Document document) {
         makeScene(document, nullptr, DeviceCatalogue::load(shareFolder() + "/devices"));
     const std::string& output = options.common.output;
     if (options.check) {
-        checkScene(scene).throwIfAny();
+        Diagnostics findings;
+        for (const Diagnostic& warning : document.warnings) findings.add(warning);
+        try {
+            checkScene(scene).throwIfAny();
+        } catch (const FormatError& error) {
+            findings.add(error);
+        }
+        findings.throwIfAny();
         talk(options.common, "envc", "nothing found");
     } else if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);

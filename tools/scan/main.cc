@@ -115,6 +115,7 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices, kKinds));
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene(requestOf(options));
+    ispace::warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
     const auto is_selected = [&](std::size_t i) {

@@ -88,6 +88,7 @@ void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     const ThreadLimit threads(options.common.threads);
     const SceneInput input = readScene({options.operands, options.any_environment, false});
+    warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common.quiet);
     World world(input.scene, options.step);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
