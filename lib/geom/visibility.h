@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geom/curve.h"
+#include "geom/ellipse.h"
 
 namespace ispace {
 
@@ -19,10 +20,12 @@ constexpr double kSightContact = 1e-4;
 /// range.
 struct SightEnd {
     static constexpr std::uint32_t kArc = std::numeric_limits<std::uint32_t>::max();
-    Point2 from, to;            ///< counter-clockwise as seen from the viewpoint; never the same
-                                ///< direction
-    std::uint32_t line = kArc;  ///< index of a line that stops sight there (one of those that do),
-                                ///< or kArc
+    Point2 from, to;  ///< counter-clockwise as seen from the viewpoint; never the same
+                      ///< direction
+    /// Index of a line that stops sight there (one of those that do), or kArc. Round bodies are
+    /// numbered after the lines; of them `from` and `to` may lie beside the curve, see
+    /// VisibilityMap.
+    std::uint32_t line = kArc;
 };
 
 /// All that a viewpoint sees, up to its greatest range: a star-shaped region. Where one end stops
@@ -58,12 +61,17 @@ bool holds(const VisibleRegion& region, Point2 p);
 /// sight are rounded once. Where lines cross, or touch but for rounding (some 64 units in the last
 /// place of the largest coordinate), they meet in one point.
 ///
+/// Round bodies are closed sets. What they hide begins at the true tangents, in closed form; where
+/// one is seen sight ends at the edges of outlineOf(), whose area is the body's. From inside,
+/// farther than kSightContact from the curve, nothing is seen; within that sight passes into the
+/// body, to its far side. Errors of areas stay below 1e-6 m2 for bodies of up to 1 m radius.
+///
 /// Memory: some 200 bytes a line. Thread-safe. Coordinates and ranges are cut off at 1e75 m.
 class VisibilityMap {
   public:
     /// O(n log n + crossings) \throws FormatError (without a place) for lines that cross by the
     /// million
-    explicit VisibilityMap(std::span<const Segment2> lines);
+    explicit VisibilityMap(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
     VisibilityMap(VisibilityMap&&) noexcept;
     VisibilityMap& operator=(VisibilityMap&&) noexcept;
     ~VisibilityMap();
@@ -71,7 +79,7 @@ class VisibilityMap {
     /// Sets `region` to what is seen from a viewpoint up to max_range, in any direction. The memory
     /// of `region` is used again. Every viewpoint has an answer: one on a line (within
     /// kSightContact, then moved onto it), on an end point, on a crossing, outside of everything.
-    /// Typically O(what is seen + log n).
+    /// Typically O(what is seen + log n), and O(what is seen) for each round body within range.
     /// \pre max_range >= 0; 0 gives an empty region. +infinity is for where lines enclose the
     ///      viewpoint: free sight then ends at some distance beyond all lines, which
     ///      region.max_range tells
@@ -80,6 +88,7 @@ class VisibilityMap {
 
   private:
     struct Data;
+    void lookPastLines(Point2 viewpoint, double max_range, VisibleRegion& region) const;
     std::unique_ptr<Data> data_;
 };
 

@@ -22,6 +22,7 @@
 #include "geom/visibility_contact.h"
 #include "geom/visibility_look.h"
 #include "geom/visibility_mesh.h"
+#include "geom/visibility_rounds.h"
 
 namespace ispace {
 
@@ -165,17 +166,24 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void lookBounded(const Task& task) {
 }  // namespace
 
 struct VisibilityMap::Data {
-    explicit Data(std::span<const Segment2> lines) : mesh(lines) {}
+    Data(std::span<const Segment2> lines, std::span<const Ellipse> ellipses)
+        : mesh(lines), rounds(ellipses, static_cast<Index>(lines.size())) {}
     SightMesh mesh;
+    RoundBodies rounds;
 };
 
-VisibilityMap::VisibilityMap(std::span<const Segment2> lines)
-    : data_(std::make_unique<Data>(lines)) {}
+VisibilityMap::VisibilityMap(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
+    : data_(std::make_unique<Data>(lines, rounds)) {}
 VisibilityMap::VisibilityMap(VisibilityMap&&) noexcept = default;
 VisibilityMap& VisibilityMap::operator=(VisibilityMap&&) noexcept = default;
 VisibilityMap::~VisibilityMap() = default;
 
 void VisibilityMap::look(Point2 viewpoint, double max_range, VisibleRegion& region) const {
+    lookPastLines(viewpoint, max_range, region);
+    if (!data_->rounds.empty()) data_->rounds.cut(region);
+}
+
+void VisibilityMap::lookPastLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
     const SightMesh& mesh = data_->mesh;
     viewpoint = withinSight(viewpoint);
     region.viewpoint = viewpoint;
@@ -205,8 +213,10 @@ void VisibilityMap::look(Point2 viewpoint, double max_range, VisibleRegion& regi
         transparent = finder->bothSides();
     }
     // Where sight is free for ever, it ends somewhere beyond all lines.
-    const double range = std::min(
-        max_range, std::isinf(max_range) ? farthestIn(mesh.box, viewpoint) : kFarthestSight);
+    const double range =
+        std::min(max_range, std::isinf(max_range) ? std::max(farthestIn(mesh.box, viewpoint),
+                                                             data_->rounds.farthest(viewpoint))
+                                                  : kFarthestSight);
     if (contact) region.viewpoint = viewpoint;
     region.max_range = range;
     const bool bounded = range < farthestIn(mesh.cells_box, viewpoint);

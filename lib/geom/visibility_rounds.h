@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to VisibilityMap.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geom/box_tree.h"
+#include "geom/ellipse.h"
+#include "geom/visibility.h"
+
+namespace ispace {
+
+/// Round bodies in the way of sight. What lies in their shadow is cut from a region that was found
+/// without them: no look crosses their outlines edge by edge.
+class RoundBodies {
+  public:
+    /// \param first_line what the first of them is called in SightEnd::line
+    RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line);
+
+    [[nodiscard]] bool empty() const { return rounds_.empty(); }
+    /// No round body is farther from p.
+    [[nodiscard]] double farthest(Point2 p) const;
+    /// Cuts the shadows of all of them from what is seen. O(ends) for each that is within range.
+    void cut(VisibleRegion& region) const;
+
+  private:
+    /// Of those within range; the nearest first, so that others are found hidden.
+    [[nodiscard]] std::vector<std::uint32_t> within(const VisibleRegion& region) const;
+
+    std::vector<Ellipse> rounds_;
+    std::uint32_t first_line_;
+    BoxTree boxes_;
+    Box2 box_;
+};
+
+}  // namespace ispace
