@@ -28,10 +28,17 @@ Body upright(Polygon footprint, const Standing& thing, Material material) {
     return body;
 }
 
+Body uprightRound(const Standing& thing, Material material) {
+    Body body;
+    body.prisms.push_back(roundPrism(thing.ellipse(), thing.bottom, thing.top, material));
+    return body;
+}
+
 Body pillarBody(const Record& record) {
     const Standing pillar = standingOf(record);
     const bool round = record.text("kind") == "round";
-    return upright(round ? pillar.ellipse() : pillar.rectangle(), pillar, Material::Pillar);
+    return round ? uprightRound(pillar, Material::Pillar)
+                 : upright(pillar.rectangle(), pillar, Material::Pillar);
 }
 
 Body barrierBody(const Record& record) {
@@ -46,7 +53,7 @@ Body cubeBody(const Record& record) {
 
 Body cylinderBody(const Record& record) {
     const Standing cylinder = standingOf(record);
-    return upright(cylinder.ellipse(), cylinder, Material::Box);
+    return uprightRound(cylinder, Material::Box);
 }
 
 Body floorBody(const Record& record) {

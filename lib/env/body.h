@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "env/material.h"
 #include "env/mesh.h"
+#include "geom/ellipse.h"
 #include "geom/polygon.h"
 #include "record/record.h"
 
@@ -17,7 +19,12 @@ struct Prism {
     Polygon footprint;
     double bottom = 0, top = 0;
     Material material = Material::Wood;
+    /// Of a round prism: what the footprint is inscribed in.
+    std::optional<Ellipse> curve = {};
 };
+
+/// An upright prism on an ellipse.
+Prism roundPrism(const Ellipse& curve, double bottom, double top, Material material);
 
 /// An upright sheet without thickness: walls and fences as lines.
 struct Sheet {
@@ -46,12 +53,8 @@ struct Body {
 /// Height of the highest prism, sheet or mesh; 0 without any.
 double topOf(const Body& body);
 
-/// Greatest distance between a curve and the chords that stand for it, in metres: small enough for
-/// ranges to stay within 1 mm of the curve's for beams that meet it at up to 87 degrees.
-constexpr double kCurveTolerance = 0.00005;
-
-/// Ellipse with these full axes about `center`, the first along `heading`, vertices on the curve,
-/// chords within kCurveTolerance of it. Counter-clockwise.
+/// The polygon inscribed in the ellipse with these full axes about `center`, the first along
+/// `heading`, see geom/ellipse.h. Counter-clockwise.
 Polygon ellipse(Point2 center, double length, double width, Angle heading);
 
 /// Rectangle of this length (along heading) and width about `center`, counter-clockwise.

@@ -39,7 +39,7 @@ std::vector<const Record*> insideRecords(std::span<const Element> elements) {
     return inside;
 }
 
-/// Calls on_sheet(sheet, element) and on_solid(footprint, element) for the walls and things that
+/// Calls on_sheet(sheet, element) and on_solid(prism, element) for the walls and things that
 /// stand anywhere between two heights; meshes of files are cut elsewhere.
 template <typename OnSheet, typename OnSolid>
 void forEachStanding(std::span<const Element> elements, double bottom, double top, OnSheet on_sheet,
@@ -49,7 +49,7 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
         for (const Sheet& sheet : elements[i].body.sheets)
             if (stands(sheet)) on_sheet(sheet, i);
         for (const Prism& prism : elements[i].body.prisms)
-            if (stands(prism)) on_solid(prism.footprint, i);
+            if (stands(prism)) on_solid(prism, i);
     }
 }
 
@@ -215,8 +215,9 @@ Slice Environment::slice(double height) const {
     const auto add_sheet = [&](const Sheet& sheet, std::size_t /*owner*/) {
         if (isAmong(Surfaces::Opaque, sheet)) slice.sheets.push_back(sheet.line);
     };
-    const auto add_solid = [&](const Polygon& solid, std::size_t /*owner*/) {
-        slice.solids.push_back(solid);
+    const auto add_solid = [&](const Prism& prism, std::size_t /*owner*/) {
+        if (prism.curve) slice.rounds.push_back({*prism.curve, slice.solids.size()});
+        slice.solids.push_back(prism.curve ? outlineOf(*prism.curve) : prism.footprint);
     };
     forEachStanding(elements_, height, height, add_sheet, add_solid);
     for (const Element& element : elements_)
@@ -233,8 +234,8 @@ Band Environment::band(double bottom, double top) const {
         band.sheets.push_back(sheet.line);
         band.sheet_owners.push_back(owner);
     };
-    const auto add_solid = [&](const Polygon& solid, std::size_t owner) {
-        band.solids.push_back(solid);
+    const auto add_solid = [&](const Prism& prism, std::size_t owner) {
+        band.solids.push_back(prism.footprint);
         band.solid_owners.push_back(owner);
     };
     forEachStanding(elements_, bottom, top, add_sheet, add_solid);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "env/test_scene.h"
@@ -244,11 +246,44 @@ TEST(Environment, ABandOfNoHeightIsTheSlice) {
     const Environment env = environment(
         "ispace size=8,8\ndesk at=2,2\ntable at=-2,2\nchair at=1,-2\npillar at=-2,-2 kind=round\n");
     for (const double height : {0.0, 0.15, 0.42, 0.68, 0.7, 1.0, 2.5, 3.0}) {
-        const Slice slice = env.slice(height);
+        Slice slice = env.slice(height);
         const Band band = env.band(height, height);
+        // Round solids are inscribed in a band, and have their area in a slice.
+        for (const Slice::Round& round : slice.rounds) {
+            EXPECT_NEAR(signedArea(slice.solids[round.solid]), round.curve.area(), 1e-12);
+            slice.solids[round.solid] = inscribedIn(round.curve);
+        }
         EXPECT_EQ(band.sheets, slice.sheets) << height;
         EXPECT_EQ(band.solids, slice.solids) << height;
     }
+}
+
+TEST(Environment, FreeFloorAroundRoundThingsIsExact) {
+    const std::string room = "ispace at=0,0 size=8,6\n";
+    const auto free = [&](const std::string& things) {
+        return totalArea(environment(room + things).freeFloor(kScanHeight));
+    };
+    const double pi = std::numbers::pi;
+    for (const double r : {0.05, 0.1, 0.3, 0.5, 1.0}) {
+        const std::string size = " size=" + std::to_string(2 * r) + ",";
+        const std::string circle = size + std::to_string(2 * r) + ",1";
+        EXPECT_NEAR(free("cylinder at=1,0.5" + circle), 48 - pi * r * r, 1e-9) << r;
+        EXPECT_NEAR(free("pillar kind=round at=1,0.5" + circle), 48 - pi * r * r, 1e-9) << r;
+        EXPECT_NEAR(free("cylinder at=1,0.5 heading=30" + size + "0.2,1"), 48 - pi * r * 0.1, 1e-9);
+        // In contact with a wall, and cut in half by it.
+        EXPECT_NEAR(free("cylinder at=" + std::to_string(4 - r) + ",0" + circle), 48 - pi * r * r,
+                    1e-6);
+        EXPECT_NEAR(free("cylinder at=4,0" + circle), 48 - pi * r * r / 2, 1e-6);
+        EXPECT_NEAR(free("cylinder at=4,0 heading=13" + circle), 48 - pi * r * r / 2, 1e-6);
+        // Two discs that are as far apart as their radius share a lens.
+        const double lens = r * r * (2 * pi / 3 - std::sqrt(3) / 2);
+        EXPECT_NEAR(free("cylinder at=1,0.5" + circle + "\ncylinder at=" + std::to_string(1 + r) +
+                         ",0.5" + circle),
+                    48 - 2 * pi * r * r + lens, 1e-6)
+            << r;
+    }
+    // A table's foot; its top is higher.
+    EXPECT_NEAR(free("table at=1,1 size=0.9"), 48 - pi * 0.045 * 0.045, 1e-9);
 }
 
 TEST(Environment, FreeFloorIsExact) {

@@ -35,9 +35,11 @@ Body tableBody(const Record& record) {
     const double board = atMostQuarter(kBoard, table.height());
     const double foot_top = table.bottom + board, stem_top = table.top - board;
     Body body;
-    body.prisms.push_back({table.ellipse(), stem_top, table.top, Material::Wood});
-    body.prisms.push_back({table.ellipse(kStemShare), foot_top, stem_top, Material::Metal});
-    body.prisms.push_back({table.ellipse(kFootShare), table.bottom, foot_top, Material::Metal});
+    body.prisms.push_back(roundPrism(table.ellipse(), stem_top, table.top, Material::Wood));
+    body.prisms.push_back(
+        roundPrism(table.ellipse(kStemShare), foot_top, stem_top, Material::Metal));
+    body.prisms.push_back(
+        roundPrism(table.ellipse(kFootShare), table.bottom, foot_top, Material::Metal));
     return body;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include "geom/ellipse.h"
 #include "geom/polygon.h"
 
 namespace ispace {
@@ -12,10 +14,21 @@ struct Slice {
     double height = 0;
     std::vector<Segment2> sheets;  ///< walls without thickness
     std::vector<Polygon> solids;   ///< closed sets, counter-clockwise; may overlap
+    /// A solid that is a polygon of the same area, outlineOf() it, for want of a curve.
+    struct Round {
+        Ellipse curve;
+        std::size_t solid = 0;  ///< index in `solids`
+    };
+    std::vector<Round> rounds = {};  ///< ascending by solid
 
     /// Calls visit(Segment2) for every line that stops a beam: sheets, then edges of solids.
     template <typename Visit>
     void forEachLine(Visit visit) const;
+    /// The same without the edges of round solids.
+    template <typename Visit>
+    void forEachStraightLine(Visit visit) const;
+    [[nodiscard]] std::vector<Segment2> straightLines() const;
+    [[nodiscard]] std::vector<Ellipse> curves() const;
     /// True if p lies in a solid or on its edge.
     [[nodiscard]] bool blocked(Point2 p) const;
 };
@@ -24,6 +37,18 @@ template <typename Visit>
 void Slice::forEachLine(Visit visit) const {
     for (const Segment2& sheet : sheets) visit(sheet);
     for (const Polygon& solid : solids) forEachEdge(solid, visit);
+}
+
+template <typename Visit>
+void Slice::forEachStraightLine(Visit visit) const {
+    for (const Segment2& sheet : sheets) visit(sheet);
+    auto round = rounds.begin();
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        if (round != rounds.end() && round->solid == i)
+            ++round;
+        else
+            forEachEdge(solids[i], visit);
+    }
 }
 
 }  // namespace ispace

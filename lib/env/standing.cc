@@ -14,11 +14,8 @@ Polygon Standing::rectangle() const {
     return ispace::rectangle(world_from_body.position, length, width, world_from_body.heading);
 }
 
-Polygon Standing::ellipse() const { return ellipse(1); }
-
-Polygon Standing::ellipse(double share) const {
-    return ispace::ellipse(world_from_body.position, share * length, share * width,
-                           world_from_body.heading);
+Ellipse Standing::ellipse(double share) const {
+    return {world_from_body.position, share * length, share * width, world_from_body.heading};
 }
 
 Standing standingOf(const Record& record) {

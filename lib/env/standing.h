@@ -15,11 +15,9 @@ struct Standing {
     [[nodiscard]] double height() const { return top - bottom; }
     /// The rectangle between two corners given in the body's frame, `low` left-below of `high`.
     [[nodiscard]] Polygon box(Point2 low, Point2 high) const;
-    /// The whole rectangle, and the ellipse in it.
     [[nodiscard]] Polygon rectangle() const;
-    [[nodiscard]] Polygon ellipse() const;
-    /// An ellipse about the centre scaled by `share`.
-    [[nodiscard]] Polygon ellipse(double share) const;
+    /// The ellipse in the rectangle, scaled by `share` about the centre.
+    [[nodiscard]] Ellipse ellipse(double share = 1) const;
 };
 
 /// One number in `size` stands for length and width. The height is the third number of `size`,

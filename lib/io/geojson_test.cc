@@ -167,11 +167,11 @@ TEST(SliceOwners, EachPartBelongsToOne) {
     const SliceOwners owners = ownersOf(room.environment, slice);
     ASSERT_EQ(owners.sheets.size(), slice.sheets.size());
     ASSERT_EQ(owners.solids.size(), slice.solids.size());
+    const std::vector<Polygon> solids = inscribedSolids(slice);
     for (std::size_t i = 0; i < owners.solids.size(); ++i) {
         const auto& prisms = room.environment.elements().at(owners.solids[i]).body.prisms;
-        EXPECT_TRUE(std::any_of(prisms.begin(), prisms.end(), [&](const Prism& prism) {
-            return prism.footprint == slice.solids[i];
-        }));
+        EXPECT_TRUE(std::any_of(prisms.begin(), prisms.end(),
+                                [&](const Prism& prism) { return prism.footprint == solids[i]; }));
     }
     Slice strange;
     strange.sheets = {{{1, 2}, {3, 4}}};

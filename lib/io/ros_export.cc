@@ -12,6 +12,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "io/cell_raster.h"
+#include "io/slice_owners.h"
 
 namespace ispace {
 
@@ -177,7 +178,9 @@ RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
                         const std::string& image_name) {
     const Regions& indoor = scene.environment.indoor();
     const CellFrame frame = frameOf(bounds(indoor), resolution);
-    const Slice slice = scene.environment.slice(height);
+    Slice slice = scene.environment.slice(height);
+    // Cells are occupied that something touches: not those that a curve touches just from within.
+    slice.solids = inscribedSolids(slice);
     MapPainter painter(frame);
     painter.addFloor(indoor);
     for (const Polygon& solid : slice.solids) painter.addSolid(solid);

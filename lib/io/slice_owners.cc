@@ -31,6 +31,12 @@ std::vector<std::size_t> match(const std::vector<Part>& wanted, const std::vecto
 
 }  // namespace
 
+std::vector<Polygon> inscribedSolids(const Slice& slice) {
+    std::vector<Polygon> solids = slice.solids;
+    for (const Slice::Round& round : slice.rounds) solids[round.solid] = inscribedIn(round.curve);
+    return solids;
+}
+
 SliceOwners ownersOf(const Environment& environment, const Slice& slice) {
     const Band band = environment.band(slice.height, slice.height);
     const std::size_t nobody = environment.elements().size();
@@ -41,7 +47,7 @@ SliceOwners ownersOf(const Environment& environment, const Slice& slice) {
         return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), lexLess);
     };
     return {match(slice.sheets, band.sheets, band.sheet_owners, nobody, line_less),
-            match(slice.solids, band.solids, band.solid_owners, nobody, polygon_less)};
+            match(inscribedSolids(slice), band.solids, band.solid_owners, nobody, polygon_less)};
 }
 
 }  // namespace ispace
