@@ -52,9 +52,15 @@ class CarefulRay : private EmbreeQuery {
 
     /// Where the ray meets a triangle that stops it.
     [[nodiscard]] Meeting meet(std::size_t triangle) const {
-        if (passed_.contain(set_.planes()[triangle], ray_.origin)) return kNone;
+        if (set_.isRound(triangle)) {
+            const auto [multiple, slope] = set_.meetRound(triangle, ray_, passed_.contact);
+            return multiple == kNone.multiple ? kNone : Meeting{multiple, triangle, slope};
+        }
+        const Plane& plane = set_.planes()[triangle];
+        if (passed_.contain(plane, ray_.origin)) return kNone;
         const double multiple = set_.meet(triangle, ray_);
-        return multiple == kNone.multiple ? kNone : Meeting{multiple, triangle};
+        if (multiple == kNone.multiple) return kNone;
+        return {multiple, triangle, std::fabs(dot(plane.normal, ray_.direction))};
     }
     /// The first of all triangles.
     Meeting first() {
@@ -151,6 +157,10 @@ Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& pass
     CarefulRay careful(scene, set, passed, ray);
     if (passed.is_crowded) return careful.first();
     const std::size_t triangle = hits.hit.primID[lane];
+    if (set.isRound(triangle)) {
+        const Meeting met = careful.meet(triangle);
+        return met < kNone ? met : careful.first();
+    }
     const Plane& plane = set.planes()[triangle];
     if (passed.contain(plane, ray.origin)) return careful.first();
 

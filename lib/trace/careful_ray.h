@@ -45,6 +45,7 @@ struct PassingQuery : EmbreeQuery {
 struct Meeting {
     double multiple;  ///< of the ray's direction; +infinity if it meets nothing
     std::size_t triangle = 0;
+    double slope = 0;  ///< |normal times direction|
 
     /// Nearer; of two equally near the first.
     friend bool operator<(const Meeting& a, const Meeting& b) {
@@ -54,7 +55,9 @@ struct Meeting {
 
 /// Decides in doubles what a ray meets first, given a hit of Embree's whose triangle, or whether
 /// it is one, is not certain; of a crowded origin any hit, or none. Which of the triangles about
-/// one place Embree hit changes nothing.
+/// one place Embree hit changes nothing. A round body that is hit is met where its curve is,
+/// without asking whether something else begins between that and the triangle, which lies up to
+/// kCurveTolerance aside; a ray that misses the curve goes on.
 Meeting meetCarefully(RTCScene scene, const TriangleSet& set, const Passed& passed, const Ray& ray,
                       const RTCRayHit16& hits, std::size_t lane);
 

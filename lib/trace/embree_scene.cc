@@ -137,8 +137,7 @@ struct EmbreeScene::Caster {
         packet.multiples[lane] = packet.slopes[lane] = kNoReturn;
         if (met.multiple == std::numeric_limits<double>::infinity()) return;
         packet.multiples[lane] = std::min(static_cast<float>(met.multiple), most);
-        const double slope = dot(scene.set_.planes()[met.triangle].normal, ray.direction);
-        packet.slopes[lane] = static_cast<float>(std::fabs(slope));
+        packet.slopes[lane] = static_cast<float>(met.slope);
     }
 
     void writeLanes(std::size_t first, std::size_t lanes, const Results& results) const {

@@ -10,6 +10,7 @@
 #include "base/simd.h"
 #include "trace/flat_contact.h"
 #include "trace/flat_line.h"
+#include "trace/flat_round.h"
 
 namespace ispace {
 
@@ -181,6 +182,25 @@ ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const Fl
     }
 }
 
+/// Draws a round body into blocks of beams.
+template <bool kCosines>
+void drawRound(FlatFan& fan, int first, int last, double nearest, const RoundFrom& round) {
+    for (int block = first; block <= last; ++block) {
+        if (fan.least[block] > nearest) continue;
+        double least = 1e300;
+        for (int i = block * kBlock; i < (block + 1) * kBlock; ++i) {
+            const RoundFrom::Hit met = round.meet<kCosines>(fan.x[i], fan.y[i]);
+            const double old = fan.nearness[i];
+            if (kCosines && met.nearness >= old)
+                fan.cosine[i] =
+                    met.nearness > old ? met.cosine : std::max(met.cosine, fan.cosine[i]);
+            fan.nearness[i] = std::max(met.nearness, old);
+            least = std::min(least, fan.nearness[i]);
+        }
+        fan.least[block] = least;
+    }
+}
+
 struct Stack {
     Waiting entries[FlatTree::kStack];
     int count = 0;
@@ -240,6 +260,19 @@ ISPACE_INLINE void drawTree(const FlatTree& tree, const FlatView& view, FlatFan&
             visit(tree.node(box.child), view, frame, fan, stack);
         else
             drawLeaf<kCosines>(tree, view, tree.leaf(box.child), frame, fan);
+    }
+    if (tree.round_root < 0) return;
+    visit(tree.node(tree.round_root), view, frame, fan, stack);
+    while (stack.count > 0) {
+        const Waiting box = stack.entries[--stack.count];
+        if (!isSeen(fan, box)) continue;
+        if (box.child >= 0) {
+            visit(tree.node(box.child), view, frame, fan, stack);
+            continue;
+        }
+        const RoundFrom round(tree.round(box.child), view.x, view.y, view.contact);
+        drawRound<kCosines>(fan, box.first, box.last, box.nearness, round);
+        drawRound<kCosines>(fan, box.other_first, box.other_last, box.nearness, round);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "trace/flat_contact.h"
 #include "trace/flat_line.h"
 #include "trace/flat_ray.h"
+#include "trace/flat_round.h"
 
 namespace ispace {
 
@@ -135,6 +136,7 @@ class Walk {
     ISPACE_INLINE void draw(const FlatTree::Leaf& leaf, int i);
     template <bool kContact>
     ISPACE_INLINE double drawBlock(const FlatTree::Leaf& leaf, int i, int begin);
+    ISPACE_INLINE void drawRound(const FlatTree::Round& round);
     bool isInContact();
 
     const FlatTree& tree_;
@@ -305,6 +307,22 @@ void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
 }
 
 template <bool kCosines>
+void Walk<kCosines>::drawRound(const FlatTree::Round& round) {
+    double least = kInfinity;
+    for (int k = 0; k < packet_.count; ++k) {
+        const RoundFrom from(round, packet_.origin_x[k], packet_.origin_y[k], limits_.contact);
+        const RoundFrom::Hit met = from.meet<kCosines>(packet_.x[k], packet_.y[k]);
+        const double old = packet_.nearness[k];
+        if (kCosines && met.nearness >= old)
+            packet_.cosine[k] =
+                met.nearness > old ? met.cosine : std::max(met.cosine, packet_.cosine[k]);
+        packet_.nearness[k] = std::max(met.nearness, old);
+        least = std::min(least, packet_.nearness[k]);
+    }
+    least_ = least;
+}
+
+template <bool kCosines>
 bool Walk<kCosines>::run() {
     if (!enclose()) return false;
     std::fill_n(packet_.nearness, packet_.count, limits_.least_nearness);
@@ -319,6 +337,16 @@ bool Walk<kCosines>::run() {
             visit(tree_.node(box.child));
         else
             meetLeaf(tree_.leaf(box.child));
+    }
+    if (tree_.round_root < 0) return true;
+    visit(tree_.node(tree_.round_root));
+    while (!stack_.empty()) {
+        const FlatStack::Entry box = stack_.pop();
+        if (!mayBeNearer(box.distance, least_)) continue;
+        if (box.child >= 0)
+            visit(tree_.node(box.child));
+        else
+            drawRound(tree_.round(box.child));
     }
     return true;
 }
@@ -337,7 +365,7 @@ double widestPacket(const FlatTree& tree) {
     }
     // How far leaves are apart, by and large.
     const auto leaves = static_cast<double>(tree.leaves.size());
-    return 0.35 * (right - left + high - low) / std::sqrt(leaves);
+    return 0.35 * (right - left + high - low) / std::sqrt(std::max(leaves, 1.0));
 }
 
 ISPACE_SIMD_CLONES

@@ -6,6 +6,7 @@
 #include "base/simd.h"
 #include "trace/flat_contact.h"
 #include "trace/flat_line.h"
+#include "trace/flat_round.h"
 
 namespace ispace {
 
@@ -77,6 +78,15 @@ ISPACE_INLINE void meetLeaf(const FlatTree& tree, const FlatView& view, const Fl
     }
 }
 
+ISPACE_INLINE void meetRound(const FlatTree::Round& round, const FlatView& view, const Ray& ray,
+                             FlatHit& hit) {
+    const RoundFrom::Hit met =
+        RoundFrom(round, view.x, view.y, view.contact).meet<true>(ray.x, ray.y);
+    if (met.nearness <= 0 || met.nearness < hit.nearness) return;
+    if (met.nearness == hit.nearness && met.cosine <= hit.cosine) return;
+    hit = {met.nearness, met.cosine};
+}
+
 }  // namespace
 
 ISPACE_SIMD_CLONES
@@ -94,6 +104,16 @@ FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y
             visit(tree.node(box.child), view, ray, hit, stack);
         else
             meetLeaf(tree, view, tree.leaf(box.child), ray, hit);
+    }
+    if (tree.round_root < 0) return hit;
+    visit(tree.node(tree.round_root), view, ray, hit, stack);
+    while (!stack.empty()) {
+        const FlatStack::Entry box = stack.pop();
+        if (!mayBeNearer(box.distance, hit.nearness)) continue;
+        if (box.child >= 0)
+            visit(tree.node(box.child), view, ray, hit, stack);
+        else
+            meetRound(tree.round(box.child), view, ray, hit);
     }
     return hit;
 }

@@ -47,7 +47,8 @@ struct FlatHit {
     double cosine = 0;  ///< the largest among lines met at the same place
 };
 
-/// The nearest line along the unit vector (x, y), if it is nearer than `least_nearness`.
+/// The nearest line or round body along the unit vector (x, y), if it is nearer than
+/// `least_nearness`.
 FlatHit firstLine(const FlatTree& tree, const FlatView& view, double x, double y,
                   double least_nearness);
 

@@ -20,6 +20,7 @@ constexpr std::size_t kBins = 32;
 
 struct Item {
     Segment2 line;
+    std::size_t round = 0;  ///< index, for the hierarchy of round bodies
     Box2 box;
     double middle[2] = {};  ///< times two, along x and y
 };
@@ -61,12 +62,12 @@ struct Cut {
 
 class Builder {
   public:
-    Builder(std::vector<Item> items, FlatTree& tree) : items_(std::move(items)), tree_(tree) {}
+    /// `most`: items that make a leaf, of lines or, if 1, of a round body.
+    Builder(std::vector<Item> items, FlatTree& tree, std::size_t most)
+        : items_(std::move(items)), tree_(tree), most_(most) {}
 
-    void build() {
-        if (items_.empty()) return;
-        node(group(0, items_.size()), 0);
-    }
+    /// \return the root \pre there are items
+    std::int32_t build() { return node(group(0, items_.size()), 0); }
 
   private:
     [[nodiscard]] Group group(std::size_t begin, std::size_t end) const {
@@ -149,7 +150,7 @@ class Builder {
             for (std::size_t i = 0; i < groups.size(); ++i) {
                 const double here = depth < kDeep ? cost(groups[i].box, groups[i].size())
                                                   : static_cast<double>(groups[i].size());
-                if (groups[i].size() > kWidth && here > highest) {
+                if (groups[i].size() > most_ && here > highest) {
                     highest = here;
                     most = i;
                 }
@@ -177,13 +178,14 @@ class Builder {
             made.high[i] = box.high.y;
             if (i < groups.size())
                 made.child[i] =
-                    groups[i].size() > kWidth ? node(groups[i], depth + 1) : leaf(groups[i]);
+                    groups[i].size() > most_ ? node(groups[i], depth + 1) : leaf(groups[i]);
         }
         tree_.nodes[index] = made;
         return static_cast<std::int32_t>(index);
     }
 
     std::int32_t leaf(const Group& all) {
+        if (most_ == 1) return ~static_cast<std::int32_t>(items_[all.begin].round);
         FlatTree::Leaf made{};
         made.count = static_cast<std::int32_t>(all.size());
         for (std::size_t i = 0; i < kWidth; ++i) {
@@ -204,23 +206,53 @@ class Builder {
 
     std::vector<Item> items_;
     FlatTree& tree_;
+    std::size_t most_;
 };
+
+Item itemOf(const Box2& box) {
+    Item item;
+    item.box = box;
+    item.middle[0] = box.low.x + box.high.x;
+    item.middle[1] = box.low.y + box.high.y;
+    return item;
+}
+
+/// What rays meet of round bodies, computed with rounding, lies in these boxes.
+Box2 boxOf(const Ellipse& round) {
+    constexpr double kMargin = 1e-9;
+    const Box2 box = round.box();
+    const Vec2 margin{kMargin, kMargin};
+    return {box.low - margin, box.high + margin};
+}
+
+FlatTree::Round unitMapOf(const Ellipse& round) {
+    const auto [c, s] = round.axis;
+    return {round.center.x,        round.center.y,        c / round.half_length,
+            s / round.half_length, -s / round.half_width, c / round.half_width};
+}
 
 }  // namespace
 
-FlatTree::FlatTree(std::span<const Segment2> lines) {
+FlatTree::FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies) {
     std::vector<Item> items;
     items.reserve(lines.size());
     for (const Segment2& line : lines) {
         if (line.a == line.b) continue;
-        Item item;
+        Item item = itemOf(bounds(line));
         item.line = lexLess(line.a, line.b) ? line : Segment2{line.b, line.a};
-        item.box = bounds(line);
-        item.middle[0] = line.a.x + line.b.x;
-        item.middle[1] = line.a.y + line.b.y;
         items.push_back(item);
     }
-    Builder(std::move(items), *this).build();
+    if (!items.empty()) Builder(std::move(items), *this, kWidth).build();
+    if (round_bodies.empty()) return;
+    if (nodes.empty()) nodes.push_back({});
+    items.clear();
+    rounds.reserve(round_bodies.size());
+    for (std::size_t i = 0; i < round_bodies.size(); ++i) {
+        items.push_back(itemOf(boxOf(round_bodies[i])));
+        items.back().round = i;
+        rounds.push_back(unitMapOf(round_bodies[i]));
+    }
+    round_root = Builder(std::move(items), *this, 1).build();
 }
 
 }  // namespace ispace

@@ -6,12 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "geom/ellipse.h"
 #include "geom/polygon.h"
 
 namespace ispace {
 
 /// A bounding volume hierarchy over lines on the floor, eight boxes or lines a node, each component
-/// an array: what a vector unit takes at once. Lines without length are left out.
+/// an array: what a vector unit takes at once. Lines without length are left out. Round bodies have
+/// a hierarchy of their own in the same nodes, to be walked after that of the lines.
 struct FlatTree {
     static constexpr int kWidth = 8;
     /// How many nodes lie above one another at most; traversals keep fewer than kWidth waiting a
@@ -33,8 +35,13 @@ struct FlatTree {
         std::int32_t count;
     };
 
+    /// The map of a round body's plane that makes it the unit disc: from (x - cx, y - cy).
+    struct Round {
+        double cx, cy, xx, xy, yx, yy;
+    };
+
     /// By binned surface area heuristic. O(n log n)
-    explicit FlatTree(std::span<const Segment2> lines);
+    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
 
     /// Of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {
@@ -44,8 +51,17 @@ struct FlatTree {
         return leaves[~static_cast<std::uint32_t>(child)];
     }
 
-    std::vector<Node> nodes;  ///< the first is the root; none if there are no lines
+    /// Child of a node among those of round bodies.
+    [[nodiscard]] const Round& round(std::int32_t child) const {
+        return rounds[~static_cast<std::uint32_t>(child)];
+    }
+
+    /// The first is the root of the lines, without children if there are none; no nodes at all
+    /// without lines and round bodies.
+    std::vector<Node> nodes;
     std::vector<Leaf> leaves;
+    std::int32_t round_root = -1;  ///< of the round bodies, whose leaves are one each; -1: none
+    std::vector<Round> rounds;
 };
 
 }  // namespace ispace

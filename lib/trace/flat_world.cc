@@ -60,8 +60,8 @@ struct FlatWorld::Data {
 
     double widest_packet;
 
-    explicit Data(std::span<const Segment2> lines)
-        : tree(lines), widest_packet(widestPacket(tree)) {}
+    Data(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
+        : tree(lines, rounds), widest_packet(widestPacket(tree)) {}
 
     void castRay(const Cast& cast, std::size_t i) const {
         const Point2 origin = cast.origin(i);
@@ -149,7 +149,8 @@ struct FlatWorld::Data {
     }
 };
 
-FlatWorld::FlatWorld(std::span<const Segment2> lines) : data_(new Data(lines)) {}
+FlatWorld::FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
+    : data_(new Data(lines, rounds)) {}
 FlatWorld::FlatWorld(FlatWorld&&) noexcept = default;
 FlatWorld& FlatWorld::operator=(FlatWorld&&) noexcept = default;
 FlatWorld::~FlatWorld() = default;

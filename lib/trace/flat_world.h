@@ -4,13 +4,14 @@
 #include <memory>
 #include <span>
 
+#include "geom/ellipse.h"
 #include "geom/polygon.h"
 #include "trace/directions.h"
 
 namespace ispace {
 
-/// The lines of a slice, for level rays: exact to rounding of doubles, and faster than a general
-/// ray tracer.
+/// The lines and round bodies of a slice, for level rays: exact to rounding of doubles, and faster
+/// than a general ray tracer.
 ///
 /// A fan is drawn like a picture with one row: a bounding volume hierarchy is walked front to back,
 /// what lies behind the farthest range of the beams it could shorten is left out, and each line
@@ -20,21 +21,22 @@ namespace ispace {
 /// end, and one that just touches a corner meets it.
 ///
 /// Lines in contact with the origin (nearer than `contact`) stop nothing, nor do those that
-/// continue them within it; nor does a line seen exactly from its edge (its straight continuation
-/// passes the origin within a nanometre). Thread-safe; results depend on nothing but the lines and
-/// the ray, not on the order of lines, the fan a ray is part of, or the processor.
+/// continue them within it; a round body in contact is met at its far side only. Nor does a line
+/// seen exactly from its edge (its straight continuation passes the origin within a nanometre).
+/// Thread-safe; results depend on nothing but the lines and the ray, not on the order of lines, the
+/// fan a ray is part of, or the processor.
 class FlatWorld {
   public:
-    explicit FlatWorld(std::span<const Segment2> lines);
+    explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
     FlatWorld(FlatWorld&&) noexcept;
     FlatWorld& operator=(FlatWorld&&) noexcept;
     ~FlatWorld();
 
-    /// Distance of the first line along each direction (x and y count), up to max_range inclusive;
-    /// +infinity if there is none. Fastest for directions with an arc, fast for neighbours alike.
-    /// `cosines`, if not empty: |cosine| of the angle between ray and normal, 1 without return;
-    /// the larger where two lines are met at once.
-    /// \pre ranges.size() == directions.size(), cosines.size() as well or 0
+    /// Distance of the first line or round body along each direction (x and y count), up to
+    /// max_range inclusive; +infinity if there is none. Fastest for directions with an arc, fast
+    /// for neighbours alike. `cosines`, if not empty: |cosine| of the angle between ray and normal,
+    /// 1 without return; the larger where two lines are met at once. \pre ranges.size() ==
+    /// directions.size(), cosines.size() as well or 0
     void cast(Point2 origin, const Directions& directions, double max_range, double contact,
               std::span<float> ranges, std::span<float> cosines) const;
     /// The same with an origin for each ray.

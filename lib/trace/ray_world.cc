@@ -44,6 +44,21 @@ TriangleSoup standing(const std::vector<Segment2>& lines) {
     return soup;
 }
 
+Body withoutRounds(Body body) {
+    std::erase_if(body.prisms, [](const Prism& prism) { return prism.curve.has_value(); });
+    return body;
+}
+
+/// A mesh that just holds a round prism.
+Mesh meshAround(Prism round) {
+    // By a hair more, for rounding.
+    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
+    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
+    Body body;
+    body.prisms.push_back(std::move(round));
+    return std::move(meshesOf(body, false).front());
+}
+
 /// What lies a hair beyond max_range lies at it.
 ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
     float* const range = ranges.data();
@@ -92,16 +107,30 @@ RayWorld RayWorld::ofSlice(const Slice& slice, int packet_width) {
         data->lines.push_back({data->local({line.a.x, line.a.y, 0}).onFloor(),
                                data->local({line.b.x, line.b.y, 0}).onFloor()});
     });
-    data->flat.emplace(data->lines);
+    const auto local = [&](Point2 p) { return data->local({p.x, p.y, 0}).onFloor(); };
+    std::vector<Segment2> straight = slice.straightLines();
+    for (Segment2& line : straight) line = {local(line.a), local(line.b)};
+    std::vector<Ellipse> rounds = slice.curves();
+    for (Ellipse& round : rounds) round.center = local(round.center);
+    data->flat.emplace(straight, rounds);
     return RayWorld(std::move(data));
 }
 
 RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfaces,
                                  int packet_width) {
     std::vector<Mesh> meshes;
-    for (const Element& element : environment.elements())
-        for (Mesh& mesh : meshesOf(element.body, surfaces)) meshes.push_back(std::move(mesh));
+    std::vector<const Prism*> rounds;
+    for (const Element& element : environment.elements()) {
+        const std::size_t before = rounds.size();
+        for (const Prism& prism : element.body.prisms)
+            if (prism.curve) rounds.push_back(&prism);
+        const bool is_flat = rounds.size() == before;
+        for (Mesh& mesh : meshesOf(is_flat ? element.body : withoutRounds(element.body), surfaces))
+            meshes.push_back(std::move(mesh));
+    }
     meshes.push_back(floorMesh(environment.indoor()));
+    const std::size_t first_round = meshes.size();
+    for (const Prism* round : rounds) meshes.push_back(meshAround(*round));
     Box2 plan;
     for (const Mesh& mesh : meshes)
         for (const Point3& vertex : mesh.vertices) plan.add(vertex.onFloor());
@@ -114,11 +143,23 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfac
     }
     soup.vertices.reserve(vertices);
     soup.triangles.reserve(triangles);
-    for (const Mesh& mesh : meshes) {
+    soup.round_of.reserve(triangles);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Mesh& mesh = meshes[i];
         const auto first = static_cast<std::uint32_t>(soup.vertices.size());
         for (const Point3& vertex : mesh.vertices) soup.add(relative(vertex, data->middle));
-        for (const auto& [i, j, k] : mesh.triangles)
-            soup.triangles.push_back({first + i, first + j, first + k});
+        for (const auto& [a, b, c] : mesh.triangles)
+            soup.triangles.push_back({first + a, first + b, first + c});
+        const bool is_round = i >= first_round;
+        soup.round_of.resize(
+            soup.triangles.size(),
+            is_round ? static_cast<std::uint32_t>(i - first_round) : TriangleSoup::kFlat);
+        if (!is_round) continue;
+        const Prism& prism = *rounds[i - first_round];
+        RoundBody round{*prism.curve, prism.bottom, prism.top};
+        const Point2 center = round.curve.center;
+        round.curve.center = relative({center.x, center.y, 0}, data->middle).onFloor();
+        soup.rounds.push_back(round);
     }
     data->embree.emplace(std::move(soup), kContact, packet_width);
     return RayWorld(std::move(data));

@@ -24,10 +24,11 @@ constexpr double kContact = 1e-4;
 ///
 /// Surfaces are closed sets without thickness: one seen exactly from its edge (within the rounding
 /// of float32 in the mesh and for sight) stops nothing. No ray slips between surfaces that share an
-/// edge or a corner; what a ray meets decides its range, computed in doubles. Coordinates are kept
-/// relative to the middle of the plan: float32, in which the mesh is searched, then is exact to
-/// micrometres in a building, wherever its coordinates are counted from. Thread-safe once built;
-/// the number of threads changes nothing.
+/// edge or a corner; what a ray meets decides its range, computed in doubles. Round bodies are met
+/// on their curves; for sight (look) they are the polygons of a slice, within kCurveTolerance.
+/// Coordinates are kept relative to the middle of the plan: float32, in which the mesh is searched,
+/// then is exact to micrometres in a building, wherever its coordinates are counted from.
+/// Thread-safe once built; the number of threads changes nothing.
 class RayWorld {
   public:
     /// What a level sensor at `slice.height` meets: rays must start at that height and be level (z

@@ -61,7 +61,11 @@ Vec3 unit(Vec3 v) { return (1 / length(v)) * v; }
 
 }  // namespace
 
-TriangleSet::TriangleSet(TriangleSoup soup) : triangles_(std::move(soup.triangles)) {
+TriangleSet::TriangleSet(TriangleSoup soup)
+    : triangles_(std::move(soup.triangles)),
+      rounds_(std::move(soup.rounds)),
+      round_of_(std::move(soup.round_of)) {
+    round_of_.resize(triangles_.size(), TriangleSoup::kFlat);
     merge(std::move(soup.vertices));
     enclose();
     measure();
@@ -92,11 +96,19 @@ void TriangleSet::enclose() {
 
 void TriangleSet::measure() {
     const std::vector<Corners> all = std::exchange(triangles_, {});
+    const std::vector<std::uint32_t> round_of = std::exchange(round_of_, {});
     triangles_.reserve(all.size());
     planes_.reserve(all.size());
     margins_.reserve(all.size());
-    std::vector<std::pair<Corners, Plane>> splinters;
-    for (const Corners& corners : all) {
+    round_of_.reserve(all.size());
+    struct Splinter {
+        Corners corners;
+        Plane plane;
+        std::uint32_t round;
+    };
+    std::vector<Splinter> splinters;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Corners& corners = all[i];
         const Point3 a = vertices_[corners[0]], b = vertices_[corners[1]],
                      c = vertices_[corners[2]];
         const double sides[] = {length(b - a), length(c - b), length(a - c)};
@@ -109,17 +121,22 @@ void TriangleSet::measure() {
         if (thin < kSplinter * slack_ && thin * kSplinter < *longest) {
             const auto first = static_cast<std::size_t>(longest - sides);
             splinters.push_back(
-                {{corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]}, plane});
+                {{corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]},
+                 plane,
+                 round_of[i]});
         } else {
-            add(corners, plane, 2.5 * slack_ / thin);
+            add(corners, plane, 2.5 * slack_ / thin, round_of[i]);
         }
     }
     splinters_ = triangles_.size();
-    for (const auto& [corners, plane] : splinters)
-        for (int half = 0; half < 2; ++half) add(corners, plane, kInfinity);
+    for (const auto& [corners, plane, round] : splinters)
+        for (int half = 0; half < 2; ++half) add(corners, plane, kInfinity, round);
 }
 
-void TriangleSet::add(const Corners& corners, const Plane& plane, double margin) {
+void TriangleSet::add(const Corners& corners, const Plane& plane, double margin,
+                      std::uint32_t round) {
+    round_of_.push_back(round);
+    if (round != TriangleSoup::kFlat) margin = kInfinity;
     triangles_.push_back(corners);
     planes_.push_back(plane);
     margins_.push_back(margin);
@@ -202,6 +219,53 @@ double TriangleSet::meet(std::size_t triangle, const Ray& ray) const {
         std::clamp(plane.heightOver(ray.origin) / slope, near - kTouch / size, far + kTouch / size);
     if (!(multiple >= 0 && multiple <= ray.reach)) return kInfinity;
     return multiple;
+}
+
+RoundMeeting TriangleSet::meetRound(std::size_t triangle, const Ray& ray, double contact) const {
+    constexpr RoundMeeting kNone{kInfinity, 0};
+    const auto& [curve, bottom, top] = rounds_[round_of_[triangle]];
+    const Vec2 q = curve.toUnit(ray.origin.onFloor() - curve.center);
+    const Vec2 d = curve.toUnit({ray.direction.x, ray.direction.y});
+    const double a = dot(d, d), b = dot(q, d), c = dot(q, q) - 1;
+    // The stretch of the ray within the side, and between both ends.
+    double from = -kInfinity, to = kInfinity;
+    if (a > 0) {
+        const double square = a - cross(q, d) * cross(q, d);
+        if (square < 0) return kNone;
+        // Written so that neither root cancels.
+        const double far = b > 0 ? -b - std::sqrt(square) : std::sqrt(square) - b;
+        from = b > 0 ? far / a : c / far;
+        to = b > 0 ? c / far : far / a;
+    } else if (c > 0) {
+        return kNone;
+    }
+    double low = -kInfinity, high = kInfinity;
+    const double z = ray.origin.z, rise = ray.direction.z;
+    if (rise != 0) {
+        low = std::min((bottom - z) / rise, (top - z) / rise);
+        high = std::max((bottom - z) / rise, (top - z) / rise);
+    } else if (z < bottom || z > top) {
+        return kNone;
+    }
+    const double enter = std::max(from, low), leave = std::min(to, high);
+    if (!(enter <= leave && leave >= 0)) return kNone;
+    const double height = curve.heightOf(ray.origin.onFloor());
+    const double outside = std::max({height, z - top, bottom - z});
+    const bool touches = std::fabs(outside) <= contact;
+    if (touches) {
+        const bool goes_out = (std::fabs(height) <= contact && b >= 0) ||
+                              (std::fabs(z - top) <= contact && rise > 0) ||
+                              (std::fabs(bottom - z) <= contact && rise < 0);
+        if (goes_out || leave * length(ray.direction) <= contact) return kNone;
+    }
+    const bool enters = enter >= 0 && !touches;
+    const double multiple = enters ? enter : leave;
+    if (!(multiple <= ray.reach)) return kNone;
+    if (multiple == (enters ? low : high)) return {multiple, std::fabs(rise)};
+    const Point2 place = (ray.origin + multiple * ray.direction).onFloor();
+    const Vec2 normal = curve.normalAt(place);
+    const Vec2 flat{ray.direction.x, ray.direction.y};
+    return {multiple, std::fabs(dot(normal, flat)) / length(normal)};
 }
 
 double TriangleSet::distance(std::size_t triangle, Point3 p) const {

@@ -9,14 +9,27 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "geom/ellipse.h"
 #include "geom/point.h"
 
 namespace ispace {
 
+/// An upright round body: closed, as are its ends.
+struct RoundBody {
+    Ellipse curve;
+    double bottom = 0, top = 0;
+};
+
 /// Triangles as they come: vertices may be shared or not.
 struct TriangleSoup {
+    static constexpr std::uint32_t kFlat = ~0U;
+
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<RoundBody> rounds = {};
+    /// Of each triangle, the round body that it stands for, or kFlat; triangles beyond are flat,
+    /// too. Those of one body hold it.
+    std::vector<std::uint32_t> round_of = {};
 
     /// \return the vertex' index
     std::uint32_t add(Point3 corner) {
@@ -61,13 +74,20 @@ struct Ball {
     }
 };
 
+/// Where a ray meets a round body.
+struct RoundMeeting {
+    double multiple;  ///< of its direction; +infinity if it does not within its reach
+    double slope;     ///< |normal times direction|
+};
+
 /// Triangles in doubles, and all that decides exactly which of them a ray meets.
 ///
 /// A ray tracer that works in float32 finds the candidates. It is given triangles that are larger
 /// by slack() on each side, and rays that begin within ball(), moved there if need be; the slack
 /// then is more than its errors: no triangle that a ray meets is lost to it, unless the ray grazes
 /// its rim. A hit whose least barycentric coordinate times the cosine of ray and normal is over
-/// margin() lies in the triangle for certain; others are decided here.
+/// margin() lies in the triangle for certain; others are decided here. Those of round bodies are no
+/// more than candidates: the body itself decides.
 class TriangleSet {
   public:
     /// Triangles thinner than a nanometre are left out; vertices at one place become one. Splinters
@@ -89,6 +109,14 @@ class TriangleSet {
     /// How many times its direction the ray goes to where it meets the closed triangle, within a
     /// nanometre aside; +infinity if it does not within its reach.
     [[nodiscard]] double meet(std::size_t triangle, const Ray& ray) const;
+    /// Where the ray meets the round body that the triangle stands for; from inside where it
+    /// leaves, as where it goes in from within `contact` of its surface. Going out from there it
+    /// meets nothing.
+    [[nodiscard]] RoundMeeting meetRound(std::size_t triangle, const Ray& ray,
+                                         double contact) const;
+    [[nodiscard]] bool isRound(std::size_t triangle) const {
+        return round_of_[triangle] != TriangleSoup::kFlat;
+    }
     /// Of a point from the closed triangle.
     [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
 
@@ -114,7 +142,7 @@ class TriangleSet {
     void merge(std::vector<Point3> vertices);
     void enclose();
     void measure();
-    void add(const Corners& corners, const Plane& plane, double margin);
+    void add(const Corners& corners, const Plane& plane, double margin, std::uint32_t round);
     [[nodiscard]] std::array<Point3, 3> halfRectangle(std::size_t splinter) const;
     void listCorners();
 
@@ -122,6 +150,8 @@ class TriangleSet {
     std::vector<Corners> triangles_;
     std::vector<Plane> planes_;
     std::vector<double> margins_;
+    std::vector<RoundBody> rounds_;
+    std::vector<std::uint32_t> round_of_;
     std::size_t splinters_ = 0;                  // the first of them
     std::vector<std::uint32_t> first_, around_;  // triangles about each vertex
     Ball ball_;
