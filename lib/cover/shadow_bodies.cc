@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "env/mesh.h"
+#include "geom/ellipse_arcs.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -129,8 +130,11 @@ void addPlate(const Plate& plate, std::vector<ShadowBody>& bodies) {
 }  // namespace
 
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies) {
-    if (isConvex(prism.footprint))
-        return addAll({{prism}, {}, {}, {}}, ShadowBody::Kind::Convex, bodies);
+    if (isConvex(prism.footprint)) {
+        addAll({{prism}, {}, {}, {}}, ShadowBody::Kind::Convex, bodies);
+        bodies.back().curve = prism.curve;
+        return;
+    }
     forEachEdge(prism.footprint, [&](const Segment2& side) {
         addSheet({side, prism.bottom, prism.top}, bodies);
     });
@@ -143,6 +147,15 @@ std::vector<ShadowBody> clearBodiesOf(const Environment& environment) {
         for (const Sheet& sheet : element.body.sheets)
             if (!isAmong(Surfaces::Opaque, sheet)) addSheet(sheet, bodies);
     return bodies;
+}
+
+const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& memory) {
+    if (!body.curve) return body;
+    std::vector<ShadowBody> made;
+    addAll({{{outlineFrom(*body.curve, place.onFloor()), body.bottom, body.top}}, {}, {}, {}},
+           ShadowBody::Kind::Convex, made);
+    memory = std::move(made.front());
+    return memory;
 }
 
 std::vector<ShadowBody> opaqueBodiesOf(const Environment& environment) {
@@ -264,7 +277,10 @@ void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& 
     }
 }
 
-std::vector<Layer> Shadows::of(const ShadowBody& body) const {
+std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
+    ShadowBody memory;
+    // What is in contact is known by its own triangles.
+    const ShadowBody& body = mayTouch(standing) ? standing : seenFrom(sensor_, standing, memory);
     const double low = std::min(sensor_.z, sensor_.z + drop_);
     const double high = std::max(sensor_.z, sensor_.z + drop_);
     if (body.top <= low || body.bottom >= high) return {};
@@ -328,12 +344,14 @@ std::vector<Segment2> cutsOf(std::span<const ShadowBody> bodies, const Frame3& p
                              double max_range) {
     std::vector<Segment2> cuts;
     std::vector<Vec3> local;
-    for (const ShadowBody& body : bodies) {
-        if (body.plan.low.x > plane.origin.x + max_range ||
-            body.plan.high.x < plane.origin.x - max_range ||
-            body.plan.low.y > plane.origin.y + max_range ||
-            body.plan.high.y < plane.origin.y - max_range)
+    ShadowBody memory;
+    for (const ShadowBody& standing : bodies) {
+        if (standing.plan.low.x > plane.origin.x + max_range ||
+            standing.plan.high.x < plane.origin.x - max_range ||
+            standing.plan.low.y > plane.origin.y + max_range ||
+            standing.plan.high.y < plane.origin.y - max_range)
             continue;
+        const ShadowBody& body = seenFrom(plane.origin, standing, memory);
         local.clear();
         for (const Point3& p : body.vertices) {
             Vec3 place = plane.toLocal(p);

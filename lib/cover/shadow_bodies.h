@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,13 @@ struct ShadowBody {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     Box2 plan;
     double bottom = 0, top = 0;
+    /// Of a round prism: the triangles are those of the inscribed one.
+    std::optional<Ellipse> curve = {};
 };
+
+/// The body as it is seen from a place, made in `memory` if need be: the outline of a round prism
+/// has corners where lines of sight touch its curve, and the area of the curve.
+const ShadowBody& seenFrom(Point3 place, const ShadowBody& body, ShadowBody& memory);
 
 /// Adds a prism: as one body if it is convex, else face by face.
 void addPrism(const Prism& prism, std::vector<ShadowBody>& bodies);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "cover/test_scenes.h"
@@ -51,6 +52,32 @@ TEST(Shadows, HowTrianglesAreGroupedChangesNothing) {
         EXPECT_NEAR(shaded(bodies, sensor, height), shaded(loose(bodies), sensor, height), 1e-5)
             << trial;
     }
+}
+
+TEST(Shadows, CylindersThrowThoseOfTheirCurves) {
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<double> place(-3, 3), size(0.05, 1), tall(0.1, 1.2);
+    for (int trial = 0; trial < 100; ++trial) {
+        const double radius = size(random), height = tall(random), z = 1.5 + tall(random);
+        const Point2 middle{place(random), place(random)}, foot{place(random), place(random)};
+        if (distance(middle, foot) < radius + 0.01) continue;
+        std::vector<ShadowBody> bodies;
+        const Ellipse curve(middle, 2 * radius, 2 * radius, Angle::degrees(7 * trial));
+        addPrism(roundPrism(curve, 0, height, Material::Box), bodies);
+        // The hull of the foot and of the top's shadow, a disc that is `grown` times as large and
+        // as far: between the near side of the one, two tangents and the far side of the other.
+        const double grown = z / (z - height), d = distance(middle, foot);
+        const double kite = radius * std::sqrt(d * d - radius * radius);
+        const double near = std::acos(radius / d) * radius * radius;
+        const double far = std::numbers::pi * radius * radius - near;
+        EXPECT_NEAR(shaded(bodies, {foot.x, foot.y, z}, 0, {{-40, -40}, {40, 40}}),
+                    grown * grown * (kite + far) - (kite - near), 1e-6 * grown * grown)
+            << trial;
+    }
+    // From above: the top alone.
+    std::vector<ShadowBody> bodies;
+    addPrism(roundPrism(Ellipse({1, 2}, 0.6, 0.4, {}), 0, 1, Material::Box), bodies);
+    EXPECT_NEAR(shaded(bodies, {1.1, 2, 2}, 0), 4 * 0.06 * std::numbers::pi, 1e-6);
 }
 
 TEST(Shadows, BoxIsSeenInFrontAndFromInside) {

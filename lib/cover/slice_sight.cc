@@ -5,17 +5,8 @@
 
 namespace ispace {
 
-namespace {
-
-std::vector<Segment2> linesOf(const Slice& slice) {
-    std::vector<Segment2> lines;
-    slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
-    return lines;
-}
-
-}  // namespace
-
-SliceSight::SliceSight(Slice slice) : map_(linesOf(slice)), solids_(std::move(slice.solids)) {}
+SliceSight::SliceSight(Slice slice)
+    : map_(slice.straightLines(), slice.curves()), solids_(std::move(slice.solids)) {}
 
 void SliceSight::look(Point2 viewpoint, double max_range, VisibleRegion& region) const {
     if (!solids_.isInside(viewpoint, kSightContact)) {

@@ -9,7 +9,8 @@
 
 namespace ispace {
 
-/// A slice as level sensors at its height see it: its lines stop sight. Thread-safe once built.
+/// A slice as level sensors at its height see it: its lines and round bodies stop sight.
+/// Thread-safe once built.
 class SliceSight {
   public:
     explicit SliceSight(Slice slice);
