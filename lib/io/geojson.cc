@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/json_writer.h"
+#include "base/number.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
 #include "io/element_lines.h"
@@ -63,8 +64,8 @@ void addElement(FeatureWriter& out, const Element& element, const ElementLines& 
     const Extent extent = extentOf(element.body);
     const bool has_body = extent.bottom <= extent.top;
     if (has_body) {
-        json.key("bottom").value(extent.bottom).key("top").value(extent.top);
-        json.key("height").value(extent.top - extent.bottom);
+        json.key("bottom").value(tidy(extent.bottom)).key("top").value(tidy(extent.top));
+        json.key("height").value(tidy(extent.top - extent.bottom));
     }
     if (!lines.chains.empty()) json.key("thickness").value(lines.thickness);
     if (has_body)
@@ -107,14 +108,18 @@ void addPlaced(FeatureWriter& out, const Scene& scene, const Placed& placed) {
 
 void addFree(FeatureWriter& out, const Environment& environment, double height) {
     for (const Region& piece : environment.freeFloor(height)) {
-        out.begin("free", "free", "region").key("z").value(height).key("area").value(piece.area());
+        out.begin("free", "free", "region")
+            .key("z")
+            .value(height)
+            .key("area")
+            .value(tidy(piece.area()));
         out.endAsArea({piece});
     }
 }
 
 void addRoom(FeatureWriter& out, const Scene& scene) {
     const Regions& indoor = scene.environment.indoor();
-    out.begin("indoor", "indoor", "region").key("area").value(indoor.area());
+    out.begin("indoor", "indoor", "region").key("area").value(tidy(indoor.area()));
     out.endAsArea(indoor.parts);
     addFree(out, scene.environment, kScanHeight);
     const std::vector<Element>& elements = scene.environment.elements();
