@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "base/suggest.h"
 #include "base/program.h"
+#include "base/suggest.h"
 #include "base/utf8.h"
 #include "cli/command_line.h"
 

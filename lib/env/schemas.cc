@@ -130,7 +130,8 @@ void addSpaces(std::vector<Schema>& out) {
          heightKey(kWallHeight), flagKey("ceiling", "close it with a ceiling")}));
     KeySpec inside_at = pointKey("at", "the point x,y");
     inside_at.required = true;
-    out.push_back(schema("inside", RecordType::Space, "a point known to be inside the room; several make several rooms",
+    out.push_back(schema("inside", RecordType::Space,
+                         "a point known to be inside the room; several make several rooms",
                          {std::move(inside_at)}));
     out.push_back(schema("zone", RecordType::Space,
                          "a part of the floor, called by its id: a polygon or a rectangle",

@@ -9,10 +9,10 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "io/cell_map.h"
 #include "io/import_records.h"
 #include "io/occupancy.h"
 #include "io/picture.h"
-#include "io/cell_map.h"
 
 namespace ispace {
 
@@ -146,10 +146,10 @@ Document readBarePicture(std::string_view bytes, const std::string& name,
     const Picture image = onUnknown(parsePicture(bytes, name));
     checkCellMap(image.width, image.height, *options.resolution, name);
     ImportRecords out(schemas, name, options);
-    writeCellMap({freeCells(image, {}), occupiedCells(image, {}), *options.resolution,
-                  options.origin},
-                 {name, "what is white is free; with a map.yaml, `negate: 1` turns that about"},
-                 options, out);
+    writeCellMap(
+        {freeCells(image, {}), occupiedCells(image, {}), *options.resolution, options.origin},
+        {name, "what is white is free; with a map.yaml, `negate: 1` turns that about"}, options,
+        out);
     return out.take();
 }
 

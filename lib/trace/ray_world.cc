@@ -56,7 +56,7 @@ Mesh meshAround(Prism round) {
     for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
     Body body;
     body.prisms.push_back(std::move(round));
-    return std::move(meshesOf(body, false).front());
+    return std::move(meshesOf(body, Surfaces::Solid).front());
 }
 
 /// What lies a hair beyond max_range lies at it.
