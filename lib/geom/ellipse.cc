@@ -80,8 +80,9 @@ double growthAround(std::size_t corners) {
 
 Point2 placeOn(const Ellipse& ellipse, double parameter) { return placeAt(ellipse, 1, parameter); }
 
-void addArc(const Ellipse& ellipse, double from, double to, Polygon& polygon) {
-    const int count = cornerCount(ellipse);
+void addArc(const Ellipse& ellipse, const Polygon& outline, double from, double to,
+            Polygon& polygon) {
+    const auto count = static_cast<int>(outline.size());
     const double step = 2 * std::numbers::pi / count, radius = cornerRadius(count);
     const double way = to > from ? 1 : -1, span = std::fabs(to - from);
     // Corners that are a step or more from both ends, so that what comes between bends outwards.
@@ -100,7 +101,7 @@ void addArc(const Ellipse& ellipse, double from, double to, Polygon& polygon) {
     polygon.push_back(between(from, way * step * static_cast<double>(first)));
     for (long k = first; k <= last; ++k) {
         const auto i = static_cast<int>((way > 0 ? k : -k) % count);
-        polygon.push_back(cornerOf(ellipse, radius, i < 0 ? i + count : i, count));
+        polygon.push_back(outline[static_cast<std::size_t>(i < 0 ? i + count : i)]);
     }
     polygon.push_back(between(to, way * step * static_cast<double>(last)));
 }
@@ -115,10 +116,11 @@ TouchedAt touchedFrom(const Ellipse& ellipse, Point2 viewpoint) {
 Polygon outlineFrom(const Ellipse& ellipse, Point2 viewpoint) {
     if (ellipse.heightOf(viewpoint) <= 2 * kCurveTolerance) return outlineOf(ellipse);
     const auto [right, left] = touchedFrom(ellipse, viewpoint);
+    const Polygon outline = outlineOf(ellipse);
     Polygon polygon{placeOn(ellipse, left)};
-    addArc(ellipse, left, right, polygon);
+    addArc(ellipse, outline, left, right, polygon);
     polygon.push_back(placeOn(ellipse, right));
-    addArc(ellipse, right, left + 2 * std::numbers::pi, polygon);
+    addArc(ellipse, outline, right, left + 2 * std::numbers::pi, polygon);
     return polygon;
 }
 

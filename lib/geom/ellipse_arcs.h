@@ -12,8 +12,9 @@ Point2 placeOn(const Ellipse& ellipse, double parameter);
 
 /// Adds places next to the arc from one parameter to another, ascending or descending, neither end
 /// among them: between the ends they enclose the area that the arc does. But for the first and the
-/// last they are corners of outlineOf().
-void addArc(const Ellipse& ellipse, double from, double to, Polygon& polygon);
+/// last they are corners of `outline`, which is outlineOf(ellipse).
+void addArc(const Ellipse& ellipse, const Polygon& outline, double from, double to,
+            Polygon& polygon);
 
 /// Where lines of sight from outside touch an ellipse, on the viewer's right and left; the near
 /// side lies between them, left < right < left + pi.

@@ -105,10 +105,10 @@ View viewFrom(Point2 viewpoint, const Ellipse& round) {
     return view;
 }
 
-void addCorners(View& view, const Ellipse& round) {
+void addCorners(View& view, const Ellipse& round, const Polygon& outline) {
     NearSide& side = view.side;
     Polygon places;
-    addArc(round, view.touched.right, view.touched.left, places);
+    addArc(round, outline, view.touched.right, view.touched.left, places);
     side.places.clear();
     side.places.reserve(places.size() + 2);
     side.add(side.frame.local(view.right));
@@ -117,7 +117,7 @@ void addCorners(View& view, const Ellipse& round) {
 }
 
 /// From a viewpoint in contact: its far side, over the half turn into the body.
-NearSide farSide(Point2 viewpoint, const Ellipse& round) {
+NearSide farSide(Point2 viewpoint, const Ellipse& round, const Polygon& outline) {
     NearSide side;
     side.widest = true;
     side.frame = {viewpoint, -normalized(round.normalAt(viewpoint))};
@@ -126,11 +126,11 @@ NearSide farSide(Point2 viewpoint, const Ellipse& round) {
     constexpr double kNear = 1e-3;
     const double near = std::acos(std::min(1.0, 1 / length(q))) + kNear;
     const double begin = parameterOf(q) + near;
-    Polygon outline;
-    addArc(round, begin, begin + 2 * (std::numbers::pi - near), outline);
+    Polygon far;
+    addArc(round, outline, begin, begin + 2 * (std::numbers::pi - near), far);
     std::vector<Vec2> places;
-    places.reserve(outline.size());
-    for (const Point2 place : outline) places.push_back(side.frame.local(place - viewpoint));
+    places.reserve(far.size());
+    for (const Point2 place : far) places.push_back(side.frame.local(place - viewpoint));
     // Close to the viewpoint sight along the surface ends within the body.
     const double close = places.empty() ? kSightContact : length(places.front()) / 2;
     side.add({close / kWidest, -close});
@@ -279,7 +279,6 @@ class Cut {
         std::vector<SightEnd> made;
         const SightEnd& first = region_.ends[first_];
         const SightEnd& last = region_.ends[at(covered_ - 1)];
-        // What lies before and behind the body stays.
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const Part& part = parts_[k];
             const bool is_body = part.edge != Part::kNoEdge;
@@ -340,6 +339,7 @@ RoundBodies::RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_li
     std::vector<Box2> boxes;
     boxes.reserve(rounds.size());
     for (const Ellipse& round : rounds_) {
+        outlines_.push_back(ispace::outlineOf(round));
         boxes.push_back(round.box());
         box_.add(boxes.back().low);
         box_.add(boxes.back().high);
@@ -383,7 +383,7 @@ void RoundBodies::cut(VisibleRegion& region) const {
             return;
         }
         if (height <= kSightContact) {
-            const NearSide side = farSide(viewpoint, round);
+            const NearSide side = farSide(viewpoint, round, outlines_[i]);
             Cut cut(region, side, line);
             if (cut.find()) cut.apply();
             continue;
@@ -391,7 +391,7 @@ void RoundBodies::cut(VisibleRegion& region) const {
         View view = viewFrom(viewpoint, round);
         Cut cut(region, view.side, line);
         if (!cut.find(view.right, view.left) || !cut.mayBeSeen()) continue;
-        addCorners(view, round);
+        addCorners(view, round, outlines_[i]);
         cut.apply();
     }
 }

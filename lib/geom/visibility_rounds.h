@@ -30,6 +30,7 @@ class RoundBodies {
     [[nodiscard]] std::vector<std::uint32_t> within(const VisibleRegion& region) const;
 
     std::vector<Ellipse> rounds_;
+    std::vector<Polygon> outlines_;  // computed once: sines take long
     std::uint32_t first_line_;
     BoxTree boxes_;
     Box2 box_;
