@@ -4,6 +4,7 @@
 
 #include "cover/contour.h"
 #include "cover/map_parts.h"
+#include "geom/boolean.h"
 
 namespace ispace {
 
@@ -155,14 +156,22 @@ Color floorColor(const MapPicture& map, std::size_t set) {
 Color stripeColor(const MapPicture& map, std::size_t set) { return tint(setColor(map, set), 0.7); }
 
 std::vector<Polygon> outsideOf(const Regions& indoor) {
+    std::vector<Point2> middles;
+    middles.reserve(indoor.parts.size());
+    for (const Region& part : indoor.parts) middles.push_back(interiorPoint(part));
     std::vector<Polygon> outside;
     for (const Region& part : indoor.parts)
         for (const Polygon& hole : part.holes) {
-            outside.push_back(hole);
-            // Another room in it is no outside: by the even-odd rule it is cut out again.
-            for (const Region& other : indoor.parts)
-                if (&other != &part && locate(hole, interiorPoint(other)) == Side::Inside)
-                    for (const Polygon& curve : curvesOf(other)) outside.push_back(curve);
+            // Other rooms in it are no outside; what lies in their holes, those add.
+            std::vector<Polygon> rooms;
+            for (std::size_t i = 0; i < indoor.parts.size(); ++i)
+                if (&indoor.parts[i] != &part && locate(hole, middles[i]) == Side::Inside)
+                    rooms.push_back(indoor.parts[i].outline);
+            if (rooms.empty())
+                outside.push_back(hole);
+            else
+                for (Polygon& curve : curvesOf(difference(Region{hole, {}}, rooms)))
+                    outside.push_back(std::move(curve));
         }
     return outside;
 }

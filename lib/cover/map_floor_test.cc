@@ -47,6 +47,53 @@ TEST(MapFloor, NoSeamsByCellsNorExact) {
     }
 }
 
+/// Rooms within rooms: rings, given by their half sides, of which some are indoor.
+std::string nested(const std::string& inside) {
+    return "ispace id=a size=8,8\nispace id=b size=6,6\nispace id=c size=4,4\n"
+           "ispace id=d size=2,2\n" +
+           inside;
+}
+
+double areaByCurves(const std::vector<Polygon>& curves) {
+    // Even-odd, by a fine lattice that no edge runs through.
+    constexpr double kStep = 0.05;
+    double area = 0;
+    for (double x = -4.975; x < 5; x += kStep)
+        for (double y = -4.975; y < 5; y += kStep) {
+            int around = 0;
+            for (const Polygon& curve : curves)
+                if (locate(curve, {x, y}) == Side::Inside) ++around;
+            if (around % 2 == 1) area += kStep * kStep;
+        }
+    return area;
+}
+
+TEST(MapFloor, OutsideIsWhatLiesInHolesAndIsNoRoom) {
+    const auto outside = [](const std::string& inside) {
+        return outsideOf(sceneOf(nested(inside)).environment.indoor());
+    };
+    EXPECT_NEAR(areaByCurves(outside("inside at=3.5,0\n")), 36, 1e-6);
+    EXPECT_NEAR(areaByCurves(outside("inside at=3.5,0\ninside at=1.5,0\n")), 24, 1e-6);
+    EXPECT_NEAR(areaByCurves(outside("inside at=3.5,0\ninside at=0,0\n")), 32, 1e-6);
+    // A room fills the hole, and its own hole is still outside.
+    EXPECT_NEAR(areaByCurves(outside("inside at=3.5,0\ninside at=2.5,0\n")), 16, 1e-6);
+    // Nothing is outside: neither painted nor named in the legend.
+    EXPECT_TRUE(
+        outside("inside at=3.5,0\ninside at=2.5,0\ninside at=1.5,0\ninside at=0,0\n").empty());
+}
+
+TEST(MapFloor, HolesOfRoomsWithinRoomsAreHatched) {
+    const PlanPixels pixels(mapOf(nested("inside at=3.5,0\ninside at=1.5,0\n")), 8);
+    EXPECT_EQ(pixels.at(3.5, 0.3), pixelOf(kUncovered));
+    EXPECT_EQ(pixels.at(1.5, 0.3), pixelOf(kUncovered));
+    for (const double x : {0.3, 2.5}) {
+        int other = 0;
+        for (double y = -0.5; y < 0.5; y += 0.01)
+            if (pixels.at(x, y) != pixelOf(kUncovered)) ++other;
+        EXPECT_GT(other, 90) << x;
+    }
+}
+
 TEST(MapFloor, ExactOutlinesHaveNoSteps) {
     // The left side of the fan runs at 60 degrees; cells are 8 cm wide.
     const PlanPixels pixels(
