@@ -51,17 +51,19 @@ class SceneCheck {
   private:
     /// Ends of walls that hang in the room just before another wall.
     void checkLooseEnds() {
-        const Environment& environment = context_.scene.environment;
-        const std::vector<Segment2>& lines = environment.wallLines();
+        const std::vector<Segment2>& lines = context_.scene.environment.wallLines();
+        std::map<std::pair<double, double>, int> meeting;  // lines, by their end
+        for (const Segment2& line : lines)
+            for (const Point2 p : {line.a, line.b}) ++meeting[{p.x, p.y}];
         std::set<std::pair<double, double>> ends;
         std::optional<Closing> narrowest;
         for (const Closing& gap : closings(lines, {}, kLooseReach)) {
             const Point2 middle = gap.line.a + 0.5 * (gap.line.b - gap.line.a);
-            if (environment.indoor().locate(middle) != Side::Inside) continue;
+            if (context_.indoor.locate(middle) != Side::Inside) continue;
             if (!narrowest) narrowest = gap;  // they come by width
             for (const Point2 p : {gap.line.a, gap.line.b}) {
-                const auto meets = [p](const Segment2& line) { return line.a == p || line.b == p; };
-                if (std::count_if(lines.begin(), lines.end(), meets) == 1) ends.insert({p.x, p.y});
+                const auto found = meeting.find({p.x, p.y});
+                if (found != meeting.end() && found->second == 1) ends.insert(found->first);
             }
         }
         if (!narrowest) return;

@@ -10,30 +10,19 @@
 #include "base/file.h"
 #include "env/test_mesh.h"
 #include "geom/boolean.h"
+#include "layout/test_check.h"
 #include "layout/test_layout.h"
 #include "record/digest.h"
 
 namespace ispace {
 
 using testing::boxMesh;
+using testing::check;
 using testing::devices;
 using testing::roomDocument;
 using testing::scene;
 
 namespace {
-
-std::string check(const Scene& made) {
-    return testing::findings([&] {
-        checkScene(made).throwIfAny();
-        return 0;
-    });
-}
-
-/// What is wrong with things in a room of 8 by 6 with its corner at the origin.
-std::string check(const std::string& room, const std::string& layout = "") {
-    const std::string lines = "ispace id=room at=4,3 size=8,6\n" + room;
-    return check(layout.empty() ? scene(lines) : scene(lines, layout));
-}
 
 constexpr const char* kGood =
     "desk id=d at=2,2\n"
@@ -69,13 +58,14 @@ TEST(CheckScene, ScenesOfTheProjectAreInOrder) {
 }
 
 TEST(CheckScene, OverlapWithPlaceAndCure) {
-    EXPECT_EQ(check("desk id=d1 at=2,3\nchair id=c2 at=2.7,3\n"),
-              "room.env:3:1: error: desk d1 overlaps chair c2 near (2.49, 3.0); move one, e.g. by "
-              "0.13 m\n");
+    EXPECT_EQ(
+        check("desk id=d1 at=2,3\nchair id=c2 at=2.7,3\n"),
+        "room.env:3:1: warning: desk d1 overlaps chair c2 near (2.49, 3.0); move one, e.g. by "
+        "0.13 m\n");
     // Ids that were given by the program are told as they are.
     EXPECT_EQ(
         check("cube at=2,3\ncube at=2.4,3\n"),
-        "room.env:3:1: error: cube1 overlaps cube2 near (2.2, 3.0); move one, e.g. by 0.10 m\n");
+        "room.env:3:1: warning: cube1 overlaps cube2 near (2.2, 3.0); move one, e.g. by 0.10 m\n");
 }
 
 TEST(CheckScene, ThePlaceOfTheCureIsRight) {
@@ -136,12 +126,13 @@ TEST(CheckScene, WhatStandsOnBelowAndBesideIsFine) {
 }
 
 TEST(CheckScene, WallsWithAndWithoutThickness) {
-    EXPECT_EQ(check("desk id=d at=0.5,3\n"),
-              "room.env:3:1: error: desk d overlaps ispace room near (0.0, 3.0); move it, e.g. by "
-              "0.10 m\n");
+    EXPECT_EQ(
+        check("desk id=d at=0.5,3\n"),
+        "room.env:3:1: warning: desk d overlaps ispace room near (0.0, 3.0); move it, e.g. by "
+        "0.10 m\n");
     EXPECT_EQ(check("desk id=d at=0.6,3\n"), "") << "it stands against the wall";
     EXPECT_EQ(check("wall id=w from=3,3 to=5,3 thickness=0.2\ndesk id=d at=4,3.4\n"),
-              "room.env:4:1: error: desk d overlaps wall w near (4.0, 3.05); move it, e.g. by "
+              "room.env:4:1: warning: desk d overlaps wall w near (4.0, 3.05); move it, e.g. by "
               "0.10 m\n");
     EXPECT_EQ(check("wall id=w from=3,3 to=5,3 thickness=0.2\ndesk id=d at=4,3.5\n"), "");
     // A low fence passes below the top, and between the legs.
@@ -157,7 +148,7 @@ TEST(CheckScene, TheBuildingMayRunIntoItself) {
 
 TEST(CheckScene, OutsideAndPartlyOutside) {
     EXPECT_EQ(check("desk id=d at=12,3\n"),
-              "room.env:3:1: error: desk d lies outside the room near (11.4, 2.6); move it in or "
+              "room.env:3:1: warning: desk d lies outside the room near (11.4, 2.6); move it in or "
               "leave it out\n");
     // Above the walls only the room tells.
     const std::string partly = check("cube id=f at=8,3,3\n");
@@ -166,7 +157,7 @@ TEST(CheckScene, OutsideAndPartlyOutside) {
     EXPECT_EQ(check("desk id=d at=0,3\n").find("outside"), std::string::npos);
     const std::string zone = check("zone id=z at=20,3 size=2,2\nzone id=y at=8,3 size=1,1\n");
     EXPECT_EQ(zone,
-              "room.env:3:1: error: zone z lies outside the room near (19.0, 2.0); move it in "
+              "room.env:3:1: warning: zone z lies outside the room near (19.0, 2.0); move it in "
               "or leave it out\n");
 }
 
@@ -227,7 +218,7 @@ TEST(CheckScene, RobotsAndPeopleStandInThings) {
 TEST(CheckScene, WallsThatCross) {
     const std::string text = check("wall id=v from=1,1 to=3,3\nwall id=w from=1,3 to=3,1\n");
     EXPECT_EQ(text,
-              "room.env:3:1: error: wall v crosses wall w near (2.0, 2.0); end one of them at "
+              "room.env:3:1: warning: wall v crosses wall w near (2.0, 2.0); end one of them at "
               "the other\n");
     EXPECT_NE(check("wall id=v from=1,1 to=3,1\nwall id=w from=2,1 to=4,1\n").find("lies on"),
               std::string::npos);
@@ -248,9 +239,10 @@ Scene meshScene(TriangleMesh mesh, const std::string& keys, const std::string& o
 TEST(CheckScene, OpenDoorsThatLeadIntoAWall) {
     // Another room a hand's breadth away: the door cuts the wall of the first only.
     const std::string annex = "ispace id=annex at=10.1,3 size=4,4\ninside at=1,1\n";
-    EXPECT_EQ(check(annex + "door id=o at=8,3 open=yes\n"),
-              "room.env:5:1: error: door o is open, but leads only to ispace annex, 0.1 m behind, "
-              "near (8.0, 3.0); say how far it reaches through with size=0.9,0.2\n");
+    EXPECT_EQ(
+        check(annex + "door id=o at=8,3 open=yes\n"),
+        "room.env:5:1: warning: door o is open, but leads only to ispace annex, 0.1 m behind, "
+        "near (8.0, 3.0); say how far it reaches through with size=0.9,0.2\n");
     EXPECT_EQ(check(annex + "door id=o at=8,3 open=yes size=0.9,0.2\n"), "");
     EXPECT_EQ(check(annex + "door id=o at=8,3\n"), "") << "closed";
     EXPECT_EQ(check(annex + "door id=o at=0,3 open=yes\n"), "") << "to the outside";
@@ -269,7 +261,7 @@ TEST(CheckScene, Meshes) {
     // In the hole of the ring there is room.
     EXPECT_EQ(check(meshScene(ring, "at=3,3,0.2", "cube id=c at=3,3\n")), "");
     const std::string text = check(meshScene(ring, "at=3,3,0.2", "cube id=c at=4,3\n"));
-    EXPECT_EQ(text.find("room.env:3:1: error: mesh m overlaps cube c near ("), 0U) << text;
+    EXPECT_EQ(text.find("room.env:3:1: warning: mesh m overlaps cube c near ("), 0U) << text;
     EXPECT_NE(text.find("); move one\n"), std::string::npos) << text;
     // Wholly inside, and around.
     const TriangleMesh box = boxMesh({-1, -1, 0}, {1, 1, 2});
@@ -316,7 +308,7 @@ TEST(CheckScene, InTheOrderOfTheRecordsAndNotTooMany) {
         lines += "cube id=c" + std::to_string(i) + " at=" + std::to_string(20 + 2 * i) + ",3\n";
     const std::string text = check(lines);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 20);
-    EXPECT_EQ(text.find("room.env:3:1: error: cube c0 "), 0U);
+    EXPECT_EQ(text.find("room.env:3:1: warning: cube c0 "), 0U);
     // All in one heap: still quick.
     std::string heap;
     for (int i = 0; i < 3000; ++i) heap += "table at=4,3\n";

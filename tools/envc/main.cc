@@ -100,26 +100,34 @@ void rebaseTo(const std::string& output, Document& document) {
                 isStream(output) ? "" : fs::path(output).parent_path().string());
 }
 
+/// What an import doubts and what is wrong with the scene, together; the first counts all the more
+/// where no scene can be made of it. \throws FormatError with all findings
+void check(const Document& document, const DeviceCatalogue& devices) {
+    Diagnostics findings;
+    for (const Diagnostic& warning : document.warnings) findings.add(warning);
+    try {
+        checkScene(makeScene(document, nullptr, devices)).throwIfAny();
+    } catch (const FormatError& error) {
+        findings.add(error);
+    }
+    findings.throwIfAny();
+}
+
 void compile(const EnvcOptions& options, Document document) {
     // The model holds its environment: a way to another would only go stale.
     std::erase_if(document.records,
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;
     if (options.format == "glb") rebaseTo(options.common.output, document);
-    const Scene scene =
-        makeScene(document, nullptr, DeviceCatalogue::load(shareFolder() + "/devices"));
-    const std::string& output = options.common.output;
+    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
     if (options.check) {
-        Diagnostics findings;
-        for (const Diagnostic& warning : document.warnings) findings.add(warning);
-        try {
-            checkScene(scene).throwIfAny();
-        } catch (const FormatError& error) {
-            findings.add(error);
-        }
-        findings.throwIfAny();
+        check(document, devices);
         talk(options.common, "envc", "nothing found");
-    } else if (options.info) {
+        return;
+    }
+    const Scene scene = makeScene(document, nullptr, devices);
+    const std::string& output = options.common.output;
+    if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest);
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else {
