@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/layout only: regions that is asked often.
+// Inside lib/layout only: regions that are asked often.
 #pragma once
 
 #include <vector>
