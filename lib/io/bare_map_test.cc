@@ -37,7 +37,7 @@ TEST(BarePicture, Refuses) {
             readBarePicture(bytes, "room.pgm", withResolution(resolution), sceneSchemas());
         });
     };
-    EXPECT_NE(error_of("P2 2 1 255 0 205\n", 1).find("no free pixel among 2 x 1"),
+    EXPECT_NE(error_of("P2 2 1 255 0 205\n", 1).find("no free cell among 2 x 1"),
               std::string::npos);
     EXPECT_NE(error_of(kRoom, 9000).find("more than 10000 m"), std::string::npos);
     EXPECT_NE(error_of("P2 2 1 255 0\n", 1).find("truncated"), std::string::npos);
