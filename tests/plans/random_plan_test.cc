@@ -59,7 +59,7 @@ TEST(RandomPlan, ThingsStandClearOfEachOther) {
             std::vector<Polygon> solids;
             for (const Prism& prism : element.body.prisms)
                 if (prism.bottom <= kHeight && kHeight <= prism.top)
-                    solids.push_back(prism.footprint);
+                    solids.push_back(prism.curve ? outlineOf(*prism.curve) : prism.footprint);
             sum += totalArea(unite(solids));
         }
         const double free_area = totalArea(plan.freeFloor(kHeight));
