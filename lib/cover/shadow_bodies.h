@@ -53,9 +53,9 @@ class Shadows {
     /// the sensor. \pre height is not that of the sensor
     Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double height, const Box2& box);
 
-    /// The shadow of a body as layers that count from the foot of the sensor. Surfaces in contact
-    /// with the sensor (and what continues them) or with the plane throw none.
-    [[nodiscard]] std::vector<Layer> of(const ShadowBody& body) const;
+    /// The shadow of a standing body as layers that count from the foot of the sensor. Surfaces in
+    /// contact with the sensor (and what continues them) or with the plane throw none.
+    [[nodiscard]] std::vector<Layer> of(const ShadowBody& standing) const;
 
   private:
     /// A place between sensor and plane: the way from the sensor along the floor, and how much of

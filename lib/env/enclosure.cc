@@ -110,7 +110,9 @@ const Region& faceOf(const Record& inside, const Search& search, double leak, bo
     if (search.onWall(point))
         throw FormatError(inside.finding(
             "at", "inside point " + placeText(point) + " lies on a wall; move it off"));
-    search.throwGap(point, any_face ? leak : kAnyWidth);
+    double widest = kAnyWidth;
+    if (any_face) widest = leak;
+    search.throwGap(point, widest);
     throw FormatError(inside.finding(
         "at",
         "inside point " + placeText(point) + " lies outside of everything enclosed" +

@@ -132,15 +132,15 @@ struct InputFormat {
     Document (*read)(const Source&);
 };
 
-template <bool (*test)(std::string_view)>
+template <bool (*kTest)(std::string_view)>
 bool holdsBytes(const Source& source) {
-    return test(source.bytes);
+    return kTest(source.bytes);
 }
 
-template <Document (*reader)(std::string_view, const std::string&, const ImportOptions&,
-                             const Schemas&)>
+template <Document (*kReader)(std::string_view, const std::string&, const ImportOptions&,
+                              const Schemas&)>
 Document importPlan(const Source& source) {
-    return reader(source.bytes, source.operand, source.options, source.schemas);
+    return kReader(source.bytes, source.operand, source.options, source.schemas);
 }
 
 Document readMesh(const Source& source) {

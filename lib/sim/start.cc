@@ -81,7 +81,7 @@ ObstacleSets obstaclesOf(const Scene& scene) {
 void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles) {
     Diagnostics findings;
     const Neighbours neighbours(scene.robots, people);
-    const auto distanceText = [&](std::size_t i, std::size_t other) {
+    const auto distance_text = [&](std::size_t i, std::size_t other) {
         return "overlap: their centres are " + formatFixed(neighbours.apart(i, other), 3) +
                " m apart, less than their radii together";
     };
@@ -97,11 +97,11 @@ void checkStart(const Scene& scene, std::span<const Person> people, const Obstac
         }
         if (const auto other = neighbours.robotBefore(i))
             findings.add(robot.place.finding("robots " + scene.robots[*other].id + " and " +
-                                             robot.id + ' ' + distanceText(i, *other)));
+                                             robot.id + ' ' + distance_text(i, *other)));
         if (const auto other = neighbours.person(i))
             findings.add(robot.place.finding(name + " and human " +
                                              std::string(people[*other - scene.robots.size()].id) +
-                                             ' ' + distanceText(i, *other)));
+                                             ' ' + distance_text(i, *other)));
     }
     findings.throwIfAny();
 }

@@ -41,7 +41,7 @@ struct FlatTree {
     };
 
     /// By binned surface area heuristic. O(n log n)
-    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
+    explicit FlatTree(std::span<const Segment2> lines, std::span<const Ellipse> round_bodies = {});
 
     /// Of a child.
     [[nodiscard]] const Node& node(std::int32_t child) const {
