@@ -131,5 +131,27 @@ TEST(PlanLines, JoiningKeepsEveryPiece) {
     }
 }
 
+TEST(PlanLines, LooseEndsAreBridged) {
+    // The upper right corner is 0.1 m open; nothing else moves.
+    const Paths room{open({{0, 0}, {4, 0}}), open({{4, 0}, {4, 2.9}}), open({{4, 3}, {0, 3}}),
+                     open({{0, 3}, {0, 0}})};
+    const Paths joined = bridged(room, 0.2);
+    ASSERT_EQ(joined.size(), 5U);
+    for (std::size_t i = 0; i < room.size(); ++i) EXPECT_EQ(joined[i], room[i]);
+    EXPECT_EQ(joined[4].points, (Polygon{{4, 2.9}, {4, 3}}));
+    EXPECT_EQ(bridged(room, 0.05), room);
+    EXPECT_TRUE(bridged({}, 1).empty());
+    // An end before the middle of a line.
+    const Paths tee = bridged({open({{0, 0}, {10, 0}}), open({{5, 0.1}, {5, 3}})}, 0.2);
+    ASSERT_EQ(tee.size(), 3U);
+    EXPECT_EQ(tee[2].points, (Polygon{{5, 0.1}, {5, 0}}));
+}
+
+TEST(PlanLines, WideSnappingLosesNoWalls) {
+    // A thin wall drawn as a rectangle survives a snap that is wider than it is thick.
+    const Paths wall{closed({{0, 0}, {3, 0}, {3, 0.1}, {0, 0.1}})};
+    EXPECT_EQ(tidyLines(wall, 0.3), wall);
+}
+
 }  // namespace
 }  // namespace ispace
