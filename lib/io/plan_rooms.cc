@@ -22,8 +22,9 @@ namespace {
 constexpr std::array kSmallGaps{0.01, 0.02, 0.05, 0.1, 0.2};
 constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
 
-/// Drawings with more lines are not tried again and again.
-constexpr std::size_t kMostLinesTried = 30'000;
+/// Drawings with more lines or faces are not tried again and again: heaps of lines that cross take
+/// long enough once.
+constexpr std::size_t kMostLinesTried = 10'000, kMostFacesTried = 1'000;
 
 /// A room of less than this share of the drawing's extent, or of what could be enclosed, is
 /// doubted.
@@ -207,7 +208,8 @@ class RoomChooser {
     }
 
     Attempt closed(Attempt open) {
-        if (lines_.size() > kMostLinesTried) return open;
+        if (lines_.size() > kMostLinesTried || open.faces.faces().size() > kMostFacesTried)
+            return open;
         if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
         if (!isDoubtful(open)) return open;
         auto wide = smallestGood(kDoorways, open);
