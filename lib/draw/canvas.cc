@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "draw/font.h"
 #include "draw/svg_text.h"
 
 namespace ispace {
@@ -39,8 +40,7 @@ void check(cairo_status_t status) {
 
 /// Sets the font, independent of what the machine's settings prefer.
 void selectFont(cairo_t* context, const TextStyle& style) {
-    cairo_select_font_face(context, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                           style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_face(context, fontFace(style.bold));
     cairo_set_font_size(context, style.size);
     cairo_font_options_t* options = cairo_font_options_create();
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
@@ -53,13 +53,15 @@ void selectFont(cairo_t* context, const TextStyle& style) {
 }  // namespace
 
 double textWidth(std::string_view text, const TextStyle& style) {
-    cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
-    cairo_t* context = cairo_create(surface);
-    selectFont(context, style);
-    cairo_text_extents_t extents;
-    cairo_text_extents(context, printable(text).c_str(), &extents);
-    cairo_destroy(context);
-    cairo_surface_destroy(surface);
+    const std::string clean = printable(text);
+    const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
+        cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1), cairo_surface_destroy);
+    const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context(cairo_create(surface.get()),
+                                                                     cairo_destroy);
+    selectFont(context.get(), style);
+    cairo_text_extents_t extents{};
+    cairo_text_extents(context.get(), clean.c_str(), &extents);
+    check(cairo_status(context.get()));
     return extents.x_advance;
 }
 
