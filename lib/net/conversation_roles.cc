@@ -162,7 +162,7 @@ void Conversation::poses(Words /*words*/) {
 void Conversation::pause(Words /*words*/) {
     // A STEP under way ends here too, or nobody could end one of too many steps.
     hall_->steps().cut();
-    hall_->simulation().pause();
+    hall_->simulation().pause(std::chrono::steady_clock::now());
     out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
 }
 

@@ -44,7 +44,7 @@ TEST(StepQueue, CutsShort) {
     const auto first = queue.ask(3), second = queue.ask(2);
     room.world.step();
     queue.cut();
-    room.simulation.pause();
+    room.simulation.pause(WallTime{});
     EXPECT_TRUE(first->over);
     EXPECT_EQ(first->left, 2);
     EXPECT_TRUE(second->over);

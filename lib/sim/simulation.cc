@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -57,11 +58,19 @@ Simulation::Simulation(World& world, std::vector<TimedCommand> script, Clock clo
     if (!finished_) giveScripted();
 }
 
+void Simulation::pause(WallTime now) {
+    owed_ = 0;
+    if (std::exchange(paused_, true)) return;
+    if (started_) ahead_ = dueAt() - now;
+}
+
 void Simulation::resume(WallTime now) {
     assert(clock_.kind != Clock::Kind::Step);
     paused_ = false;
     owed_ = 0;
     startAt(now);
+    // Else pauses that follow each other closely would stop the world.
+    if (ahead_) started_.value() -= dueAt() - now - *std::exchange(ahead_, std::nullopt);
 }
 
 void Simulation::allow(std::int64_t count) {

@@ -53,11 +53,9 @@ class Simulation {
     /// With the clock Step always true.
     [[nodiscard]] bool paused() const { return paused_; }
     /// Steps allowed and not taken are dropped.
-    void pause() {
-        paused_ = true;
-        owed_ = 0;
-    }
-    /// The same. \pre the clock is not Step
+    void pause(WallTime now);
+    /// The same. With the clock Real the next step comes as long after this as it was ahead when
+    /// the world was paused: it loses the time of the pause and no more. \pre the clock is not Step
     void resume(WallTime now);
     /// Lets a paused world take `count` more steps. \pre paused(), count >= 0
     void allow(std::int64_t count);
@@ -101,6 +99,8 @@ class Simulation {
     std::int64_t owed_ = 0;
     std::optional<WallTime> started_;  // wall time of start_time_
     SimTime start_time_{};
+    std::optional<std::chrono::nanoseconds>
+        ahead_;  // of a pause to the next step; less than 0: lag
     std::chrono::nanoseconds lost_{};
 };
 

@@ -158,7 +158,7 @@ TEST_F(SimulationTest, APauseIsNoLag) {
     simulation.run(kStart, kLong);
     simulation.run(kStart + milliseconds(100), kLong);
     EXPECT_EQ(world_->steps(), 20);
-    simulation.pause();
+    simulation.pause(kStart + milliseconds(100));
     EXPECT_FALSE(simulation.run(kStart + milliseconds(500), kLong));
     EXPECT_EQ(world_->steps(), 20);
     simulation.allow(3);
@@ -175,17 +175,38 @@ TEST_F(SimulationTest, APauseIsNoLag) {
     EXPECT_EQ(simulation.lost(), nanoseconds(0));
 }
 
+TEST_F(SimulationTest, PausesCostTheirOwnTimeAlone) {
+    Simulation simulation = this->simulation(kRealTime);
+    simulation.run(kStart, kLong);
+    // Paused every other millisecond: half the time is lost, though no step fits between.
+    WallTime now = kStart;
+    for (int i = 0; i < 100; ++i) {
+        simulation.run(now += milliseconds(1), kLong);
+        simulation.pause(now);
+        simulation.pause(now += milliseconds(1));
+        simulation.resume(now);
+    }
+    EXPECT_EQ(world_->steps(), 20);
+    EXPECT_EQ(simulation.run(now, kLong), now + milliseconds(5));
+    // A lag is not lost either.
+    simulation.pause(now + milliseconds(100));
+    simulation.resume(now + hours(1));
+    simulation.run(now + hours(1), kLong);
+    EXPECT_EQ(world_->steps(), 40);
+    EXPECT_EQ(simulation.lost(), nanoseconds(0));
+}
+
 TEST_F(SimulationTest, WhatWasAllowedEndsWithThePause) {
     Simulation simulation = this->simulation(kRealTime);
-    simulation.pause();
+    simulation.pause(kStart);
     simulation.allow(7);
     simulation.run(kStart, nanoseconds(0));
     EXPECT_EQ(simulation.owed(), 6);
     simulation.resume(kStart);
     EXPECT_EQ(simulation.owed(), 0);
-    simulation.pause();
+    simulation.pause(kStart);
     simulation.allow(7);
-    simulation.pause();
+    simulation.pause(kStart);
     EXPECT_EQ(simulation.owed(), 0);
     EXPECT_FALSE(simulation.run(kStart, kLong));
     EXPECT_EQ(world_->steps(), 1);
@@ -205,7 +226,7 @@ TEST_F(SimulationTest, ThePauseOfAnObserverHolds) {
         start(milliseconds(5));
         Simulation simulation = this->simulation(clock);
         simulation.run(kStart, nanoseconds(0));
-        simulation.onStep([&] { simulation.pause(); });
+        simulation.onStep([&] { simulation.pause(kStart); });
         const std::int64_t before = world_->steps();
         EXPECT_FALSE(simulation.run(kStart + milliseconds(100), kLong));
         EXPECT_EQ(world_->steps(), before + 1);
