@@ -3,6 +3,7 @@
 
 BUILD = build
 SANITIZED = build-asan
+RACES = build-tsan
 prefix = /usr/local
 JOBS = $(shell nproc)
 FUZZ_SECONDS = 60
@@ -11,7 +12,7 @@ configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo check bench fuzz format lint install clean
+.PHONY: all help deps demo check races bench fuzz format lint install clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -20,13 +21,14 @@ help:
 	@echo "make             build the tools (build/bin), tests and benchmarks"
 	@echo "make deps        install the Debian packages of packages.txt"
 	@echo "make demo        deps, build, and run the pipeline on a furnished room"
-	@echo "make check       deps, build, formatting, sanitizers, all tests"
+	@echo "make check       deps, build, formatting, sanitizers, races, all tests"
+	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader for FUZZ_SECONDS=$(FUZZ_SECONDS)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
-	@echo "make clean       remove $(BUILD), $(SANITIZED) and build-fuzz"
+	@echo "make clean       remove $(BUILD), $(SANITIZED), $(RACES) and build-fuzz"
 
 deps:
 	@.ci/deps build check lint
@@ -44,7 +46,14 @@ check:
 	@.ci/validator $(BUILD)/npm
 	$(call build,$(SANITIZED))
 	@.ci/sanitized $(SANITIZED) $(JOBS)
+	@$(MAKE) --no-print-directory races
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
+
+races:
+	@.ci/deps build check
+	@$(MAKE) --no-print-directory $(RACES)/configured
+	$(call build,$(RACES)) --target races
+	@.ci/races $(RACES)
 
 bench:
 	@.ci/deps build
@@ -69,7 +78,7 @@ install: all
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
 
 clean:
-	rm -rf $(BUILD) $(SANITIZED) build-fuzz
+	rm -rf $(BUILD) $(SANITIZED) $(RACES) build-fuzz
 
 $(BUILD)/configured:
 	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -77,4 +86,8 @@ $(BUILD)/configured:
 
 $(SANITIZED)/configured:
 	$(configure) -B $(SANITIZED) -DISPACE_SANITIZE=ON
+	@touch $@
+
+$(RACES)/configured:
+	$(configure) -B $(RACES) -DISPACE_SANITIZE=thread
 	@touch $@

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// race KIND: a data race on purpose, which ThreadSanitizer must report; `none` has none. It shows
+// that what is built with it and runs without a report was watched: our threads, tasks within TBB,
+// lib/sim.
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "net/test_world.h"
+
+namespace {
+
+using ispace::testing::TestWorld;
+
+/// Where two parties wait for each other, as long as it is worth it; orders nothing.
+class Meeting {
+  public:
+    void meet() {
+        present_.fetch_add(1, std::memory_order_relaxed);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+        while (present_.load(std::memory_order_relaxed) < 2 &&
+               std::chrono::steady_clock::now() < end)
+            std::this_thread::yield();
+    }
+
+  private:
+    std::atomic<int> present_ = 0;
+};
+
+int shared_count = 0;
+
+void countTogether(Meeting& meeting) {
+    meeting.meet();
+    ++shared_count;
+}
+
+void raceOfThreads() {
+    Meeting meeting;
+    std::thread other([&] { countTogether(meeting); });
+    countTogether(meeting);
+    other.join();
+}
+
+void raceOfTasks() {
+    Meeting meeting;
+    tbb::parallel_for(0, 2, [&](int) { countTogether(meeting); });
+}
+
+/// The world is moved by one thread and looked at by another one.
+template <typename Look>
+void raceOfWorld(Look look) {
+    TestWorld room;
+    Meeting meeting;
+    std::thread other([&] {
+        meeting.meet();
+        for (int i = 0; i < 1000; ++i) look(room.world);
+    });
+    meeting.meet();
+    for (int i = 0; i < 1000; ++i) room.world.step();
+    other.join();
+}
+
+/// What a parallel loop has from before it, and what is had from it.
+bool orderedTasks() {
+    constexpr int kRounds = 300, kCount = 1000;
+    bool good = true;
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<int> in(kCount, round), out(kCount);
+        tbb::parallel_for(0, kCount, [&](int i) {
+            const std::vector<int> copy(10, in[static_cast<std::size_t>(i)]);
+            out[static_cast<std::size_t>(i)] = copy[static_cast<std::size_t>(i % 10)];
+        });
+        good &= out == in;
+    }
+    return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // At least two threads, on any machine.
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 4);
+    const std::string_view kind = argc == 2 ? argv[1] : "";
+    if (kind == "threads") {
+        raceOfThreads();
+    } else if (kind == "tasks") {
+        raceOfTasks();
+    } else if (kind == "robots") {
+        raceOfWorld([](const ispace::World& world) { (void)world.status(0); });
+    } else if (kind == "scans") {
+        raceOfWorld([](const ispace::World& world) {
+            if (world.reading(0).scan.ranges[1] < 0) std::abort();
+        });
+    } else if (kind == "none") {
+        return orderedTasks() ? 0 : 1;
+    } else {
+        std::cerr << "race: threads, tasks, robots, scans or none\n";
+        return 2;
+    }
+    return 0;
+}

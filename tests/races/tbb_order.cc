@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tells ThreadSanitizer what TBB's scheduler orders.
+//
+// Debian's libtbb.so is not instrumented: that a thread takes a task after another one has spawned
+// it, and that memory of tasks is used again, cannot be seen, and would be taken for races. (The
+// join of a loop can: it counts in TBB's headers.) Here the library's entry points are wrapped:
+// they take part in the order of events exactly as far as the scheduler does, so that tasks are not
+// ordered among each other, and a race between them is found.
+#include <dlfcn.h>
+#include <oneapi/tbb/detail/_task.h>
+#include <sanitizer/tsan_interface.h>
+
+#include <cstdlib>
+#include <new>
+
+namespace tbb::detail {
+
+namespace {
+
+/// The same function of the library.
+template <typename Function>
+Function* original(const char* symbol) {
+    void* const found = ::dlsym(RTLD_NEXT, symbol);
+    if (found == nullptr) std::abort();  // another TBB: its names are to be put here
+    return reinterpret_cast<Function*>(found);
+}
+
+/// Stands for a task on its way to the thread that runs it.
+class Envelope final : public d1::task {
+  public:
+    explicit Envelope(d1::task& task) : task_(&task) { __tsan_release(this); }
+    d1::task* execute(d1::execution_data& data) override { return opened().execute(data); }
+    d1::task* cancel(d1::execution_data& data) override { return opened().cancel(data); }
+
+  private:
+    d1::task& opened() {
+        __tsan_acquire(this);
+        d1::task& task = *task_;
+        delete this;
+        return task;
+    }
+    d1::task* task_;
+};
+
+}  // namespace
+
+namespace r1 {
+
+void spawn(d1::task& task, d1::task_group_context& context) {
+    using Spawn = void(d1::task&, d1::task_group_context&);
+    static auto* const real =
+        original<Spawn>("_ZN3tbb6detail2r15spawnERNS0_2d14taskERNS2_18task_group_contextE");
+    real(*new Envelope(task), context);
+}
+
+void spawn(d1::task& task, d1::task_group_context& context, d1::slot_id slot) {
+    using Spawn = void(d1::task&, d1::task_group_context&, d1::slot_id);
+    static auto* const real =
+        original<Spawn>("_ZN3tbb6detail2r15spawnERNS0_2d14taskERNS2_18task_group_contextEt");
+    real(*new Envelope(task), context, slot);
+}
+
+void execute_and_wait(d1::task& task, d1::task_group_context& context, d1::wait_context& wait,
+                      d1::task_group_context& wait_group) {
+    using Execute =
+        void(d1::task&, d1::task_group_context&, d1::wait_context&, d1::task_group_context&);
+    static auto* const real = original<Execute>(
+        "_ZN3tbb6detail2r116execute_and_waitERNS0_2d14taskERNS2_18task_group_contextERNS2_12wait_"
+        "contextES6_");
+    real(task, context, wait, wait_group);
+    // The count, behind eight bytes of version: the library has seen it come to nothing.
+    __tsan_acquire(reinterpret_cast<char*>(&wait) + sizeof(std::uint64_t));
+}
+
+// Memory of tasks: malloc is known to the sanitizer, the library's own lists are not.
+
+void* allocate(d1::small_object_pool*& pool, std::size_t bytes) {
+    static char none;
+    pool = reinterpret_cast<d1::small_object_pool*>(&none);
+    return ::operator new(bytes, std::align_val_t(d1::task_alignment));
+}
+
+void* allocate(d1::small_object_pool*& pool, std::size_t bytes, const d1::execution_data&) {
+    return allocate(pool, bytes);
+}
+
+void deallocate(d1::small_object_pool&, void* memory, std::size_t) {
+    ::operator delete(memory, std::align_val_t(d1::task_alignment));
+}
+
+void deallocate(d1::small_object_pool& pool, void* memory, std::size_t bytes,
+                const d1::execution_data&) {
+    deallocate(pool, memory, bytes);
+}
+
+}  // namespace r1
+
+}  // namespace tbb::detail
