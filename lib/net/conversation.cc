@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <initializer_list>
 #include <limits>
 
@@ -90,6 +91,11 @@ std::span<const Conversation::Request> Conversation::requests() {
     return kRequests;
 }
 
+Conversation::Conversation(Hall& hall)
+    : hall_(&hall),
+      pauses_(hall.limits().pauses),
+      spare_pauses_(hall.limits().spare_pauses, std::chrono::steady_clock::now()) {}
+
 Conversation::~Conversation() { leave(); }
 
 std::string Conversation::greeting() { return "ISPACE 1\n"; }
@@ -98,6 +104,7 @@ void Conversation::request(std::string_view line) {
     std::vector<std::string_view> words;
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
+    const bool first = std::exchange(first_, false);
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.
     if (role_ == Role::None && words.back().starts_with("HTTP/")) {
@@ -108,7 +115,7 @@ void Conversation::request(std::string_view line) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;
     });
-    if (found == all.end()) return refuse(words.front());
+    if (found == all.end()) return refuse(words.front(), first);
     const std::size_t arguments = words.size() - 1;
     if (arguments < found->least)
         return error(400,
@@ -165,7 +172,7 @@ void Conversation::error(int code, std::initializer_list<std::string_view> text)
 }
 
 /// Why a verb is no request, or none now.
-void Conversation::refuse(std::string_view verb) {
+void Conversation::refuse(std::string_view verb, bool first) {
     std::vector<std::string> verbs;
     verbs.reserve(requests().size());
     std::string roles;
@@ -180,8 +187,10 @@ void Conversation::refuse(std::string_view verb) {
     }
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
         const std::string hint = didYouMean(upperCase(verb), verbs);
+        closing_ = first;
         return error(400, {"unknown request ", excerpt(verb), hint, hint.empty() ? ";" : "",
-                           " HELP lists what there is"});
+                           " HELP lists what there is",
+                           first ? "; a first line that is no request ends the connection" : ""});
     }
     if (role_ == Role::None) return error(405, {"take a role first: ROBOT id, LASER id or WORLD"});
     if (roles.empty())
@@ -282,6 +291,7 @@ void Conversation::help(Words /*words*/) {
     out_ += "OK HELP";
     for (const Request& request : requests()) {
         if (request.role.value_or(role_) != role_) continue;
+        if (request.answer == &Conversation::shutdown && !hall_->limits().shutdown) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
         separator = " | ";

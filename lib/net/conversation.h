@@ -20,7 +20,7 @@ namespace ispace {
 /// out. See simrun(1) for the language.
 class Conversation {
   public:
-    explicit Conversation(Hall& hall) : hall_(&hall) {}
+    explicit Conversation(Hall& hall);
     /// Frees the robot it holds.
     ~Conversation();
     Conversation(const Conversation&) = delete;
@@ -28,7 +28,8 @@ class Conversation {
 
     /// "ISPACE 1\n"
     static std::string greeting();
-    /// Answers one request (without its end of line). Blank lines are no requests.
+    /// Answers one request (without its end of line). Blank lines are no requests. A first line
+    /// that is no request comes from a client of another protocol: it is the last one, too.
     /// \pre !waiting() and !closing()
     void request(std::string_view line);
     /// Answers a request of more than the allowed length, and closes.
@@ -43,12 +44,15 @@ class Conversation {
 
     /// True while a STEP is not done: later requests wait for its answer.
     [[nodiscard]] bool waiting() const { return steps_ != nullptr; }
+    [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
     /// True after QUIT and what closes a connection: nothing is read any more.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Moves away what is to be sent, in order.
     std::string take() { return std::exchange(out_, {}); }
     /// The newest scan of a stream, to be sent when all else is; null if there is none.
     std::shared_ptr<const std::string> takeScan() { return std::exchange(scan_, nullptr); }
+    /// Bytes of that scan.
+    [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
 
   private:
     enum class Role { None, Robot, Laser, World };
@@ -60,7 +64,8 @@ class Conversation {
     [[nodiscard]] std::string roleText() const;
     [[nodiscard]] std::string unknownLaser(std::string_view id) const;
     void error(int code, std::initializer_list<std::string_view> text);
-    void refuse(std::string_view verb);
+    void refuse(std::string_view verb, bool first);
+    bool mayAskFor(std::string_view verb);
     void leave();
     void tellEnds();
     void answerStep();
@@ -96,6 +101,8 @@ class Conversation {
     bool binary_ = false;
     std::shared_ptr<const std::string> scan_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
+    Ration pauses_, spare_pauses_;
+    bool first_ = true;  // nothing was asked yet
     bool closing_ = false;
 };
 

@@ -159,19 +159,44 @@ void Conversation::poses(Words /*words*/) {
     out_ += '\n';
 }
 
-void Conversation::pause(Words /*words*/) {
+/// Answers, if it is not so. Each pause may cut short what others have asked for; two of them with
+/// no time between cost the world nothing else.
+bool Conversation::mayAskFor(std::string_view verb) {
+    const auto now = std::chrono::steady_clock::now();
+    Ration& all = hall_->pauses();
+    if (pauses_.has(now)) {
+        Ration* const from = all.has(now) ? &all : &spare_pauses_;
+        if (from->has(now)) {
+            from->take();
+            pauses_.take();
+            return true;
+        }
+    }
+    const ServerLimits& limits = hall_->limits();
+    error(429, {verb, " comes too often: a client has ", formatDouble(limits.pauses.rate),
+                " a second, all together ", formatDouble(limits.all_pauses.rate)});
+    return false;
+}
+
+void Conversation::pause(Words words) {
+    if (!mayAskFor(words.front())) return;
     // A STEP under way ends here too, or nobody could end one of too many steps.
     hall_->steps().cut();
     hall_->simulation().pause(std::chrono::steady_clock::now());
     out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
-void Conversation::resume(Words /*words*/) {
+void Conversation::resume(Words words) {
     Simulation& simulation = hall_->simulation();
     if (simulation.clock().kind == Clock::Kind::Step)
         return error(405, {"the clock is `step`: use STEP n"});
-    hall_->steps().cut();
-    if (simulation.paused()) simulation.resume(std::chrono::steady_clock::now());
+    // What PAUSE began can always be ended.
+    if (!simulation.paused()) {
+        if (!mayAskFor(words.front())) return;
+    } else {
+        hall_->steps().cut();
+        simulation.resume(std::chrono::steady_clock::now());
+    }
     out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
@@ -188,6 +213,8 @@ void Conversation::step(Words words) {
 }
 
 void Conversation::shutdown(Words /*words*/) {
+    if (!hall_->limits().shutdown)
+        return error(403, {"clients may not end this run: it has --no-shutdown"});
     out_.append("OK SHUTDOWN t=").append(formatMilliseconds(world().time())).append("\n");
     hall_->simulation().finish();
     leave();

@@ -108,6 +108,7 @@ TEST(Conversation, Errors405SayWhatToDo) {
 TEST(Conversation, UnknownRequests) {
     Talk talk;
     Conversation& client = talk.client();
+    talk.ask(client, "HELP");
     EXPECT_EQ(talk.ask(client, "FORWRAD 1"),
               "ERR 400 unknown request `FORWRAD`, did you mean `FORWARD`? HELP lists what there "
               "is\n");

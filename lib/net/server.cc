@@ -33,7 +33,7 @@ constexpr auto kLastFlush = std::chrono::milliseconds(500);
 
 struct Server::Data {
     Data(Simulation& the_simulation, const ServerLimits& the_limits)
-        : simulation(the_simulation), limits(the_limits), hall(the_simulation) {}
+        : simulation(the_simulation), limits(the_limits), hall(the_simulation, the_limits) {}
     ~Data() { closeAll(); }
 
     void accept();

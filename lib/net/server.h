@@ -2,25 +2,15 @@
 // lib/net: the Simulator TCP Protocol and its server. Uses sim and below; Asio inside.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include "net/server_limits.h"
 #include "sim/simulation.h"
 
 namespace ispace {
-
-/// Limits that keep one client from harming the others.
-struct ServerLimits {
-    std::size_t clients = 256;  ///< the next one is answered ERR 429 and closed
-    std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
-    std::size_t pending = std::size_t{1} << 18;  ///< replies in bytes a client may leave unread
-                                                 ///< before its requests have to wait
-    /// For a connection that is to end to read what it was told.
-    std::chrono::nanoseconds patience = std::chrono::seconds(10);
-};
 
 /// A TCP endpoint "127.0.0.1:0"; port 0: one the system gives.
 struct Endpoint {
@@ -35,7 +25,8 @@ Endpoint parseEndpoint(const std::string& text);
 /// never changes while a client is answered; sensors are read on all cores.
 ///
 /// Writing never waits: a client that does not read gets the newest scan when it does, and its
-/// requests wait while it leaves replies unread. The memory a client takes is bounded.
+/// requests wait while it leaves replies unread. What clients together leave unread is bounded; so
+/// is the time in which a connection takes a role.
 class Server {
   public:
     /// Listens at once. \throws std::system_error naming the endpoint

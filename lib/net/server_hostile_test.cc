@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -100,6 +101,7 @@ TEST(Server, TooLongARequestCloses) {
     Client client(running.port());
     client.connect();
     EXPECT_EQ(client.line(), "ISPACE 1");
+    EXPECT_EQ(client.ask("HELP").substr(0, 8), "OK HELP ");
     EXPECT_EQ(client.ask(std::string(4096, 'x')).substr(0, 24), "ERR 400 unknown request ");
     EXPECT_EQ(client.ask(std::string(4096, 'x') + "\r").substr(0, 24), "ERR 400 unknown request ");
     EXPECT_EQ(client.ask(std::string(4097, 'x')).substr(0, 8), "ERR 413 ");
@@ -111,6 +113,7 @@ TEST(Server, BytesThatAreNoTextAreSurvived) {
     Client client(running.port());
     client.connect();
     EXPECT_EQ(client.line(), "ISPACE 1");
+    EXPECT_EQ(client.ask("HELP").substr(0, 8), "OK HELP ");
     EXPECT_EQ(client.ask(std::string_view("\0\xff\x1b[2J", 6)),
               "ERR 400 unknown request `???[2J`; HELP lists what there is");
     EXPECT_EQ(client.ask("WORLD"), "OK WORLD t=0.000 dt=0.1 clock=step");
@@ -252,6 +255,20 @@ TEST(Server, StepsOfAClientThatClosedItsSideTakeNobodysPlace) {
     Client world(running.port());
     EXPECT_EQ(world.take("WORLD").ask("PAUSE").substr(0, 8), "OK PAUSE");
     for (const auto& client : waiting) EXPECT_EQ(client->rest().substr(0, 10), "OK STEP n=");
+}
+
+TEST(Server, FirstLineOfAnotherProtocolIsTheLast) {
+    Running running;
+    for (const std::string first : {"USER a", "GET / HTTP/1.1", "EHLO me", "SSH-2.0-x", "*1"}) {
+        Client client(running.port());
+        client.connect();
+        client.send("\r\n" + first + "\r\nWORLD\r\nSHUTDOWN\r\n");
+        const std::string answer = client.rest();
+        EXPECT_TRUE(answer.starts_with("ISPACE 1\nERR 400 ")) << answer;
+        EXPECT_EQ(std::count(answer.begin(), answer.end(), '\n'), 2) << answer;
+    }
+    Client world(running.port());
+    EXPECT_EQ(world.take("WORLD").ask("TIME"), "OK TIME t=0.000 steps=0");
 }
 
 TEST(Server, IsNoWebServer) {

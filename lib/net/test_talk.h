@@ -21,8 +21,8 @@ constexpr std::chrono::nanoseconds kLong = std::chrono::hours(1);
 /// A hall and who is in it.
 struct Talk {
     explicit Talk(Clock clock = {Clock::Kind::Step, 1}, std::optional<SimTime> until = {},
-                  const std::string& script = "")
-        : room(clock, until, script), hall(room.simulation) {
+                  const std::string& script = "", const ServerLimits& limits = {})
+        : room(clock, until, script), hall(room.simulation, limits) {
         room.simulation.onStep([this] {
             for (Conversation& client : clients) client.stepped();
         });

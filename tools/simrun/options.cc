@@ -30,6 +30,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     addAnyEnvironmentOption(line_, options_.any_environment);
     addCommonOptions(line_, options_.common, "");
     line_.parse(argc, argv);
+    options_.limits.shutdown = options_.shutdown.value_or(true);
     // An empty variable of a shell script, most likely: the run must not go on without its files.
     for (const auto& [name, value] : {std::pair("--script", &options_.script),
                                       {"--record", &options_.record},
@@ -81,6 +82,9 @@ void SimrunCommand::declareServer() {
             o.limits.clients = static_cast<std::size_t>(*count);
         },
         "clients served at once; more are refused (default 256)", Enters::Nothing);
+    line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
+                     "whether the request SHUTDOWN ends the run or is refused (default on)",
+                     Enters::Nothing);
 }
 
 }  // namespace ispace

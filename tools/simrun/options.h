@@ -22,6 +22,7 @@ struct SimrunOptions {
     std::string record;     ///< folder; "" without
     std::string port_file;  ///< "" without
     Endpoint listen;
+    std::optional<bool> shutdown;
     ServerLimits limits;
 };
 
