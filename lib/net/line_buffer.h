@@ -20,6 +20,7 @@ class LineBuffer {
     [[nodiscard]] bool ready() const { return end_ != std::string::npos; }
     /// True if the next line is longer than the limit, whole or not.
     [[nodiscard]] bool tooLong() const;
+    [[nodiscard]] std::size_t memory() const { return bytes_.capacity(); }
     /// The next line without its end; valid until append(). \pre ready()
     std::string_view take();
 

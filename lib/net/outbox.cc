@@ -17,8 +17,16 @@ std::string_view Outbox::front() const {
     return piece;
 }
 
+bool Outbox::abandon() {
+    scan_.reset();
+    std::string().swap(text_);
+    sent_ = 0;
+    return in_line_;
+}
+
 void Outbox::pop(std::size_t bytes) {
     constexpr std::size_t kKept = std::size_t{1} << 16;
+    if (bytes > 0) in_line_ = front()[bytes - 1] != '\n';
     sent_ += bytes;
     if (scan_ && sent_ == scan_->size()) {
         scan_.reset();

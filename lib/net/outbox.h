@@ -20,13 +20,20 @@ class Outbox {
     [[nodiscard]] std::string_view front() const;
     /// The first bytes of front() are sent.
     void pop(std::size_t bytes);
+    /// Forgets all that is not sent yet. True if that cuts a line.
+    bool abandon();
     /// Bytes of replies.
     [[nodiscard]] std::size_t unsent() const { return text_.size() - (scan_ ? 0 : sent_); }
+    /// Bytes of the scan that is being sent.
+    [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
+    /// Memory that replies take.
+    [[nodiscard]] std::size_t textMemory() const { return text_.capacity(); }
 
   private:
     std::shared_ptr<const std::string> scan_;  // goes before the text, which came while it was sent
     std::string text_;
     std::size_t sent_ = 0;  // of scan_, else of text_
+    bool in_line_ = false;  // the last byte sent did not end a line
 };
 
 }  // namespace ispace

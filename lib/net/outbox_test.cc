@@ -34,6 +34,28 @@ TEST(Outbox, ScanIsNotKeptOnceSent) {
     EXPECT_EQ(scan.use_count(), 1);
 }
 
+TEST(Outbox, AbandonsWhatIsNotSent) {
+    Outbox box;
+    EXPECT_FALSE(box.abandon());
+    box.append("one\ntwo\n");
+    box.pop(4);
+    EXPECT_FALSE(box.abandon());
+    EXPECT_EQ(box.front(), "");
+    auto scan = std::make_shared<const std::string>("scan\n");
+    box.put(scan);
+    box.append(std::string(1 << 20, 'x'));
+    EXPECT_EQ(box.scanBytes(), 5U);
+    EXPECT_GE(box.textMemory(), std::size_t{1} << 20);
+    box.pop(1);
+    EXPECT_TRUE(box.abandon());
+    EXPECT_EQ(scan.use_count(), 1);
+    EXPECT_EQ(box.unsent(), 0U);
+    EXPECT_LT(box.textMemory(), 100U);
+    box.append("\n");
+    box.pop(1);
+    EXPECT_FALSE(box.abandon());
+}
+
 TEST(Outbox, BytesComeOutAsTheyWentIn) {
     std::mt19937 random(3);
     Outbox box;

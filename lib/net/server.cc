@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/server.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+
 #include <algorithm>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
@@ -26,8 +29,24 @@ constexpr auto kTurn = std::chrono::milliseconds(2);
 constexpr int kSendBuffer = 1 << 16;
 /// Connections beyond those that are served, which are told of their end.
 constexpr std::size_t kMostLingering = 64;
+/// A peer that is gone without a word: asked after a minute of silence, given up after another.
+constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kLastFlush = std::chrono::milliseconds(500);
+
+template <int kName>
+using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, kName>;
+
+void prepare(tcp::socket& socket) {
+    std::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+    socket.set_option(tcp::socket::keep_alive(true), ignored);
+    socket.set_option(TcpOption<TCP_KEEPIDLE>(kKeepIdle), ignored);
+    socket.set_option(TcpOption<TCP_KEEPINTVL>(kKeepInterval), ignored);
+    socket.set_option(TcpOption<TCP_KEEPCNT>(kKeepCount), ignored);
+    socket.non_blocking(true, ignored);
+}
 
 }  // namespace
 
@@ -38,9 +57,11 @@ struct Server::Data {
 
     void accept();
     void welcome(tcp::socket socket);
+    bool makeRoom();
     void stepped();
     void serveClients();
     void sleepUntil(WallTime time);
+    void relieve();
     void sweep();
     void end();
     void closeAll();
@@ -73,13 +94,16 @@ void Server::Data::accept() {
 }
 
 void Server::Data::welcome(tcp::socket socket) {
-    std::error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-    socket.non_blocking(true, ignored);
+    prepare(socket);
     sweep();
-    if (sessions.size() >= limits.clients + kMostLingering) return;
-    const bool full = serving >= limits.clients;
+    const bool full = serving >= limits.clients && !makeRoom();
+    if (sessions.size() >= limits.clients + kMostLingering) {
+        // Of those that only have to close, the oldest has had the most time for it.
+        const auto told = std::find_if(sessions.begin(), sessions.end(),
+                                       [](const auto& session) { return session->told(); });
+        if (told == sessions.end()) return;
+        (*told)->close();
+    }
     const auto session = std::make_shared<Session>(std::move(socket), limits);
     sessions.push_back(session);
     if (!full) {
@@ -89,6 +113,22 @@ void Server::Data::welcome(tcp::socket socket) {
         session->refuse(text.append(std::to_string(limits.clients)).append("): try again later\n"));
     }
     sweep();
+}
+
+/// Ends the connection that has gone longest without a role. True if there is a place now.
+bool Server::Data::makeRoom() {
+    const WallTime since = steady_clock::now() - limits.roleless_grace;
+    std::vector<std::shared_ptr<Session>> idle;
+    for (const auto& session : sessions)
+        if (session->roleless() && session->heard() <= since) idle.push_back(session);
+    std::sort(idle.begin(), idle.end(),
+              [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
+    for (const auto& session : idle) {
+        session->makeWay(since);
+        sweep();
+        if (serving < limits.clients) return true;
+    }
+    return false;
 }
 
 void Server::Data::stepped() {
@@ -101,7 +141,28 @@ void Server::Data::serveClients() {
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
     for (const auto& session : sessions)
         if (session->waiting()) session->stepped();
+    relieve();
     sweep();
+}
+
+/// Keeps what clients leave unread within its limit: the slowest readers go. Not one that holds no
+/// more than an equal share: all others then exceed theirs.
+void Server::Data::relieve() {
+    std::size_t replies = 0;
+    for (const auto& session : sessions) replies += session->memory();
+    if (replies + hall.staleBytes() <= limits.unread) return;
+    const std::size_t share = limits.unread / (limits.clients + kMostLingering);
+    std::vector<std::shared_ptr<Session>> slow;
+    for (const auto& session : sessions)
+        if (session->holds() > share) slow.push_back(session);
+    std::sort(slow.begin(), slow.end(),
+              [](const auto& a, const auto& b) { return a->waitingSince() < b->waitingSince(); });
+    for (const auto& session : slow) {
+        if (replies + hall.staleBytes() <= limits.unread) return;
+        replies -= session->memory();
+        session->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
+        replies += session->memory();
+    }
 }
 
 /// Until then, or until one handler has run.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/session.h"
 
+#include <algorithm>
 #include <array>
 #include <asio/post.hpp>
 #include <chrono>
@@ -17,8 +18,8 @@ using std::chrono::steady_clock;
 
 constexpr std::size_t kBlock = 4096;
 /// Requests of one client, and time for them, before it is the next one's turn.
-constexpr int kRequestsInTurn = 256;
-constexpr auto kTurn = std::chrono::milliseconds(1);
+constexpr int kRequestsInTurn = 64;
+constexpr auto kTurn = std::chrono::microseconds(200);
 /// How long a connection that was told of its end may take to close, what it still sends unread.
 constexpr auto kLinger = std::chrono::seconds(1);
 
@@ -28,6 +29,34 @@ bool wouldBlock(const std::error_code& error) {
 }
 
 }  // namespace
+
+/// Ends the connection if it does not take a role in time.
+void Session::expectRole() {
+    timer_.expires_at(heard_ + limits_.roleless);
+    timer_.async_wait([self = shared_from_this()](auto aborted) {
+        if (aborted || !self->roleless()) return;
+        self->makeWay(steady_clock::now() - self->limits_.roleless);
+        if (self->roleless()) self->expectRole();
+    });
+}
+
+void Session::makeWay(WallTime since) {
+    if (!roleless() || heard_ > since) return;
+    catchUp();
+    if (!roleless() || heard_ > since) return;
+    refuse("ERR 408 no role taken in time: ROBOT id, LASER id or WORLD comes first\n");
+}
+
+/// Reads what has come: while the world took its time, nobody looked.
+void Session::catchUp() {
+    if (mayAnswer() && !lines_.ready() && !eof_) receive();
+}
+
+void Session::cutOff(std::string_view text) {
+    if (out_.abandon()) out_.append("\n");
+    owed_ = 0;
+    refuse(text);
+}
 
 /// Does all that can be done now, and arranges to be called when more can.
 void Session::pump() {
@@ -60,7 +89,9 @@ void Session::answer() {
             conversation_->request(lines_.take());
         else
             return;
-        out_.append(conversation_->take());
+        const std::string reply = conversation_->take();
+        if (!reply.empty()) heard_ = steady_clock::now();
+        out_.append(reply);
     }
 }
 
@@ -84,8 +115,14 @@ void Session::flush() {
     while (!writing_ && !closed()) {
         const std::string_view piece = nextPiece();
         if (piece.empty()) return;
+        if (owed_ == 0) {
+            owed_ = out_.unsent() + out_.scanBytes();
+            waiting_since_ = steady_clock::now();
+        }
         std::error_code error;
-        out_.pop(socket_.write_some(asio::buffer(piece), error));
+        const std::size_t sent = socket_.write_some(asio::buffer(piece), error);
+        out_.pop(sent);
+        owed_ -= std::min(owed_, sent);
         if (wouldBlock(error)) {
             writing_ = true;
             socket_.async_wait(tcp::socket::wait_write, [self = shared_from_this()](auto failed) {

@@ -29,19 +29,40 @@ class Session : public std::enable_shared_from_this<Session> {
     void serve(Hall& hall) {
         conversation_.emplace(hall);
         out_.append(Conversation::greeting());
+        heard_ = std::chrono::steady_clock::now();
+        expectRole();
         pump();
     }
-    /// Sends a text and closes.
+    /// Sends a text, a whole line, behind what is pending, and closes.
     void refuse(std::string_view text) {
         out_.append(text);
+        conversation_.reset();
         pump();
     }
+    /// The same, but what is pending is not sent.
+    void cutOff(std::string_view text);
+    /// Ends if it is still without a role though it was asked for nothing since that time.
+    void makeWay(WallTime since);
     /// The world took a step.
     void stepped();
     [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
     /// One that waits for STEP and will not ask for more takes nobody's place: it may be gone.
     [[nodiscard]] bool serving() const { return conversation_ && !(eof_ && waiting()); }
+    [[nodiscard]] bool roleless() const { return conversation_ && !conversation_->hasRole(); }
+    /// When it was last asked for something; its begin, if it never was.
+    [[nodiscard]] WallTime heard() const { return heard_; }
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
+    /// True if it was told of its end and waits for the other side to close.
+    [[nodiscard]] bool told() const { return discarding_; }
+
+    /// Memory of its own.
+    [[nodiscard]] std::size_t memory() const { return out_.textMemory() + lines_.memory(); }
+    /// The same with scans, which others may hold too.
+    [[nodiscard]] std::size_t holds() const {
+        return memory() + out_.scanBytes() + (conversation_ ? conversation_->scanBytes() : 0);
+    }
+    /// How long some of what it holds is waiting at least.
+    [[nodiscard]] WallTime waitingSince() const { return waiting_since_; }
     /// Sends what is pending and closes, without waiting for the other side.
     void end();
     void close();
@@ -51,6 +72,8 @@ class Session : public std::enable_shared_from_this<Session> {
         return conversation_ && !conversation_->waiting() && !conversation_->closing() &&
                out_.unsent() <= limits_.pending;
     }
+    void expectRole();
+    void catchUp();
     void pump();
     void pumpLater();
     void answer();
@@ -63,11 +86,15 @@ class Session : public std::enable_shared_from_this<Session> {
     void closeAfter(std::chrono::nanoseconds time);
 
     asio::ip::tcp::socket socket_;
-    asio::steady_timer timer_;  // of lingering
+    asio::steady_timer timer_;  // of taking a role; then of lingering
     ServerLimits limits_;
     LineBuffer lines_;
     std::optional<Conversation> conversation_;  // none: the connection is about to end
     Outbox out_;
+    WallTime heard_{};
+    // What was to be sent at a time and is not yet: the age of the oldest byte, or a little less.
+    WallTime waiting_since_{};
+    std::size_t owed_ = 0;
     bool reading_ = false, writing_ = false, posted_ = false;  // handlers on their way
     bool eof_ = false;
     bool ending_ = false;      // closes when all is sent, or after a while

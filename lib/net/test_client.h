@@ -104,6 +104,13 @@ class Client {
         }
         return true;
     }
+    /// Its own.
+    [[nodiscard]] std::uint16_t port() const {
+        sockaddr_in address{};
+        socklen_t size = sizeof address;
+        EXPECT_EQ(::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+        return ntohs(address.sin_port);
+    }
     void finishSending() { ::shutdown(socket_, SHUT_WR); }
     /// The other side gets a reset.
     void vanish() {
@@ -130,8 +137,9 @@ class Client {
 /// A server in a thread of its own.
 class Running {
   public:
-    explicit Running(Clock clock = {Clock::Kind::Step, 1}, const ServerLimits& limits = {})
-        : room_(clock),
+    explicit Running(Clock clock = {Clock::Kind::Step, 1}, const ServerLimits& limits = {},
+                     const std::string& more = "")
+        : room_(clock, {}, "", more),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
           thread_([this] { server_.run(); }) {}
     ~Running() { stop(); }

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Clients up to no good: sums of memory, descriptors and threads hold, others go on.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/../simrun/server.sh"
+command -v python3 >/dev/null || skip "no python3 here"
+attack() { python3 "$source_dir/tests/simrun/attack.py" "$port" "$server" "$1" || fail "$1"; }
+
+cat >attacked.3dm <<'END'
+#3dm 1
+robot id=r1 at=-1,0
+laser id=l1 at=0,-1.9 heading=90
+END
+{ cat attacked.3dm; echo "laser id=big at=0,1 fov=360 step=0.0009"; } >big.3dm
+
+start "$data/square.env" big.3dm --clock step
+attack stall
+stop
+start "$data/square.env" attacked.3dm --clock real
+attack noise
+attack silent
+attack flood
+stop
+
+# Clients cannot end this run; the system can.
+start "$data/square.env" attacked.3dm --clock step --no-shutdown
+dial world
+expect world WORLD 'OK WORLD .*'
+expect world SHUTDOWN 'ERR 403 .*--no-shutdown'
+expect world STEP 'OK STEP n=1 .*'
+stop TERM

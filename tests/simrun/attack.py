@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""attack.py PORT PID KIND: clients of a simrun that are up to no good, and what it costs others.
+
+Prints what it measures; fails if a sum does not hold: memory, descriptors, threads, rates."""
+import os
+import signal
+import socket
+import struct
+import sys
+import time
+
+PORT, PID, KIND = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
+MIB = 1 << 20
+
+
+def memory(name):
+    """VmRSS or VmHWM in bytes."""
+    with open(f"/proc/{PID}/status", encoding="ascii") as status:
+        for line in status:
+            if line.startswith(name + ":"):
+                return int(line.split()[1]) * 1024
+    raise SystemExit("no " + name)
+
+
+def descriptors():
+    return len(os.listdir(f"/proc/{PID}/fd"))
+
+
+def threads():
+    return len(os.listdir(f"/proc/{PID}/task"))
+
+
+def check(holds, what):
+    if not holds:
+        raise SystemExit("attack.py: " + what)
+
+
+class Client:
+    def __init__(self, role="", buffer=0):
+        self.socket = socket.socket()
+        if buffer:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
+        self.socket.settimeout(60)
+        self.socket.connect(("127.0.0.1", PORT))
+        self.file = self.socket.makefile("rb")
+        if role:
+            self.line()
+            answer = self.ask(role)
+            check(answer.startswith("OK "), f"{role}: {answer}")
+
+    def line(self):
+        return self.file.readline().decode(errors="replace").rstrip("\n")
+
+    def ask(self, request):
+        self.send(request + "\n")
+        return self.line()
+
+    def send(self, text):
+        self.socket.sendall(text.encode())
+
+    def push(self, data):
+        """As much as goes without waiting."""
+        self.socket.setblocking(False)
+        try:
+            return self.socket.send(data)
+        except (BlockingIOError, ConnectionError):
+            return 0
+
+    def reset(self):
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        self.close()
+
+    def close(self):
+        self.file.close()
+        self.socket.close()
+
+
+def eventually(holds, what):
+    end = time.monotonic() + 30
+    while not holds():
+        check(time.monotonic() < end, what)
+        time.sleep(0.05)
+
+
+def stall():
+    """Each holds another big scan, or several, and reads nothing."""
+    world, reader = Client("WORLD"), Client("LASER big")
+    reader.ask("STREAM")
+    before = memory("VmRSS")
+    stalled = []
+    for i in range(40):
+        for k in range(5):
+            client = Client("LASER big", buffer=2048)
+            client.send(["STREAM\n", "BINARY on\nSTREAM\n", "SCAN\n" * 3, "STREAM\nSCAN\n",
+                         f"STREAM every={k + 2}\n"][k])
+            stalled.append(client)
+        check(world.ask("STEP 20").startswith("OK STEP n=20 "), "the world stands")
+        check(reader.line().startswith("SCAN big "), "an honest reader misses a scan")
+    grown = (memory("VmHWM") - before) / MIB
+    print(f"200 readers that stall: {grown:.0f} MiB")
+    # What they may hold, the newest scans, and what is on its way.
+    check(grown < 128 + 64, f"memory grew by {grown:.0f} MiB")
+    check(reader.ask("STOP") == "OK STOP", "an honest reader was cut off")
+
+
+def rates(world, driver, seconds=1.5):
+    """Steps of the world and answers to a client, a second."""
+    begin, answers = time.monotonic(), 0
+    first = int(world.ask("TIME").split("steps=")[1])
+    while time.monotonic() < begin + seconds:
+        check(driver.ask("STATUS").startswith("OK STATUS "), "no STATUS")
+        answers += 1
+    last = int(world.ask("TIME").split("steps=")[1])
+    took = time.monotonic() - begin
+    return (last - first) / took, answers / took
+
+
+def asking(requests, count):
+    """A process with clients that send requests as fast as they are taken, and read."""
+    child = os.fork()
+    if child:
+        time.sleep(0.5)
+        return child
+    clients = [Client("WORLD") for _ in range(count)]
+    data = (requests * 200).encode()
+    while os.getppid() != 1:
+        for client in clients:
+            client.push(data)
+            try:
+                client.socket.recv(1 << 20)
+            except (BlockingIOError, ConnectionError):
+                pass
+
+
+def flood():
+    """What a client that never reads, and many that always ask, take from others."""
+    world, driver = Client("WORLD"), Client("ROBOT r1")
+    alone = rates(world, driver)
+    print(f"alone: {alone[0]:.0f} steps and {alone[1]:.0f} answers a second")
+
+    def measure(name, least_steps, least_answers):
+        steps, answers = rates(world, driver)
+        print(f"{name}: {steps:.0f} steps and {answers:.0f} answers a second")
+        check(steps > least_steps * alone[0], f"{name}: the world is slow")
+        check(answers > least_answers, f"{name}: others wait")
+
+    deaf = Client("LASER l1", buffer=2048)
+    deaf.send("STREAM\n")
+    while deaf.push(b"SCAN\nHELP\n" * 1000):
+        pass
+    measure("one never reads", 0.8, alone[1] / 4)
+    for name, requests in [("40 pause", "PAUSE\nRESUME\n"), ("40 ask", "LIST\nPOSES\nTIME\n")]:
+        child = asking(requests, 40)
+        try:
+            measure(name, 0.5, 20)
+        finally:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+
+
+def noise():
+    """Connections of every bad kind; afterwards all is as it was."""
+    world = Client("WORLD")
+    before = memory("VmRSS"), descriptors(), threads()
+    begin = time.monotonic()
+    for i in range(10000):
+        client = Client()
+        kind = i % 8
+        if kind == 1:
+            client.reset()
+        elif kind == 2:
+            client.push(os.urandom(3000) + b"\n")
+        elif kind == 3:
+            client.push(b"x" * 100000)
+        elif kind == 4:
+            client.push(b"WORLD\nSTEP\n")
+            client.socket.shutdown(socket.SHUT_WR)
+        elif kind == 5:
+            client.push(b"LASER l1\nSTREAM\n")
+            client.reset()
+        elif kind == 6:
+            client.push(b"ROBOT r1\n" + b"STATUS\n" * 200)
+        elif kind == 7:
+            client.push(b"GET / HTTP/1.1\r\n\r\nWORLD\nSHUTDOWN\n")
+        if kind not in (1, 5):
+            client.close()
+    print(f"10000 connections: {time.monotonic() - begin:.1f} s")
+    long = Client("WORLD")
+    child = os.fork()
+    if not child:
+        long.send("TIME\n" * 100000)
+        os._exit(0)
+    for _ in range(100000):
+        check(long.line().startswith("OK TIME "), "pipelined requests lose an answer")
+    os.waitpid(child, 0)
+    long.close()
+    eventually(lambda: descriptors() <= before[1], "descriptors stay open")
+    check(threads() <= before[2], "threads were added")
+    grown = (memory("VmHWM") - before[0]) / MIB
+    print(f"memory: {grown:.1f} MiB more at most")
+    check(grown < 32, f"memory grew by {grown:.0f} MiB")
+    check(world.ask("TIME").startswith("OK TIME "), "the world is gone")
+
+
+def silent():
+    """As many as there are places, without a word; one who asks gets one all the same."""
+    clients = [Client() for _ in range(256)]
+    time.sleep(1.2)
+    for _ in range(3):
+        check(Client("WORLD").ask("TIME").startswith("OK TIME "), "no place")
+    greeting = clients[0].line()
+    answer = clients[0].line()
+    check(greeting == "ISPACE 1" and answer.startswith("ERR 408 "), f"the first: {answer}")
+
+
+{"stall": stall, "flood": flood, "noise": noise, "silent": silent}[KIND]()
