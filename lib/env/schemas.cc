@@ -238,7 +238,7 @@ void addInfra(std::vector<Schema>& out) {
 
 Schema meshSchema() {
     return schema(
-        "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, DAE, GLB and the like",
+        "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
         {atKey(),
          headingKey(),
          {.name = "file",
@@ -264,6 +264,12 @@ Schema meshSchema() {
           .lower = 0,
           .upper = 1e6,
           .lower_open = true},
+         {.name = "side_files",
+          .type = KeyType::Choice,
+          .help = "where files that the file names may lie (buffers of glTF, materials of OBJ): in "
+                  "its folder and below, or anywhere",
+          .default_value = "folder",
+          .choices = {"folder", "anywhere"}},
          {.name = "digest",
           .type = KeyType::Word,
           .help = "sha256: of the content when it was compiled; another content is refused"}});

@@ -14,6 +14,7 @@
 #include "io/glb.h"
 #include "io/house_expo.h"
 #include "io/mesh_file.h"
+#include "io/mesh_format.h"
 #include "io/mesh_walls.h"
 #include "io/picture.h"
 #include "io/ros_map.h"
@@ -208,6 +209,8 @@ const InputFormat* formatOf(const Source& source, Refuse refuse) {
         return refuse(0, std::string("empty input: ") + kWanted), nullptr;
     if (const InputFormat* format = findFormat(kFormatsByMagic, source)) return format;
     if (const std::string what = foreignFile(bytes); !what.empty())
+        return refuse(0, "not an environment or layout but " + what), nullptr;
+    if (const std::string what = foreignMesh(source.operand); !what.empty())
         return refuse(0, "not an environment or layout but " + what), nullptr;
     if (kMeshBySuffix.holds(source)) return &kMeshBySuffix;
     if (!isPlainText(bytes))

@@ -2,16 +2,17 @@
 #include "io/mesh_file.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/utf8.h"
 #include "io/import_records.h"
+#include "io/mesh_load.h"
 
 namespace ispace {
 
@@ -41,10 +42,14 @@ class MeshLoader {
         const std::string& file = record.text("file");
         const std::string path = (std::filesystem::path(folderOf(operand_)) / file).string();
         try {
-            std::shared_ptr<const TriangleMesh>& mesh = loaded_[{path, record.text("up")}];
+            MeshOptions options{record.text("up"), record.text("side_files") == "anywhere"};
+            std::shared_ptr<const TriangleMesh>& mesh =
+                loaded_[{path, options.up, options.side_files_anywhere}];
             if (mesh == nullptr) {
                 addSource(path);
-                mesh = loadMesh(path, record.text("up"));
+                std::vector<std::string> side_files;
+                mesh = loadMesh(path, options, &side_files);
+                for (const std::string& side : side_files) addSource(side);
             }
             checkDigest(record, *mesh);
             record.setMesh(mesh);
@@ -78,59 +83,15 @@ class MeshLoader {
 
     Document& document_;
     const std::string& operand_;
-    std::map<std::pair<std::string, std::string>, std::shared_ptr<const TriangleMesh>> loaded_;
+    std::map<std::tuple<std::string, std::string, bool>, std::shared_ptr<const TriangleMesh>>
+        loaded_;
     Diagnostics findings_;
 };
-
-constexpr std::string_view kBlanks = " \t\r\n";
-
-/// The first line of OBJ is a statement, behind comments; some line is a vertex.
-bool isObj(std::string_view bytes) {
-    constexpr std::array<std::string_view, 11> kStatements{"mtllib", "usemtl", "o",  "g", "s", "v",
-                                                           "vn",     "vt",     "vp", "f", "l"};
-    const bool has_vertex = bytes.starts_with("v ") || bytes.find("\nv ") != std::string_view::npos;
-    while (has_vertex && !bytes.empty()) {
-        const std::string_view line = bytes.substr(0, bytes.find('\n'));
-        bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
-        const std::size_t begin = line.find_first_not_of(kBlanks);
-        if (begin == std::string_view::npos || line[begin] == '#') continue;
-        const std::string_view word =
-            line.substr(begin, line.find_first_of(kBlanks, begin) - begin);
-        return std::find(kStatements.begin(), kStatements.end(), word) != kStatements.end();
-    }
-    return false;
-}
-
-bool isBinaryStl(std::string_view bytes) {
-    constexpr std::size_t kHeader = 84, kTriangle = 50;
-    if (bytes.size() < kHeader + kTriangle) return false;
-    std::size_t count = 0;
-    for (std::size_t i = 4; i > 0; --i)
-        count = count * 256 + static_cast<unsigned char>(bytes[80 + i - 1]);
-    return bytes.size() == kHeader + count * kTriangle;
-}
 
 }  // namespace
 
 void loadMeshes(Document& document, const std::string& operand) {
     MeshLoader(document, operand).load();
-}
-
-bool isMeshFile(std::string_view bytes) {
-    const std::string_view start = bytes.substr(0, 4096);
-    if (start.starts_with("ply\n") || start.starts_with("ply\r")) return true;
-    if (start.starts_with("solid") && start.find("facet") != std::string_view::npos) return true;
-    if (start.find("<COLLADA") != std::string_view::npos) return true;
-    return isBinaryStl(bytes) || isObj(bytes);
-}
-
-bool hasMeshSuffix(const std::string& operand) {
-    constexpr std::array<std::string_view, 9> kSuffixes{".obj", ".stl", ".ply", ".dae", ".gltf",
-                                                        ".3ds", ".fbx", ".off", ".x3d"};
-    std::string suffix = std::filesystem::path(operand).extension().string();
-    for (char& c : suffix)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return std::find(kSuffixes.begin(), kSuffixes.end(), suffix) != kSuffixes.end();
 }
 
 Document meshDocument(const std::string& operand, const ImportOptions& options,

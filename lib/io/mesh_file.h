@@ -2,25 +2,18 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "io/import_options.h"
-#include "io/mesh_load.h"
 #include "record/record.h"
 
 namespace ispace {
 
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
-/// to Document::sources. Paths are relative to the operand's folder (for "-" the current one).
-/// \throws FormatError with findings at the records: no such file, bad files, a content other than
+/// and those of the files it names to Document::sources. Paths are relative to the operand's folder
+/// (for "-" the current one). \throws FormatError with findings at the records: no such file, bad
+/// files, a content other than
 ///         `digest` says
 void loadMeshes(Document& document, const std::string& operand);
-
-/// True if the bytes are OBJ, STL, PLY or COLLADA.
-bool isMeshFile(std::string_view bytes);
-
-/// True for `chair.obj` and the like, in any case.
-bool hasMeshSuffix(const std::string& operand);
 
 /// A document of one `mesh` record that names the operand, not loaded; its id is the file's name if
 /// that can be one.

@@ -9,6 +9,8 @@
 
 #include "base/file.h"
 #include "io/input.h"
+#include "io/mesh_format.h"
+#include "io/mesh_load.h"
 #include "io/test_import.h"
 #include "record/digest.h"
 
@@ -33,7 +35,7 @@ class MeshFile : public testing::Test {
     TriangleMesh load(const std::string& name, const std::string& bytes,
                       const std::string& up = "auto") const {
         writeAll(path(name), bytes);
-        return *loadMesh(path(name), up);
+        return *loadMesh(path(name), {up});
     }
     /// Without the folder.
     [[nodiscard]] std::string errorOf(const std::string& name, const std::string& bytes) const {
@@ -203,9 +205,9 @@ TEST_F(MeshFile, PolygonsAreCutOthersDropped) {
 }
 
 TEST_F(MeshFile, NamesWhatIsWrong) {
-    EXPECT_THROW(loadMesh(path("none.obj"), "auto"), std::system_error);
-    EXPECT_THROW(loadMesh(folder_.string(), "auto"), std::system_error);
-    EXPECT_NE(errorsOf([] { loadMesh("/dev/zero", "auto"); }).find("it is no regular file"),
+    EXPECT_THROW(loadMesh(path("none.obj"), {}), std::system_error);
+    EXPECT_THROW(loadMesh(folder_.string(), {}), std::system_error);
+    EXPECT_NE(errorsOf([] { loadMesh("/dev/zero", {}); }).find("it is no regular file"),
               std::string::npos);
     EXPECT_EQ(errorOf("cut.stl", std::string(90, 'x')),
               "cut.stl: error: bad mesh file: Failed to determine STL storage representation\n");

@@ -1,41 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "geom/triangle_mesh.h"
+#include "io/mesh_parts.h"
 
 namespace ispace {
 
-/// Triangles of larger files are refused.
-constexpr std::size_t kMaxMeshTriangles = 50'000'000;
-
-/// Reads the triangles of a file of meshes: OBJ, STL, PLY, COLLADA, glTF and what else assimp
-/// knows. All parts are put where their nodes are, polygons cut into triangles, points and lines
-/// left out, equal vertices joined, triangles without area dropped. \param up auto: turned so that
-/// z points up: glTF and IFC from y, COLLADA from what it says; files of other
-///        formats stay as they are. x, y or z: the file's own axes, whatever it says of them.
-///        COLLADA and IFC come in metres, others in their own units.
-/// \throws FormatError: nothing that assimp reads, no triangles, NaN; std::system_error if the file
-///         cannot be opened
-std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const std::string& up);
-
-/// A node that a part hangs on.
-struct MeshNode {
-    std::string name;
-    double height = 0;  ///< of its origin, as the vertices
+/// How a file of meshes is read.
+struct MeshOptions {
+    /// auto: turned so that z points up: glTF and IFC from y, COLLADA from what it says; files of
+    /// other formats stay as they are. x, y or z: the file's own axes, whatever it says of them.
+    std::string up = "auto";
+    /// The files that it names may lie anywhere, not only in its folder and below.
+    bool side_files_anywhere = false;
 };
 
-/// What hangs on one node.
-struct MeshPart {
-    std::vector<MeshNode> nodes;  ///< the part's own first, the root last
-    TriangleMesh mesh;            ///< in the world; without digest
-};
+/// Reads the triangles of a file: OBJ, STL, PLY, COLLADA, glTF, GLB and IFC, by content, else by
+/// suffix. All parts are put where their nodes are, polygons cut into triangles, points and lines
+/// left out, equal vertices joined, triangles without area dropped. COLLADA and IFC come in metres,
+/// others in their own units. The bytes are parsed by a program of their own,
+/// `lib/ispace/read-mesh` beside the one that runs, which has bounds on memory and time and no
+/// rights; a file that makes it crash, grow or hang is a bad file like any other. \param side_files
+/// what the file names is appended: buffers of glTF; materials of OBJ that exist,
+///        though their content is not read
+/// \throws FormatError: nothing of the above, no triangles, NaN, more than kMaxMesh…, a side file
+///         where none may be; std::system_error if the file cannot be opened
+std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
+                                             std::vector<std::string>* side_files = nullptr);
 
-/// The same node by node, for files whose nodes tell what they are. \throws as loadMesh
-std::vector<MeshPart> loadMeshParts(const std::string& path, const std::string& up);
+/// The same node by node, for files whose nodes tell what they are.
+std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options);
 
 }  // namespace ispace

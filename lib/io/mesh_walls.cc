@@ -17,10 +17,10 @@
 #include "geom/box.h"
 #include "geom/predicates.h"
 #include "geom/simplify.h"
-#include "io/building_parts.h"
 #include "io/import_records.h"
 #include "io/line_plan.h"
 #include "io/mesh_file.h"
+#include "io/mesh_load.h"
 #include "io/plan_lines.h"
 
 namespace ispace {
@@ -190,7 +190,7 @@ class IfcReader {
                                     "IfcPlate*", "IfcMember*",      "IfcBuildingElementProxy*"};
         if (options_.door_layers.empty()) options_.door_layers = {"IfcDoor*"};
         if (options_.window_layers.empty()) options_.window_layers = {"IfcWindow*"};
-        gather(loadBuildingParts(operand, options.up));
+        gather(loadMeshParts(operand, {options.up}));
     }
 
     void write(ImportRecords& out) {
@@ -299,6 +299,7 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     plan.door_layers.clear();
     plan.window_layers.clear();
     ImportRecords out(schemas, operand, options);
+    for (std::string& side_file : mesh.sources) out.source(std::move(side_file));
     writeLinePlan(std::move(shapes), {}, operand, plan, out);
     return out.take();
 }

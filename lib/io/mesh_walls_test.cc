@@ -5,7 +5,6 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "io/building_parts.h"
 #include "io/test_import.h"
 
 namespace ispace {
@@ -153,24 +152,6 @@ TEST(Ifc, RefusesWhatIsDamaged) {
     EXPECT_EQ(error_of(nothing).find(path + ": error: bad mesh file: "), 0U) << error_of(nothing);
     EXPECT_NE(errorsOf([&] { readIfc(whole, "-", {}, sceneSchemas()); }).find("standard input"),
               std::string::npos);
-}
-
-TEST(Ifc, PartsSurviveThePipe) {
-    MeshPart part;
-    part.nodes = {{"IfcWall_a_1", 0.5}, {"", -3}};
-    part.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    part.mesh.triangles = {{0, 1, 2}};
-    const std::string bytes = packedParts({part, MeshPart()});
-    const std::vector<MeshPart> parts = unpackedParts(bytes, "x.ifc");
-    ASSERT_EQ(parts.size(), 2U);
-    EXPECT_EQ(parts[0].nodes[0].name, "IfcWall_a_1");
-    EXPECT_EQ(parts[0].nodes[1].height, -3);
-    EXPECT_EQ(parts[0].mesh.vertices, part.mesh.vertices);
-    EXPECT_EQ(parts[0].mesh.triangles, part.mesh.triangles);
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-        EXPECT_THROW(unpackedParts(bytes.substr(0, i), "x.ifc"), FormatError) << i;
-    EXPECT_EQ(errorsOf([] { unpackedParts(packedError("no walls"), "x.ifc"); }),
-              "x.ifc: error: no walls\n");
 }
 
 }  // namespace

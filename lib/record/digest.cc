@@ -41,11 +41,12 @@ class Sha256 {
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-/// A record of a loaded file with the digest of its content in place of the file's name.
+/// A record of a loaded file with the digest of its content in place of the file's name and of
+/// where files that it names may be.
 /// \pre it is loaded
 Record byContent(Record record) {
     for (const KeySpec& key : record.schema().keys)
-        if (key.role == Role::File) record.erase(key.name);
+        if (key.role == Role::File || key.name == "side_files") record.erase(key.name);
     record.set("digest", record.mesh()->digest);
     return record;
 }

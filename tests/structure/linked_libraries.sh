@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # No tool links OpenCV or what that draws in (GDAL, and 140 libraries at each start): the module for
-# pictures does, which is opened when a picture asks for it.
+# pictures does, which is opened when a picture asks for it. No tool links assimp, which some files
+# make crash: the program does that is started for each mesh.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 heavy='libopencv|libgdal'
 module=$binary_dir/lib/ispace/pictures.so
 ldd "$module" >module.ldd
 grep -qE "$heavy" module.ldd || fail "the module for pictures does without OpenCV: $(cat module.ldd)"
+ldd "$binary_dir/lib/ispace/read-mesh" >module.ldd
+grep -q libassimp module.ldd || fail "read-mesh does without assimp"
 for tool in $tools; do
     ldd "$binary_dir/bin/$tool" >tool.ldd
-    if grep -E "$heavy" tool.ldd; then fail "$tool links them"; fi
+    if grep -E "$heavy|libassimp" tool.ldd; then fail "$tool links them"; fi
     [ "$(wc -l <tool.ldd)" -le 60 ] || fail "$tool links $(wc -l <tool.ldd) libraries"
 done
 
@@ -23,4 +26,13 @@ status=0
 "$envc" "$data/pictures/room.jpg" --resolution 0.05 --to env >out 2>err || status=$?
 [ "$status" -eq 1 ] || fail "status $status without the module"
 grep -q 'a JPEG picture needs OpenCV (Debian: libopencv-imgcodecs406): .*pictures.so' err ||
+    fail "no hint: $(cat err)"
+
+# The same for the program that reads meshes, when one is met.
+"$envc" "$data/room.env" --to env >/dev/null
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >chair.obj
+status=0
+"$envc" chair.obj --to stl >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "status $status without read-mesh"
+grep -q 'meshes are read by .*lib/ispace/read-mesh, which cannot be started: No such file' err ||
     fail "no hint: $(cat err)"

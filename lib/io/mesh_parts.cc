@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mesh_parts.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+template <typename T>
+void append(std::string& bytes, const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename T>
+void appendList(std::string& bytes, const std::vector<T>& values) {
+    append(bytes, values.size());
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+class Unpacker {
+  public:
+    Unpacker(std::string_view bytes, const std::string& path) : rest_(bytes), path_(path) {}
+
+    [[noreturn]] void fail() const {
+        throw FormatError(Diagnostic{path_, 0, 0, "bad mesh file: what reads it did not finish"});
+    }
+    [[nodiscard]] std::string_view take(std::size_t size) {
+        if (rest_.size() < size) fail();
+        const std::string_view taken = rest_.substr(0, size);
+        rest_.remove_prefix(size);
+        return taken;
+    }
+    template <typename T>
+    [[nodiscard]] T value() {
+        T value;
+        std::memcpy(&value, take(sizeof value).data(), sizeof value);
+        return value;
+    }
+    /// A number of things that take so many bytes at least.
+    [[nodiscard]] std::size_t count(std::size_t bytes) {
+        const auto count = value<std::size_t>();
+        if (count > rest_.size() / bytes) fail();
+        return count;
+    }
+    template <typename T>
+    [[nodiscard]] std::vector<T> list() {
+        std::vector<T> values(count(sizeof(T)));
+        const std::string_view bytes = take(values.size() * sizeof(T));
+        if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+        return values;
+    }
+    void end() const {
+        if (!rest_.empty()) fail();
+    }
+
+  private:
+    std::string_view rest_;
+    const std::string& path_;
+};
+
+bool isSound(const TriangleMesh& mesh) {
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [](const auto& v) {
+                           return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+                       }) &&
+           std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const auto& t) {
+               return std::max({t[0], t[1], t[2]}) < mesh.vertices.size();
+           });
+}
+
+MeshPart unpackedPart(Unpacker& in) {
+    MeshPart part;
+    const std::size_t nodes = in.count(sizeof(double) + sizeof(std::size_t));
+    if (nodes > kMaxMeshNodeDepth) in.fail();
+    part.nodes.resize(nodes);
+    for (MeshNode& node : part.nodes) {
+        node.height = in.value<double>();
+        node.name = in.take(in.count(1));
+        if (!std::isfinite(node.height)) in.fail();
+    }
+    part.mesh.vertices = in.list<std::array<float, 3>>();
+    part.mesh.triangles = in.list<std::array<std::uint32_t, 3>>();
+    if (!isSound(part.mesh)) in.fail();
+    return part;
+}
+
+}  // namespace
+
+MeshLimits meshLimits(std::size_t file_bytes, bool is_building) {
+    constexpr std::size_t kMega = 1U << 20U;
+    const std::size_t megas = std::min<std::size_t>(file_bytes / kMega, 1024);
+    const std::size_t machine = static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
+                                static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    MeshLimits limits;
+    limits.memory = std::max(1024 * kMega, std::min((1024 + 32 * megas) * kMega, machine / 4 * 3));
+    // Solids of a building are cut by each other.
+    limits.seconds = is_building ? 60 + 10 * megas : 20 + 2 * megas;
+    return limits;
+}
+
+std::string packedParts(const std::vector<MeshPart>& parts) {
+    std::string bytes;
+    append(bytes, parts.size());
+    for (const MeshPart& part : parts) {
+        append(bytes, part.nodes.size());
+        for (const MeshNode& node : part.nodes) {
+            append(bytes, node.height);
+            append(bytes, node.name.size());
+            bytes += node.name;
+        }
+        appendList(bytes, part.mesh.vertices);
+        appendList(bytes, part.mesh.triangles);
+    }
+    return bytes;
+}
+
+std::vector<MeshPart> unpackedParts(std::string_view bytes, const std::string& path) {
+    Unpacker in(bytes, path);
+    std::vector<MeshPart> parts;
+    std::size_t triangles = 0;
+    for (std::size_t left = in.count(3 * sizeof(std::size_t)); left > 0; --left) {
+        parts.push_back(unpackedPart(in));
+        triangles += parts.back().mesh.triangles.size();
+    }
+    in.end();
+    if (parts.size() > kMaxMeshNodes || triangles > kMaxMeshTriangles) in.fail();
+    return parts;
+}
+
+}  // namespace ispace

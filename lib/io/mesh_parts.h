@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geom/triangle_mesh.h"
+
+namespace ispace {
+
+/// What is read of one file at most; more is refused.
+constexpr std::size_t kMaxMeshTriangles = 50'000'000;
+constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
+constexpr std::size_t kMaxMeshNodeDepth = 1000;
+
+/// A node that a part hangs on.
+struct MeshNode {
+    std::string name;
+    double height = 0;  ///< of its origin, as the vertices
+};
+
+/// What hangs on one node.
+struct MeshPart {
+    std::vector<MeshNode> nodes;  ///< the part's own first, the root last
+    TriangleMesh mesh;            ///< in the world; without digest
+};
+
+/// What lib/ispace/read-mesh may use.
+struct MeshLimits {
+    std::size_t memory = 0;   ///< bytes of address space
+    std::size_t seconds = 0;  ///< of processor time
+};
+
+/// For files of so many bytes in all; 1 GB of memory and 20 s at least, and never more than three
+/// quarters of the memory there is beyond that.
+MeshLimits meshLimits(std::size_t file_bytes, bool is_building);
+
+/// What lib/ispace/read-mesh says to the program that started it: a kind, the size of what follows
+/// as eight bytes of this machine, and that.
+enum class MeshAnswer : char {
+    WantsFile = 'F',    ///< its name as the mesh gives it; the reply is a byte, see MeshReply
+    Parts = 'P',        ///< packedParts(); the last
+    Error = 'E',        ///< what is wrong with the file; the last
+    OutOfMemory = 'M',  ///< nothing follows; the last
+};
+
+/// The reply to WantsFile. `Handed` carries a descriptor, and the size as eight bytes.
+enum class MeshReply : char { Handed = 'Y', Missing = 'N' };
+
+constexpr std::size_t kMeshAnswerHead = 1 + sizeof(std::uint64_t);
+
+std::string packedParts(const std::vector<MeshPart>& parts);
+
+/// Reads it back, whoever wrote it: indices lie within the vertices, and vertices are finite.
+/// \param path the mesh, for messages
+/// \throws FormatError: the bytes are not what packedParts writes
+std::vector<MeshPart> unpackedParts(std::string_view bytes, const std::string& path);
+
+}  // namespace ispace

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mesh_reader.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/program.h"
+#include "base/utf8.h"
+#include "io/mesh_format.h"
+#include "io/side_files.h"
+
+namespace ispace {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostNames = 1000;          // of side files
+constexpr std::size_t kLongestName = 4096;        // bytes
+constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
+/// A child that does nothing is waited for this many times its processor time.
+constexpr std::size_t kPatience = 5;
+
+[[noreturn]] void fail(const std::string& path, const std::string& message) {
+    throw FormatError(Diagnostic{path, 0, 0, message});
+}
+
+std::string ownProgram() {
+    return (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "read-mesh").string();
+}
+
+/// The running program, and the socket to it. What still runs at the end is killed.
+class Child {
+  public:
+    Child(const std::string& program, std::vector<std::string> arguments, int file) : socket_(-1) {
+        std::array<int, 2> ends{};
+        if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+            throw std::system_error(errno, std::generic_category(), "socketpair");
+        socket_ = ends[0];
+        OpenFile other(ends[1]);
+        error_ = spawn(program, std::move(arguments), file, other.fd());
+    }
+    ~Child() {
+        ::close(socket_);
+        (void)end();
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    /// Why it could not be started, or 0.
+    [[nodiscard]] int startError() const { return error_; }
+    [[nodiscard]] int socket() const { return socket_; }
+    [[nodiscard]] pid_t process() const { return process_; }
+
+    /// Kills it if it runs; the status of wait(2), or nothing if somebody else took that.
+    int end() {
+        if (process_ <= 0) return 0;
+        ::kill(process_, SIGKILL);  // in vain if it has ended: it is still ours to wait for
+        int status = 0;
+        pid_t waited = 0;
+        do waited = ::waitpid(process_, &status, 0);
+        while (waited < 0 && errno == EINTR);
+        process_ = 0;
+        return waited < 0 ? 0 : status;
+    }
+
+  private:
+    int spawn(const std::string& program, std::vector<std::string> arguments, int file, int other) {
+        std::vector<char*> argv;
+        argv.reserve(arguments.size() + 1);
+        for (std::string& argument : arguments) argv.push_back(argument.data());
+        argv.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        ::posix_spawn_file_actions_init(&actions);
+        // Copies first: one of them may be a number that is to be taken.
+        const OpenFile file_copy(::fcntl(file, F_DUPFD_CLOEXEC, 3));
+        const OpenFile other_copy(::fcntl(other, F_DUPFD_CLOEXEC, 3));
+        ::posix_spawn_file_actions_adddup2(&actions, file_copy.fd(), STDIN_FILENO);
+        ::posix_spawn_file_actions_adddup2(&actions, other_copy.fd(), STDOUT_FILENO);
+        ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+        ::posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+        posix_spawnattr_t attributes;
+        ::posix_spawnattr_init(&attributes);
+        sigset_t signals;
+        ::sigemptyset(&signals);
+        ::posix_spawnattr_setsigmask(&attributes, &signals);
+        ::sigfillset(&signals);
+        ::posix_spawnattr_setsigdefault(&attributes, &signals);
+        ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        char* no_settings[] = {nullptr};
+        const int error = ::posix_spawn(&process_, program.c_str(), &actions, &attributes,
+                                        argv.data(), no_settings);
+        ::posix_spawnattr_destroy(&attributes);
+        ::posix_spawn_file_actions_destroy(&actions);
+        if (error != 0) process_ = 0;
+        return error;
+    }
+
+    int socket_;
+    pid_t process_ = 0;
+    int error_ = 0;
+};
+
+/// One file, one child.
+class Reading {
+  public:
+    Reading(const std::string& path, const MeshOptions& options, MeshShape shape,
+            std::vector<std::string>* side_files)
+        : path_(path),
+          options_(options),
+          side_files_(side_files),
+          is_building_(shape == MeshShape::Parts || meshSuffix(path) == ".ifc"),
+          main_(openRegular(path)),
+          bytes_(main_.size),
+          limits_(meshLimits(bytes_, is_building_)),
+          child_(ownProgram(), arguments(shape), main_.file.fd()) {
+        if (child_.startError() != 0)
+            fail(path_, "meshes are read by " + printable(ownProgram()) +
+                            ", which cannot be started: " + ::strerror(child_.startError()));
+        give_up_ = Clock::now() + std::chrono::seconds(kPatience * limits_.seconds);
+    }
+
+    std::vector<MeshPart> read() {
+        for (;;) {
+            std::array<char, kMeshAnswerHead> head{};
+            receive(head.data(), head.size());
+            std::uint64_t size = 0;
+            std::memcpy(&size, head.data() + 1, sizeof size);
+            switch (static_cast<MeshAnswer>(head[0])) {
+                case MeshAnswer::WantsFile:
+                    reply(text(size, kLongestName));
+                    break;
+                case MeshAnswer::Parts:
+                    return parts(size);
+                case MeshAnswer::Error:
+                    fail(path_, printable(text(size, kLongestMessage)));
+                case MeshAnswer::OutOfMemory:
+                    tooMuchMemory();
+                default:
+                    noAnswer();
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] std::vector<std::string> arguments(MeshShape shape) const {
+        return {ownProgram(),
+                meshSuffix(path_),
+                options_.up,
+                shape == MeshShape::Whole ? "whole" : "parts",
+                std::to_string(::getpid()),
+                std::to_string(bytes_),
+                std::to_string(limits_.memory),
+                std::to_string(limits_.seconds)};
+    }
+
+    std::vector<MeshPart> parts(std::uint64_t size) {
+        // What it sends it had to hold.
+        std::vector<MeshPart> parts = unpackedParts(text(size, limits_.memory), path_);
+        if (parts.empty() || parts.front().mesh.triangles.empty())
+            fail(path_, "a mesh file without triangles");
+        return parts;
+    }
+
+    std::string text(std::uint64_t size, std::size_t most) {
+        if (size > most) noAnswer();
+        std::string bytes;
+        // As it comes: nothing is set aside for what is only announced.
+        while (bytes.size() < size) {
+            constexpr std::size_t kPiece = 1 << 22;
+            const std::size_t at = bytes.size();
+            const std::size_t piece = std::min<std::size_t>(size - at, kPiece);
+            if (bytes.capacity() < at + piece)
+                bytes.reserve(std::min<std::size_t>(size, std::max(2 * at, piece)));
+            bytes.resize(at + piece);
+            receive(bytes.data() + at, piece);
+        }
+        return bytes;
+    }
+
+    void receive(char* to, std::size_t size) {
+        while (size > 0) {
+            await(POLLIN);
+            const ssize_t got = ::recv(child_.socket(), to, size, MSG_DONTWAIT);
+            if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+            if (got <= 0) noAnswer();
+            to += got;
+            size -= static_cast<std::size_t>(got);
+        }
+    }
+
+    void await(short event) {
+        for (;;) {
+            const auto left =
+                std::chrono::ceil<std::chrono::milliseconds>(give_up_ - Clock::now()).count();
+            if (left <= 0) tooMuchTime();
+            pollfd wanted{child_.socket(), event, 0};
+            const int ready = ::poll(&wanted, 1, static_cast<int>(std::min<long>(left, 1'000'000)));
+            if (ready > 0) return;
+            if (ready < 0 && errno != EINTR)
+                throw std::system_error(errno, std::generic_category(), "poll");
+        }
+    }
+
+    void reply(const std::string& name) {
+        if (++names_ > kMostNames)
+            fail(path_, "it names more than " + std::to_string(kMostNames) + " files");
+        if (name.empty() || name.find('\0') != std::string::npos) return send(nullptr);
+        const auto file = openSideFile(path_, name, options_.side_files_anywhere);
+        if (!file) return send(nullptr);
+        const std::string side = sideFilePath(path_, name);
+        if (handed_.insert(side).second) {
+            if (side_files_ != nullptr) side_files_->push_back(side);
+            allow(file->size);
+        }
+        send(&*file);
+    }
+
+    /// Larger limits, for another file.
+    void allow(std::size_t bytes) {
+        bytes_ += bytes;
+        limits_ = meshLimits(bytes_, is_building_);
+        const auto raise = [this](auto resource, std::size_t limit) {
+            rlimit limits{};
+            if (::prlimit(child_.process(), resource, nullptr, &limits) != 0) return;
+            if (limits.rlim_cur == RLIM_INFINITY) return;
+            limits.rlim_cur = std::min<rlim_t>(limits.rlim_max, limit);
+            ::prlimit(child_.process(), resource, &limits, nullptr);
+        };
+        raise(RLIMIT_AS, limits_.memory);
+        raise(RLIMIT_CPU, limits_.seconds);
+        give_up_ =
+            std::max(give_up_, Clock::now() + std::chrono::seconds(kPatience * limits_.seconds));
+    }
+
+    void send(const RegularFile* file) {
+        std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
+        bytes[0] = static_cast<char>(file == nullptr ? MeshReply::Missing : MeshReply::Handed);
+        if (file != nullptr) {
+            const std::uint64_t size = file->size;
+            std::memcpy(&bytes[1], &size, sizeof size);
+        }
+        iovec part{bytes.data(), bytes.size()};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+        if (file != nullptr) {
+            message.msg_control = control.data();
+            message.msg_controllen = control.size();
+            cmsghdr* const head = CMSG_FIRSTHDR(&message);
+            head->cmsg_level = SOL_SOCKET;
+            head->cmsg_type = SCM_RIGHTS;
+            head->cmsg_len = CMSG_LEN(sizeof(int));
+            const int fd = file->file.fd();
+            std::memcpy(CMSG_DATA(head), &fd, sizeof fd);
+        }
+        for (;;) {
+            await(POLLOUT);
+            const ssize_t sent = ::sendmsg(child_.socket(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (sent == static_cast<ssize_t>(bytes.size())) return;
+            if (sent < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+            noAnswer();
+        }
+    }
+
+    [[nodiscard]] std::string forThisSize() const {
+        return ", the most for " + formatBytes(bytes_) + "; is the file damaged?";
+    }
+    [[noreturn]] void tooMuchMemory() {
+        fail(path_, "bad mesh file: it takes more than " + formatBytes(limits_.memory) +
+                        " of memory" + forThisSize());
+    }
+    [[noreturn]] void tooMuchTime() {
+        fail(path_, "bad mesh file: it takes more than " + std::to_string(limits_.seconds) + " s" +
+                        forThisSize());
+    }
+    /// It is dead, or says what it never should.
+    [[noreturn]] void noAnswer() {
+        const int status = child_.end();
+        const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+        if (signal == SIGXCPU) tooMuchTime();
+        if (signal != 0 && signal != SIGKILL)
+            fail(path_, std::string("bad mesh file: assimp crashes on it (") + ::strsignal(signal) +
+                            "); is the file damaged, or nested too deep?");
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+            fail(path_, "meshes are read by " + printable(ownProgram()) +
+                            ", which cannot be started; is assimp installed?");
+        fail(path_, "bad mesh file: what reads it did not finish");
+    }
+
+    const std::string& path_;
+    const MeshOptions& options_;
+    std::vector<std::string>* side_files_;
+    bool is_building_;
+    RegularFile main_;
+    std::size_t bytes_;  ///< of all files handed over
+    MeshLimits limits_;
+    Child child_;
+    Clock::time_point give_up_;
+    std::size_t names_ = 0;
+    std::set<std::string> handed_;
+};
+
+}  // namespace
+
+std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
+                                      MeshShape shape, std::vector<std::string>* side_files) {
+    if (const std::string what = foreignMesh(path); !what.empty()) fail(path, "it is " + what);
+    return Reading(path, options, shape, side_files).read();
+}
+
+}  // namespace ispace

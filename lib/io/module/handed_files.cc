@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/module/handed_files.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kFolder = "/mesh/";
+
+void send(const char* bytes, std::size_t size) {
+    while (size > 0) {
+        const ssize_t sent = ::send(STDOUT_FILENO, bytes, size, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0) ::_exit(1);
+        bytes += sent;
+        size -= static_cast<std::size_t>(sent);
+    }
+}
+
+/// The file, or null.
+std::unique_ptr<HandedFile> ask(std::string_view name) {
+    tell(MeshAnswer::WantsFile, name);
+    std::array<char, 1 + sizeof(std::uint64_t)> bytes{};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    ssize_t got = 0;
+    do got = ::recvmsg(STDOUT_FILENO, &message, MSG_WAITALL | MSG_CMSG_CLOEXEC);
+    while (got < 0 && errno == EINTR);
+    if (got != static_cast<ssize_t>(bytes.size())) ::_exit(1);
+    const cmsghdr* const head = CMSG_FIRSTHDR(&message);
+    if (static_cast<MeshReply>(bytes[0]) != MeshReply::Handed || head == nullptr) return nullptr;
+    int fd = -1;
+    std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
+    std::uint64_t size = 0;
+    std::memcpy(&size, &bytes[1], sizeof size);
+    return std::make_unique<HandedFile>(fd, size, true);
+}
+
+}  // namespace
+
+void tell(MeshAnswer kind, std::string_view bytes) {
+    std::array<char, kMeshAnswerHead> head{};
+    head[0] = static_cast<char>(kind);
+    const std::uint64_t size = bytes.size();
+    std::memcpy(&head[1], &size, sizeof size);
+    send(head.data(), head.size());
+    send(bytes.data(), bytes.size());
+}
+
+HandedFile::~HandedFile() {
+    if (owned_) ::close(fd_);
+}
+
+std::size_t HandedFile::Read(void* to, std::size_t size, std::size_t count) {
+    if (size == 0 || at_ >= size_) return 0;
+    // Whole items, as fread.
+    const std::size_t whole = std::min(count, (size_ - at_) / size) * size;
+    std::size_t done = 0;
+    while (done < whole) {
+        const ssize_t got = ::pread(fd_, static_cast<char*>(to) + done, whole - done,
+                                    static_cast<off_t>(at_ + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        done += static_cast<std::size_t>(got);
+    }
+    at_ += done / size * size;
+    return done / size;
+}
+
+aiReturn HandedFile::Seek(std::size_t offset, aiOrigin origin) {
+    const std::size_t base = origin == aiOrigin_CUR ? at_ : origin == aiOrigin_END ? size_ : 0;
+    // Offsets backwards come as what wraps around.
+    const auto place = static_cast<std::int64_t>(base + offset);
+    if (place < 0) return aiReturn_FAILURE;
+    at_ = static_cast<std::size_t>(place);
+    return aiReturn_SUCCESS;
+}
+
+HandedFiles::HandedFiles(std::size_t size, const std::string& format, bool reads_side_files)
+    : size_(size),
+      // A line break, which no name in OBJ holds: where a library of materials is missing, assimp
+      // looks for one that is named as the mesh.
+      name_(std::string(kFolder) + "\n." + format),
+      reads_side_files_(reads_side_files) {}
+
+Assimp::IOStream* HandedFiles::Open(const char* file, const char* /*mode*/) {
+    std::string_view name = file;
+    if (name == name_) return new HandedFile(STDIN_FILENO, size_, false);
+    if (name.starts_with(kFolder)) name.remove_prefix(kFolder.size());
+    if (name.empty() || name.front() == '\n') return nullptr;
+    std::unique_ptr<HandedFile> handed = ask(name);
+    return reads_side_files_ ? handed.release() : nullptr;
+}
+
+}  // namespace ispace

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "io/mesh_parts.h"
+
+namespace ispace {
+
+/// Sends a message to the program that started this one, whole. Ends this one if it is gone.
+void tell(MeshAnswer kind, std::string_view bytes);
+
+/// An open file of a size that was told, for assimp.
+class HandedFile : public Assimp::IOStream {
+  public:
+    /// \param owned closed at the end
+    HandedFile(int fd, std::size_t size, bool owned) : fd_(fd), size_(size), owned_(owned) {}
+    ~HandedFile() override;
+    HandedFile(const HandedFile&) = delete;
+    HandedFile& operator=(const HandedFile&) = delete;
+
+    std::size_t Read(void* to, std::size_t size, std::size_t count) override;
+    std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+    aiReturn Seek(std::size_t offset, aiOrigin origin) override;
+    [[nodiscard]] std::size_t Tell() const override { return at_; }
+    [[nodiscard]] std::size_t FileSize() const override { return size_; }
+    void Flush() override {}
+
+  private:
+    int fd_;
+    std::size_t size_, at_ = 0;
+    bool owned_;
+};
+
+/// All that assimp may open: the mesh, and what the program that started this one hands over.
+class HandedFiles : public Assimp::IOSystem {
+  public:
+    /// \param size of the mesh, which is open as standard input
+    /// \param format "obj" and the like: the suffix of its name here
+    /// \param reads_side_files false: they are asked for, so that they are known, and kept closed
+    HandedFiles(std::size_t size, const std::string& format, bool reads_side_files);
+
+    /// The name of the mesh. No file can name it.
+    [[nodiscard]] const std::string& name() const { return name_; }
+
+    bool Exists(const char* file) const override { return name_ == file; }
+    [[nodiscard]] char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* file, const char* mode) override;
+    void Close(Assimp::IOStream* file) override { delete file; }
+
+  private:
+    std::size_t size_;
+    std::string name_;
+    bool reads_side_files_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/module/mesh_checks.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <pugixml.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "base/number.h"
+#include "base/utf8.h"
+#include "io/mesh_parts.h"
+#include "io/module/node_graph.h"
+
+namespace ispace {
+
+namespace {
+
+/// Nothing that a format knows is nested so deep.
+constexpr std::size_t kDeepestJson = 500;
+
+[[noreturn]] void fail(const std::string& message) {
+    throw std::runtime_error("bad mesh file: " + message);
+}
+
+/// Assimp 5.2 never ends on a header that is cut off, and allocates whatever one says: an element
+/// takes a byte of the file at least.
+void checkPlyHeader(std::string_view bytes) {
+    if (!bytes.starts_with("ply")) return;
+    std::istringstream header(std::string(bytes.substr(0, 1 << 20)));
+    for (std::string line; std::getline(header, line) && !header.eof();) {
+        std::istringstream words(line);
+        std::string word, name, count;
+        words >> word >> name >> count;
+        if (word == "end_header") return;
+        const auto number = parseInteger(count);
+        if (word == "element" &&
+            (!number || *number < 0 || static_cast<std::uint64_t>(*number) > bytes.size()))
+            fail(excerpt(count) + " elements " + excerpt(name) + " in " +
+                 std::to_string(bytes.size()) + " bytes");
+    }
+    fail("a PLY header without `end_header`");
+}
+
+/// Finds `children` of the members of the list `nodes` of glTF 2, and counts how deep it nests.
+/// What is wrong otherwise assimp finds.
+class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
+  public:
+    void check() const {
+        NodeGraph graph;
+        for (std::size_t i = 0; i < children_.size(); ++i) graph.add();
+        for (std::size_t i = 0; i < children_.size(); ++i)
+            for (const std::uint64_t child : children_[i])
+                if (child < children_.size())
+                    graph.hang(static_cast<NodeGraph::Node>(child),
+                               static_cast<NodeGraph::Node>(i));
+        graph.check();
+    }
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t value) override {
+        if (in_nodes_ && depth_ == 4 && in_children_) children_.back().push_back(value);
+        return true;
+    }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override {
+        deeper();
+        if (in_nodes_ && depth_ == 3) {
+            if (children_.size() >= kMaxMeshNodes)
+                fail("more than " + std::to_string(kMaxMeshNodes) + " nodes");
+            children_.emplace_back();
+        }
+        return true;
+    }
+    bool end_object() override { return --depth_, true; }
+    bool start_array(std::size_t) override { return deeper(), true; }
+    bool end_array() override { return --depth_, true; }
+    bool key(string_t& name) override {
+        if (depth_ == 1) in_nodes_ = name == "nodes";
+        if (depth_ == 3) in_children_ = name == "children";
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+        return false;
+    }
+
+  private:
+    void deeper() {
+        if (++depth_ > kDeepestJson)
+            fail("JSON nested more than " + std::to_string(kDeepestJson) + " deep");
+    }
+
+    std::size_t depth_ = 0;
+    bool in_nodes_ = false, in_children_ = false;
+    std::vector<std::vector<std::uint64_t>> children_;
+};
+
+void checkGltf(std::string_view json) {
+    GltfNodes nodes;
+    (void)nlohmann::json::sax_parse(json.begin(), json.end(), &nodes);
+    nodes.check();
+}
+
+std::uint32_t wordAt(std::string_view bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 4; i > 0; --i)
+        word = word << 8U | static_cast<unsigned char>(bytes[at + i - 1]);
+    return word;
+}
+
+void checkGlb(std::string_view bytes) {
+    constexpr std::size_t kHeader = 12, kChunk = 8;
+    if (bytes.size() < kHeader + kChunk) fail("a GLB file that ends in its header");
+    // Version 1 has the length of its JSON in the same place.
+    const std::uint32_t json = wordAt(bytes, kHeader);
+    if (json > bytes.size() - kHeader - kChunk)
+        fail("JSON of " + std::to_string(json) + " bytes in " + std::to_string(bytes.size()) +
+             " bytes");
+    checkGltf(bytes.substr(kHeader + kChunk, json));
+}
+
+/// All nodes and visual scenes, below each other as they are and as they are instanced.
+class ColladaNodes {
+  public:
+    void check(const pugi::xml_document& document) {
+        walk(document);
+        for (const auto& [name, node] : instances_)
+            if (const auto found = named_.find(name); found != named_.end())
+                graph_.hang(found->second, node);
+        graph_.check();
+    }
+
+  private:
+    void walk(const pugi::xml_node& top) {
+        // Without recursion: how deep elements lie in each other is the file's choice.
+        std::vector<std::pair<pugi::xml_node, std::optional<NodeGraph::Node>>> open{{top, {}}};
+        while (!open.empty()) {
+            auto [element, node] = open.back();
+            open.pop_back();
+            const std::string_view name = element.name();
+            if (name == "node" || name == "visual_scene") {
+                const NodeGraph::Node own = graph_.add();
+                if (node) graph_.hang(own, *node);
+                node = own;
+                if (const char* const id = element.attribute("id").value(); *id != 0)
+                    named_.emplace(id, own);
+            } else if (name == "instance_node" && node) {
+                std::string_view url = element.attribute("url").value();
+                if (url.starts_with('#')) url.remove_prefix(1);
+                instances_.emplace_back(url, *node);
+            }
+            for (const pugi::xml_node& child : element.children())
+                if (child.type() == pugi::node_element) open.emplace_back(child, node);
+        }
+    }
+
+    NodeGraph graph_;
+    std::map<std::string, NodeGraph::Node, std::less<>> named_;
+    std::vector<std::pair<std::string, NodeGraph::Node>> instances_;
+};
+
+void checkCollada(std::string_view bytes) {
+    pugi::xml_document document;
+    // What is no XML assimp refuses.
+    if (document.load_buffer(bytes.data(), bytes.size())) ColladaNodes().check(document);
+}
+
+struct Suffix {
+    std::string_view suffix;
+    MeshFormat format;
+};
+constexpr Suffix kSuffixes[] = {
+    {".obj", MeshFormat::Obj},     {".stl", MeshFormat::Stl},   {".ply", MeshFormat::Ply},
+    {".dae", MeshFormat::Collada}, {".gltf", MeshFormat::Gltf}, {".glb", MeshFormat::Glb},
+    {".ifc", MeshFormat::Ifc},
+};
+
+}  // namespace
+
+MeshFormat meshFormat(std::string_view bytes, const std::string& suffix) {
+    if (bytes.starts_with("glTF")) return MeshFormat::Glb;
+    if (bytes.starts_with("ISO-10303-21")) return MeshFormat::Ifc;
+    if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::Ply;
+    const auto* const named =
+        std::find_if(std::begin(kSuffixes), std::end(kSuffixes),
+                     [&suffix](const Suffix& known) { return known.suffix == suffix; });
+    const bool known = named != std::end(kSuffixes);
+    if (known && named->format == MeshFormat::Glb) return MeshFormat::Gltf;  // by its words alone
+    if (known) return named->format;
+    if (const auto kind = meshFormatOf(bytes)) return *kind;
+    fail("wanted OBJ, STL, PLY, COLLADA, glTF or IFC; `assimp export` and Blender convert others");
+}
+
+void checkMesh(MeshFormat format, std::string_view bytes) {
+    switch (format) {
+        case MeshFormat::Ply:
+            checkPlyHeader(bytes);
+            break;
+        case MeshFormat::Glb:
+            checkGlb(bytes);
+            break;
+        case MeshFormat::Gltf:
+            checkGltf(bytes);
+            break;
+        case MeshFormat::Collada:
+            checkCollada(bytes);
+            break;
+        case MeshFormat::Obj:
+        case MeshFormat::Stl:
+        case MeshFormat::Ifc:
+            break;
+    }
+}
+
+}  // namespace ispace
