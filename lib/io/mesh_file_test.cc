@@ -253,6 +253,50 @@ TEST_F(MeshFile, RecordsGetTheirContent) {
     EXPECT_TRUE(text.sources.empty());
 }
 
+TEST_F(MeshFile, SideFilesAreSources) {
+    std::filesystem::create_directories(folder_ / "chairs");
+    std::filesystem::create_directories(folder_ / "colours");
+    writeAll(path("chairs/t.mtl"), "newmtl red\n");
+    writeAll(path("colours/t.mtl"), "newmtl red\n");
+    writeAll(path("chairs/inside.obj"), "mtllib t.mtl\n" + kObj);
+    writeAll(path("chairs/missing.obj"), "mtllib C:\\somebody\\t.mtl\n" + kObj);
+    writeAll(path("chairs/outside.obj"), "mtllib ../colours/t.mtl\n" + kObj);
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(read("mesh file=chairs/inside.obj\n").sources,
+              (Texts{path("chairs/inside.obj"), path("chairs/t.mtl")}));
+    EXPECT_EQ(read("mesh file=chairs/missing.obj\n").sources, Texts{path("chairs/missing.obj")});
+    EXPECT_NE(errorsOf([&] {
+                  read("mesh file=chairs/outside.obj\n");
+              }).find("`../colours/t.mtl`, which lies outside its folder"),
+              std::string::npos);
+    const Document anywhere = read("mesh file=chairs/outside.obj side_files=anywhere\n");
+    EXPECT_EQ(anywhere.sources,
+              (Texts{path("chairs/outside.obj"), path("chairs/../colours/t.mtl")}));
+    // Where side files may be is no part of what the room is.
+    EXPECT_EQ(environmentDigest(anywhere.records),
+              environmentDigest(read("mesh file=chairs/inside.obj\n").records));
+    // A plan that is cut from a mesh was made of them, too.
+    ImportOptions cut;
+    cut.slice_walls = 1;
+    EXPECT_EQ(readDocument(path("chairs/inside.obj"), cut, sceneSchemas()).sources,
+              Texts{path("chairs/t.mtl")});
+}
+
+TEST_F(MeshFile, OtherFormatsAreRefusedByName) {
+    const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    EXPECT_EQ(errorOf("chair.OFF", off),
+              "chair.OFF: error: it is a .off mesh: convert it, for example with `assimp export "
+              "FILE chair.obj` or with Blender\n");
+    // By content no importer is found that the suffix does not say.
+    EXPECT_EQ(errorOf("chair.obj", off).find("chair.obj: error: bad mesh file: "), 0U);
+    EXPECT_NE(errorOf("chair", off).find("wanted OBJ, STL, PLY"), std::string::npos);
+    EXPECT_EQ(load("chair.txt", kObj).triangles.size(), 4U);
+    EXPECT_NE(errorsOf([&] {
+                  parseDocument(off, path("chair.off"), {}, sceneSchemas());
+              }).find("not an environment or layout but a .off mesh: convert it"),
+              std::string::npos);
+}
+
 TEST_F(MeshFile, FindingsAreAtTheRecords) {
     writeAll(path("t.obj"), kObj);
     writeAll(path("bad.obj"), "nonsense");

@@ -18,18 +18,27 @@
 #include <cstdlib>
 #include <vector>
 
+#if defined(__SANITIZE_ADDRESS__)
+#define ISPACE_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ISPACE_SANITIZED 1
+#endif
+#endif
+
+#ifdef ISPACE_SANITIZED
+// In place of the limit on memory. What assimp leaves behind is nobody's business.
+extern "C" const char* __asan_default_options() {  // NOLINT
+    return "detect_leaks=0:hard_rss_limit_mb=1200:max_allocation_size_mb=1024";
+}
+#endif
+
 namespace ispace {
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef ISPACE_SANITIZED
 constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 #else
 constexpr bool kSanitized = false;
 #endif

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the program that reads meshes answers, which may be anything: a bad file can make it say
+// what it wants.
+#include <algorithm>
+#include <cmath>
+
+#include "fuzz.h"
+#include "io/mesh_parts.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace ispace;
+    return fuzz::guarded(data, size, [](std::string_view bytes) {
+        const std::vector<MeshPart> parts = unpackedParts(bytes, "mesh");
+        for (const MeshPart& part : parts)
+            for (const auto& triangle : part.mesh.triangles)
+                for (const std::uint32_t corner : triangle)
+                    fuzz::require(std::isfinite(part.mesh.vertices.at(corner)[0]),
+                                  "a vertex that is no place");
+        fuzz::require(packedParts(parts) == bytes, "other bytes after unpacking and packing");
+    });
+}
