@@ -75,13 +75,13 @@ constexpr std::array kAllowed{
 
 void filterCalls() {
     if (kMachine == 0) return;
-    constexpr auto number = static_cast<std::uint32_t>(offsetof(seccomp_data, nr));
-    constexpr auto machine = static_cast<std::uint32_t>(offsetof(seccomp_data, arch));
+    constexpr auto kNumberAt = static_cast<std::uint32_t>(offsetof(seccomp_data, nr));
+    constexpr auto kMachineAt = static_cast<std::uint32_t>(offsetof(seccomp_data, arch));
     std::vector<sock_filter> program{
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, machine),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kMachineAt),
         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0),
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, number),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumberAt),
     };
     for (const auto call : kAllowed) {
         program.push_back(
