@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geom/box_tree.h"
+#include "geom/convex.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -42,30 +43,18 @@ Point2 middleOf(const Polygon& polygon) {
 /// The least depth along the normals of the edges of `edges`, or nothing if the two are apart.
 std::optional<double> leastDepth(const Polygon& edges, const Polygon& a, const Polygon& b,
                                  double least) {
+    // Four walks, as the normals go round: how far each of the two reaches, there and back.
+    Caliper a_there(a), a_back(a), b_there(b), b_back(b);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Vec2 side = edges[i + 1 == edges.size() ? 0 : i + 1] - edges[i];
         const double extent = length(side);
         if (extent == 0) continue;
-        least = std::min(least, depthAlong(a, b, 1 / extent * perpendicular(side)));
+        const Vec2 normal = 1 / extent * perpendicular(side), back = -1 * normal;
+        least = std::min({least, a_there.reach(normal) + b_back.reach(back),
+                          b_there.reach(normal) + a_back.reach(back)});
         if (least <= kTouching) return std::nullopt;
     }
     return least;
-}
-
-/// What two convex polygons share.
-Polygon clipped(Polygon part, const Polygon& convex) {
-    for (std::size_t i = 0; i < convex.size() && !part.empty(); ++i) {
-        const Point2 a = convex[i], b = convex[i + 1 == convex.size() ? 0 : i + 1];
-        Polygon kept;
-        for (std::size_t k = 0; k < part.size(); ++k) {
-            const Point2 p = part[k], q = part[k + 1 == part.size() ? 0 : k + 1];
-            const double s = cross(b - a, p - a), t = cross(b - a, q - a);
-            if (s >= 0) kept.push_back(p);
-            if ((s < 0) != (t < 0)) kept.push_back(p + s / (s - t) * (q - p));
-        }
-        part = std::move(kept);
-    }
-    return part;
 }
 
 /// The piece of a line that lies deeper than kTouching in a convex polygon.
@@ -156,7 +145,7 @@ std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b) {
         const auto piece = pieceWithin({b[0], b[1]}, a);
         return Overlap{*depth, piece ? middleOf({piece->a, piece->b}) : middleOf(b)};
     }
-    const Polygon shared = clipped(a, b);
+    const Polygon shared = sharedByConvex(a, b);
     return Overlap{*depth, middleOf(shared.empty() ? b : shared)};
 }
 

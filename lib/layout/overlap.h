@@ -23,7 +23,7 @@ struct Overlap {
 };
 
 /// Of two convex polygons; `b` may be a line (two points). Nothing if they touch at most.
-/// O(n m) if they overlap, mostly O(n + m) if not.
+/// O(n + m)
 std::optional<Overlap> overlapOf(const Polygon& a, const Polygon& b);
 
 /// How far `b` has to move along `direction`, a unit vector, until it is beyond `a`; negative if it

@@ -144,6 +144,18 @@ TEST(Overlap, SharedPlaceOfCuts) {
     EXPECT_FALSE(with(rectangle({6, 1}, 0.1, 0.1, {})));
 }
 
+// 220 000 corners each: a time that grows with their product would be minutes.
+TEST(Overlap, OfRoundThingsAsLargeAsTowns) {
+    const Polygon a = inscribedIn(Ellipse({0, 0}, 1e6, 1e6, {}));
+    const Polygon b = inscribedIn(Ellipse({8e5, 0}, 1e6, 1e6, {}));
+    const auto overlap = overlapOf(a, b);
+    ASSERT_TRUE(overlap);
+    EXPECT_NEAR(overlap->depth, 2e5, 1);
+    EXPECT_NEAR(overlap->place.x, 4e5, 1);
+    EXPECT_NEAR(overlap->place.y, 0, 1);
+    EXPECT_NEAR(overlapOf(a, {{4e5, -1e6}, {4e5, 1e6}})->depth, 1e5, 1);
+}
+
 TEST(IndoorIndex, AnswersAsTheRegionDoes) {
     const Region region{{{0, 0}, {8, 0}, {8, 4}, {4, 4}, {4, 8}, {0, 8}},
                         {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
