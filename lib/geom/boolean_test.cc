@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/error.h"
 #include "geom/planar_map.h"
 #include "geom/test_curves.h"
 
@@ -248,6 +249,29 @@ TEST(Difference, isTheSameWithAndWithoutNeighbours) {
             EXPECT_EQ(std::count_if(pieces.begin(), pieces.end(), holds), wanted ? 1 : 0);
         }
     }
+}
+
+// An arrangement of them would take gigabytes.
+TEST(Difference, boundsCrossings) {
+    const auto heap = [](int count) {
+        std::vector<Polygon> solids;
+        for (int i = 0; i < count; ++i) {
+            const double a = i, x = 0.001 * (i * 7919 % count);
+            const Vec2 way{std::cos(a), std::sin(a)}, side = perpendicular(way);
+            const Point2 low{x, 0.0005 * i};
+            solids.push_back({low, low + way, low + way + side, low + side});
+        }
+        return solids;
+    };
+    try {
+        difference(kRoom, heap(4000));
+        FAIL() << "took them";
+    } catch (const FormatError& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find("at most 500000 can be"), std::string::npos) << what;
+    }
+    EXPECT_THROW(unite(heap(4000)), FormatError);
+    EXPECT_FALSE(difference(kRoom, heap(150)).empty());
 }
 
 }  // namespace

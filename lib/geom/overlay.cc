@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "geom/crossings.h"
+
 namespace ispace {
 
 namespace {
@@ -304,6 +306,10 @@ std::vector<Region> overlayDifference(std::span<const Segment2> added,
     for (const Segment2& s : added) lines.push_back(turned(s, 1, 0));
     for (const Segment2& s : removed) lines.push_back(turned(s, 0, 1));
     lines = joined(std::move(lines));
+    std::vector<Segment2> segments;
+    segments.reserve(lines.size());
+    for (const Line& line : lines) segments.push_back({line.a, line.b});
+    mustCrossRarely(segments, "outlines", "leave out some of what lies upon each other");
     Arrangement arrangement = arrange(lines);
     windFaces(arrangement, lines);
     const auto kept = [](Face face) { return face->data().added > 0 && face->data().removed == 0; };

@@ -26,6 +26,7 @@ std::optional<std::vector<Region>> tracedFaces(std::span<const Segment2> lines,
 /// is zero. Sorted; curves begin at their lowest vertex.
 ///
 /// Winding numbers instead of polygon sets: curves may touch, overlap and repeat as they like.
+/// \throws FormatError (without a place) for lines that cross by the million
 std::vector<Region> overlayDifference(std::span<const Segment2> added,
                                       std::span<const Segment2> removed);
 

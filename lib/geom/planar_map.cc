@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <deque>
 #include <numeric>
-#include <random>
 #include <set>
 #include <utility>
 
 #include "base/error.h"
 #include "geom/box_tree.h"
+#include "geom/crossings.h"
 #include "geom/overlay.h"
 #include "geom/predicates.h"
 #include "geom/segment_grid.h"
@@ -66,10 +66,6 @@ constexpr std::size_t kTouchesPerLine = 32, kTouchesAnyway = 1U << 21;
 /// spread, then in a tree; so many there, and besides, only where heaps of long lines cross.
 constexpr std::size_t kGridLooksPerLine = 64;
 constexpr std::size_t kLooksPerLine = 1024, kLooksAnyway = 1U << 26;
-/// Crossings that an arrangement may have, about, and the pairs of lines by which they are counted.
-constexpr double kMostCrossings = 500'000;
-constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMostSampled = 1U << 22;
-constexpr std::size_t kSureHits = 16;
 
 /// Collects for each segment the points of others that lie on its inside.
 class TouchFinder {
@@ -157,25 +153,6 @@ std::vector<std::vector<Point2>> touchingPoints(const std::vector<Segment2>& seg
     return touching;
 }
 
-/// About how many pairs of the lines have a point in common, by a sample of them where there are
-/// many; 0 where too few of the sample do.
-double sampledCrossings(std::span<const Segment2> lines) {
-    const std::size_t n = lines.size();
-    if (n < 2) return 0;
-    std::mt19937_64 random(1);
-    const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMostSampled);
-    std::size_t hits = 0;
-    for (std::size_t i = 0; i < pairs; ++i) {
-        const std::uint64_t bits = random();
-        const Segment2& s = lines[(bits >> 32U) % n];
-        const Segment2& t = lines[(bits & 0xffffffffU) % n];
-        hits += &s != &t && intersects(s, t);
-    }
-    if (hits < kSureHits) return 0;
-    return static_cast<double>(hits) / static_cast<double>(pairs) * static_cast<double>(n) *
-           static_cast<double>(n) / 2;
-}
-
 }  // namespace
 
 WeldedLines weld(std::span<const Segment2> lines) {
@@ -214,11 +191,7 @@ std::vector<Region> boundedFaces(const WeldedLines& lines) {
 std::vector<Region> boundedFaces(std::span<const Segment2> lines,
                                  std::span<const Segment2> passages) {
     if (auto faces = tracedFaces(lines, passages)) return std::move(*faces);
-    // Of fewer lines not even all pairs are too many.
-    if (static_cast<double>(lines.size()) > std::sqrt(2 * kMostCrossings) &&
-        sampledCrossings(lines) > kMostCrossings)
-        throw FormatError(
-            Diagnostic{"", 0, 0, "too many wall lines cross each other; end them where they meet"});
+    mustCrossRarely(lines, "wall lines", "end them where they meet");
     return overlayFaces(lines, passages);
 }
 
