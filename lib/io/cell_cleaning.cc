@@ -20,13 +20,19 @@ constexpr std::size_t kLargestPinhole = 8;
 
 /// Sides between a cell of the set and one that is not.
 std::size_t countEdges(const MapCells& cells) {
+    const auto n = static_cast<std::size_t>(cells.width());
+    std::vector<std::uint8_t> below(n);
     std::size_t edges = 0;
-    cells.forEach([&](int x, int y) {
-        edges += static_cast<std::size_t>(!cells.contains(x - 1, y)) +
-                 static_cast<std::size_t>(!cells.contains(x + 1, y)) +
-                 static_cast<std::size_t>(!cells.contains(x, y - 1)) +
-                 static_cast<std::size_t>(!cells.contains(x, y + 1));
-    });
+    const auto count_between = [&](std::span<const std::uint8_t> row) {
+        for (std::size_t i = 0; i < n; ++i) edges += row[i] ^ below[i];
+    };
+    for (int y = 0; y < cells.height(); ++y) {
+        const std::span<const std::uint8_t> row = cells.row(y);
+        count_between(row);
+        forEachRunOf(row, [&edges](int, int) { edges += 2; });
+        std::copy(row.begin(), row.end(), below.begin());
+    }
+    count_between(std::vector<std::uint8_t>(n));
     return edges;
 }
 
@@ -86,7 +92,7 @@ void fillSpecks(RoomCells& room, double resolution, Cleaning& done) {
     }
     others.forEachRun([&](const CellRun& run, std::size_t piece) {
         if (!is_speck[piece]) return;
-        for (int x = run.first; x <= run.last; ++x) room.floor.insert(x, run.row);
+        room.floor.insertRun(run.row, run.first, run.last);
     });
 }
 

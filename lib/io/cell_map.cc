@@ -206,12 +206,19 @@ class CellMapImport {
         RoomCells room{MapCells(width, height), MapCells(width, height), offset};
         pieces.forEachRun([&](const CellRun& run, std::size_t of) {
             if (of != piece) return;
-            for (int x = run.first; x <= run.last; ++x)
-                room.floor.insert(x - offset.x, run.row - offset.y);
+            room.floor.insertRun(run.row - offset.y, run.first - offset.x, run.last - offset.x);
         });
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
-                if (map_.occupied.contains(x + offset.x, y + offset.y)) room.occupied.insert(x, y);
+        const int left = std::max(offset.x, 0), bottom = std::max(offset.y, 0);
+        const int right = std::min(offset.x + width, map_.occupied.width());
+        const int top = std::min(offset.y + height, map_.occupied.height());
+        for (int y = bottom; y < top; ++y) {
+            const auto row = map_.occupied.row(y).subspan(static_cast<std::size_t>(left),
+                                                          static_cast<std::size_t>(right - left));
+            forEachRunOf(row, [&](int first, int last) {
+                room.occupied.insertRun(y - offset.y, first + left - offset.x,
+                                        last + left - offset.x);
+            });
+        }
         return room;
     }
 

@@ -28,14 +28,7 @@ void CellPieces::findRuns(const MapCells& cells) {
     row_begin_.reserve(static_cast<std::size_t>(height_) + 1);
     for (int y = 0; y < height_; ++y) {
         row_begin_.push_back(runs_.size());
-        const std::span<const std::uint8_t> row = cells.row(y);
-        auto at = row.begin();
-        while ((at = std::find(at, row.end(), 1)) != row.end()) {
-            const auto end = std::find(at, row.end(), 0);
-            runs_.push_back(
-                {y, static_cast<int>(at - row.begin()), static_cast<int>(end - row.begin()) - 1});
-            at = end;
-        }
+        forEachRunOf(cells.row(y), [&](int first, int last) { runs_.push_back({y, first, last}); });
     }
     row_begin_.push_back(runs_.size());
 }
@@ -105,7 +98,7 @@ MapCells CellPieces::cellsOf(std::size_t piece) const {
     MapCells cells(width_, height_);
     forEachRun([&](const CellRun& run, std::size_t of) {
         if (of != piece) return;
-        for (int x = run.first; x <= run.last; ++x) cells.insert(x, run.row);
+        cells.insertRun(run.row, run.first, run.last);
     });
     return cells;
 }

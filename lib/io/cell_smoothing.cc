@@ -2,6 +2,7 @@
 #include "io/cell_smoothing.h"
 
 #include <array>
+#include <cstring>
 
 namespace ispace {
 
@@ -72,6 +73,8 @@ class Flattener {
     void run(CellPlace along, CellPlace across) {
         for (int y = 0; y < floor_.height(); ++y)
             for (int x = 0; x < floor_.width(); ++x) {
+                x = firstEdge(x, y, across);
+                if (x == floor_.width()) break;
                 const bool kind = floor_.contains(x, y);
                 if (isKind(x - along.x, y - along.y, kind)) continue;  // no begin of a run
                 if (isKind(x + across.x, y + across.y, kind)) continue;
@@ -86,6 +89,19 @@ class Flattener {
     }
     [[nodiscard]] bool inGrid(int x, int y) const {
         return x >= 0 && y >= 0 && x < floor_.width() && y < floor_.height();
+    }
+
+    /// From (x, y) on along the row, the first cell that is perhaps not of the kind of the one
+    /// across.
+    [[nodiscard]] int firstEdge(int x, int y, CellPlace across) const {
+        constexpr int kAtOnce = 32;
+        const bool in_grid = y + across.y >= 0 && y + across.y < floor_.height();
+        if (x == 0 || !in_grid) return x;
+        const std::uint8_t* const here = floor_.row(y).data();
+        const std::uint8_t* const there = floor_.row(y + across.y).data() + across.x;
+        while (x + kAtOnce < floor_.width() && std::memcmp(here + x, there + x, kAtOnce) == 0)
+            x += kAtOnce;
+        return x;
     }
 
     void flatten(CellPlace at, CellPlace along, CellPlace across, bool kind) {

@@ -19,24 +19,31 @@ constexpr int kNearWall = 5;             ///< cells
 
 /// The union of all squares of `side` cells in the set.
 MapCells opened(const MapCells& cells, int side) {
-    // First the squares' lower left cells, then the squares; each by rows, then by columns.
-    MapCells squares(cells.width(), cells.height());
-    std::vector<int> rows(static_cast<std::size_t>(cells.width()));  // long enough runs upwards
+    // First the squares' lower left cells, then the squares; each by columns, then by rows.
+    const auto n = static_cast<std::size_t>(cells.width());
+    MapCells squares(cells.width(), cells.height()), result(cells.width(), cells.height());
+    std::vector<int> column(n);         // cells of a run upwards, or of a square that are left
+    std::vector<std::uint8_t> flag(n);  // that is long enough, or begins in the row
     for (int y = cells.height() - 1; y >= 0; --y) {
         const std::span<const std::uint8_t> row = cells.row(y);
-        int run = 0;
-        for (int x = cells.width() - 1; x >= 0; --x) {
-            const auto i = static_cast<std::size_t>(x);
-            run = row[i] == 0 ? 0 : run + 1;
-            rows[i] = run >= side ? rows[i] + 1 : 0;
-            if (rows[i] >= side) squares.insert(x, y);
+        for (std::size_t i = 0; i < n; ++i) {
+            column[i] = row[i] == 0 ? 0 : column[i] + 1;
+            flag[i] = column[i] >= side ? 1 : 0;
         }
+        forEachRunOf(flag, [&](int first, int last) {
+            if (last - first + 1 >= side) squares.insertRun(y, first, last - side + 1);
+        });
     }
-    MapCells result(cells.width(), cells.height());
-    squares.forEach([&](int x, int y) {
-        for (int v = 0; v < side; ++v)
-            for (int u = 0; u < side; ++u) result.insert(x + u, y + v);
-    });
+    std::fill(column.begin(), column.end(), 0);
+    for (int y = 0; y < cells.height(); ++y) {
+        const std::span<const std::uint8_t> row = squares.row(y);
+        for (std::size_t i = 0; i < n; ++i) {
+            column[i] = row[i] != 0 ? side : std::max(column[i] - 1, 0);
+            flag[i] = column[i] > 0 ? 1 : 0;
+        }
+        forEachRunOf(flag,
+                     [&](int first, int last) { result.insertRun(y, first, last + side - 1); });
+    }
     return result;
 }
 
@@ -108,7 +115,7 @@ class Strips {
             }
             pieces.forEachRun([&](const CellRun& run, std::size_t piece) {
                 if (stays_[offset + piece]) return;
-                for (int x = run.first; x <= run.last; ++x) floor.erase(x, run.row);
+                floor.eraseRun(run.row, run.first, run.last);
             });
         };
         erase(broad_, 0);

@@ -31,9 +31,12 @@ MapCells difference(const MapCells& cells, const MapCells& others) {
 MapCells complement(const MapCells& cells) {
     MapCells others(cells.width(), cells.height());
     for (int y = 0; y < cells.height(); ++y) {
-        const std::span<const std::uint8_t> row = cells.row(y);
-        for (std::size_t x = 0; x < row.size(); ++x)
-            if (row[x] == 0) others.insert(static_cast<int>(x), y);
+        int next = 0;
+        forEachRunOf(cells.row(y), [&](int first, int last) {
+            if (next < first) others.insertRun(y, next, first - 1);
+            next = last + 1;
+        });
+        if (next < cells.width()) others.insertRun(y, next, cells.width() - 1);
     }
     return others;
 }
@@ -79,26 +82,36 @@ std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule) 
 }
 
 CellPlace widestPlace(const MapCells& cells) {
-    const int width = cells.width();
-    const int height = cells.height();
-    std::vector<int> rings(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const auto at = [&](int x, int y) {
-        return x < 0 || y < 0 || x >= width || y >= height ? 0 : rings[cells.index(x, y)];
-    };
+    const int width = cells.width(), height = cells.height();
+    // Rows with a column on each side, and a row below and above: rings grow from beyond the grid.
+    // They are at most half as many as the shorter side, which 16 bits hold for any picture.
+    const std::size_t n = static_cast<std::size_t>(width) + 2;
+    std::vector<std::uint16_t> rings(n * (static_cast<std::size_t>(height) + 2));
+    const auto row_of = [&](int y) { return &rings[n * (static_cast<std::size_t>(y) + 1) + 1]; };
     // Distance transform in two passes: from below and the left, then from above and the right.
-    for (int y = 0; y < height; ++y)
+    const auto grown = [](std::uint16_t ring) { return static_cast<std::uint16_t>(ring + 1); };
+    for (int y = 0; y < height; ++y) {
+        const std::uint8_t* const is_in = cells.row(y).data();
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const below = row - n;
         for (int x = 0; x < width; ++x)
-            if (cells.contains(x, y))
-                rings[cells.index(x, y)] =
-                    1 + std::min({at(x - 1, y), at(x - 1, y - 1), at(x, y - 1), at(x + 1, y - 1)});
+            if (is_in[x] != 0)
+                row[x] = grown(std::min({row[x - 1], below[x - 1], below[x], below[x + 1]}));
+    }
     CellPlace best;
-    for (int y = height - 1; y >= 0; --y)
+    std::uint16_t widest = 0;
+    for (int y = height - 1; y >= 0; --y) {
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const above = row + n;
         for (int x = width - 1; x >= 0; --x) {
-            int& ring = rings[cells.index(x, y)];
-            ring = std::min(ring, 1 + std::min({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1),
-                                                at(x - 1, y + 1)}));
-            if (ring >= at(best.x, best.y)) best = {x, y};
+            if (row[x] == 0) continue;
+            row[x] = std::min(row[x],
+                              grown(std::min({row[x + 1], above[x + 1], above[x], above[x - 1]})));
+            if (row[x] < widest) continue;
+            widest = row[x];
+            best = {x, y};
         }
+    }
     return best;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,9 @@ class MapCells {
     void insert(int x, int y) { cells_[index(x, y)] = 1; }
     /// \pre the cell lies in the grid
     void erase(int x, int y) { cells_[index(x, y)] = 0; }
+    /// The cells from `first` to `last` of a row. \pre they lie in the grid, first <= last
+    void insertRun(int y, int first, int last) { fillRun(y, first, last, 1); }
+    void eraseRun(int y, int first, int last) { fillRun(y, first, last, 0); }
     [[nodiscard]] std::size_t count() const;
     /// One byte a cell, 1 if it is in the set.
     [[nodiscard]] std::span<const std::uint8_t> row(int y) const {
@@ -72,9 +76,30 @@ class MapCells {
     }
 
   private:
+    void fillRun(int y, int first, int last, std::uint8_t value) {
+        std::memset(&cells_[index(first, y)], value, static_cast<std::size_t>(last - first) + 1);
+    }
+
     int width_, height_;
     std::vector<std::uint8_t> cells_;
 };
+
+/// Calls visit(first, last) for each run of cells that are 1 in a row; the others are 0.
+template <typename Visit>
+void forEachRunOf(std::span<const std::uint8_t> row, Visit visit) {
+    const std::uint8_t* const begin = row.data();
+    const std::uint8_t* const end = begin + row.size();
+    const auto find = [end](const std::uint8_t* at, int value) {
+        const void* const found =
+            at == end ? nullptr : std::memchr(at, value, static_cast<std::size_t>(end - at));
+        return found == nullptr ? end : static_cast<const std::uint8_t*>(found);
+    };
+    for (const std::uint8_t* at = find(begin, 1); at != end;) {
+        const std::uint8_t* const past = find(at, 0);
+        visit(static_cast<int>(at - begin), static_cast<int>(past - begin) - 1);
+        at = find(past, 1);
+    }
+}
 
 /// The cells of the first set that are not in the second, of the same size.
 MapCells difference(const MapCells& cells, const MapCells& others);
