@@ -143,13 +143,16 @@ Document readBarePicture(std::string_view bytes, const std::string& name,
         fail(
             "a picture does not say how large its pixels are: say it with `envc --resolution M` "
             "(metres a pixel), or name the map.yaml that goes with it");
-    const Picture image = onUnknown(parsePicture(bytes, name));
-    checkCellMap(image.width, image.height, *options.resolution, name);
+    const auto read_cells = [&]() -> CellMap {
+        const Picture image = onUnknown(parsePicture(bytes, name));
+        checkCellMap(image.width, image.height, *options.resolution, name);
+        return {freeCells(image, {}), occupiedCells(image, {}), *options.resolution,
+                options.origin};
+    };
     ImportRecords out(schemas, name, options);
-    writeCellMap(
-        {freeCells(image, {}), occupiedCells(image, {}), *options.resolution, options.origin},
-        {name, "what is white is free; with a map.yaml, `negate: 1` turns that about"}, options,
-        out);
+    writeCellMap(read_cells(),
+                 {name, "what is white is free; with a map.yaml, `negate: 1` turns that about"},
+                 options, out);
     return out.take();
 }
 

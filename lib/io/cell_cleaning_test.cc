@@ -186,5 +186,31 @@ TEST(CleanRoom, NoiseOverARectangleComesOutAsTheRectangle) {
     }
 }
 
+// A square of half a metre has a million cells of half a millimetre and stands on four million
+// places: painting it on each would take hours.
+TEST(CleanRoom, FineCellsCostNoMoreThanCoarseOnes) {
+    constexpr int kSide = 3000;
+    RoomCells room{MapCells(kSide, kSide), MapCells(kSide, kSide), {}};
+    for (int y = 1; y + 1 < kSide; ++y) room.floor.insertRun(y, 1, kSide - 2);
+    room.floor.erase(kSide / 2, kSide / 2);
+    const Cleaning done = cleanRoom(room, 0.0005, {});
+    EXPECT_EQ(done.specks, 1U);
+    EXPECT_EQ(room.floor.count(), std::size_t{kSide - 2} * (kSide - 2));
+}
+
+// 500 000 rooms along a lane: looking each up in a list of all took as many steps again.
+TEST(CleanRoom, LanesWithManyRooms) {
+    constexpr int kLength = 2'000'001;
+    RoomCells room{MapCells(kLength, 5), MapCells(kLength, 5), {}};
+    room.floor.insertRun(0, 0, kLength - 1);
+    for (int x = 0; x + 3 < kLength; x += 4)
+        for (int y = 1; y < 4; ++y) room.floor.insertRun(y, x, x + 2);
+    room.occupied.insertRun(4, 0, kLength - 1);
+    cleanRoom(room, 0.14, {{1, 2}, {kLength - 4, 2}});
+    EXPECT_TRUE(room.floor.contains(1, 2));
+    EXPECT_TRUE(room.floor.contains(kLength / 2, 0)) << "joins both";
+    EXPECT_TRUE(room.floor.contains(kLength - 4, 2));
+}
+
 }  // namespace
 }  // namespace ispace

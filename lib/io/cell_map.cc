@@ -29,6 +29,9 @@ constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on 
 /// Metres: beyond it numbers are no metres, or the map is no plan of a building.
 constexpr double kLargestExtent = 10000;
 
+/// Of the bounding boxes of all rooms that are kept.
+constexpr double kMostCellsOfRooms = 1e9;
+
 /// Metres; rooms beyond have a resolution that is hardly meant.
 constexpr double kSmallRoom = 2, kLargeRoom = 2000;
 
@@ -141,11 +144,26 @@ class CellMapImport {
     // Their records
 
     void keepRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
+        checkWork(pieces, rooms);
         Cleaning cleaning;
         for (const std::size_t room : rooms) keepRoom(pieces, room, cleaning);
         warnOfExtent();
         tellRest(map_, pieces, rooms, options_, out_);
         tellCleaning(map_, cleaning, out_);
+    }
+
+    /// Each room costs as much as its bounding box, and rooms may lie around each other.
+    void checkWork(const CellPieces& pieces, const std::vector<std::size_t>& rooms) const {
+        double cells = 0;
+        for (const std::size_t room : rooms) {
+            const CellPiece& box = pieces[room];
+            cells += (box.highest.x - box.lowest.x + 1.0) * (box.highest.y - box.lowest.y + 1.0);
+        }
+        if (rooms.size() > 1 && cells > kMostCellsOfRooms)
+            fail(std::to_string(rooms.size()) + " rooms, whose boxes have " +
+                 formatFixed(cells, 0) + " cells together, are more than " +
+                 formatFixed(kMostCellsOfRooms, 0) +
+                 "; choose some with --inside, or make the cells larger");
     }
 
     void keepRoom(const CellPieces& pieces, std::size_t piece, Cleaning& cleaning) {
@@ -157,7 +175,8 @@ class CellMapImport {
             choices.push_back(choice);
             keep.push_back({choice.place.x - room.offset.x, choice.place.y - room.offset.y});
         }
-        const MapCells raw = room.floor;
+        std::optional<MapCells> raw;
+        if (barrier_) raw = room.floor;
         double tolerance = options_.simplify.value_or(0) / map_.resolution;
         if (options_.simplify != 0) {
             const Cleaning own = cleanRoom(room, map_.resolution, keep);
@@ -167,7 +186,7 @@ class CellMapImport {
         const std::optional<MapCells> rigid = besideBarriers(room);
         if (rigid)
             rigid->forEach([&](int x, int y) {
-                if (raw.contains(x, y))
+                if (raw->contains(x, y))
                     room.floor.insert(x, y);
                 else
                     room.floor.erase(x, y);
@@ -204,8 +223,7 @@ class CellMapImport {
         const int width = box.highest.x - box.lowest.x + 1 + 2 * kRim;
         const int height = box.highest.y - box.lowest.y + 1 + 2 * kRim;
         RoomCells room{MapCells(width, height), MapCells(width, height), offset};
-        pieces.forEachRun([&](const CellRun& run, std::size_t of) {
-            if (of != piece) return;
+        pieces.forEachRunOfPiece(piece, [&](const CellRun& run) {
             room.floor.insertRun(run.row - offset.y, run.first - offset.x, run.last - offset.x);
         });
         const int left = std::max(offset.x, 0), bottom = std::max(offset.y, 0);

@@ -186,5 +186,21 @@ TEST(CellMap, GapsToTheYardCloseAndInnerDoorsStay) {
     EXPECT_NEAR(import(openHouse().map(), options).area(), kHouse, 0.1);
 }
 
+// 400 rooms around each other, each as wide as the map: minutes, of which the bound tells at once.
+TEST(CellMap, RoomsAroundEachOtherAreBounded) {
+    constexpr int kSide = 4000, kStep = 5;
+    CellMap map{MapCells(kSide, kSide), MapCells(kSide, kSide), 0.14, {}};
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            const int ring = std::min({x, y, kSide - 1 - x, kSide - 1 - y});
+            (ring % kStep == 0 ? map.occupied : map.free).insert(x, y);
+        }
+    ImportOptions options;
+    EXPECT_EQ(import(map, options).fences.size(), 2U) << "one room";
+    options.rooms = RoomChoice::All;
+    const std::string error = errorOf(map, options);
+    EXPECT_NE(error.find("are more than 1000000000"), std::string::npos) << error;
+}
+
 }  // namespace
 }  // namespace ispace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -43,18 +44,35 @@ class CellPieces {
     /// Calls visit(CellRun, piece), row by row.
     template <typename Visit>
     void forEachRun(Visit visit) const {
-        for (std::size_t i = 0; i < runs_.size(); ++i) visit(runs_[i], piece_of_[i]);
+        for (std::size_t i = 0; i < runs_.size(); ++i)
+            visit(runs_[i], static_cast<std::size_t>(piece_of_[i]));
+    }
+    /// Calls visit(CellRun) for the runs of one piece, row by row; looks at its bounding box alone.
+    template <typename Visit>
+    void forEachRunOfPiece(std::size_t piece, Visit visit) const {
+        const CellPiece& box = pieces_[piece];
+        for (int y = box.lowest.y; y <= box.highest.y; ++y) {
+            const std::size_t end = row_begin_[static_cast<std::size_t>(y) + 1];
+            for (std::size_t i = firstRun({box.lowest.x, y});
+                 i < end && runs_[i].first <= box.highest.x; ++i)
+                if (piece_of_[i] == piece) visit(runs_[i]);
+        }
     }
 
   private:
+    /// Of runs and pieces: maps of 100 million cells can have half as many runs.
+    using Index = std::uint32_t;
+
     void findRuns(const MapCells& cells);
-    void joinRows(Joined joined, std::vector<std::size_t>& root) const;
-    void addUp(const std::vector<std::size_t>& root);
+    void joinRows(Joined joined, std::vector<Index>& root) const;
+    void addUp(std::vector<Index>& root);
+    /// Index of the first run of the row that does not end left of the place.
+    [[nodiscard]] std::size_t firstRun(CellPlace place) const;
 
     int width_, height_;
     std::vector<CellRun> runs_;
     std::vector<std::size_t> row_begin_;  ///< index of the first run of each row, and the end
-    std::vector<std::size_t> piece_of_;   ///< for each run
+    std::vector<Index> piece_of_;         ///< for each run
     std::vector<CellPiece> pieces_;
 };
 

@@ -21,8 +21,11 @@ constexpr double kShareBehindDoor = 0.1;  ///< of the floor, that is worth a war
 
 constexpr std::array<CellPlace, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-bool contains(const std::vector<std::size_t>& list, std::size_t value) {
-    return std::find(list.begin(), list.end(), value) != list.end();
+/// For each piece whether it is one of the rooms.
+std::vector<bool> areRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
+    std::vector<bool> are(pieces.size());
+    for (const std::size_t room : rooms) are[room] = true;
+    return are;
 }
 
 /// As an option takes it.
@@ -106,9 +109,10 @@ void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<st
               const ImportOptions& options, ImportRecords& out) {
     std::size_t kept = 0, all = 0, indoor = 0;
     std::optional<std::size_t> largest;
+    const std::vector<bool> are_rooms = areRooms(pieces, rooms);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const std::size_t cells = pieces[i].cells;
-        const bool is_room = contains(rooms, i);
+        const bool is_room = are_rooms[i];
         all += cells;
         if (is_room) kept += cells;
         if (!is_room && pieces.borderShare(i) > kOutsideShare) continue;
@@ -154,12 +158,13 @@ void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& o
 void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
               const std::vector<std::size_t>& rooms, double widest, ImportRecords& out) {
     const CellPieces gaps(cut, CellPieces::Joined::ByCorners);
+    const std::vector<bool> are_rooms = areRooms(pieces, rooms);
     std::vector<bool> is_ours(gaps.size());
     gaps.forEachRun([&](const CellRun& run, std::size_t gap) {
         for (int x = run.first; x <= run.last; ++x)
             for (const CellPlace side : kSides)
                 if (const auto piece = pieces.at({x + side.x, run.row + side.y});
-                    piece && contains(rooms, *piece))
+                    piece && are_rooms[*piece])
                     is_ours[gap] = true;
     });
     std::size_t count = 0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
+#include <unordered_set>
 
 #include "io/cell_pieces.h"
 
@@ -127,7 +127,9 @@ class Strips {
         const auto piece = broad_.at(place);
         if (!piece) return;
         std::vector<std::size_t>& around = neighbours_[broad_.size() + strip];
-        if (std::find(around.begin(), around.end(), *piece) != around.end()) return;
+        if (!around.empty() && around.back() == *piece) return;
+        // A strip through a map can have a million neighbours.
+        if (!neighbouring_.insert((std::uint64_t{strip} << 32U) | *piece).second) return;
         around.push_back(*piece);
         neighbours_[*piece].push_back(broad_.size() + strip);
     }
@@ -154,14 +156,16 @@ class Strips {
     bool isWide(std::size_t piece, double resolution) {
         const int side = static_cast<int>(std::ceil(kLeastRoomWidth / resolution));
         if (broad_[piece].extent() < side) return false;
-        if (!wide_) wide_.emplace(opened(floor_, side));
-        bool found = false;
-        broad_.forEachRun([&](const CellRun& run, std::size_t of) {
-            if (of != piece || found) return;
-            for (int x = run.first; x <= run.last && !found; ++x)
-                found = wide_->contains(x, run.row);
-        });
-        return found;
+        if (is_wide_.empty()) {
+            is_wide_.resize(broad_.size());
+            const MapCells wide = opened(floor_, side);
+            broad_.forEachRun([&](const CellRun& run, std::size_t of) {
+                const auto begin = wide.row(run.row).begin();
+                const auto end = begin + run.last + 1;
+                if (std::find(begin + run.first, end, 1) != end) is_wide_[of] = true;
+            });
+        }
+        return is_wide_[piece];
     }
 
     /// A tree over all nodes, the fewest steps from the start, without the branches that lead to
@@ -185,7 +189,8 @@ class Strips {
     CellPieces broad_, strips_;
     std::vector<std::vector<std::size_t>> neighbours_;  ///< broad pieces, then strips
     std::vector<bool> stays_;
-    std::optional<MapCells> wide_;
+    std::vector<bool> is_wide_;                       ///< of the broad pieces, where asked for
+    std::unordered_set<std::uint64_t> neighbouring_;  ///< pairs of a strip and a broad piece
 };
 
 }  // namespace

@@ -90,8 +90,10 @@ void forEachRunOf(std::span<const std::uint8_t> row, Visit visit) {
     const std::uint8_t* const begin = row.data();
     const std::uint8_t* const end = begin + row.size();
     const auto find = [end](const std::uint8_t* at, int value) {
-        const void* const found =
-            at == end ? nullptr : std::memchr(at, value, static_cast<std::size_t>(end - at));
+        constexpr int kShort = 8;  // runs this short are found sooner without a call
+        for (int i = 0; i < kShort; ++i, ++at)
+            if (at == end || *at == value) return at;
+        const void* const found = std::memchr(at, value, static_cast<std::size_t>(end - at));
         return found == nullptr ? end : static_cast<const std::uint8_t*>(found);
     };
     for (const std::uint8_t* at = find(begin, 1); at != end;) {

@@ -10,7 +10,7 @@
 namespace ispace {
 
 /// Pictures with more pixels are refused before anything is allocated.
-constexpr std::int64_t kMaxPgmPixels = 1'000'000'000;
+constexpr std::int64_t kMaxPgmPixels = 400'000'000;
 
 /// Reads a PGM picture: P2 (text) or P5 (one byte a sample, or two, big-endian, where the maximum
 /// is above 255), with comments in the header, and nothing behind the last sample.
