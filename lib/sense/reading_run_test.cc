@@ -287,6 +287,26 @@ TEST(MotionSource, FiresAtItsRateWhileTheWayLasts) {
               "time\n");
 }
 
+// A mistyped time: 100 million readings would have filled the disk.
+TEST(MotionSource, BoundsReadingsBetweenTwoPoses) {
+    const std::string way = "0 0 0 0.15 0 0 0 1\n10000000 1 0 0.15 0 0 0 1\n";
+    std::vector<ReadingJob> batch;
+    MotionSource far(linesOf(way), 10, 0.06);
+    EXPECT_EQ(testing::findings([&] {
+                  far.next(1, batch);
+                  return 0;
+              }),
+              "poses.txt:2: error: from t=0 to t=10000000 are 100000000 readings at 10 Hz, wanted "
+              "at most 100000 between two poses; are times in seconds? --frames N takes as many as "
+              "N\n");
+    MotionSource asked(linesOf(way), 10, 0.06, 150'000);
+    std::size_t count = 0;
+    for (asked.next(4000, batch); !batch.empty(); asked.next(4000, batch)) count += batch.size();
+    EXPECT_EQ(count, 150'000U);
+    MotionSource near(linesOf("0 0 0 0.15 0 0 0 1\n10000 1 0 0.15 0 0 0 1\n"), 10, 0.06);
+    EXPECT_NO_THROW(near.next(1, batch));
+}
+
 TEST(StillSource, FrameByFrameEachAtItsRate) {
     const Scene scene = testing::scene(kRoom,
                                        "laser at=1,1 rate=40\n"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/reading_source.h"
 
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "base/number.h"
 
 namespace ispace {
 
@@ -93,14 +95,26 @@ void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     }
 }
 
+/// Checks the next pose beside the last one.
+void MotionSource::follow(const TimedPose& timed) {
+    const double last = window_.back().time;
+    if (timed.time <= last)
+        throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
+    const double readings = (timed.time - last) * rate_;
+    if (frames_ || readings <= kMostBetween) return;
+    throw poses_.error("from t=" + formatDouble(last) + " to t=" + formatDouble(timed.time) +
+                       " are " + formatDouble(std::round(readings)) + " readings at " +
+                       formatDouble(rate_) + " Hz, wanted at most " + std::to_string(kMostBetween) +
+                       " between two poses; are times in seconds? --frames N takes as many as N");
+}
+
 /// Reads on until the way from `begin` on reaches a time; false if it ends before, or has not come
 /// so far.
 bool MotionSource::reach(double begin, double time, PoseLines::Wait wait) {
     while (window_.empty() || window_.back().time < time) {
         const auto timed = poses_.next(wait);
         if (!timed) return false;
-        if (!window_.empty() && timed->time <= window_.back().time)
-            throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
+        if (!window_.empty()) follow(*timed);
         // What lies before the pose that the sensor comes from is of no use.
         if (window_.size() > 1 && window_[1].time <= begin) window_.pop_front();
         window_.push_back(*timed);
@@ -117,7 +131,7 @@ void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
         begin_ = first->time;
     }
     using Wait = PoseLines::Wait;
-    while (batch.size() < most) {
+    while (batch.size() < most && !(frames_ && frame_ >= *frames_)) {
         const double time = wholeNanoseconds(begin_ + frame_ / rate_);
         if (!reach(time, time + duration_, batch.empty() ? Wait::Yes : Wait::No)) return;
         // What lies behind is of no use any more, but for the pose it comes from.

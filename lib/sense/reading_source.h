@@ -76,18 +76,24 @@ class PoseSource final : public ReadingSource {
 };
 
 /// One sensor that drives along a trajectory: frame k at the first pose's time + k / rate, as long
-/// as it is done before the last pose. Times must grow. \throws FormatError where they do not
+/// as it is done before the last pose. Times must grow; with a number of frames it ends after them,
+/// without one there are at most kMostBetween between two poses: a mistyped time would be
+/// millions. \throws FormatError where it is not so
 class MotionSource final : public ReadingSource {
   public:
-    MotionSource(PoseLines poses, double rate, double duration)
-        : poses_(std::move(poses)), rate_(rate), duration_(duration) {}
+    static constexpr int kMostBetween = 100'000;
+
+    MotionSource(PoseLines poses, double rate, double duration, std::optional<int> frames = {})
+        : poses_(std::move(poses)), rate_(rate), duration_(duration), frames_(frames) {}
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
 
   private:
     bool reach(double begin, double time, PoseLines::Wait wait);
+    void follow(const TimedPose& timed);
 
     PoseLines poses_;
     double rate_, duration_;
+    std::optional<int> frames_;
     double begin_ = 0;
     std::deque<TimedPose> window_;
     int frame_ = 0;

@@ -73,14 +73,23 @@ class OneFile final : public Delivery {
     OutputFile file_;
 };
 
-/// All points in one cloud.
+/// All points in one cloud, which is held in memory until it is whole.
 class OneCloud final : public Delivery {
   public:
-    explicit OneCloud(const ScanToolOptions& options)
-        : options_(options), file_(options.common.output) {}
+    /// \param a_frame readings a frame \param count all readings, -1 if nobody knows
+    OneCloud(const ScanToolOptions& options, std::size_t a_frame, std::int64_t count)
+        : options_(options),
+          file_(options.common.output),
+          a_frame_(a_frame),
+          frames_(std::max<std::int64_t>(count, 0) / static_cast<std::int64_t>(a_frame)) {}
     [[nodiscard]] Packing how() const override { return Packing::Clouds; }
     void write(Readings& readings) override {
-        for (PointCloud& cloud : readings.clouds) clouds_.add(std::move(cloud));
+        for (PointCloud& cloud : readings.clouds) {
+            points_ += cloud.size();
+            if (++readings_ == a_frame_) checkPoints(points_ * static_cast<std::size_t>(frames_));
+            checkPoints(points_);
+            clouds_.add(std::move(cloud));
+        }
     }
     void commit() override {
         const PointCloud cloud = clouds_.take();
@@ -91,8 +100,20 @@ class OneCloud final : public Delivery {
 
   private:
     const ScanToolOptions& options_;
+    static void checkPoints(std::size_t points) {
+        constexpr std::size_t kMost = 100'000'000;
+        if (points > kMost)
+            throw FormatError({"", 0, 0,
+                               "a cloud of " + std::to_string(points) + " points, wanted at most " +
+                                   std::to_string(kMost) +
+                                   " in one file; name a folder (-o DIR/) for a file each reading, "
+                                   "or take fewer"});
+    }
+
     OutputFile file_;
     CloudPile clouds_;
+    std::size_t a_frame_, readings_ = 0, points_ = 0;
+    std::int64_t frames_;
 };
 
 }  // namespace
@@ -106,7 +127,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
         for (const Sensors::Entry& entry : sensors.order) ids.push_back(sensors.id(entry));
         if (options.common.dependencies.wanted)
             throw UsageError("-MD writes a rule for one product, and a set is many files");
-        names->prepare(ids, options.frames > 1 || count < 0, format.endings());
+        names->prepare(ids, options.frames.value_or(1) > 1 || count < 0, format.endings());
         return std::make_unique<Files>(std::move(*names), sensors);
     }
     format.checkStream();
@@ -114,7 +135,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     if (count == 1) return std::make_unique<OneFile>(output);
     const bool is_cloud = options.format == "pcd" || options.format == "ply";
     if (is_cloud && options.coordinates == Coordinates::World)
-        return std::make_unique<OneCloud>(options);
+        return std::make_unique<OneCloud>(options, sensors.order.size(), count);
     const std::string many = count < 0 ? "poses" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +

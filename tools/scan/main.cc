@@ -72,7 +72,8 @@ void warn(const ScanToolOptions& options, const std::vector<std::string>& warnin
 }
 
 std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors) {
-    if (options.poses.empty()) return std::make_unique<StillSource>(sensors, options.frames);
+    if (options.poses.empty())
+        return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
     if (options.poses == "-" && isTerminalInput())
         throw UsageError("stdin is a terminal: give a file of poses, or send them through a pipe");
     const auto file = std::make_shared<InputFile>(options.poses);
@@ -81,7 +82,7 @@ std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const S
     if (!options.motion) return std::make_unique<PoseSource>(std::move(poses));
     const Sensors::Entry& sensor = sensors.order.front();
     return std::make_unique<MotionSource>(std::move(poses), sensors.rate(sensor),
-                                          durationOf(sensors, sensor));
+                                          durationOf(sensors, sensor), options.frames);
 }
 
 FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {

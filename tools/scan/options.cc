@@ -46,7 +46,8 @@ void ScanCommand::declare() {
     line_.texts("--select", "GLOB", o.select, "read only sensors whose ids match (* ? [a-z])",
                 Enters::History);
     constexpr int kMostFrames = 1'000'000'000;
-    line_.count("--frames", "N", o.frames, 1, kMostFrames, "readings of each sensor, at its rate",
+    line_.count("--frames", "N", o.frames, 1, kMostFrames,
+                "readings of each sensor, at its rate (default 1); of --motion the most it takes",
                 Enters::History);
     line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
                      Enters::History);
@@ -94,8 +95,9 @@ void ScanCommand::check() const {
         if (!o.model.empty()) throw UsageError("--model is the sensor of --poses: give both");
         if (o.motion) throw UsageError("--motion goes along --poses: give both");
     } else {
-        if (line_.given("--frames"))
-            throw UsageError("--frames counts readings of placed sensors; --poses has its own");
+        if (o.frames && !o.motion)
+            throw UsageError(
+                "--frames counts readings of placed sensors and of --motion; --poses has its own");
         if (!o.model.empty() && !o.select.empty())
             throw UsageError("--select and --model both say which sensor takes the poses");
     }
