@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -68,6 +69,8 @@ class LineFile {
         pending.clear();
         if (error_ != 0) fail(name_, error_);
     }
+
+    [[nodiscard]] std::uint64_t size() const { return static_cast<std::uint64_t>(size_); }
 
   private:
     void write() {
@@ -147,19 +150,22 @@ std::string fileIn(const std::string& folder, const char* name) {
 }  // namespace
 
 struct Recorder::Data {
-    explicit Data(const std::string& folder)
-        : lock(madeFolder(folder)),
+    explicit Data(const std::string& name)
+        : folder(name),
+          lock(madeFolder(folder)),
           robots(fileIn(folder, "robots.csv")),
           scans(fileIn(folder, "scans.jsonl")),
           timing(fileIn(folder, "timing.csv")),
           info(fileIn(folder, "info.csv")) {}
 
+    std::string folder;
     FolderLock lock;
     LineFile robots, scans, timing, info;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
     SimTime time{}, step_length{};
     std::int64_t steps = 0;
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
     bool flushed_all = false;  // nothing was recorded since the last flush
 
     void remember(const World& world);
@@ -216,6 +222,11 @@ void Recorder::Data::flush() {
     timing.pending.append(",").append(std::to_string(steps)).append("\n");
     timing.flush();
     flushed_all = true;
+    if (const std::uint64_t bytes = robots.size() + scans.size(); bytes > most_bytes)
+        throw FormatError({folder, 0, 0,
+                           "the record has " + std::to_string(bytes) +
+                               " bytes at t=" + formatSimTime(time) + ", wanted at most " +
+                               std::to_string(most_bytes) + " (--record-limit)"});
 }
 
 Recorder::Recorder(const std::string& folder, const World& world, const History& history,
@@ -245,6 +256,8 @@ void Recorder::record(const World& world) {
     const bool much = data.robots.pending.size() > kMostPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
+
+void Recorder::limit(std::uint64_t bytes) { data_->most_bytes = bytes; }
 
 int Recorder::lock() const { return data_->lock.descriptor(); }
 

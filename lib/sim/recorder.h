@@ -32,6 +32,10 @@ class Recorder {
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
+    /// Ends the run once robots.csv and scans.jsonl together have grown beyond so many bytes: what
+    /// writes them throws FormatError, their lines stay.
+    void limit(std::uint64_t bytes);
+
     /// The state after a step; flushes if 0.1 s have passed.
     void record(const World& world);
     /// Writes out what is pending. \throws std::system_error, also for a full disk

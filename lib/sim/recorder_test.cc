@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "layout/test_layout.h"
 #include "sense/reading_jsonl.h"
@@ -234,6 +235,28 @@ TEST_F(RecorderTest, KeepsWholeLinesWhenTheDiskIsFull) {
     EXPECT_TRUE(robots.ends_with(",0\n"));
     EXPECT_LE(robots.size(), kSpace);
     EXPECT_GT(robots.size() + 30, kSpace);
+}
+
+TEST_F(RecorderTest, EndsTheRunAtItsLimit) {
+    const Scene scene = testing::scene(kRoom, kRobots);
+    World world(scene, milliseconds(5));
+    Recorder recorder(path("run"), world, {}, 0);
+    recorder.limit(100'000);
+    std::string error;
+    try {
+        for (int i = 0; i < 100'000; ++i) {
+            world.step();
+            recorder.record(world);
+        }
+    } catch (const FormatError& failed) {
+        error = failed.what();
+    }
+    EXPECT_NE(error.find("wanted at most 100000"), std::string::npos) << error;
+    const std::string lines = text("run/robots.csv");
+    EXPECT_GT(lines.size(), 100'000U);
+    EXPECT_LT(lines.size(), 3'000'000U) << "a flush beyond";
+    EXPECT_TRUE(lines.ends_with('\n'));
+    EXPECT_EQ(linesOf(lines), 1 + 2 * (world.steps() + 1)) << "those of the last step, too";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "cli/byte_count.h"
 #include "cli/scene_options.h"
 #include "record/schema.h"
 
@@ -62,25 +63,6 @@ double readGap(const std::string& text) {
     if (gap == 1 && !text.ends_with('%'))
         throw UsageError('`' + text + "` could be 1% or all of it: write 1% or 0.01");
     return gap;
-}
-
-/// "2G", "500M", "1.5 GB": bytes, by powers of 1024.
-std::size_t readBytes(const std::string& text) {
-    const auto end = text.find_first_not_of("0123456789.");
-    const auto number = parseDouble(text.substr(0, end));
-    std::string unit = end == std::string::npos ? "" : text.substr(end);
-    for (char& c : unit)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    if (unit.ends_with('B')) unit.pop_back();
-    const std::string known = "KMGT";
-    const auto power = unit.empty() ? std::string::npos : known.find(unit);
-    if (!number || *number <= 0 || (!unit.empty() && (unit.size() > 1 || power > known.size())))
-        throw UsageError('`' + text + "` is not a size like 500M or 2G");
-    double bytes = *number;
-    for (std::size_t i = 0; !unit.empty() && i <= power; ++i) bytes *= 1024;
-    constexpr double kMost = 1e15;
-    if (bytes > kMost) throw UsageError('`' + text + "` is more than any machine has");
-    return static_cast<std::size_t>(bytes);
 }
 
 template <typename Value, std::size_t kCount>
@@ -253,7 +235,7 @@ void ArrangeCommand::addSearchOptions() {
                Enters::History);
     line_.parsed(
         "--max-memory", "SIZE",
-        [&how](const std::string& text) { how.most_bytes = readBytes(text); },
+        [&how](const std::string& text) { how.most_bytes = byteCount(text); },
         "what candidates and the tree of exact may take, e.g. 2G (default 8G)", Enters::Nothing);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan/delivery.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/output_set.h"

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -11,6 +12,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "base/number.h"
+#include "cli/byte_count.h"
 #include "cli/line_guard.h"
 #include "cli/operands.h"
 #include "cli/progress_bar.h"
@@ -67,6 +70,19 @@ std::vector<std::string> recordedLines(const std::string& folder) {
     return files;
 }
 
+/// What the record of a run until a given time holds at least is known before it begins.
+void checkRecord(const SimrunOptions& options, const World& world) {
+    if (options.record.empty() || !options.until) return;
+    constexpr double kShortestLine = 20;  // bytes, of robots.csv
+    const double steps =
+        static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
+    const double lines = std::ceil(steps) * static_cast<double>(world.robots().size());
+    if (lines * kShortestLine <= static_cast<double>(options.most_recorded)) return;
+    throw UsageError("--record: " + formatDouble(lines) + " lines of robots.csv until t=" +
+                     formatSimTime(*options.until) + " are more than --record-limit, which is " +
+                     byteCountText(options.most_recorded) + "; is --until in seconds?");
+}
+
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
     if (!options.until) return std::make_unique<SilentProgress>();
     auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
@@ -95,6 +111,7 @@ void simrun(const SimrunCommand& command) {
     CollisionLog collisions(world, options.common.quiet);
     simulation.onStep([&collisions] { collisions.tell(); });
 
+    checkRecord(options, world);
     Server server(simulation, options.listen, withinFileLimit(options.limits));
     const StopSignals signals([&server](int) { server.stop(); });
     std::optional<OutputFile> port_file;
@@ -110,6 +127,7 @@ void simrun(const SimrunCommand& command) {
     std::optional<LineGuard> guard;
     if (!options.record.empty()) {
         recorder.emplace(options.record, world, history, options.common.seed);
+        recorder->limit(options.most_recorded);
         guard.emplace(recordedLines(options.record), recorder->lock());
         simulation.recordWith(*recorder);
     }

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "cli/byte_count.h"
 #include "cli/scene_options.h"
 
 namespace ispace {
@@ -61,6 +62,10 @@ void SimrunCommand::declareRun() {
                Enters::BaseName);
     line_.text("--record", "DIR", o.record,
                "write robots.csv, scans.jsonl, info.csv and timing.csv there", Enters::Nothing);
+    line_.parsed(
+        "--record-limit", "SIZE",
+        [&o](const std::string& text) { o.most_recorded = byteCount(text); },
+        "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
 }
 
 void SimrunCommand::declareServer() {

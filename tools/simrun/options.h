@@ -20,6 +20,7 @@ struct SimrunOptions {
     std::optional<SimTime> until;
     std::string script;     ///< "" without; "-" is stdin
     std::string record;     ///< folder; "" without
+    std::uint64_t most_recorded = std::uint64_t{16} << 30U;  ///< bytes
     std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<bool> shutdown;
