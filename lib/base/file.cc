@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -77,6 +78,16 @@ std::string makeStandIn(const std::string& folder, Make make) {
     return "";
 }
 
+[[noreturn]] void refuseLength(const std::string& operand, bool regular) {
+    const std::string file = std::to_string(kMostFileBytes);
+    throw FormatError({displayName(operand), 0, 0,
+                       regular ? "more than " + file + " bytes, the most that an input may have"
+                               : "more than " + std::to_string(kMostStreamBytes) +
+                                     " bytes, the most that a pipe or a device may bring; a file "
+                                     "may have " +
+                                     file});
+}
+
 }  // namespace
 
 std::string readAll(const std::string& operand) {
@@ -86,10 +97,13 @@ std::string readAll(const std::string& operand) {
     struct stat info {};
     if (::fstat(file.get(), &info) != 0) fail(operand, errno);
     if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);
+    const bool regular = S_ISREG(info.st_mode);
+    const std::uint64_t most = regular ? kMostFileBytes : kMostStreamBytes;
+    if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
     std::string bytes;
     constexpr std::size_t kChunk = 1 << 16;
     std::size_t size = 0;
-    bytes.resize(S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : kChunk);
+    bytes.resize(regular ? static_cast<std::size_t>(info.st_size) + 1 : kChunk);
     while (true) {
         const ssize_t n = ::read(file.get(), bytes.data() + size, bytes.size() - size);
         if (n < 0) {
@@ -98,7 +112,11 @@ std::string readAll(const std::string& operand) {
         }
         if (n == 0) break;
         size += static_cast<std::size_t>(n);
-        if (size == bytes.size()) bytes.resize(size * 2);
+        if (size > most) refuseLength(operand, regular);
+        if (size < bytes.size()) continue;
+        if (!regular && size == kChunk && bytes.find_first_not_of('\0') == std::string::npos)
+            throw FormatError({displayName(operand), 0, 0, "it has nothing but zeros"});
+        bytes.resize(std::min<std::size_t>(2 * size, most + 1));
     }
     bytes.resize(size);
     return bytes;

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
 namespace ispace {
 
+/// Bytes that an input may have: a file, and what comes from a pipe or a device, which may never
+/// end.
+constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U,
+                        kMostStreamBytes = std::uint64_t{1} << 30U;
+
 /// Everything in a file, or on standard input for "-".
 /// \throws std::system_error naming the file; also for a directory
+/// \throws FormatError naming the file for more bytes than an input may have, and for a pipe or a
+/// device that begins with nothing but zeros
 std::string readAll(const std::string& operand);
 
 /// A file, or standard input for "-", read piece by piece.

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <thread>
 #include <vector>
+
+#include "base/error.h"
 
 namespace ispace {
 namespace {
@@ -191,6 +196,44 @@ TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {
     std::filesystem::remove(file);
     EXPECT_THROW(mustBeWritable(folder + "missing/folder/out"), std::system_error);
     EXPECT_THROW(mustBeWritable(folder), std::system_error);
+}
+
+/// What readAll says of a file; "" if it takes it.
+std::string refusalOf(const std::string& file) {
+    try {
+        readAll(file);
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST_F(FileTest, InputsHaveABound) {
+    // A sparse file: refused by its size, not read.
+    writeAll(path("huge"), "x");
+    ASSERT_EQ(::truncate(path("huge").c_str(), 6'000'000'000), 0);
+    EXPECT_NE(refusalOf(path("huge")).find("more than 4294967296 bytes"), std::string::npos);
+    ASSERT_EQ(::truncate(path("huge").c_str(), 100'000), 0);
+    EXPECT_EQ(readAll(path("huge")).size(), 100'000U) << "zeros in a file may mean something";
+}
+
+TEST_F(FileTest, EndlessStreamsEnd) {
+    EXPECT_NE(refusalOf("/dev/zero").find("nothing but zeros"), std::string::npos);
+    EXPECT_EQ(readAll("/dev/null"), "");
+    // A pipe that never ends and does not begin with zeros.
+    const std::string pipe = path("pipe");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::thread writer([&pipe] {
+        std::signal(SIGPIPE, SIG_IGN);
+        const std::string text(1 << 20, 'x');
+        const int fd = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC);
+        while (::write(fd, text.data(), text.size()) > 0) continue;
+        ::close(fd);
+    });
+    const std::string refusal = refusalOf(pipe);
+    writer.join();
+    EXPECT_NE(refusal.find("more than 1073741824 bytes"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("a file may have 4294967296"), std::string::npos) << refusal;
 }
 
 }  // namespace
