@@ -90,7 +90,8 @@ class RoomChooser {
         if (is_odd_)
             out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
                       (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
-        Attempt best = attempt(options_.close_gaps.value_or(0));
+        const double width = options_.close_gaps.value_or(0);
+        Attempt best = attempt(width, waysUpTo(width));
         if (!options_.close_gaps && isDoubtful(best)) best = closed(std::move(best));
         PlanRooms rooms;
         rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
@@ -114,6 +115,7 @@ class RoomChooser {
     /// The rooms with gaps up to a width closed.
     struct Attempt {
         double width;
+        std::size_t closings;  ///< lines that close gaps
         PlanFaces faces;
         std::vector<const PlanFaces::Group*> groups = {};
         double area = 0;
@@ -125,18 +127,35 @@ class RoomChooser {
         return !plan_.is_floor || plan_.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
     }
 
-    Attempt attempt(double width) {
-        std::vector<Segment2> closing;
-        if (width > 0) {
-            const bool with_corners = width >= kNarrowestDoorway;
-            if (with_corners && corners_.empty()) corners_ = wallCorners(PlanFaces(lines_));
-            for (const Closing& gap :
-                 closings(lines_, with_corners ? corners_ : std::vector<Point2>(), width)) {
-                const Segment2 line{rounded(gap.line.a), rounded(gap.line.b)};
-                if (line.a != line.b) closing.push_back(line);
-            }
+    /// Lines that could close gaps of at most a width, the narrowest first: those of a smaller
+    /// width come first of those of a larger.
+    struct Ways {
+        std::vector<Segment2> lines;
+        std::vector<double> widths;  // of the gaps, that grow
+
+        [[nodiscard]] std::span<const Segment2> upTo(double width) const {
+            const auto end = std::upper_bound(widths.begin(), widths.end(), width);
+            return std::span(lines).first(static_cast<std::size_t>(end - widths.begin()));
         }
-        Attempt attempt{width, PlanFaces(lines_, plan_.doors, closing)};
+    };
+
+    [[nodiscard]] Ways waysUpTo(double width) const {
+        Ways ways;
+        if (!(width > 0)) return ways;
+        std::vector<Point2> corners;
+        if (width >= kNarrowestDoorway) corners = wallCorners(PlanFaces(lines_));
+        for (const Closing& gap : closings(lines_, corners, width)) {
+            const Segment2 line{rounded(gap.line.a), rounded(gap.line.b)};
+            if (line.a == line.b) continue;
+            ways.lines.push_back(line);
+            ways.widths.push_back(gap.width);
+        }
+        return ways;
+    }
+
+    [[nodiscard]] Attempt attempt(double width, const Ways& ways) const {
+        const std::span<const Segment2> closing = ways.upTo(width);
+        Attempt attempt{width, closing.size(), PlanFaces(lines_, plan_.doors, closing)};
         takeGroups(attempt);
         for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
         return attempt;
@@ -194,8 +213,12 @@ class RoomChooser {
         std::vector<Attempt> attempts;
         double best = 0;
         bool any_whole = false;
+        const Ways ways = waysUpTo(widths.back());
         for (const double width : widths) {
-            attempts.push_back(attempt(width));
+            // Where no gap comes in, the rooms are those of the width before.
+            const std::size_t count = ways.upTo(width).size();
+            if (!attempts.empty() && attempts.back().closings == count) continue;
+            attempts.push_back(attempt(width, ways));
             any_whole = any_whole || attempts.back().is_whole;
         }
         for (const Attempt& a : attempts)
@@ -311,7 +334,7 @@ class RoomChooser {
     const ImportOptions& options_;
     ImportRecords& out_;
     std::vector<Segment2> lines_;  // with those that others bring
-    std::vector<Point2> points_, corners_;
+    std::vector<Point2> points_;
     bool is_odd_ = false;                             // of a size that no plan has
     std::optional<std::pair<double, double>> wider_;  // width and area of what is not done
 };
