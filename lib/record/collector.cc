@@ -94,7 +94,13 @@ Record RecordCollector::finish() {
     return record;
 }
 
-void RecordCollector::end() { records_.push_back(finish()); }
+void RecordCollector::end() {
+    records_.push_back(finish());
+    if (records_.size() > kMostRecords)
+        throw FormatError(
+            records_.back().place().finding("more than " + std::to_string(kMostRecords) +
+                                            " records, the most that an input may have"));
+}
 
 std::vector<Record> RecordCollector::take() {
     findDoubledIds(records_, findings_);

@@ -282,6 +282,15 @@ TEST(ReadText, MessagesStayShort) {
         for (const std::string& text : findings(line)) EXPECT_LT(text.size(), 300U);
 }
 
+TEST(ReadText, BoundsTheNumberOfRecords) {
+    std::string bytes = "#env 1\n";
+    for (int i = 0; i < 1'000'002; ++i) bytes += "desk at=1,1\n";
+    const Texts found = findingsOf([&] { (void)readRecordText(bytes, "a.env", testSchemas()); });
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0],
+              "a.env:1000002:1: error: more than 1000000 records, the most that an input may have");
+}
+
 TEST(ReadRecord, ReadsOneRecord) {
     const Record record = readRecord("desk at=1,2", "--add", testSchemas());
     EXPECT_EQ(record.tuple("at"), (Tuple{1, 2}));

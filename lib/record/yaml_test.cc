@@ -210,6 +210,13 @@ TEST(ReadYaml, RefusesBytesThatAreNoText) {
     }
 }
 
+TEST(ReadYaml, RefusesLongFiles) {
+    const auto found = findings("desk: \"" + std::string(64'000'000, 'x') + "\"\n");
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NE(found[0].find("64000009 bytes of YAML, wanted at most 64000000"), std::string::npos)
+        << found[0];
+}
+
 TEST(ReadYaml, RefusesDeepNesting) {
     const auto times = [](int n, const std::string& text) {
         std::string all;

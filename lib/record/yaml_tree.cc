@@ -87,6 +87,10 @@ class YamlTreeBuilder final : public YAML::EventHandler {
 };
 
 YamlTree::YamlTree(std::string_view bytes, const std::string& name) {
+    if (bytes.size() > kMostBytes)
+        throw FormatError({name, 0, 0,
+                           std::to_string(bytes.size()) + " bytes of YAML, wanted at most " +
+                               std::to_string(kMostBytes) + "; records in .env may have more"});
     // yaml-cpp takes the end of the file for the end of an open quote, but not a document's end.
     const std::string text =
         std::string(bytes) + (bytes.empty() || bytes.ends_with('\n') ? "...\n" : "\n...\n");

@@ -24,6 +24,8 @@ class YamlTree {
   public:
     /// Lists and maps in each other, at most: far more than records have, far less than a stack.
     static constexpr int kMostDepth = 64;
+    /// Of a file: more take minutes.
+    static constexpr std::size_t kMostBytes = 64'000'000;
 
     /// \throws FormatError with one finding, also for a second document. O(bytes)
     YamlTree(std::string_view bytes, const std::string& name);
