@@ -29,7 +29,7 @@
 #ifdef ISPACE_SANITIZED
 // In place of the limit on memory. What assimp leaves behind is nobody's business.
 extern "C" const char* __asan_default_options() {  // NOLINT
-    return "detect_leaks=0:hard_rss_limit_mb=1200:max_allocation_size_mb=1024";
+    return "detect_leaks=0:symbolize=0:hard_rss_limit_mb=1200:max_allocation_size_mb=1024";
 }
 #endif
 
