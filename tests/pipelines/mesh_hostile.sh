@@ -56,6 +56,11 @@ write('bad/itself.dae', collada('<node id="a">' + leaf + '<instance_node url="#a
 write('bad/circle.dae', collada('<node id="a"><instance_node url="#b"/></node>'
                                 '<node id="b"><instance_node url="#a"/></node>',
                                 '<node><instance_node url="#a"/></node>'))
+# Instances that look like circles and are none: in comments, and of a name.
+write('good/comment.dae', collada('<!-- <node id="a"> --><node id="b"><!-- <instance_node url="#b"/>'
+                                  '--></node><node id="a">' + leaf + '</node>',
+                                  '<node name=\'a > b\' id = "c"><instance_node url="#a"/>'
+                                  '<node/></node>'))
 write('bad/nested.dae', collada(scene='<node>' * 30000 + leaf + '</node>' * 30000))
 write('bad/twice.dae', collada(
     ''.join(f'<node id="a{i}"><instance_node url="#a{i + 1}"/><instance_node url="#a{i + 1}"/></node>'

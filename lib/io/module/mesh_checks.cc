@@ -6,7 +6,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <pugixml.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -128,11 +127,100 @@ void checkGlb(std::string_view bytes) {
     checkGltf(bytes.substr(kHeader + kChunk, json));
 }
 
-/// All nodes and visual scenes, below each other as they are and as they are instanced.
+/// A start or end of an element of XML.
+struct Tag {
+    std::string_view name;
+    std::string_view attributes;  ///< with the "/" of an empty element
+    bool ends = false;            ///< </name>
+
+    [[nodiscard]] bool isEmpty() const { return attributes.ends_with('/'); }
+
+    /// Its value as it is written, or "".
+    [[nodiscard]] std::string_view attribute(std::string_view key) const {
+        for (std::string_view rest = attributes;;) {
+            const std::size_t equals = rest.find('=');
+            const std::size_t open = rest.find_first_of("\"'", equals);
+            if (equals == std::string_view::npos || open == std::string_view::npos) return "";
+            const std::size_t close = rest.find(rest[open], open + 1);
+            if (close == std::string_view::npos) return "";
+            std::string_view name = rest.substr(0, equals);
+            const std::size_t begin = name.find_first_not_of(kBlanks);
+            const std::size_t end = name.find_last_not_of(kBlanks);
+            if (begin != std::string_view::npos && name.substr(begin, end + 1 - begin) == key)
+                return rest.substr(open + 1, close - open - 1);
+            rest.remove_prefix(close + 1);
+        }
+    }
+
+  private:
+    static constexpr std::string_view kBlanks = " \t\r\n";
+};
+
+/// The tags of XML, one after the other: a document in memory would take as long as assimp takes.
+class Tags {
+  public:
+    explicit Tags(std::string_view xml) : rest_(xml) {}
+
+    std::optional<Tag> next() {
+        for (;;) {
+            rest_.remove_prefix(std::min(rest_.find('<'), rest_.size()));
+            if (rest_.empty()) return std::nullopt;
+            if (rest_.starts_with("<!--"))
+                skipTo("-->");
+            else if (rest_.starts_with("<![CDATA["))
+                skipTo("]]>");
+            else if (rest_.starts_with("<?") || rest_.starts_with("<!"))
+                skipTo(">");
+            else
+                return tag();
+        }
+    }
+
+  private:
+    void skipTo(std::string_view end) {
+        const std::size_t at = rest_.find(end);
+        rest_.remove_prefix(at == std::string_view::npos ? rest_.size() : at + end.size());
+    }
+
+    Tag tag() {
+        // A ">" in quotes is no end.
+        std::size_t end = 1;
+        for (char quote = 0; end < rest_.size(); ++end) {
+            const char c = rest_[end];
+            if (quote != 0)
+                quote = c == quote ? '\0' : quote;
+            else if (c == '"' || c == '\'')
+                quote = c;
+            else if (c == '>')
+                break;
+        }
+        Tag tag;
+        std::string_view text = rest_.substr(1, end - 1);
+        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        tag.ends = text.starts_with('/');
+        if (tag.ends) text.remove_prefix(1);
+        tag.name = text.substr(0, text.find_first_of(" \t\r\n/"));
+        tag.attributes = text.substr(tag.name.size());
+        return tag;
+    }
+
+    std::string_view rest_;
+};
+
+/// All nodes and visual scenes of COLLADA, below each other as they are and as they are instanced.
 class ColladaNodes {
   public:
-    void check(const pugi::xml_document& document) {
-        walk(document);
+    explicit ColladaNodes(std::string_view xml) {
+        Tags tags(xml);
+        while (const auto tag = tags.next()) {
+            if (tag->name == "node" || tag->name == "visual_scene")
+                node(*tag);
+            else if (tag->name == "instance_node" && !open_.empty())
+                instance(tag->attribute("url"));
+        }
+    }
+
+    void check() {
         for (const auto& [name, node] : instances_)
             if (const auto found = named_.find(name); found != named_.end())
                 graph_.hang(found->second, node);
@@ -140,39 +228,26 @@ class ColladaNodes {
     }
 
   private:
-    void walk(const pugi::xml_node& top) {
-        // Without recursion: how deep elements lie in each other is the file's choice.
-        std::vector<std::pair<pugi::xml_node, std::optional<NodeGraph::Node>>> open{{top, {}}};
-        while (!open.empty()) {
-            auto [element, node] = open.back();
-            open.pop_back();
-            const std::string_view name = element.name();
-            if (name == "node" || name == "visual_scene") {
-                const NodeGraph::Node own = graph_.add();
-                if (node) graph_.hang(own, *node);
-                node = own;
-                if (const char* const id = element.attribute("id").value(); *id != 0)
-                    named_.emplace(id, own);
-            } else if (name == "instance_node" && node) {
-                std::string_view url = element.attribute("url").value();
-                if (url.starts_with('#')) url.remove_prefix(1);
-                instances_.emplace_back(url, *node);
-            }
-            for (const pugi::xml_node& child : element.children())
-                if (child.type() == pugi::node_element) open.emplace_back(child, node);
+    void node(const Tag& tag) {
+        if (tag.ends) {
+            if (!open_.empty()) open_.pop_back();
+            return;
         }
+        const NodeGraph::Node own = graph_.add();
+        if (!open_.empty()) graph_.hang(own, open_.back());
+        if (!tag.isEmpty()) open_.push_back(own);
+        if (const std::string_view id = tag.attribute("id"); !id.empty()) named_.emplace(id, own);
+    }
+    void instance(std::string_view url) {
+        if (url.starts_with('#')) url.remove_prefix(1);
+        if (!url.empty()) instances_.emplace_back(url, open_.back());
     }
 
     NodeGraph graph_;
-    std::map<std::string, NodeGraph::Node, std::less<>> named_;
-    std::vector<std::pair<std::string, NodeGraph::Node>> instances_;
+    std::vector<NodeGraph::Node> open_;
+    std::map<std::string_view, NodeGraph::Node> named_;
+    std::vector<std::pair<std::string_view, NodeGraph::Node>> instances_;
 };
-
-void checkCollada(std::string_view bytes) {
-    pugi::xml_document document;
-    // What is no XML assimp refuses.
-    if (document.load_buffer(bytes.data(), bytes.size())) ColladaNodes().check(document);
-}
 
 struct Suffix {
     std::string_view suffix;
@@ -212,7 +287,7 @@ void checkMesh(MeshFormat format, std::string_view bytes) {
             checkGltf(bytes);
             break;
         case MeshFormat::Collada:
-            checkCollada(bytes);
+            ColladaNodes(bytes).check();
             break;
         case MeshFormat::Obj:
         case MeshFormat::Stl:
