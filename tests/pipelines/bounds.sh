@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Inputs that took minutes, all memory or all of the disk: an answer, or a message that names the
+# bound and the way out.
+. "$(dirname "$0")/common.sh"
+
+room='fence id=f path=-4,-3;4,-3;4,3;-4,3 closed=yes height=2.5'
+
+# bounded TOOL ARGUMENT… -- TEXT: status 1 or 2, and the last line on stderr has the text.
+bounded() {
+    local status=0 text=${*: -1}
+    "${@:1:$#-2}" >out 2>err || status=$?
+    { [ "$status" -eq 1 ] || [ "$status" -eq 2 ]; } || fail "status $status of: $*"
+    tail -n 1 err | grep -qF -- "$text" || fail "no \`$text\` of: $*: $(tail -n 1 err)"
+}
+
+# Things as large as towns: 70 000 corners each, whose product would be minutes.
+printf '#env 1\n%s\n' "$room" >towns.env
+for x in 0 5e4 1e5; do echo "table at=$x,0 size=1e5" >>towns.env; done
+expect_status 1 envc --check towns.env
+grep -q "table1 overlaps table2" err || fail "no overlap found: $(cat err)"
+expect_status 0 envc --info towns.env
+
+# Beyond 1000 km nothing is built, in whatever tool.
+for tool in $tools; do
+    for value in 1e7 1e300; do
+        printf '#env 1\n%s\ncube at=1,1 size=%s\nlaser at=0,0\n' "$room" "$value" >far.env
+        bounded "$tool" far.env -- "is above 1000000"
+    done
+done
+
+# Walls and things that cross each other by the million.
+awk 'BEGIN { printf "#env 1\nfence closed=yes path="; for (i = 0; i < 5000; ++i)
+    printf "%s%g,%g", i ? ";" : "", (i % 2 ? 5000 - i : i) / 100, i % 2 * 10; print "" }' >zigzag.env
+bounded envc --info zigzag.env -- "times, at most 500000 can be; end them where they meet"
+awk -v room="$room" 'BEGIN { printf "#env 1\n%s\n", room; for (i = 0; i < 4000; ++i)
+    printf "cube at=%g,%g size=5 heading=%d\n", i / 2000, i * 7919 % 4000 / 2000, i }' >heap.env
+bounded envc --info heap.env -- "leave out some of what lies upon each other"
+
+# Streams that never end.
+for tool in $tools; do
+    bounded "$tool" /dev/zero -- "nothing but zeros"
+done
+bounded scan towns.env --poses /dev/zero --model laser -- "a line of more than 4096 bytes"
+
+# Outputs that a slip makes endless.
+printf '#env 1\n%s\nlaser id=l at=0,0 rate=10\nrobot id=r at=2,0\n' "$room" >room.env
+printf '0 0 0 0.15 0 0 0 1\n1e7 1 0 0.15 0 0 0 1\n' >slip.tum
+bounded scan room.env --poses slip.tum --motion -- "100000000 readings at 10 Hz"
+expect_status 0 scan room.env --poses slip.tum --motion --frames 7
+[ "$(wc -l <out)" -eq 8 ] || fail "--frames 7 of --motion: $(wc -l <out) lines"
+bounded scan room.env --frames 1000000000 -o cloud.ply -- "wanted at most 100000000 in one file"
+[ ! -e cloud.ply ] || fail "a cloud in spite of the bound"
+bounded simrun room.env --clock fast --until 1e9 --record run -- "--record-limit, which is 16G"
+[ ! -e run ] || fail "a record in spite of the bound"
+bounded simrun room.env --clock fast --record run --record-limit 2M -- "(--record-limit)"
+tail -c 1 run/robots.csv | cmp -s - <(echo) || fail "half a line in robots.csv"
+bounded simrun room.env --record run --record-limit 2X -- "is not a size like 500M or 2G"
+
+# YAML that multiplies.
+{
+    echo 'parts: {p0: [{desk: {at: [1, 1]}}],'
+    for i in {1..9}; do
+        printf 'p%d: [%s],\n' "$i" "$(for _ in {1..10}; do printf '{place: {part: p%d}},' $((i - 1)); done)"
+    done
+    echo '}'
+    echo 'place: p9'
+} >parts.yaml
+bounded envc --check parts.yaml -- "make more than 50000 records"
+head -c 100000 /dev/zero | tr '\0' '[' >deep.yaml
+bounded envc --check deep.yaml -- "nested too deep"
+
+# What a map of maps is bounded by.
+printf 'P5\n30000 30000\n255\n' >huge.pgm
+bounded envc --resolution 0.05 huge.pgm -- "wanted at most 400000000"
