@@ -64,7 +64,7 @@ bounded simrun room.env --record run --record-limit 2X -- "is not a size like 50
         printf 'p%d: [%s],\n' "$i" "$(for _ in {1..10}; do printf '{place: {part: p%d}},' $((i - 1)); done)"
     done
     echo '}'
-    echo 'place: p9'
+    echo 'place: {part: p9}'
 } >parts.yaml
 bounded envc --check parts.yaml -- "make more than 50000 records"
 head -c 100000 /dev/zero | tr '\0' '[' >deep.yaml
