@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "env/check.h"
 #include "env/texts.h"
+#include "geom/cut_lines.h"
 #include "geom/planar_map.h"
 #include "io/plan_reach.h"
 
@@ -155,7 +156,11 @@ class RoomChooser {
 
     [[nodiscard]] Attempt attempt(double width, const Ways& ways) const {
         const std::span<const Segment2> closing = ways.upTo(width);
-        Attempt attempt{width, closing.size(), PlanFaces(lines_, plan_.doors, closing)};
+        return attemptOf(width, closing.size(), PlanFaces(lines_, plan_.doors, closing));
+    }
+
+    [[nodiscard]] Attempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
+        Attempt attempt{width, closings, std::move(faces)};
         takeGroups(attempt);
         for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
         return attempt;
@@ -207,6 +212,38 @@ class RoomChooser {
                attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
     }
 
+    /// Attempts to compare: lines and closings are cut where they cross, once for all widths, so
+    /// that faces are found by a walk. The rooms are those of attempt() but for rounding.
+    class Trials {
+      public:
+        Trials(const RoomChooser& chooser, const Ways& ways) : chooser_(chooser), ways_(ways) {
+            std::vector<Segment2> all = chooser.lines_;
+            all.insert(all.end(), ways.lines.begin(), ways.lines.end());
+            const WeldedLines cut = cutAtCrossings(all);
+            const std::size_t walls = chooser.lines_.size();
+            for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
+                const std::size_t source = cut.source[i];
+                (source < walls ? lines_ : closings_).push_back(cut.pieces[i]);
+                if (source >= walls) needs_.push_back(source - walls + 1);
+            }
+        }
+
+        [[nodiscard]] Attempt at(double width) const {
+            const std::size_t count = ways_.upTo(width).size();
+            const auto end = std::upper_bound(needs_.begin(), needs_.end(), count);
+            const auto closings =
+                std::span(closings_).first(static_cast<std::size_t>(end - needs_.begin()));
+            return chooser_.attemptOf(width, count,
+                                      PlanFaces(lines_, chooser_.plan_.doors, closings));
+        }
+
+      private:
+        const RoomChooser& chooser_;
+        const Ways& ways_;
+        std::vector<Segment2> lines_, closings_;
+        std::vector<std::size_t> needs_;  // how many gaps are closed where a piece is there; grows
+    };
+
     /// Of the widths the smallest that comes to half of the best, where that is better.
     template <typename Widths>
     std::optional<Attempt> smallestGood(const Widths& widths, const Attempt& open) {
@@ -214,19 +251,23 @@ class RoomChooser {
         double best = 0;
         bool any_whole = false;
         const Ways ways = waysUpTo(widths.back());
+        const Trials trials(*this, ways);
         for (const double width : widths) {
             // Where no gap comes in, the rooms are those of the width before.
             const std::size_t count = ways.upTo(width).size();
             if (!attempts.empty() && attempts.back().closings == count) continue;
-            attempts.push_back(attempt(width, ways));
+            attempts.push_back(trials.at(width));
             any_whole = any_whole || attempts.back().is_whole;
         }
         for (const Attempt& a : attempts)
             if (a.is_whole == any_whole) best = std::max(best, a.area);
-        if (any_whole == open.is_whole && !(best * kSmallShare > open.area)) return std::nullopt;
-        for (Attempt& a : attempts)
-            if (a.is_whole == any_whole && a.area > 0 && a.area >= best * kSmallShare)
-                return std::move(a);
+        // Halves are common where plans are regular, and the areas are rounded.
+        constexpr double kAlmost = 1 - 1e-9;
+        if (any_whole == open.is_whole && !(best * kSmallShare * kAlmost > open.area))
+            return std::nullopt;
+        for (const Attempt& a : attempts)
+            if (a.is_whole == any_whole && a.area > 0 && a.area >= best * kSmallShare * kAlmost)
+                return attempt(a.width, ways);
         return std::nullopt;
     }
 
