@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <filesystem>
@@ -13,6 +14,8 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -35,13 +38,30 @@ std::string_view wholeLines(std::string_view text) {
     return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
 }
 
-/// A file that grows by whole lines.
+/// An empty file for writing. What an earlier run left is not written over but removed: it may
+/// have another name elsewhere. A link is not followed to a file, which nobody named.
+int openAnew(const std::string& name) {
+    struct stat info {
+    }, behind{};
+    if (::lstat(name.c_str(), &info) == 0) {
+        const bool is_link = S_ISLNK(info.st_mode);
+        if (is_link && (::stat(name.c_str(), &behind) != 0 || S_ISREG(behind.st_mode)))
+            throw FormatError({name, 0, 0,
+                               "a symbolic link to a file, and records follow none: remove it, or "
+                               "record into another folder"});
+        const mode_t mode = is_link ? behind.st_mode : info.st_mode;
+        if (S_ISCHR(mode) || S_ISFIFO(mode))
+            // Not to wait for a reader, should it be a pipe.
+            return ::open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        if (::unlink(name.c_str()) != 0) return -1;
+    }
+    return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+/// A file that grows by whole lines, those of a step after those of the step before.
 class LineFile {
   public:
-    explicit LineFile(std::string name)
-        : name_(std::move(name)),
-          // Not to wait for a reader, should it be a pipe.
-          fd_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666)) {
+    explicit LineFile(std::string name) : name_(std::move(name)), fd_(openAnew(name_)) {
         if (fd_ < 0) fail(name_, errno);
         ::fcntl(fd_, F_SETFL, O_WRONLY);
     }
@@ -51,6 +71,31 @@ class LineFile {
 
     /// What the next flush writes, up to the last newline.
     std::string pending;
+
+    /// What is pending ends with the lines of this step.
+    void endStep(std::int64_t step) {
+        ends_.push_back({step, size_ + static_cast<off_t>(pending.size())});
+    }
+    /// The last step whose lines are all in the file, of those since the last forget().
+    [[nodiscard]] std::int64_t wholeSteps() const {
+        std::int64_t steps = 0;
+        for (const StepEnd& end : ends_)
+            if (end.size <= size_) steps = end.step;
+        return steps;
+    }
+    /// Cuts the file behind this step. Devices and pipes refuse to be cut and have nothing to
+    /// keep.
+    void cutBehind(std::int64_t step) {
+        pending.clear();
+        off_t end = size_;
+        for (const StepEnd& each : ends_)
+            if (each.step == step && each.size <= size_) end = each.size;
+        if (end < size_) static_cast<void>(!::ftruncate(fd_, size_ = end));
+    }
+    /// All ends of steps but the last may go: nothing will be cut there.
+    void forget() {
+        if (ends_.size() > 1) ends_.erase(ends_.begin(), ends_.end() - 1);
+    }
 
     /// Puts `text` in place of the whole content, which must not have been longer. Of less than a
     /// page, it is written whole or not at all.
@@ -73,6 +118,11 @@ class LineFile {
     [[nodiscard]] std::uint64_t size() const { return static_cast<std::uint64_t>(size_); }
 
   private:
+    struct StepEnd {
+        std::int64_t step;
+        off_t size;  // of the file with it
+    };
+
     void write() {
         // An exception while a line was put together may have left a piece of one.
         const std::string_view lines = wholeLines(pending);
@@ -90,17 +140,17 @@ class LineFile {
         size_ += static_cast<off_t>(lines.size());
     }
 
-    /// A full disk may have taken a piece of the last line. Devices and pipes refuse to be cut and
-    /// have nothing to keep.
+    /// A full disk may have taken a piece of the last line.
     void takeBackTornLine(std::string_view written) {
-        const off_t whole = size_ + static_cast<off_t>(wholeLines(written).size());
-        static_cast<void>(!::ftruncate(fd_, whole));
+        size_ += static_cast<off_t>(wholeLines(written).size());
+        static_cast<void>(!::ftruncate(fd_, size_));
     }
 
     std::string name_;
     int fd_;
     int error_ = 0;
     off_t size_ = 0;  // bytes of whole lines in the file
+    std::vector<StepEnd> ends_;
 };
 
 /// `folder`, made if it is missing.
@@ -143,9 +193,8 @@ class FolderLock {
     int fd_;
 };
 
-std::string fileIn(const std::string& folder, const char* name) {
-    return (std::filesystem::path(folder) / name).string();
-}
+/// In the order of Recorder::filesIn.
+enum File { kRobots, kScans, kTiming, kInfo };
 
 }  // namespace
 
@@ -153,13 +202,15 @@ struct Recorder::Data {
     explicit Data(const std::string& name)
         : folder(name),
           lock(madeFolder(folder)),
-          robots(fileIn(folder, "robots.csv")),
-          scans(fileIn(folder, "scans.jsonl")),
-          timing(fileIn(folder, "timing.csv")),
-          info(fileIn(folder, "info.csv")) {}
+          names(filesIn(folder)),
+          robots(names[kRobots]),
+          scans(names[kScans]),
+          timing(names[kTiming]),
+          info(names[kInfo]) {}
 
     std::string folder;
     FolderLock lock;
+    std::vector<std::string> names;
     LineFile robots, scans, timing, info;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
@@ -167,10 +218,14 @@ struct Recorder::Data {
     std::int64_t steps = 0;
     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
     bool flushed_all = false;  // nothing was recorded since the last flush
+    std::exception_ptr ended;  // what ended the record early
 
     void remember(const World& world);
     void appendRobots(const World& world);
     void appendScans(const World& world);
+    void writeLines();
+    void writeInfo();
+    void endEarly();
     void flush();
 };
 
@@ -197,6 +252,7 @@ void Recorder::Data::appendRobots(const World& world) {
         }
         out += status.stall ? ",1\n" : ",0\n";
     }
+    robots.endStep(world.steps());
 }
 
 void Recorder::Data::appendScans(const World& world) {
@@ -206,17 +262,23 @@ void Recorder::Data::appendScans(const World& world) {
         // One step of many lasers may be more than should be held.
         if (scans.pending.size() > kMostPending) scans.flush();
     }
+    scans.endStep(world.steps());
 }
 
-void Recorder::Data::flush() {
-    flushed = steady_clock::now();
-    robots.flush();
-    scans.flush();
+void Recorder::Data::writeInfo() {
     const std::string dt = formatSimTime(step_length);
     // Commands take effect at every step: the control interval is that of the steps.
     std::string text = "dt,control_interval,steps\n";
     text.append(dt).append(",").append(dt).append(",").append(std::to_string(steps)).append("\n");
     info.rewrite(text);
+}
+
+void Recorder::Data::writeLines() {
+    robots.flush();
+    scans.flush();
+    robots.forget();
+    scans.forget();
+    writeInfo();
     const std::chrono::duration<double> wall = flushed - started;
     timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
     timing.pending.append(",").append(std::to_string(steps)).append("\n");
@@ -227,6 +289,38 @@ void Recorder::Data::flush() {
                            "the record has " + std::to_string(bytes) +
                                " bytes at t=" + formatSimTime(time) + ", wanted at most " +
                                std::to_string(most_bytes) + " (--record-limit)"});
+}
+
+/// A file cannot be written: the record ends with the last step that is whole in all.
+void Recorder::Data::endEarly() {
+    ended = std::current_exception();
+    steps = std::min(robots.wholeSteps(), scans.wholeSteps());
+    robots.cutBehind(steps);
+    scans.cutBehind(steps);
+    flushed_all = true;
+    try {
+        writeInfo();
+    } catch (const std::system_error&) {
+        // The first error is the one to tell.
+    }
+}
+
+void Recorder::Data::flush() {
+    if (ended) std::rethrow_exception(ended);
+    flushed = steady_clock::now();
+    try {
+        writeLines();
+    } catch (const std::system_error&) {
+        endEarly();
+        throw;
+    }
+}
+
+std::vector<std::string> Recorder::filesIn(const std::string& folder) {
+    std::vector<std::string> files;
+    for (const char* name : {"robots.csv", "scans.jsonl", "timing.csv", "info.csv"})
+        files.push_back((std::filesystem::path(folder) / name).string());
+    return files;
 }
 
 Recorder::Recorder(const std::string& folder, const World& world, const History& history,
@@ -250,9 +344,15 @@ Recorder::~Recorder() {
 
 void Recorder::record(const World& world) {
     Data& data = *data_;
+    if (data.ended) std::rethrow_exception(data.ended);
     data.remember(world);
     data.appendRobots(world);
-    data.appendScans(world);
+    try {
+        data.appendScans(world);
+    } catch (const std::system_error&) {
+        data.endEarly();
+        throw;
+    }
     const bool much = data.robots.pending.size() > kMostPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
@@ -262,7 +362,7 @@ void Recorder::limit(std::uint64_t bytes) { data_->most_bytes = bytes; }
 int Recorder::lock() const { return data_->lock.descriptor(); }
 
 void Recorder::flush(const World& world) {
-    data_->remember(world);
+    if (!data_->ended) data_->remember(world);
     data_->flush();
 }
 

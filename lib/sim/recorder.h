@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/history.h"
 #include "sim/world.h"
@@ -21,11 +22,13 @@ namespace ispace {
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, all that may differ between runs
 ///
 /// Bytes go out whole lines at a time, at least every 0.1 s of wall time while record() or
-/// flushDue() is called.
+/// flushDue() is called. On an error the record ends with the last step that all files hold, and
+/// info.csv says which.
 class Recorder {
   public:
     /// Makes the folder if it is missing (not its parents), locks it, and starts the files anew.
-    /// \throws std::system_error naming the file, FormatError if another run is recorded there
+    /// \throws std::system_error naming the file; FormatError if another run is recorded there,
+    ///         or where a file is a link to one elsewhere
     Recorder(const std::string& folder, const World& world, const History& history,
              std::uint64_t seed);
     ~Recorder();
@@ -35,6 +38,8 @@ class Recorder {
     /// Ends the run once robots.csv and scans.jsonl together have grown beyond so many bytes: what
     /// writes them throws FormatError, their lines stay.
     void limit(std::uint64_t bytes);
+    /// The files in a folder of records; those that grow line by line come before info.csv.
+    static std::vector<std::string> filesIn(const std::string& folder);
 
     /// The state after a step; flushes if 0.1 s have passed.
     void record(const World& world);

@@ -234,7 +234,64 @@ TEST_F(RecorderTest, KeepsWholeLinesWhenTheDiskIsFull) {
     const std::string robots = text("run/robots.csv");
     EXPECT_TRUE(robots.ends_with(",0\n"));
     EXPECT_LE(robots.size(), kSpace);
-    EXPECT_GT(robots.size() + 30, kSpace);
+    EXPECT_GT(robots.size() + 60, kSpace);
+}
+
+/// Steps that robots.csv holds, as both robots have a line of each.
+std::string infoOf(const std::string& robots) {
+    return "dt,control_interval,steps\n0.005,0.005," +
+           std::to_string((linesOf(robots) - 1) / 2 - 1) + "\n";
+}
+
+TEST_F(RecorderTest, InfoTellsTheStepsThatAreThereWhenTheDiskIsFull) {
+    const auto run = [&](const std::string& sensor, int steps) {
+        const Scene scene = testing::scene(kRoom, kRobots + sensor);
+        World world(scene, milliseconds(5));
+        Recorder recorder(path("run"), world, {}, 0);
+        const FileSizeLimit limit(10007);
+        return errorOf([&] {
+            for (int i = 0; i < steps; ++i) {
+                world.step();
+                recorder.record(world);
+            }
+            recorder.flush(world);
+        });
+    };
+    EXPECT_EQ(run("", 1000), path("run/robots.csv") + ": File too large");
+    std::string robots = text("run/robots.csv");
+    EXPECT_EQ(linesOf(robots) % 2, 1) << "the header, and whole steps";
+    EXPECT_GT(linesOf(robots), 200);
+    EXPECT_EQ(text("run/info.csv"), infoOf(robots));
+
+    // Scans take more room than robots, and end with them.
+    EXPECT_EQ(run("laser id=l1 at=0,0 rate=200 fov=90\n", 150),
+              path("run/scans.jsonl") + ": File too large");
+    robots = text("run/robots.csv");
+    EXPECT_EQ(linesOf(robots) % 2, 1);
+    EXPECT_EQ(text("run/info.csv"), infoOf(robots));
+    EXPECT_EQ(linesOf(text("run/scans.jsonl")), (linesOf(robots) - 1) / 2 + 1);
+}
+
+TEST_F(RecorderTest, LinksAreNotFollowed) {
+    const Scene scene = testing::scene(kRoom, kRobots);
+    const World world(scene, milliseconds(5));
+    writeAll(path("mine"), "old");
+    for (const char* name : {"robots.csv", "info.csv"}) {
+        fs::remove_all(path("run"));
+        fs::create_directory(path("run"));
+        fs::create_hard_link(path("mine"), path("run/") + name);
+        { const Recorder recorder(path("run"), world, {}, 0); }
+        EXPECT_EQ(text("mine"), "old");
+        EXPECT_NE(text(std::string("run/") + name), "old");
+        fs::remove(path("run/") + name);
+        for (const char* target : {"../mine", "../none"}) {
+            fs::create_symlink(target, path("run/") + name);
+            EXPECT_THROW(Recorder(path("run"), world, {}, 0), FormatError);
+            EXPECT_EQ(text("mine"), "old");
+            EXPECT_FALSE(fs::exists(path("none")));
+            fs::remove(path("run/") + name);
+        }
+    }
 }
 
 TEST_F(RecorderTest, EndsTheRunAtItsLimit) {

@@ -46,3 +46,19 @@ expect_status 1 coverage "$room" "$layout" -o disk/target.png
 grep -q "No space left on device" err || fail "coverage: $(cat err)"
 [ "$(cat disk/target.png)" = old ] || fail "the old file is gone"
 [ "$(ls -A disk)" = "$(printf 'ballast\ntarget.png')" ] || fail "left behind: $(ls -A disk)"
+
+# A record ends with the last step that is whole in both of its files, and says which that is.
+rm disk/ballast
+for ballast in 0 9000 20000 30000; do
+    head -c $ballast /dev/zero >disk/ballast
+    expect_status 1 timeout 60 simrun "$data/square.env" "$data/session.3dm" --clock fast \
+        --until 1000000 --record disk/run
+    grep -q '^simrun: disk/run/[a-z]*\.[a-z]*: error: No space left on device' err ||
+        fail "simrun: $(cat err)"
+    rows=$(($(wc -l <disk/run/robots.csv) - 1))
+    [ $((rows % 2)) -eq 0 ] || fail "half a step of two robots: $rows rows"
+    steps=$(tail -n 1 disk/run/info.csv | cut -d, -f3)
+    [ "$steps" -eq $((rows / 2 - 1)) ] || fail "info.csv tells $steps steps of $((rows / 2 - 1))"
+    [ "$(tail -c 1 disk/run/scans.jsonl | od -An -c | tr -d ' ')" = '\n' ] || fail "half a scan"
+    rm -r disk/run
+done
