@@ -7,6 +7,8 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/run_files.h"
+#include "base/utf8.h"
 
 namespace ispace {
 
@@ -20,6 +22,8 @@ struct Piece {
     std::string text;
     std::size_t width = 0;
 };
+
+constexpr std::size_t kLongestName = 255;  // bytes
 
 [[noreturn]] void refuse(const std::string& pattern, const std::string& piece) {
     throw UsageError("--output: `" + pattern + "`: `" + piece +
@@ -75,6 +79,22 @@ bool runsTogether(const std::vector<Piece>& pieces) {
             return true;
     }
     return false;
+}
+
+/// An id as a part of a file's name. What leads to another folder, hides the file, looks like an
+/// option or does not show becomes _.
+std::string nameOf(const std::string& id) {
+    std::string name;
+    for (std::size_t i = 0; i < id.size();) {
+        const std::size_t length = utf8Length(std::string_view(id).substr(i));
+        const std::string_view letter =
+            std::string_view(id).substr(i, std::max<std::size_t>(length, 1));
+        const bool is_bad = length == 0 || printable(letter) != letter || letter == "/" ||
+                            (i == 0 && (letter == "." || letter == "-"));
+        name += is_bad ? "_" : letter;
+        i += letter.size();
+    }
+    return name;
 }
 
 std::string padded(int number, std::size_t width) {
@@ -135,6 +155,13 @@ void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames
             const std::string file = beside ? fileBeside(id, 0, ending) : fileOf(id, 0, ending);
             if (!names.insert(file).second)
                 throw UsageError("--output: two files would have the name " + file);
+            for (const fs::path& part : fs::path(file))
+                if (part.native().size() > kLongestName)
+                    throw UsageError("--output: the name " + excerpt(part.native()) + " has " +
+                                     std::to_string(part.native().size()) + " bytes, and file " +
+                                     "systems take " + std::to_string(kLongestName));
+            // Most names of a set are those of its first frame.
+            claimOutput(file, "--output");
         }
 }
 
@@ -148,9 +175,7 @@ std::string OutputSet::fileBeside(const std::string& id, int frame,
 }
 
 std::string OutputSet::stem(const std::string& id, int frame) const {
-    std::string name = id;
-    // Ids may hold what would lead to another folder.
-    std::replace(name.begin(), name.end(), '/', '_');
+    std::string name = nameOf(id);
     if (!folder_.empty()) {
         constexpr std::size_t kDigits = 4;
         name.append("-").append(padded(frame, kDigits));

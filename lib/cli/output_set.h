@@ -9,7 +9,9 @@ namespace ispace {
 
 /// Names of files that a run writes many of: `-o` names a folder (one that exists, or with / at its
 /// end), or is a pattern with %d or %04d for the frame's number and %s for the sensor's id; %% is a
-/// percent sign. In a folder files are called ID-0000. A / in an id is written _.
+/// percent sign. In a folder files are called ID-0000. What a
+/// file's name should not hold, a / in an id, control characters, a dot or dash at its beginning,
+/// is written _.
 class OutputSet {
   public:
     /// Nothing if `output` is one file or stdout.

@@ -33,7 +33,7 @@ TEST(OutputSet, NamesInAFolder) {
     const OutputSet set = *OutputSet::of("a/b/");
     EXPECT_EQ(set.fileOf("l1", 7, ".csv"), "a/b/l1-0007.csv");
     EXPECT_EQ(set.fileOf("l1", 123456, ".csv"), "a/b/l1-123456.csv");
-    EXPECT_EQ(set.fileOf("../x", 0, ".csv"), "a/b/.._x-0000.csv") << "no other folder";
+    EXPECT_EQ(set.fileOf("../x", 0, ".csv"), "a/b/_._x-0000.csv") << "no other folder";
     EXPECT_EQ(set.fileBeside("k", 0, "-color.png"), "a/b/k-0000-color.png");
 }
 
@@ -43,6 +43,24 @@ TEST(OutputSet, NamesOfAPattern) {
     EXPECT_EQ(OutputSet::of("100%%-%d.f32")->fileOf("l1", 7, ".raw"), "100%-7.f32")
         << "the suffix that was written";
     EXPECT_EQ(OutputSet::of("%s.x/%d.png")->fileBeside("k", 1, ".yaml"), "k.x/1.yaml");
+}
+
+TEST(OutputSet, IdsNeitherEscapeNorHide) {
+    const OutputSet set = *OutputSet::of("%s/x.csv");
+    for (const auto& [id, name] : {std::pair("..", "_."),
+                                   {".", "_"},
+                                   {".hidden", "_hidden"},
+                                   {"-rf", "_rf"},
+                                   {"a\nb\x1b\x7f", "a_b__"},
+                                   {"\xff", "_"},
+                                   {"a.b-c", "a.b-c"},
+                                   {"türe", "türe"}})
+        EXPECT_EQ(set.fileOf(id, 0, ".csv"), std::string(name) + "/x.csv");
+    EXPECT_EQ(OutputSet::of(".%s/x.csv")->fileOf(".", 0, ".csv"), "._/x.csv");
+    EXPECT_NE(refusal("%s.csv", {"..", "_."}, false), "") << "one name for two";
+    EXPECT_NE(refusal("%s.csv", {"-a", "_a"}, false), "");
+    EXPECT_EQ(refusal("%s.csv", {std::string(251, 'x')}, false), "");
+    EXPECT_NE(refusal("%s.csv", {std::string(252, 'x')}, false), "") << "more than 255 bytes";
 }
 
 TEST(OutputSet, RefusesWhatDoesNotTellReadingsApart) {
