@@ -9,10 +9,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
+#include "base/held_signals.h"
+#include "base/run_files.h"
 
 namespace ispace {
 
@@ -34,10 +38,20 @@ class Descriptor {
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
     [[nodiscard]] int get() const { return fd_; }
+    [[nodiscard]] int release() { return std::exchange(fd_, -1); }
 
   private:
     int fd_;
 };
+
+int openInput(const std::string& operand) {
+    Descriptor file(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
+    struct stat info {};
+    if (file.get() < 0 || ::fstat(file.get(), &info) != 0) fail(operand, errno);
+    if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);
+    noteInput(file.get(), operand);
+    return file.release();
+}
 
 void writeFully(int fd, std::string_view bytes, const std::string& name) {
     while (!bytes.empty()) {
@@ -48,19 +62,6 @@ void writeFully(int fd, std::string_view bytes, const std::string& name) {
         }
         bytes.remove_prefix(static_cast<std::size_t>(n));
     }
-}
-
-/// The file that a chain of links names, which need not exist. Keeps relative paths relative.
-std::string followLinks(const std::string& target) {
-    constexpr int kMostLinks = 40;  // as the kernel
-    fs::path path(target);
-    std::error_code error;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
-        const fs::path next = fs::read_symlink(path, error);
-        if (error) break;
-        path = path.parent_path() / next;  // an absolute one replaces the folder
-    }
-    return path.string();
 }
 
 /// Calls make(name) with names in the folder that nobody should have, until one is free: a killed
@@ -100,6 +101,7 @@ std::string readAll(const std::string& operand) {
     const bool regular = S_ISREG(info.st_mode);
     const std::uint64_t most = regular ? kMostFileBytes : kMostStreamBytes;
     if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
+    noteInput(file.get(), operand);
     std::string bytes;
     constexpr std::size_t kChunk = 1 << 16;
     std::size_t size = 0;
@@ -122,15 +124,7 @@ std::string readAll(const std::string& operand) {
     return bytes;
 }
 
-InputFile::InputFile(const std::string& operand)
-    : name_(operand),
-      fd_(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC)) {
-    struct stat info {};
-    if (fd_ < 0 || ::fstat(fd_, &info) != 0) fail(operand, errno);
-    if (!S_ISDIR(info.st_mode)) return;
-    if (fd_ > STDERR_FILENO) ::close(fd_);
-    fail(operand, EISDIR);
-}
+InputFile::InputFile(const std::string& operand) : name_(operand), fd_(openInput(operand)) {}
 
 InputFile::~InputFile() {
     if (fd_ > STDERR_FILENO) ::close(fd_);
@@ -153,18 +147,71 @@ struct OutputFile::State {
     std::string name;       // as the user wrote it, for messages
     std::string target;     // the file that is replaced, links resolved
     std::string temporary;  // its stand-in; empty: written directly or not yet named
+    std::string kept;       // another name of the old file until all of a set are in their places
+    std::optional<OpenOutput> known;
     int fd = -1;
     bool direct = false;
+    bool is_first = false;   // there is no old file
+    bool is_placed = false;  // the target is the new file
+
+    ~State() {
+        if (fd > STDERR_FILENO) ::close(fd);
+        drop(temporary);
+    }
 
     [[nodiscard]] std::string folder() const {
         const fs::path parent = fs::path(target).parent_path();
         return parent.empty() ? "." : parent.string();
     }
-    ~State() {
-        if (fd > STDERR_FILENO) ::close(fd);
-        if (!temporary.empty()) ::unlink(temporary.c_str());
+    static void drop(std::string& file) {
+        if (!file.empty()) ::unlink(file.c_str());
+        file.clear();
     }
+    /// Gives the written file a name in the folder.
+    void link();
+    /// Lets put() be taken back, where the file system can.
+    void keepOld();
+    void put();
+    void takeBack();
 };
+
+void OutputFile::State::link() {
+    if (!direct && temporary.empty()) {
+        const std::string from = "/proc/self/fd/" + std::to_string(fd);
+        temporary = makeStandIn(folder(), [&](const std::string& stand_in) {
+            return ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, stand_in.c_str(), AT_SYMLINK_FOLLOW);
+        });
+        if (temporary.empty()) fail(name, errno);
+    }
+    if (fd > STDERR_FILENO && ::close(std::exchange(fd, -1)) != 0) fail(name, errno);
+}
+
+void OutputFile::State::keepOld() {
+    if (direct) return;
+    kept = makeStandIn(folder(), [&](const std::string& stand_in) {
+        return ::link(target.c_str(), stand_in.c_str());
+    });
+    is_first = kept.empty() && errno == ENOENT;
+}
+
+void OutputFile::State::put() {
+    if (direct) return;
+    known->check();
+    if (::rename(temporary.c_str(), target.c_str()) != 0) fail(name, errno);
+    temporary.clear();
+    is_placed = true;
+}
+
+void OutputFile::State::takeBack() {
+    if (std::exchange(is_placed, false)) {
+        if (is_first)
+            ::unlink(target.c_str());
+        else if (!kept.empty() && ::rename(kept.c_str(), target.c_str()) == 0)
+            kept.clear();
+    }
+    drop(kept);
+    drop(temporary);
+}
 
 OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<State>()) {
     State& s = *state_;
@@ -173,6 +220,7 @@ OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<Stat
         s.direct = true;
         s.fd = STDOUT_FILENO;
         s.name = "stdout";
+        s.known.emplace("-", s.name);
         return;
     }
     if (target.empty()) fail(target, ENOENT);
@@ -186,6 +234,7 @@ OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<Stat
         return;
     }
     s.target = followLinks(target);
+    s.known.emplace(s.target, target);
     if (exists && ::access(s.target.c_str(), W_OK) != 0) fail(target, errno);
     const std::string folder = s.folder();
     const mode_t mode = exists ? (info.st_mode & 07777) : 0666;
@@ -206,21 +255,27 @@ OutputFile::~OutputFile() = default;
 void OutputFile::write(std::string_view bytes) { writeFully(state_->fd, bytes, state_->name); }
 
 void OutputFile::commit() {
-    State& s = *state_;
-    if (s.direct) {
-        if (s.fd > STDERR_FILENO && ::close(std::exchange(s.fd, -1)) != 0) fail(s.name, errno);
-        return;
+    OutputFile* const alone = this;
+    commitTogether({&alone, 1});
+}
+
+void OutputFile::commitTogether(std::span<OutputFile* const> files) {
+    // From the first name to the last rename; no signal ends the process between them.
+    const HeldSignals held;
+    try {
+        for (const OutputFile* file : files) file->state_->link();
+        // Only with others there is something to go wrong after the rename.
+        if (files.size() > 1)
+            for (const OutputFile* file : files) file->state_->keepOld();
+        for (const OutputFile* file : files) file->state_->put();
+    } catch (...) {
+        for (const OutputFile* file : files) file->state_->takeBack();
+        throw;
     }
-    if (s.temporary.empty()) {
-        const std::string from = "/proc/self/fd/" + std::to_string(s.fd);
-        s.temporary = makeStandIn(s.folder(), [&](const std::string& name) {
-            return ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
-        });
-        if (s.temporary.empty()) fail(s.name, errno);
+    for (const OutputFile* file : files) {
+        State::drop(file->state_->kept);
+        if (file->state_->known) file->state_->known->done();
     }
-    if (::close(std::exchange(s.fd, -1)) != 0) fail(s.name, errno);
-    if (::rename(s.temporary.c_str(), s.target.c_str()) != 0) fail(s.name, errno);
-    s.temporary.clear();
 }
 
 void mustBeWritable(const std::string& target) {
@@ -237,13 +292,13 @@ void writeAll(const std::string& target, std::string_view bytes) {
     file.commit();
 }
 
-void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
-               std::string_view second_bytes) {
-    OutputFile one(first), two(second);
-    one.write(first_bytes);
-    two.write(second_bytes);
-    one.commit();
-    two.commit();
+void writeTogether(std::span<const NamedBytes> products) {
+    std::vector<std::unique_ptr<OutputFile>> files;
+    std::vector<OutputFile*> in_order;
+    for (const NamedBytes& product : products)
+        in_order.push_back(files.emplace_back(std::make_unique<OutputFile>(product.name)).get());
+    for (std::size_t i = 0; i < products.size(); ++i) files[i]->write(products[i].bytes);
+    OutputFile::commitTogether(in_order);
 }
 
 std::string withSuffix(const std::string& file, const char* suffix) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -40,10 +41,15 @@ class InputFile {
 /// commit(), so that a reader never sees half of it; without commit() (an error, a signal) the old
 /// file stays and nothing is left behind. "-" is standard output; a device, a pipe and
 /// everything else that is no regular file is written directly. A symbolic link stays, its target
-/// is replaced; an existing file's permissions are kept.
+/// is replaced; an existing file's permissions are kept. Where a run keeps RunFiles, no input is
+/// replaced.
+///
+/// TERM, INT and HUP leave nothing behind either; KILL may, if it falls between the last two system
+/// calls of commit(). There is no fsync: the rename is safe against the end of the process, not
+/// against that of the machine.
 class OutputFile {
   public:
-    /// \throws std::system_error if the file cannot be made there
+    /// \throws std::system_error if the file cannot be made there; UsageError if it is an input
     explicit OutputFile(const std::string& target);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
@@ -53,6 +59,9 @@ class OutputFile {
     void write(std::string_view bytes);
     /// Puts the file in its place. Nothing can be written afterwards.
     void commit();
+    /// The same for files that belong together: all are in their places, or none. The file that
+    /// names the others comes last, so that it never names what is not there.
+    static void commitTogether(std::span<OutputFile* const> files);
 
   private:
     struct State;
@@ -66,9 +75,13 @@ void mustBeWritable(const std::string& target);
 /// OutputFile for a product that is whole in memory.
 void writeAll(const std::string& target, std::string_view bytes);
 
-/// Two files that belong together: both are put in their places, or none if one cannot be written.
-void writeBoth(const std::string& first, std::string_view first_bytes, const std::string& second,
-               std::string_view second_bytes);
+struct NamedBytes {
+    std::string name;
+    std::string_view bytes;
+};
+
+/// Files that belong together, the one that names the others last: OutputFile::commitTogether.
+void writeTogether(std::span<const NamedBytes> products);
 
 /// `file` with this suffix (".pgm") in place of its own.
 std::string withSuffix(const std::string& file, const char* suffix);

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -180,6 +181,62 @@ TEST_F(FileTest, ReadsEverything) {
     EXPECT_NE(readAll("/proc/self/status").find("Name:"), std::string::npos);
     EXPECT_EQ(errorOf([&] { (void)readAll(path("none")); }, path("none")), ENOENT);
     EXPECT_EQ(errorOf([&] { (void)readAll(folder_); }, folder_), EISDIR);
+}
+
+TEST_F(FileTest, FilesThatBelongTogetherAreAllNewOrAllOld) {
+    writeAll(path("a"), "old a");
+    for (const bool fails : {true, false}) {
+        OutputFile a(path("a")), fresh(path("fresh")), last(path("last"));
+        a.write("new a");
+        fresh.write("new");
+        last.write("new");
+        if (fails) fs::create_directories(path("last/full"));
+        OutputFile* const files[] = {&a, &fresh, &last};
+        const auto commit = [&] { OutputFile::commitTogether(files); };
+        EXPECT_EQ(errorOf(commit, path("last")), fails ? EISDIR : 0);
+        EXPECT_EQ(readAll(path("a")), fails ? "old a" : "new a");
+        EXPECT_EQ(names(), fails ? (std::vector<std::string>{"a", "last"})
+                                 : (std::vector<std::string>{"a", "fresh", "last"}));
+        if (fails) fs::remove_all(path("last"));
+    }
+}
+
+TEST_F(FileTest, ASetOnDevicesIsWrittenToThem) {
+    writeTogether(std::vector<NamedBytes>{{"/dev/null", "gone"}, {path("a"), "new"}});
+    EXPECT_EQ(readAll(path("a")), "new");
+    EXPECT_EQ(
+        errorOf(
+            [&] {
+                writeTogether(std::vector<NamedBytes>{{path("a"), "newer"}, {"/dev/full", "x"}});
+            },
+            "/dev/full"),
+        ENOSPC);
+    EXPECT_EQ(readAll(path("a")), "new");
+}
+
+/// TERM at any moment of a process that writes again and again.
+TEST_F(FileTest, ASignalLeavesNothingBehind) {
+    const std::string a(5000, 'a'), b(5000, 'b');
+    writeAll(path("one"), a);
+    writeAll(path("two"), a);
+    constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
+    for (int i = 0; i < 300; ++i) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            for (const int signal : kSignals) std::signal(signal, SIG_DFL);
+            while (true)
+                for (const std::string& text : {b, a})
+                    writeTogether(
+                        std::vector<NamedBytes>{{path("one"), text}, {path("two"), text}});
+        }
+        ::usleep(static_cast<useconds_t>(2000 + 37 * (i % 50)));
+        ASSERT_EQ(::kill(child, kSignals[i % 3]), 0);
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFSIGNALED(status));
+        ASSERT_EQ(names(), (std::vector<std::string>{"one", "two"})) << "after " << i;
+        ASSERT_EQ(readAll(path("one")), readAll(path("two"))) << "one old, one new";
+    }
 }
 
 TEST_F(FileTest, WhetherAFileCanBeMadeIsToldEarly) {

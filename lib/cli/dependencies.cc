@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <set>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_files.h"
 #include "base/utf8.h"
 
 namespace ispace {
@@ -63,19 +63,17 @@ void checkDependencies(const DependencyOptions& options, const std::string& outp
         throw UsageError("-MF says where the rule of -MD goes: give both");
     if (options.wanted && output == "-")
         throw UsageError("-MD writes a rule for the product: name it with -o FILE");
-    if (options.wanted && ruleFile(options, output) == output)
-        throw UsageError("-MD would write its rule over the product: name another file with -MF");
+}
+
+void claimOutputs(const CommonOptions& options) {
+    claimOutput(options.output, "--output");
+    if (!options.dependencies.wanted) return;
+    claimOutput(ruleFile(options.dependencies, options.output),
+                options.dependencies.file.empty() ? "the rule of -MD" : "-MF");
 }
 
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files) {
     if (!options.dependencies.wanted) return;
-    for (const std::string& file : files) {
-        std::error_code ignored;
-        if (std::filesystem::equivalent(ruleFile(options.dependencies, options.output), file,
-                                        ignored))
-            throw UsageError("-MD would write its rule over " + file +
-                             ", which was read: name another file with -MF");
-    }
     writeAll(ruleFile(options.dependencies, options.output), dependencyRule(options.output, files));
 }
 

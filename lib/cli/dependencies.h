@@ -14,9 +14,11 @@ namespace ispace {
 /// as make wants them. \throws UsageError for names with = ; or newline, which make cannot read
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
-/// Checks -MD and -MF against -o. \throws UsageError for -MF alone, without a product's name, and
-/// for a rule in the product's place
+/// Checks -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
 void checkDependencies(const DependencyOptions& options, const std::string& output);
+
+/// Claims the product and its rule, see claimOutput: a tool begins with this.
+void claimOutputs(const CommonOptions& options);
 
 /// Writes the rule of -o if it is wanted. \param files all that the product was made from
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files);

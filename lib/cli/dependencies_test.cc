@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/run_files.h"
 
 namespace ispace {
 namespace {
@@ -36,8 +37,20 @@ TEST(CheckDependencies, WantsAProductWithAName) {
     EXPECT_THROW(checkDependencies({true, ""}, "-"), UsageError);
     EXPECT_THROW(checkDependencies({true, "x.d"}, "-"), UsageError);
     EXPECT_THROW(checkDependencies({false, "x.d"}, "room.glb"), UsageError);
-    EXPECT_THROW(checkDependencies({true, ""}, "room.d"), UsageError);
-    EXPECT_THROW(checkDependencies({true, "room.glb"}, "room.glb"), UsageError);
+}
+
+TEST(ClaimOutputs, RefusesARuleInThePlaceOfTheProduct) {
+    const auto claim = [](const DependencyOptions& dependencies, const std::string& output) {
+        const RunFiles files;
+        CommonOptions options;
+        options.output = output;
+        options.dependencies = dependencies;
+        claimOutputs(options);
+    };
+    EXPECT_NO_THROW(claim({true, ""}, "room.glb"));
+    EXPECT_NO_THROW(claim({false, ""}, "room.d"));
+    EXPECT_THROW(claim({true, ""}, "room.d"), UsageError);
+    EXPECT_THROW(claim({true, "./room.glb"}, "room.glb"), UsageError);
 }
 
 }  // namespace

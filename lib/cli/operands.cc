@@ -187,13 +187,4 @@ std::string environmentFileFor(const std::string& output, const std::string& env
     return (to / file.filename()).lexically_relative(from).string();
 }
 
-void refuseReplacing(std::span<const std::string> files, const std::vector<std::string>& outputs) {
-    for (const std::string& output : outputs)
-        for (const std::string& file : files) {
-            std::error_code ignored;
-            if (!output.empty() && std::filesystem::equivalent(output, file, ignored))
-                throw UsageError(output + " is read by this command: write to another file");
-        }
-}
-
 }  // namespace ispace

@@ -62,10 +62,6 @@ void checkDigest(const Document& layout, std::span<const Record> environment,
 /// Reads everything on stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
 
-/// Nobody means to replace what is read by something else that is made of it.
-/// \throws UsageError if one of the outputs ("" for none) is one of the files
-void refuseReplacing(std::span<const std::string> files, const std::vector<std::string>& outputs);
-
 /// `file=` of an `environment` record in a layout written to `output`: the way from its folder to
 /// ENV, never absolute; "" if ENV came from stdin or another pipe.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);

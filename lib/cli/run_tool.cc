@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_files.h"
 #include "base/utf8.h"
 
 namespace ispace {
@@ -50,6 +51,7 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
     try {
         try {
+            const RunFiles files;
             body();
         } catch (const TextRequested& request) {
             writeAll("-", request.text);

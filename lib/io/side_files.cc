@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/run_files.h"
 #include "base/utf8.h"
 
 namespace ispace {
@@ -59,6 +60,7 @@ RegularFile openRegular(const std::string& path) {
     if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0)
         throw std::system_error(errno, std::generic_category(), path);
     check_kind();
+    noteInput(file.fd(), path);
     return {std::move(file), static_cast<std::size_t>(info.st_size)};
 }
 

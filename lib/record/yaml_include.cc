@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/run_files.h"
 #include "base/utf8.h"
 
 namespace ispace {
@@ -36,6 +37,7 @@ std::string readRegularFile(const std::string& name) {
     if (!fs::is_regular_file(status)) refuse("it is no regular file");
     const auto size = static_cast<std::size_t>(fs::file_size(name));
     if (size > YamlIncludes::kMostBytes) refuse("it holds more than all included files may");
+    noteInput(name);
     errno = 0;
     std::ifstream stream(name, std::ios::binary);
     if (!stream) throw std::system_error(errno, std::generic_category());

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Outputs that cannot be made: one line naming the target, status 1, nothing half-written; and what
-# -o does to files that are there already.
+# Outputs that cannot be made: one line naming the target, status 1, nothing half-written; what -o
+# does to files that are there already; and that no output of any tool replaces what the run reads.
 . "$(dirname "$0")/common.sh"
 
 room=$data/room.env
@@ -40,3 +40,93 @@ for tool in "${!product[@]}"; do
 done
 [ -z "$(ls -A folder)" ] || fail "left behind in the folder"
 [ "$(ls -A)" = "$(printf '%s\n' err folder out)" ] || fail "left behind: $(ls -A)"
+
+# Every output against every input, under its own name, through a link, and by a hard link.
+mkdir inputs kept
+(
+    cd inputs
+    cp "$data/square.env" room.env
+    cp "$data/half.3dm" half.3dm
+    cp "$data/half.3dm" other.3dm
+    cp "$data/session.3dm" robots.3dm
+    cp "$data/tried.jsonl" tried.jsonl
+    cp "$data/map.yaml" map.yaml
+    cp "$data/map.pgm" map.pgm
+    printf -- '- include: part.yaml\n' >whole.yaml
+    printf -- '- fence: { path: [[0, 0], [4, 0], [4, 3], [0, 3]], closed: yes }\n' >part.yaml
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n' >desk.obj
+    printf '#env 1\nfence path=-4,-4;4,-4;4,4;-4,4 closed=yes\nmesh file=desk.obj\n' >mesh.env
+    printf 't,x,y,heading\n0,0,0,0\n1,0.5,0,0\n' >poses.csv
+    printf 'x,y,heading\n0,0,0\n1,0,90\n' >places.csv
+    printf '0 r1 SPEED 1\n' >script.txt
+)
+placing="--sensor laser,range=1 --candidates 1,1,4"
+# A line: the input, and what would write over it; OUT stands for its name.
+refused='
+room.env    envc room.env --to env -o OUT
+room.env    envc room.env --to svg -o OUT
+part.yaml   envc whole.yaml --to yaml -o OUT
+whole.yaml  envc whole.yaml --to yaml -o OUT
+part.yaml   envc whole.yaml -o new.glb -MD -MF OUT
+desk.obj    envc mesh.env --to glb -o OUT
+desk.obj    scan mesh.env half.3dm --to jsonl -o OUT
+map.pgm     envc map.yaml --to svg -o OUT
+map.yaml    envc map.yaml --to ros -o OUT
+room.env    arrange room.env PLACING --trace OUT -o new.3dm
+places.csv  arrange room.env --sensor laser --places places.csv --curve OUT -o new.3dm
+places.csv  arrange room.env --sensor laser --places places.csv --export-mps OUT -o new.3dm
+half.3dm    arrange room.env half.3dm PLACING -o OUT
+half.3dm    scan room.env half.3dm --to jsonl -o OUT
+poses.csv   scan room.env --poses poses.csv --model laser --to csv -o OUT
+poses.csv   scan room.env --poses poses.csv --model laser --to csv -o new.csv -MD -MF OUT
+room.env    coverage room.env half.3dm --to csv -o OUT
+half.3dm    coverage room.env half.3dm -o new.png -MD -MF OUT
+other.3dm   coverage room.env half.3dm --compare other.3dm --to png -o OUT
+tried.jsonl coverage room.env half.3dm --trace tried.jsonl --to png -o OUT
+room.env    simrun room.env robots.3dm --until 0 --port-file OUT
+robots.3dm  simrun room.env robots.3dm --until 0 --port-file OUT
+script.txt  simrun room.env robots.3dm --until 0 --script script.txt --port-file OUT
+'
+cp -r inputs/. kept
+while read -r input command; do
+    [ -n "$input" ] || continue
+    for way in plain hard soft; do
+        rm -rf inputs
+        cp -r kept inputs
+        name=$way.${input##*.}
+        case $way in
+        plain) name=$input ;;
+        hard) ln "inputs/$input" "inputs/$name" ;;
+        soft) ln -s "$input" "inputs/$name" ;;
+        esac
+        line=${command//OUT/./$name}
+        line=${line//PLACING/$placing}
+        # shellcheck disable=SC2086
+        (cd inputs && expect_status 2 $line && mv out err ..)
+        grep -q "error: ./$name is read by this command: write to another file" err ||
+            fail "$line: $(cat err)"
+        [ "$(wc -l <err)" -eq 1 ] || fail "not one line: $line: $(cat err)"
+        [ "$way" = plain ] || rm "inputs/$name"
+        diff -r kept inputs || fail "inputs were touched, or more was written: $line"
+    done
+done <<<"$refused"
+
+# Members of a set, files of a record, and what stands beside a product.
+cd kept
+mkdir set run
+mv poses.csv set/laser1-0000.csv
+expect_error 2 scan room.env --poses set/laser1-0000.csv --model laser --to csv -o set
+[ "$(ls set)" = laser1-0000.csv ] || fail "more in the set: $(ls set)"
+mv script.txt run/robots.csv
+expect_error 2 simrun room.env robots.3dm --until 0 --script run/robots.csv --record run
+expect_error 2 simrun room.env robots.3dm --until 0 --port-file run/info.csv --record run
+expect_error 2 envc room.env --to ros -o map.yaml -MD -MF map.pgm
+expect_error 2 envc room.env --to obj -o room.mtl
+expect_error 2 coverage room.env half.3dm --to ros -o map.yaml --report map.json -MD -MF map.json
+ln map.pgm new.pgm
+expect_error 2 envc map.yaml --to ros -o new.yaml
+expect_status 2 envc - --to env -o room.env <room.env
+status=0
+arrange room.env --sensor laser,range=1 --candidates 1,1,4 --trace both >both 2>err || status=$?
+[ "$status" -eq 2 ] || fail "status $status for a trace where stdout goes: $(cat err)"
+[ -z "$(find "$scratch" -name '.ispace.tmp*')" ] || fail "stand-ins are left"

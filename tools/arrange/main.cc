@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/run_files.h"
 #include "cli/dependencies.h"
 #include "cli/file_stream.h"
 #include "cli/operands.h"
@@ -165,8 +166,11 @@ void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
     const ThreadLimit threads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(options.trace_file, "--trace");
+    claimOutput(options.curve_file, "--curve");
+    claimOutput(options.mps_file, "--export-mps");
     const Work work = read(options);
-    refuseReplacing(work.files, {options.trace_file, options.curve_file, options.mps_file});
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
         mustBeWritable(*file);

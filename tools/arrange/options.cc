@@ -2,8 +2,6 @@
 #include "arrange/options.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -327,7 +325,6 @@ void ArrangeCommand::settleFiles() const {
         {"--trace", &options_.trace_file},
         {"--export-mps", &options_.mps_file},
         {"--MF", &options_.common.dependencies.file}};
-    std::map<std::filesystem::path, const char*> names;
     for (const auto& [name, file] : files) {
         if (file->empty()) {
             if (line_.given(name)) throw UsageError(std::string(name) + ": an empty name is given");
@@ -337,12 +334,6 @@ void ArrangeCommand::settleFiles() const {
         const bool is_stdout = *file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1";
         if (!is_layout && is_stdout)
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
-        if (is_layout && isStream(*file)) continue;
-        const auto [other, is_new] = names.emplace(
-            std::filesystem::weakly_canonical(std::filesystem::absolute(*file)), name);
-        if (!is_new)
-            throw UsageError(std::string(name) + " and " + other->second + " name the same file, " +
-                             *file);
     }
     if (!options_.curve_file.empty())
         (void)outputFormat({}, options_.curve_file, {"csv", "png", "svg", "pdf"});

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/history.h"
 #include "base/number.h"
+#include "base/run_files.h"
 #include "cli/dependencies.h"
 #include "cli/operands.h"
 #include "cli/run_tool.h"
@@ -94,7 +95,7 @@ void writeProduct(const CoverageToolOptions& options, const Scene& scene,
         const CoverageRosMap map =
             coverageRosMap(measured.coverage, std::get<CellSize>(options.measure.cells).edge,
                            std::filesystem::path(picture).filename().string());
-        writeBoth(output, map.yaml, picture, map.pgm);
+        writeTogether(std::vector<NamedBytes>{{picture, map.pgm}, {output, map.yaml}});
     } else {
         writeAll(output, drawCoverageMap(scene, measured.coverage, options.map,
                                          measured.other ? &*measured.other : nullptr));
@@ -115,6 +116,10 @@ void checkRequired(const CoverageToolOptions& options, const CoverageReport& rep
 
 void coverage(CoverageToolOptions options) {
     const ThreadLimit threads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(options.report, "--report");
+    if (options.format == "ros")
+        claimOutput(withSuffix(options.common.output, ".pgm"), "the picture of the map");
     const SceneInput input = readScene({options.operands, options.any_environment, true});
     ispace::warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
@@ -127,10 +132,6 @@ void coverage(CoverageToolOptions options) {
         options.map.trace = readTried(options, input);
         files.push_back(options.trace);
     }
-    if (!options.format.empty()) refuseReplacing(files, {options.common.output});
-    if (options.format == "ros")
-        refuseReplacing(files, {withSuffix(options.common.output, ".pgm")});
-    refuseReplacing(files, {options.report});
     if (!options.report.empty()) mustBeWritable(options.report);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/history.h"
 #include "base/number.h"
+#include "base/run_files.h"
 #include "cli/dependencies.h"
 #include "cli/inputs.h"
 #include "cli/run_tool.h"
@@ -41,6 +42,14 @@ bool isRecordFormat(const std::string& format) {
 constexpr std::pair<std::string_view, const char*> kBinary[] = {
     {"glb", "a GLB"}, {"stl", "an STL"}, {"png", "a PNG"}};
 
+/// The file that stands beside the product; "" for none.
+std::string besideOf(const EnvcOptions& options) {
+    if (options.format == "ros") return withSuffix(options.common.output, ".pgm");
+    if (options.format == "obj" && !isStream(options.common.output))
+        return withSuffix(options.common.output, ".mtl");
+    return "";
+}
+
 Document readModel(const EnvcOptions& options) {
     InputRequest request;
     request.inputs = options.inputs;
@@ -71,18 +80,17 @@ std::string drawing(const EnvcOptions& options, const Scene& scene) {
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
     const std::string& format = options.format;
     const std::string& output = options.common.output;
-    if (format == "obj" && !isStream(output)) {
-        const std::string materials = withSuffix(output, ".mtl");
-        const ObjFiles files = writeObj(scene, fs::path(materials).filename().string());
-        writeBoth(output, files.obj, materials, files.mtl);
+    const std::string beside = besideOf(options);
+    if (format == "obj" && !beside.empty()) {
+        const ObjFiles files = writeObj(scene, fs::path(beside).filename().string());
+        writeTogether(std::vector<NamedBytes>{{beside, files.mtl}, {output, files.obj}});
     } else if (format == "obj") {
         writeAll(output, writeObj(scene, "").obj);
     } else if (format == "ros") {
-        const std::string picture = withSuffix(output, ".pgm");
         const RosMapFiles files = writeRosMap(scene, options.slice.value_or(kScanHeight),
                                               options.import.resolution.value_or(kMapResolution),
-                                              fs::path(picture).filename().string());
-        writeBoth(output, files.yaml, picture, files.pgm);
+                                              fs::path(beside).filename().string());
+        writeTogether(std::vector<NamedBytes>{{beside, files.pgm}, {output, files.yaml}});
     } else if (format == "stl") {
         writeAll(output, writeStl(scene));
     } else if (format == "geojson") {
@@ -150,6 +158,9 @@ void envc(const EnvcOptions& options) {
     for (const auto& [format, name] : kBinary)
         if (options.format == format) refuseTerminal(options.common.output, name);
     const ThreadLimit threads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(besideOf(options),
+                options.format == "ros" ? "the picture of the map" : "materials");
     const Document document = readModel(options);
     if (isRecordFormat(options.format))
         convert(options, document);

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_files.h"
 #include "cli/output_set.h"
 
 namespace ispace {
@@ -33,12 +34,13 @@ class Files final : public Delivery {
         for (std::size_t i = 0; i < readings.jobs.size(); ++i) {
             const ReadingJob& job = readings.jobs[i];
             const std::string& id = sensors_.id(sensors_.order[job.sensor]);
-            for (const ReadingFile& file : readings.files[i]) {
-                const bool beside = &file != readings.files[i].data();
-                writeAll(beside ? names_.fileBeside(id, job.frame, file.ending)
-                                : names_.fileOf(id, job.frame, file.ending),
-                         file.bytes);
-            }
+            std::vector<NamedBytes> together;
+            for (const ReadingFile& file : readings.files[i])
+                together.push_back({together.empty()
+                                        ? names_.fileOf(id, job.frame, file.ending)
+                                        : names_.fileBeside(id, job.frame, file.ending),
+                                    file.bytes});
+            writeTogether(together);
         }
     }
     void commit() override {}
@@ -52,27 +54,33 @@ class Files final : public Delivery {
 /// file.
 class OneFile final : public Delivery {
   public:
-    explicit OneFile(const std::string& output) : output_(output), file_(output) {}
+    OneFile(const std::string& output, const std::vector<std::string>& endings) : output_(output) {
+        files_.push_back(std::make_unique<OutputFile>(output));
+        if (isStream(output)) return;
+        for (std::size_t i = 1; i < endings.size(); ++i)
+            claimOutput(withoutSuffix(output) + endings[i], "a file that stands beside it");
+    }
     [[nodiscard]] Packing how() const override { return Packing::Files; }
     void write(Readings& readings) override {
-        for (const std::vector<ReadingFile>& files : readings.files) {
-            file_.write(files.front().bytes);
-            if (output_ == "-" || isStream(output_)) continue;
-            for (std::size_t i = 1; i < files.size(); ++i) {
-                const std::string beside = withoutSuffix(output_) + files[i].ending;
-                if (beside == output_)
-                    throw UsageError("--output: " + output_ +
-                                     " is the name of a file that stands beside the picture; give "
-                                     "that another suffix");
-                writeAll(beside, files[i].bytes);
+        for (const std::vector<ReadingFile>& files : readings.files)
+            for (const ReadingFile& file : files) {
+                const bool beside = &file != files.data();
+                if (beside && isStream(output_)) break;
+                if (beside)
+                    files_.push_back(
+                        std::make_unique<OutputFile>(withoutSuffix(output_) + file.ending));
+                files_.back()->write(file.bytes);
             }
-        }
     }
-    void commit() override { file_.commit(); }
+    void commit() override {
+        std::vector<OutputFile*> together;
+        for (const auto& file : files_) together.push_back(file.get());
+        OutputFile::commitTogether(together);
+    }
 
   private:
     std::string output_;
-    OutputFile file_;
+    std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
 /// All points in one cloud, which is held in memory until it is whole.
@@ -134,7 +142,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     }
     format.checkStream();
     if (format.isStream()) return std::make_unique<Stream>(output, format);
-    if (count == 1) return std::make_unique<OneFile>(output);
+    if (count == 1) return std::make_unique<OneFile>(output, format.endings());
     const bool is_cloud = options.format == "pcd" || options.format == "ply";
     if (is_cloud && options.coordinates == Coordinates::World)
         return std::make_unique<OneCloud>(options, sensors.order.size(), count);

@@ -112,6 +112,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
 
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
+    claimOutputs(options.common);
     const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices, kKinds));
     const ThreadLimit threads(options.common.threads);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "base/file.h"
 #include "base/json_writer.h"
 #include "base/number.h"
+#include "base/run_files.h"
 #include "cli/byte_count.h"
 #include "cli/line_guard.h"
 #include "cli/operands.h"
@@ -64,9 +64,8 @@ std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInpu
 
 /// Files of the record that grow.
 std::vector<std::string> recordedLines(const std::string& folder) {
-    std::vector<std::string> files;
-    for (const char* name : {"robots.csv", "scans.jsonl", "timing.csv"})
-        files.push_back((std::filesystem::path(folder) / name).string());
+    std::vector<std::string> files = Recorder::filesIn(folder);
+    files.pop_back();
     return files;
 }
 
@@ -103,6 +102,10 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     const ThreadLimit threads(options.common.threads);
+    claimOutput(options.port_file, "--port-file");
+    if (!options.record.empty())
+        for (const std::string& file : Recorder::filesIn(options.record))
+            claimOutput(file, "a file of --record");
     const SceneInput input = readScene({options.operands, options.any_environment, false});
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common.quiet);

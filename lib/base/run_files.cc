@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/run_files.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <compare>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FileId {
+    dev_t device;
+    ino_t inode;
+    auto operator<=>(const FileId&) const = default;
+};
+
+/// Where a file is or is going to be.
+struct Place {
+    FileId folder;
+    std::string name;
+    auto operator<=>(const Place&) const = default;
+};
+
+struct Output {
+    std::string name, role;
+    std::optional<FileId> old;  // what it replaces
+    bool is_claimed = false, is_open = false;
+};
+
+struct Known {
+    std::map<FileId, std::string> inputs;
+    std::map<Place, Output> outputs;
+};
+
+std::mutex guard;
+std::optional<Known> known;  // guarded
+
+std::optional<FileId> regular(const struct stat& info) {
+    if (!S_ISREG(info.st_mode)) return std::nullopt;
+    return FileId{info.st_dev, info.st_ino};
+}
+
+std::optional<FileId> fileAt(const std::string& name) {
+    struct stat info {};
+    const bool exists =
+        name == "-" ? ::fstat(STDOUT_FILENO, &info) == 0 : ::stat(name.c_str(), &info) == 0;
+    return exists ? regular(info) : std::nullopt;
+}
+
+/// Nothing for a target in a folder that is not there.
+std::optional<Place> placeOf(const std::string& target) {
+    const fs::path path(target);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    struct stat info {};
+    if (::stat(folder.c_str(), &info) != 0) return std::nullopt;
+    return Place{{info.st_dev, info.st_ino}, path.filename().string()};
+}
+
+[[noreturn]] void refuseInput(const std::string& output) {
+    throw UsageError((output == "-" ? "stdout" : output) +
+                     " is read by this command: write to another file");
+}
+
+void checkInput(const std::string& target, const std::string& name) {
+    const auto file = fileAt(target);
+    if (file && known->inputs.count(*file) > 0) refuseInput(name);
+}
+
+[[noreturn]] void refuseTwice(const std::string& name, const Output& other,
+                              const std::string& role) {
+    if (role.empty() || other.role.empty())
+        throw UsageError(name +
+                         " is the name of two files that this command writes: give one of "
+                         "them another name");
+    throw UsageError(role + " and " + other.role + " name the same file, " + name);
+}
+
+void note(const struct stat& info, const std::string& name) {
+    const auto file = regular(info);
+    if (!file) return;
+    const std::lock_guard lock(guard);
+    if (!known) return;
+    for (const auto& [place, output] : known->outputs)
+        if (output.old == file) refuseInput(output.name);
+    known->inputs.emplace(*file, name);
+}
+
+}  // namespace
+
+RunFiles::RunFiles() {
+    const std::lock_guard lock(guard);
+    known.emplace();
+}
+
+RunFiles::~RunFiles() {
+    const std::lock_guard lock(guard);
+    known.reset();
+}
+
+void noteInput(const std::string& name) {
+    struct stat info {};
+    if (name != "-" && ::stat(name.c_str(), &info) == 0) note(info, name);
+}
+
+void noteInput(int descriptor, const std::string& name) {
+    struct stat info {};
+    if (::fstat(descriptor, &info) == 0) note(info, name);
+}
+
+void claimOutput(const std::string& target, const std::string& role) {
+    if (target.empty() || target == "-") return;
+    const std::string resolved = followLinks(target);
+    const std::lock_guard lock(guard);
+    if (!known) return;
+    checkInput(resolved, target);
+    const auto place = placeOf(resolved);
+    struct stat info {};
+    const bool exists = ::stat(resolved.c_str(), &info) == 0;
+    // A device or a pipe may well be named twice.
+    if (!place || (exists && !S_ISREG(info.st_mode))) return;
+    // What went to stdout would be lost with the old file; /dev/stdout may be meant.
+    if (exists && !target.starts_with("/dev/") && !target.starts_with("/proc/") &&
+        regular(info) == fileAt("-"))
+        throw UsageError(role + " and stdout are the same file, " + target);
+    const auto [at, is_new] = known->outputs.emplace(*place, Output{target, role, {}, true, false});
+    if (!is_new) refuseTwice(target, at->second, role);
+    if (exists) at->second.old = regular(info);
+}
+
+OpenOutput::OpenOutput(std::string target, std::string name)
+    : target_(std::move(target)), name_(std::move(name)) {
+    const std::lock_guard lock(guard);
+    if (!known) return;
+    checkInput(target_, name_);
+    if (target_ == "-") return;
+    const auto place = placeOf(target_);
+    if (!place) return;
+    Output& output =
+        known->outputs.emplace(*place, Output{name_, "", {}, false, false}).first->second;
+    if (std::exchange(output.is_open, true)) refuseTwice(name_, output, "");
+    output.old = fileAt(target_);
+    is_kept_ = true;
+}
+
+OpenOutput::~OpenOutput() {
+    if (!is_kept_) return;
+    const std::lock_guard lock(guard);
+    const auto place = placeOf(target_);
+    if (!known || !place) return;
+    const auto at = known->outputs.find(*place);
+    if (at == known->outputs.end()) return;
+    // Those that nobody claimed are forgotten: a run may write any number of them.
+    if (!at->second.is_claimed)
+        known->outputs.erase(at);
+    else if (!is_done_)
+        at->second.is_open = false;
+}
+
+void OpenOutput::check() const {
+    const std::lock_guard lock(guard);
+    if (known) checkInput(target_, name_);
+}
+
+std::string followLinks(const std::string& target) {
+    constexpr int kMostLinks = 40;  // as the kernel
+    fs::path path(target);
+    std::error_code error;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+        const fs::path next = fs::read_symlink(path, error);
+        if (error) break;
+        path = path.parent_path() / next;  // an absolute one replaces the folder
+    }
+    return path.string();
+}
+
+}  // namespace ispace
