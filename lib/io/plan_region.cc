@@ -132,30 +132,6 @@ std::optional<Segment2> commonPart(const Segment2& line, const Segment2& other) 
     return part;
 }
 
-/// Pieces of walls, and of closings where no wall lies on them.
-struct WeldedPlan {
-    std::vector<Segment2> walls, closings;
-};
-
-WeldedPlan weldedPlan(std::span<const Segment2> walls, std::span<const Segment2> closings) {
-    std::vector<Segment2> all(walls.begin(), walls.end());
-    all.insert(all.end(), closings.begin(), closings.end());
-    const WeldedLines welded = weld(all);
-    WeldedPlan plan;
-    std::vector<Segment2> pieces;
-    for (std::size_t i = 0; i < welded.pieces.size(); ++i)
-        (welded.source[i] < walls.size() ? plan.walls : pieces).push_back(welded.pieces[i]);
-    const NearSegments search(plan.walls);
-    for (const Segment2& piece : pieces) {
-        const Point2 middle = middleOf(piece);
-        const auto near = search.near(middle, kOnLine);
-        if (std::none_of(near.begin(), near.end(),
-                         [&](std::size_t i) { return distance(middle, plan.walls[i]) <= kOnLine; }))
-            plan.closings.push_back(piece);
-    }
-    return plan;
-}
-
 }  // namespace
 
 double PlanRegion::area() const {
@@ -169,10 +145,45 @@ PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> 
     if (closings.empty()) {
         faces_ = boundedFaces(weld(walls));
     } else {
-        WeldedPlan welded = weldedPlan(walls, closings);
-        faces_ = boundedFaces(welded.walls, welded.closings);
-        closings_ = std::move(welded.closings);
+        Pieces pieces = weldedPieces(walls, closings);
+        faces_ = boundedFaces(pieces.walls, pieces.closings);
+        closings_ = std::move(pieces.closings);
     }
+    takeFaces(doors);
+}
+
+PlanFaces::PlanFaces(const Pieces& pieces, std::span<const Segment2> doors,
+                     std::size_t closing_pieces)
+    : walls_(pieces.walls),
+      closings_(pieces.closings.begin(),
+                pieces.closings.begin() + static_cast<std::ptrdiff_t>(closing_pieces)),
+      faces_(boundedFaces(walls_, closings_)) {
+    takeFaces(doors);
+}
+
+PlanFaces::Pieces PlanFaces::weldedPieces(std::span<const Segment2> walls,
+                                          std::span<const Segment2> closings) {
+    std::vector<Segment2> all(walls.begin(), walls.end());
+    all.insert(all.end(), closings.begin(), closings.end());
+    const WeldedLines welded = weld(all);
+    Pieces plan;
+    for (std::size_t i = 0; i < welded.pieces.size(); ++i)
+        if (welded.source[i] < walls.size()) plan.walls.push_back(welded.pieces[i]);
+    const NearSegments search(plan.walls);
+    for (std::size_t i = 0; i < welded.pieces.size(); ++i) {
+        if (welded.source[i] < walls.size()) continue;
+        const Point2 middle = middleOf(welded.pieces[i]);
+        const auto near = search.near(middle, kOnLine);
+        if (std::any_of(near.begin(), near.end(),
+                        [&](std::size_t k) { return distance(middle, plan.walls[k]) <= kOnLine; }))
+            continue;
+        plan.closings.push_back(welded.pieces[i]);
+        plan.closing_of.push_back(welded.source[i] - walls.size());
+    }
+    return plan;
+}
+
+void PlanFaces::takeFaces(std::span<const Segment2> doors) {
     boxes_.reserve(faces_.size());
     Box2 all;
     for (const Region& face : faces_) {

@@ -21,6 +21,13 @@ struct PlanRegion {
 /// The faces of a plan's lines, those that doors join taken together.
 class PlanFaces {
   public:
+    /// Welded pieces: of walls, and of closings where no wall lies on them, in the order of these.
+    struct Pieces {
+        std::vector<Segment2> walls, closings;
+        std::vector<std::size_t> closing_of;  ///< index of the closing that a piece comes from
+    };
+    static Pieces weldedPieces(std::span<const Segment2> walls, std::span<const Segment2> closings);
+
     /// Faces that hang together: indices of faces(), the largest first.
     struct Group {
         std::vector<std::size_t> faces;
@@ -32,6 +39,8 @@ class PlanFaces {
     ///        outside of everything, and nothing else
     explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {},
                        std::span<const Segment2> closings = {});
+    /// The same of pieces, with the first so many pieces of closings.
+    PlanFaces(const Pieces& pieces, std::span<const Segment2> doors, std::size_t closing_pieces);
 
     [[nodiscard]] const std::vector<Region>& faces() const { return faces_; }
     /// By falling area.
@@ -46,6 +55,7 @@ class PlanFaces {
     [[nodiscard]] std::vector<Segment2> closedBy(const PlanRegion& region) const;
 
   private:
+    void takeFaces(std::span<const Segment2> doors);
     void makeGroups(std::span<const Segment2> doors);
     [[nodiscard]] std::optional<std::size_t> faceAt(Point2 p) const;
 

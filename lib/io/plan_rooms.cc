@@ -221,26 +221,29 @@ class RoomChooser {
             all.insert(all.end(), ways.lines.begin(), ways.lines.end());
             const WeldedLines cut = cutAtCrossings(all);
             const std::size_t walls = chooser.lines_.size();
+            std::vector<Segment2> lines, closings;
+            std::vector<std::size_t> needs;
             for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
                 const std::size_t source = cut.source[i];
-                (source < walls ? lines_ : closings_).push_back(cut.pieces[i]);
-                if (source >= walls) needs_.push_back(source - walls + 1);
+                (source < walls ? lines : closings).push_back(cut.pieces[i]);
+                if (source >= walls) needs.push_back(source - walls + 1);
             }
+            pieces_ = PlanFaces::weldedPieces(lines, closings);
+            for (const std::size_t closing : pieces_.closing_of) needs_.push_back(needs[closing]);
         }
 
         [[nodiscard]] Attempt at(double width) const {
             const std::size_t count = ways_.upTo(width).size();
             const auto end = std::upper_bound(needs_.begin(), needs_.end(), count);
-            const auto closings =
-                std::span(closings_).first(static_cast<std::size_t>(end - needs_.begin()));
+            const auto pieces = static_cast<std::size_t>(end - needs_.begin());
             return chooser_.attemptOf(width, count,
-                                      PlanFaces(lines_, chooser_.plan_.doors, closings));
+                                      PlanFaces(pieces_, chooser_.plan_.doors, pieces));
         }
 
       private:
         const RoomChooser& chooser_;
         const Ways& ways_;
-        std::vector<Segment2> lines_, closings_;
+        PlanFaces::Pieces pieces_;
         std::vector<std::size_t> needs_;  // how many gaps are closed where a piece is there; grows
     };
 
