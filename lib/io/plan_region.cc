@@ -256,6 +256,17 @@ bool PlanFaces::isHollow(const Group& group) const {
     });
 }
 
+std::vector<Point2> PlanFaces::wallCorners() const {
+    std::vector<Point2> corners;
+    for (const Group& group : groups_) {
+        if (!isHollow(group)) continue;
+        for (const std::size_t face : group.faces)
+            for (const Polygon& curve : curvesOf(faces_[face]))
+                corners.insert(corners.end(), curve.begin(), curve.end());
+    }
+    return corners;
+}
+
 PlanRegion PlanFaces::region(const Group& group) const {
     PlanRegion region;
     for (const std::size_t i : group.faces) region.rooms.push_back(faces_[i]);

@@ -50,6 +50,8 @@ class PlanFaces {
     /// True if nothing wider than a wall fits into any of its faces: what lies between the two
     /// lines of a wall, and never a room.
     [[nodiscard]] bool isHollow(const Group& group) const;
+    /// Corners of the solid between the two lines of a wall, as seen from the floor.
+    [[nodiscard]] std::vector<Point2> wallCorners() const;
     [[nodiscard]] PlanRegion region(const Group& group) const;
     /// The part of the region's boundary that lies on closings alone.
     [[nodiscard]] std::vector<Segment2> closedBy(const PlanRegion& region) const;

@@ -63,18 +63,6 @@ std::string sizeText(const Box2& box) {
 
 Point2 rounded(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
 
-/// Corners of the solid between the two lines of a wall, as seen from the floor.
-std::vector<Point2> wallCorners(const PlanFaces& faces) {
-    std::vector<Point2> corners;
-    for (const PlanFaces::Group& group : faces.groups()) {
-        if (!faces.isHollow(group)) continue;
-        for (const std::size_t face : group.faces)
-            for (const Polygon& curve : curvesOf(faces.faces()[face]))
-                corners.insert(corners.end(), curve.begin(), curve.end());
-    }
-    return corners;
-}
-
 class RoomChooser {
   public:
     RoomChooser(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out)
@@ -144,7 +132,7 @@ class RoomChooser {
         Ways ways;
         if (!(width > 0)) return ways;
         std::vector<Point2> corners;
-        if (width >= kNarrowestDoorway) corners = wallCorners(PlanFaces(lines_));
+        if (width >= kNarrowestDoorway) corners = PlanFaces(lines_).wallCorners();
         for (const Closing& gap : closings(lines_, corners, width)) {
             const Segment2 line{rounded(gap.line.a), rounded(gap.line.b)};
             if (line.a == line.b) continue;
