@@ -49,7 +49,7 @@ int openInput(const std::string& operand) {
     struct stat info {};
     if (file.get() < 0 || ::fstat(file.get(), &info) != 0) fail(operand, errno);
     if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);
-    noteInput(file.get(), operand);
+    noteInput(file.get());
     return file.release();
 }
 
@@ -101,7 +101,7 @@ std::string readAll(const std::string& operand) {
     const bool regular = S_ISREG(info.st_mode);
     const std::uint64_t most = regular ? kMostFileBytes : kMostStreamBytes;
     if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
-    noteInput(file.get(), operand);
+    noteInput(file.get());
     std::string bytes;
     constexpr std::size_t kChunk = 1 << 16;
     std::size_t size = 0;

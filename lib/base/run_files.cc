@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -40,7 +41,7 @@ struct Output {
 };
 
 struct Known {
-    std::map<FileId, std::string> inputs;
+    std::set<FileId> inputs;
     std::map<Place, Output> outputs;
 };
 
@@ -87,14 +88,14 @@ void checkInput(const std::string& target, const std::string& name) {
     throw UsageError(role + " and " + other.role + " name the same file, " + name);
 }
 
-void note(const struct stat& info, const std::string& name) {
+void note(const struct stat& info) {
     const auto file = regular(info);
     if (!file) return;
     const std::lock_guard lock(guard);
     if (!known) return;
     for (const auto& [place, output] : known->outputs)
         if (output.old == file) refuseInput(output.name);
-    known->inputs.emplace(*file, name);
+    known->inputs.insert(*file);
 }
 
 }  // namespace
@@ -111,12 +112,12 @@ RunFiles::~RunFiles() {
 
 void noteInput(const std::string& name) {
     struct stat info {};
-    if (name != "-" && ::stat(name.c_str(), &info) == 0) note(info, name);
+    if (name != "-" && ::stat(name.c_str(), &info) == 0) note(info);
 }
 
-void noteInput(int descriptor, const std::string& name) {
+void noteInput(int descriptor) {
     struct stat info {};
-    if (::fstat(descriptor, &info) == 0) note(info, name);
+    if (::fstat(descriptor, &info) == 0) note(info);
 }
 
 void claimOutput(const std::string& target, const std::string& role) {

@@ -24,8 +24,8 @@ class RunFiles {
 /// file is opened. Streams, devices and what is not there do not count.
 /// \throws UsageError if an output goes there
 void noteInput(const std::string& name);
-/// The same of a file that is open; `name` is for messages.
-void noteInput(int descriptor, const std::string& name);
+/// The same of a file that is open.
+void noteInput(int descriptor);
 
 /// Tells early of an output, before work is spent on what it cannot hold; "-" and "" do not count.
 /// \param role for messages: `--report`

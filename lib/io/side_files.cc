@@ -60,7 +60,7 @@ RegularFile openRegular(const std::string& path) {
     if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0)
         throw std::system_error(errno, std::generic_category(), path);
     check_kind();
-    noteInput(file.fd(), path);
+    noteInput(file.fd());
     return {std::move(file), static_cast<std::size_t>(info.st_size)};
 }
 
