@@ -44,9 +44,9 @@ class InputFile {
 /// is replaced; an existing file's permissions are kept. Where a run keeps RunFiles, no input is
 /// replaced.
 ///
-/// TERM, INT and HUP leave nothing behind either; KILL may, if it falls between the last two system
-/// calls of commit(). There is no fsync: the rename is safe against the end of the process, not
-/// against that of the machine.
+/// TERM, INT and HUP leave nothing behind either; KILL may if it falls into commit(), and so may
+/// any signal on a file system without O_TMPFILE. There is no fsync: the rename is safe against the
+/// end of the process, not against that of the machine.
 class OutputFile {
   public:
     /// \throws std::system_error if the file cannot be made there; UsageError if it is an input

@@ -14,6 +14,7 @@ namespace {
 std::atomic<int> taken;
 
 TEST(HeldSignals, HandlersGetTheirsAfterwards) {
+    taken = 0;
     const auto before = std::signal(SIGTERM, [](int) { ++taken; });
     {
         const HeldSignals held;
