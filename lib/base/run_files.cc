@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <compare>
 #include <filesystem>
 #include <map>
@@ -183,6 +184,8 @@ std::string followLinks(const std::string& target) {
         if (error) break;
         path = path.parent_path() / next;  // an absolute one replaces the folder
     }
+    if (fs::is_symlink(path, error))
+        throw std::system_error(ELOOP, std::generic_category(), displayName(target));
     return path.string();
 }
 

@@ -56,6 +56,7 @@ class OpenOutput {
 };
 
 /// The file that a chain of links names, which need not exist. Keeps relative paths relative.
+/// \throws std::system_error for a circle of links
 std::string followLinks(const std::string& target);
 
 }  // namespace ispace

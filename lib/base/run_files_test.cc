@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
@@ -98,6 +99,14 @@ TEST_F(RunFilesTest, TwoOutputsAreTwoFiles) {
                   " is the name of two files that this command writes: give one of "
                   "them another name");
     EXPECT_EQ(readAll(path("later")), "new");
+}
+
+TEST_F(RunFilesTest, ACircleOfLinksIsNoFile) {
+    fs::create_symlink("b", path("a"));
+    fs::create_symlink("a", path("b"));
+    EXPECT_THROW((void)followLinks(path("a")), std::system_error);
+    EXPECT_THROW(writeAll(path("a"), "new"), std::system_error);
+    EXPECT_TRUE(fs::is_symlink(path("a")));
 }
 
 TEST_F(RunFilesTest, TwoOpenOutputsAreTwoFiles) {
