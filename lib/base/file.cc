@@ -2,6 +2,7 @@
 #include "base/file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -53,14 +55,30 @@ int openInput(const std::string& operand) {
     return file.release();
 }
 
+/// True if the call that failed is worth another try. A parent or a terminal may have left a stream
+/// non-blocking: that it is not ready is no error, and is waited for.
+bool isToBeRepeated(int fd, short events) {
+    if (errno == EINTR) return true;
+    if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
+    pollfd ready{fd, events, 0};
+    return ::poll(&ready, 1, -1) >= 0 || errno == EINTR;
+}
+
 void writeFully(int fd, std::string_view bytes, const std::string& name) {
     while (!bytes.empty()) {
         const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-        if (n < 0) {
-            if (errno == EINTR) continue;
+        if (n >= 0)
+            bytes.remove_prefix(static_cast<std::size_t>(n));
+        else if (!isToBeRepeated(fd, POLLOUT))
             fail(name, errno);
-        }
-        bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+}
+
+std::size_t readSome(int fd, std::span<char> bytes, const std::string& name) {
+    while (true) {
+        const ssize_t n = ::read(fd, bytes.data(), bytes.size());
+        if (n >= 0) return static_cast<std::size_t>(n);
+        if (!isToBeRepeated(fd, POLLIN)) fail(name, errno);
     }
 }
 
@@ -107,13 +125,9 @@ std::string readAll(const std::string& operand) {
     std::size_t size = 0;
     bytes.resize(regular ? static_cast<std::size_t>(info.st_size) + 1 : kChunk);
     while (true) {
-        const ssize_t n = ::read(file.get(), bytes.data() + size, bytes.size() - size);
-        if (n < 0) {
-            if (errno == EINTR) continue;
-            fail(operand, errno);
-        }
+        const std::size_t n = readSome(file.get(), std::span(bytes).subspan(size), operand);
         if (n == 0) break;
-        size += static_cast<std::size_t>(n);
+        size += n;
         if (size > most) refuseLength(operand, regular);
         if (size < bytes.size()) continue;
         if (!regular && size == kChunk && bytes.find_first_not_of('\0') == std::string::npos)
@@ -134,12 +148,8 @@ bool InputFile::read(std::string& bytes) {
     constexpr std::size_t kChunk = 1 << 16;
     const std::size_t size = bytes.size();
     bytes.resize(size + kChunk);
-    ssize_t n = 0;
-    do {
-        n = ::read(fd_, bytes.data() + size, kChunk);
-    } while (n < 0 && errno == EINTR);
-    if (n < 0) fail(name_, errno);
-    bytes.resize(size + static_cast<std::size_t>(n));
+    const std::size_t n = readSome(fd_, std::span(bytes).subspan(size), name_);
+    bytes.resize(size + n);
     return n > 0;
 }
 

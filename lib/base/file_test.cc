@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -60,6 +62,90 @@ int errorOf(Action action, const std::string& file) {
         return error.code().value();
     }
     return 0;
+}
+
+/// A pipe of which one end does not block.
+struct Pipe {
+    explicit Pipe(int non_blocking) {
+        EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+        EXPECT_EQ(::fcntl(ends[non_blocking], F_SETFL, O_NONBLOCK), 0);
+    }
+    int ends[2] = {-1, -1};
+};
+
+/// What the standard stream `fd` was, given back at the end of the scope.
+class Redirected {
+  public:
+    Redirected(int fd, int to) : fd_(fd), saved_(::dup(fd)) { ::dup2(to, fd); }
+    ~Redirected() {
+        ::dup2(saved_, fd_);
+        ::close(saved_);
+    }
+    Redirected(const Redirected&) = delete;
+    Redirected& operator=(const Redirected&) = delete;
+
+  private:
+    int fd_, saved_;
+};
+
+TEST_F(FileTest, AFullNonBlockingPipeIsWaitedFor) {
+    Pipe pipe(1);
+    const std::string bytes(1 << 20, 'x');
+    std::thread reader([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        std::string all(bytes.size(), '\0');
+        std::size_t size = 0;
+        for (ssize_t n = 1; n > 0 && size < all.size(); size += static_cast<std::size_t>(n))
+            n = std::max<ssize_t>(::read(pipe.ends[0], all.data() + size, all.size() - size), 0);
+        EXPECT_EQ(all, bytes);
+    });
+    {
+        const Redirected out(STDOUT_FILENO, pipe.ends[1]);
+        EXPECT_EQ(errorOf([&] { writeAll("-", bytes); }, "stdout"), 0);
+    }
+    ::close(pipe.ends[1]);
+    reader.join();
+    ::close(pipe.ends[0]);
+}
+
+TEST_F(FileTest, AnEmptyNonBlockingPipeIsWaitedFor) {
+    for (const bool whole : {true, false}) {
+        Pipe pipe(0);
+        std::thread writer([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            EXPECT_EQ(::write(pipe.ends[1], "late", 4), 4);
+            ::close(pipe.ends[1]);
+        });
+        const Redirected in(STDIN_FILENO, pipe.ends[0]);
+        std::string bytes;
+        EXPECT_EQ(errorOf(
+                      [&] {
+                          if (whole) {
+                              bytes = readAll("-");
+                          } else {
+                              InputFile file("-");
+                              while (file.read(bytes)) continue;
+                          }
+                      },
+                      "stdin"),
+                  0);
+        EXPECT_EQ(bytes, "late");
+        writer.join();
+        ::close(pipe.ends[0]);
+    }
+}
+
+TEST_F(FileTest, LinksInACircleAreAnErrorAndStay) {
+    fs::create_symlink("b", path("a"));
+    fs::create_symlink("a", path("b"));
+    fs::create_symlink("self", path("self"));
+    const std::vector<std::string> before = names();
+    for (const char* name : {"a", "self"}) {
+        EXPECT_EQ(errorOf([&] { writeAll(path(name), "x"); }, path(name)), ELOOP);
+        EXPECT_EQ(errorOf([&] { mustBeWritable(path(name)); }, path(name)), ELOOP);
+        EXPECT_TRUE(fs::is_symlink(path(name)));
+    }
+    EXPECT_EQ(names(), before);
 }
 
 TEST_F(FileTest, CommitPutsTheFileInItsPlace) {
