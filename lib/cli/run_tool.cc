@@ -7,14 +7,15 @@
 #include <cerrno>
 #include <csignal>
 #include <exception>
-#include <iostream>
 #include <new>
+#include <stdexcept>
 #include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
 #include "base/utf8.h"
+#include "cli/last_words.h"
 
 namespace ispace {
 
@@ -23,7 +24,7 @@ namespace {
 enum Status { kDone = 0, kFailed = 1, kUsage = 2, kUnmet = 3 };
 
 void say(const std::string& tool, const std::string& line) {
-    std::cerr << tool << ": " << printable(line) << '\n';
+    sayLine({tool, ": ", printable(line)});
 }
 
 /// "house.glb: error: No such file or directory" from what() = "house.glb: No such file …".
@@ -44,19 +45,18 @@ void occupyStandardStreams() {
             (void)::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-}  // namespace
+/// Without this the process ends where a file would grow beyond `ulimit -f`; with it writing fails.
+/// A handler, unlike a signal that is ignored, is not passed on to other programs.
+void refuseLargeFiles() {
+    struct sigaction action = {};
+    action.sa_handler = [](int) {};
+    ::sigaction(SIGXFSZ, &action, nullptr);
+}
 
-int runTool(const std::string& tool, const std::function<void()>& body) {
-    occupyStandardStreams();
-    std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
+/// Says what was thrown. \pre within a handler
+Status sayException(const std::string& tool) {
     try {
-        try {
-            const RunFiles files;
-            body();
-        } catch (const TextRequested& request) {
-            writeAll("-", request.text);
-        }
-        return kDone;
+        throw;
     } catch (const UsageError& error) {
         say(tool, std::string("error: ") + error.what());
         return kUsage;
@@ -68,9 +68,35 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     } catch (const std::system_error& error) {
         say(tool, systemErrorText(error));
     } catch (const std::bad_alloc&) {
-        say(tool, "error: not enough memory for this input");
+        sayMemoryIsOut(tool);
+    } catch (const std::length_error&) {
+        sayMemoryIsOut(tool);
     } catch (const std::exception& error) {
         say(tool, std::string("error: ") + error.what());
+    }
+    return kFailed;
+}
+
+}  // namespace
+
+int runTool(const std::string& tool, const std::function<void()>& body) {
+    occupyStandardStreams();
+    std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
+    refuseLargeFiles();
+    try {
+        try {
+            const RunFiles files;
+            body();
+        } catch (const TextRequested& request) {
+            writeAll("-", request.text);
+        }
+        return kDone;
+    } catch (...) {
+        try {
+            return sayException(tool);
+        } catch (const std::exception&) {  // not even memory for a message
+            sayMemoryIsOut(tool);
+        }
     }
     return kFailed;
 }
