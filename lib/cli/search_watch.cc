@@ -12,7 +12,7 @@
 namespace ispace {
 
 SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit)
-    : shown_(std::move(shown)), signals_([this](int signal) { signal_ = signal; }) {
+    : shown_(std::move(shown)) {
     constexpr double kLongest = 1e9;  // some thirty years, and no overflow
     if (limit)
         end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -27,7 +27,7 @@ void SearchWatch::note(std::string_view text) {
     shown_->note(all.append(" s"));
 }
 
-bool SearchWatch::stopped() const { return signal_ != 0 || (end_ && Clock::now() >= *end_); }
+bool SearchWatch::stopped() const { return signal() != 0 || (end_ && Clock::now() >= *end_); }
 
 void endBySignal(int signal) {
     constexpr int kSignalBase = 128;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -25,13 +24,12 @@ class SearchWatch final : public Progress {
     [[nodiscard]] bool stopped() const override;
 
     /// The signal that came, 0 if none did.
-    [[nodiscard]] int signal() const { return signal_; }
+    [[nodiscard]] int signal() const { return signals_.signal(); }
 
   private:
     using Clock = std::chrono::steady_clock;
     std::unique_ptr<Progress> shown_;
     std::optional<Clock::time_point> end_;
-    std::atomic<int> signal_ = 0;
     StopSignals signals_;
 };
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net/server.h"
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
 #include <algorithm>
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
+#include <asio/posix/stream_descriptor.hpp>
 #include <asio/post.hpp>
 #include <asio/steady_timer.hpp>
 #include <atomic>
+#include <cerrno>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -72,6 +75,7 @@ struct Server::Data {
     asio::io_context io{1};  // one thread runs it
     tcp::acceptor acceptor{io};
     asio::steady_timer accept_pause{io}, alarm{io};
+    asio::posix::stream_descriptor stopper{io};
     std::optional<WallTime> alarm_time;
     tcp::endpoint local;
     std::vector<std::shared_ptr<Session>> sessions;  // in the order of their coming
@@ -187,6 +191,7 @@ void Server::Data::end() {
     std::error_code ignored;
     acceptor.close(ignored);
     accept_pause.cancel();
+    stopper.close(ignored);
     for (const auto& session : sessions) session->end();
     sweep();
     const WallTime deadline = steady_clock::now() + kLastFlush;
@@ -252,6 +257,17 @@ void Server::run() {
 
 void Server::stop() {
     asio::post(data_->io, [data = data_.get()] { data->simulation.finish(); });
+}
+
+void Server::stopOn(int descriptor) {
+    // A number of its own, for it closes what it watches.
+    const int own = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    if (own < 0) throw std::system_error(errno, std::system_category(), "signals");
+    data_->stopper.assign(own);
+    data_->stopper.async_wait(asio::posix::descriptor_base::wait_read,
+                              [data = data_.get()](std::error_code error) {
+                                  if (!error) data->simulation.finish();
+                              });
 }
 
 }  // namespace ispace

@@ -46,6 +46,9 @@ class Server {
     void run();
     /// Finishes the simulation, from any thread; also before run(), which then ends at once.
     void stop();
+    /// The same as soon as there is something to be read from `descriptor`, which stays open while
+    /// run() does its work, and is not read.
+    void stopOn(int descriptor);
 
   private:
     struct Data;

@@ -101,7 +101,7 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
 
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
-    const ThreadLimit threads(options.common.threads);
+    limitThreads(options.common.threads);
     claimOutput(options.port_file, "--port-file");
     if (!options.record.empty())
         for (const std::string& file : Recorder::filesIn(options.record))
@@ -116,7 +116,8 @@ void simrun(const SimrunCommand& command) {
 
     checkRecord(options, world);
     Server server(simulation, options.listen, withinFileLimit(options.limits));
-    const StopSignals signals([&server](int) { server.stop(); });
+    const StopSignals signals;
+    server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
     if (!options.port_file.empty()) {
         port_file.emplace(options.port_file);
