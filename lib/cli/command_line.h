@@ -121,19 +121,10 @@ void talk(const CommonOptions& options, const std::string& tool, const std::stri
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings);
 
-/// Keeps the number of worker threads down to `threads` (0: cores of the affinity mask, or
-/// SLURM_CPUS_PER_TASK if that is less) while it lives.
-class ThreadLimit {
-  public:
-    explicit ThreadLimit(int threads);
-    ~ThreadLimit();
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
-
-  private:
-    struct Data;
-    std::unique_ptr<Data> data_;
-};
+/// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
+/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants: fewer
+/// work longer, and that is all. 1 starts no thread.
+void limitThreads(int threads);
 
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
 std::string shareFolder();

@@ -3,9 +3,14 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -28,6 +33,22 @@ int availableThreads() {
     const auto limit = granted != nullptr ? parseInteger(granted) : std::nullopt;
     if (limit && *limit >= 1 && *limit < threads) threads = static_cast<int>(*limit);
     return threads;
+}
+
+/// How many of `wanted` more threads can be had together: TBB does not get over one that it is
+/// refused. They end at once.
+std::size_t grantedThreads(std::size_t wanted) {
+    std::vector<std::thread> threads;
+    threads.reserve(wanted);
+    std::atomic<bool> is_over = false;
+    try {
+        while (threads.size() < wanted) threads.emplace_back([&is_over] { is_over.wait(false); });
+    } catch (const std::exception&) {  // then these have to do
+    }
+    is_over = true;
+    is_over.notify_all();
+    for (std::thread& thread : threads) thread.join();
+    return threads.size();
 }
 
 }  // namespace
@@ -69,17 +90,16 @@ void warn(const CommonOptions& options, const std::string& tool,
         std::cerr << tool << ": " << printable(warning.text()) << '\n';
 }
 
-struct ThreadLimit::Data {
-    tbb::global_control control;
-    explicit Data(std::size_t threads)
-        : control(tbb::global_control::max_allowed_parallelism, threads) {}
-};
-
-ThreadLimit::ThreadLimit(int threads)
-    : data_(std::make_unique<Data>(
-          static_cast<std::size_t>(threads > 0 ? threads : availableThreads()))) {}
-
-ThreadLimit::~ThreadLimit() = default;
+void limitThreads(int threads) {
+    // TBB starts no more than there are cores.
+    const int wanted =
+        threads > 0 ? std::min(threads, tbb::info::default_concurrency()) : availableThreads();
+    // Never taken back: TBB would start threads for work that is over.
+    static const tbb::global_control* control = nullptr;
+    delete std::exchange(control, nullptr);
+    control = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                      1 + grantedThreads(static_cast<std::size_t>(wanted) - 1));
+}
 
 std::string shareFolder() {
     return (std::filesystem::path(programPrefix()) / "share" / "ispace").string();

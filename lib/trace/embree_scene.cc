@@ -9,8 +9,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "trace/careful_ray.h"
@@ -22,13 +24,38 @@ namespace ispace {
 
 namespace {
 
-void throwOnError(RTCDevice device) {
-    const RTCError code = rtcGetDeviceError(device);
-    if (code == RTC_ERROR_NONE) return;
-    throw std::runtime_error(code == RTC_ERROR_OUT_OF_MEMORY
-                                 ? "Embree has no memory left for the scene"
-                                 : "Embree failed with error " + std::to_string(code));
-}
+/// Hears why Embree fails, while a scene is made.
+class EmbreeErrors {
+  public:
+    explicit EmbreeErrors(RTCDevice device) : device_(device) {
+        if (device != nullptr) rtcSetDeviceErrorFunction(device, hear, this);
+        throwIfAny();
+    }
+    ~EmbreeErrors() {
+        if (device_ != nullptr) rtcSetDeviceErrorFunction(device_, nullptr, nullptr);
+    }
+    EmbreeErrors(const EmbreeErrors&) = delete;
+    EmbreeErrors& operator=(const EmbreeErrors&) = delete;
+
+    void throwIfAny() const {
+        const RTCError code = rtcGetDeviceError(device_);
+        if (code == RTC_ERROR_NONE && device_ != nullptr) return;
+        if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+        throw std::runtime_error(text_[0] != 0 ? "Embree: " + std::string(text_.data())
+                                               : "Embree failed with error " +
+                                                     std::to_string(static_cast<int>(code)));
+    }
+
+  private:
+    static void hear(void* errors, RTCError /*code*/, const char* text) {
+        auto& buffer = static_cast<EmbreeErrors*>(errors)->text_;
+        if (buffer[0] == 0 && text != nullptr)
+            std::string_view(text).copy(buffer.data(), buffer.size() - 1);
+    }
+
+    RTCDevice device_;
+    std::array<char, 200> text_{};
+};
 
 std::size_t nativeWidth(RTCDevice device) {
     const auto has = [device](RTCDeviceProperty property) {
@@ -176,15 +203,15 @@ EmbreeScene::EmbreeScene(TriangleSoup soup, double contact, int packet_width)
     : set_(std::move(soup)), contact_(contact) {
     // Nothing but this line decides how Embree works: no file in the user's home does.
     device_.reset(rtcNewDevice("ignore_config_files=1"));
-    throwOnError(device_.get());
+    const EmbreeErrors errors(device_.get());
     scene_.reset(rtcNewScene(device_.get()));
-    throwOnError(device_.get());
+    errors.throwIfAny();
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
     if (set_.size() > 0) {
         using Corner = std::array<float, 3>;
         const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        throwOnError(device_.get());
+        errors.throwIfAny();
         rtcAttachGeometry(scene_.get(), geometry);
         rtcReleaseGeometry(geometry);  // the scene holds it
         auto* const corners = static_cast<std::array<Corner, 3>*>(
@@ -193,14 +220,14 @@ EmbreeScene::EmbreeScene(TriangleSoup soup, double contact, int packet_width)
         auto* const indices = static_cast<std::uint32_t*>(
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                     3 * sizeof(std::uint32_t), set_.size()));
-        throwOnError(device_.get());
+        errors.throwIfAny();
         for (std::size_t i = 0; i < set_.size(); ++i) corners[i] = set_.enlarged(i);
         for (std::size_t i = 0; i < 3 * set_.size(); ++i)
             indices[i] = static_cast<std::uint32_t>(i);
         rtcCommitGeometry(geometry);
     }
     rtcCommitScene(scene_.get());
-    throwOnError(device_.get());
+    errors.throwIfAny();
     width_ = packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidth(device_.get());
 }
 

@@ -32,7 +32,7 @@ namespace ispace {
 class EmbreeScene {
   public:
     /// `packet_width`: 1, 4, 8 or 16 rays together, 0 for what the processor traces natively.
-    /// \throws std::runtime_error if Embree fails
+    /// \throws std::runtime_error if Embree fails, std::bad_alloc if it has no memory
     EmbreeScene(TriangleSoup soup, double contact, int packet_width);
 
     /// Where results go: ranges, +infinity without return, and |cosines| of ray and normal if they

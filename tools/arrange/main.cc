@@ -165,7 +165,7 @@ void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
 
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
-    const ThreadLimit threads(options.common.threads);
+    limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.trace_file, "--trace");
     claimOutput(options.curve_file, "--curve");

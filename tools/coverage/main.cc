@@ -115,7 +115,7 @@ void checkRequired(const CoverageToolOptions& options, const CoverageReport& rep
 }
 
 void coverage(CoverageToolOptions options) {
-    const ThreadLimit threads(options.common.threads);
+    limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
     if (options.format == "ros")

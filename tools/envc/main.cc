@@ -157,7 +157,7 @@ void convert(const EnvcOptions& options, Document document) {
 void envc(const EnvcOptions& options) {
     for (const auto& [format, name] : kBinary)
         if (options.format == format) refuseTerminal(options.common.output, name);
-    const ThreadLimit threads(options.common.threads);
+    limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(besideOf(options),
                 options.format == "ros" ? "the picture of the map" : "materials");

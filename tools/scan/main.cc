@@ -115,7 +115,7 @@ void scan(const ScanCommand& command) {
     claimOutputs(options.common);
     const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices, kKinds));
-    const ThreadLimit threads(options.common.threads);
+    limitThreads(options.common.threads);
     const SceneInput input = readScene(requestOf(options));
     ispace::warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;
