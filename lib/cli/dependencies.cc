@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/dependencies.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -14,18 +15,34 @@ namespace ispace {
 
 namespace {
 
-/// A file's name as make reads it back. Blanks, # and colons are quoted by a backslash, and % in a
-/// target; backslashes count only before those.
+bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+/// Why make cannot read a name in a rule, however it is quoted; "" if it can.
+std::string_view reasonAgainst(const std::string& name) {
+    constexpr std::string_view kWildcards = "*?[";
+    if (name.find_first_of("=;") != std::string::npos) return "it has = or ; in it";
+    if (std::any_of(name.begin(), name.end(), isControl)) return "it has a control character in it";
+    if (std::count(name.begin(), name.end(), '%') > 1) return "it has more than one % in it";
+    if (name.find('\\') != std::string::npos && name.find_first_of(kWildcards) != std::string::npos)
+        return "it has both a backslash and a wildcard in it";
+    if (name.ends_with(' ')) return "it ends with a blank";
+    if (name.ends_with('\\')) return "it ends with a backslash";
+    if (name.ends_with(')')) return "it ends like a member of an archive, with )";
+    return "";
+}
+
+/// A file's name as make reads it back. Blanks, #, colons and wildcards are quoted by a backslash,
+/// % in a target and | elsewhere; backslashes count only before those.
 std::string inMake(const std::string& name, bool is_target) {
-    if (name.find_first_of("=;\n") != std::string::npos)
+    if (const std::string_view reason = reasonAgainst(name); !reason.empty())
         throw UsageError("-MD: make cannot read the name `" + printable(name) +
-                         "`: it has = or ; in it");
-    constexpr std::string_view kQuoted = " \t#:";
+                         "`: " + std::string(reason));
+    const std::string_view quoted = is_target ? " #:*?[%" : " #:*?[|";
     std::string out;
+    if (name.starts_with('~')) out += "./";  // else somebody's home
     for (std::size_t i = 0; i < name.size(); ++i) {
         const char c = name[i];
-        const bool quoted = kQuoted.find(c) != std::string_view::npos || (c == '%' && is_target);
-        if (quoted) {
+        if (quoted.find(c) != std::string_view::npos) {
             // The backslashes right before it would quote each other.
             for (std::size_t k = i; k > 0 && name[k - 1] == '\\'; --k) out += '\\';
             out += '\\';
@@ -33,6 +50,8 @@ std::string inMake(const std::string& name, bool is_target) {
         if (c == '$') out += '$';
         out += c;
     }
+    // &: has a meaning.
+    if (is_target) out += name.ends_with('&') ? " :" : ":";
     return out;
 }
 
@@ -45,7 +64,7 @@ std::string ruleFile(const DependencyOptions& options, const std::string& output
 
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources) {
     std::set<std::string> seen;
-    std::string rule = inMake(target, true) + ":";
+    std::string rule = inMake(target, true);
     std::string alone;
     for (const std::string& source : sources) {
         if (isStream(source) || !seen.insert(source).second) continue;
@@ -53,7 +72,7 @@ std::string dependencyRule(const std::string& target, std::span<const std::strin
         rule += inMake(source, false);
         alone += '\n';
         alone += inMake(source, true);
-        alone += ":\n";
+        alone += '\n';
     }
     return rule + '\n' + alone;
 }
