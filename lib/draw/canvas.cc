@@ -4,6 +4,7 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cassert>
@@ -36,6 +37,16 @@ void check(cairo_status_t status) {
     if (status == CAIRO_STATUS_SUCCESS) return;
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));
+}
+
+/// Cairo jumps into a function that has returned where it finds no memory while it draws: what it
+/// may want has to be there before. It costs a microsecond or two.
+void mustHaveMemory() {
+    constexpr std::size_t kMost = std::size_t{8} << 20U;
+    void* const memory = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE,
+                                MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    ::munmap(memory, kMost);
 }
 
 /// Sets the font, independent of what the machine's settings prefer.
@@ -146,6 +157,7 @@ struct Canvas::Data {
     }
     void fillPath(Color color) const {
         use(color);
+        mustHaveMemory();
         cairo_fill(context);
     }
     void strokePath(const Stroke& stroke) const {
@@ -154,6 +166,7 @@ struct Canvas::Data {
         cairo_set_dash(context, stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0);
         cairo_set_line_cap(context,
                            stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+        mustHaveMemory();
         cairo_stroke(context);
     }
     /// Lines across all that the clip lets through.
@@ -324,6 +337,7 @@ void Canvas::image(Point2 corner, const Image& picture, double pixel_width, doub
     cairo_set_source_surface(context, pixels.get(), 0, 0);
     cairo_pattern_set_filter(cairo_get_source(context), CAIRO_FILTER_NEAREST);
     cairo_rectangle(context, 0, 0, picture.width, picture.height);
+    mustHaveMemory();
     cairo_fill(context);
     cairo_restore(context);
 }
