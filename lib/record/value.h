@@ -15,6 +15,19 @@ using Tuple = std::vector<double>;
 using TupleList = std::vector<Tuple>;
 
 /// What a key holds; which alternative is fixed by the key's type in its schema.
-using Value = std::variant<bool, double, std::string, Tuple, TupleList>;
+///
+/// A variant that can be copied when memory runs out: libstdc++ 12 destroys the copy that it could
+/// not make as if it had been made (std::string and std::vector are "never valueless" to it).
+class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
+  public:
+    using variant::variant;
+    using variant::operator=;
+    Value() = default;
+    Value(const Value& other) : variant() { variant::operator=(other); }
+    Value(Value&&) noexcept = default;
+    Value& operator=(const Value&) = default;
+    Value& operator=(Value&&) noexcept = default;
+    ~Value() = default;
+};
 
 }  // namespace ispace

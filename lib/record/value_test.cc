@@ -4,11 +4,30 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "record/scalar.h"
 #include "record/test_schemas.h"
+
+namespace {
+
+/// Set: operator new fails.
+bool is_memory_out = false;
+
+}  // namespace
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    void* const memory = is_memory_out ? nullptr : std::malloc(size);
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+    std::free(memory);
+}
 
 namespace ispace {
 namespace {
@@ -29,6 +48,22 @@ std::string refusal(const KeySpec& key, std::string_view text) {
 
 double number(const KeySpec& key, std::string_view text) {
     return std::get<double>(parseValue(key, text));
+}
+
+TEST(Value, CanFailToBeCopied) {
+    const Value text(std::string(100, 'x')), tuple(Tuple{1, 2}), list(TupleList{{1}, {2}});
+    for (const Value* value : {&text, &tuple, &list}) {
+        bool has_failed = false;
+        is_memory_out = true;
+        try {
+            const Value copy(*value);
+        } catch (const std::bad_alloc&) {
+            has_failed = true;
+        }
+        is_memory_out = false;
+        EXPECT_TRUE(has_failed);
+        EXPECT_EQ(Value(*value), *value);
+    }
 }
 
 TEST(Number, TakesTheSuffixesOfItsUnit) {
