@@ -57,3 +57,42 @@ printf 'lamp.glb: lamp.yaml\n\t@echo lamp\n\t@envc $< -o $@ -MD\n-include lamp.d
 [ "$(make -f lamp.mk)" = "make: 'lamp.glb' is up to date." ] || fail "a name with blanks: rebuilt"
 touch_later "a folder/my lamp.env"
 [ "$(make -f lamp.mk)" = lamp ] || fail "a name with blanks: not rebuilt"
+
+# Names with all that has a meaning to make. Beside a wildcard stands what it would match.
+mkdir names
+cd names
+touch axb
+cat >Makefile <<'END'
+all: out.glb
+out.glb:
+	@echo made
+	@touch out.glb
+-include out.d
+END
+for name in 'a|b.env' '|' 'a |b|c' 'a\|b' 'a*b' 'a?b' 'a[x]b' '[' 'a~b' 'a&b' 'a&' '&' \
+    'a\b' 'a\ b' 'a\:b' ' a' "a'b" 'a"b' 'a$b' '$(b)c' 'a#b' 'a\#b' 'a:b' 'C:\b' 'a%b' '%' 'a(b)c' 'a,b' \
+    '-b' '@b' '+b' '!b' '.PHONY'; do
+    cp "$data/room.env" "./$name"
+    touch -d '1 hour ago' "./$name"
+    envc -o out.glb -MD -- "$name" || fail "refused: $name"
+    expect_made "make: Nothing to be done for 'all'." "$name has not changed"
+    touch -d '1 hour ago' out.glb
+    touch -d '30 minutes ago' "./$name"
+    expect_made "made" "$name has changed"
+    rm -- "./$name"
+    expect_made "made" "$name is gone"
+done
+for name in 'a=b' 'a;b' $'a\tb' $'a\rb' 'a%b%' 'a\*' 'a ' 'a\' 'a(b)' '~' '~root'; do
+    cp "$data/room.env" "./$name"
+    expect_error 2 envc -o out.glb -MD -- "$name"
+    grep -q "make cannot read the name" err || fail "$name: $(cat err)"
+    rm -- "./$name" err out
+done
+# The product's name.
+printf 'include out.d\n' >Makefile
+for name in 'a|b' 'a*b' 'a&' 'a%b' ' a$b'; do
+    envc "$data/room.env" -o "./$name" -MD -MF out.d
+    [ "$(make -q -- "$name" 2>&1; echo $?)" = 0 ] || fail "$name is up to date"
+    touch -d '2001-01-01' "./$name"
+    [ "$(make -q -- "$name" 2>&1; echo $?)" = 1 ] || fail "$name is out of date"
+done

@@ -41,6 +41,27 @@ done
 [ -z "$(ls -A folder)" ] || fail "left behind in the folder"
 [ "$(ls -A)" = "$(printf '%s\n' err folder out)" ] || fail "left behind: $(ls -A)"
 
+# Links in a circle name no file; they stay.
+rm -f err out
+ln -s b a
+ln -s a b
+for tool in "${!product[@]}"; do
+    # shellcheck disable=SC2086
+    expect_error 1 ${product[$tool]} -o a
+    [ -L a ] && [ -L b ] || fail "$tool: a link was replaced"
+done
+
+# What `ulimit -f` refuses is an error, not the end by a signal; the old file stays.
+for tool in "${!product[@]}"; do
+    echo old >small
+    status=0
+    # shellcheck disable=SC2086
+    said=$(ulimit -f 0 && exec ${product[$tool]} -o small 2>&1 >/dev/null) || status=$?
+    [ "$status" -eq 1 ] || fail "$tool: status $status, expected 1, beyond ulimit -f"
+    [[ $said == "$tool: "*": error: File too large" ]] || fail "$tool, beyond ulimit -f: $said"
+    [ "$(cat small)" = old ] || fail "$tool: the old file is gone"
+done
+
 # Every output against every input, under its own name, through a link, and by a hard link.
 mkdir inputs kept
 (
