@@ -17,6 +17,13 @@ namespace {
 
 bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
+/// make drops ./ before it looks for ~.
+bool isHome(std::string_view name) {
+    while (name.starts_with("./"))
+        name.remove_prefix(std::min(name.find_first_not_of('/', 1), name.size()));
+    return name.starts_with('~');
+}
+
 /// Why make cannot read a name in a rule, however it is quoted; "" if it can.
 std::string_view reasonAgainst(const std::string& name) {
     constexpr std::string_view kWildcards = "*?[";
@@ -25,6 +32,7 @@ std::string_view reasonAgainst(const std::string& name) {
     if (std::count(name.begin(), name.end(), '%') > 1) return "it has more than one % in it";
     if (name.find('\\') != std::string::npos && name.find_first_of(kWildcards) != std::string::npos)
         return "it has both a backslash and a wildcard in it";
+    if (isHome(name)) return "it begins with ~, which is somebody's home to make";
     if (name.ends_with(' ')) return "it ends with a blank";
     if (name.ends_with('\\')) return "it ends with a backslash";
     if (name.ends_with(')')) return "it ends like a member of an archive, with )";
@@ -39,7 +47,6 @@ std::string inMake(const std::string& name, bool is_target) {
                          "`: " + std::string(reason));
     const std::string_view quoted = is_target ? " #:*?[%" : " #:*?[|";
     std::string out;
-    if (name.starts_with('~')) out += "./";  // else somebody's home
     for (std::size_t i = 0; i < name.size(); ++i) {
         const char c = name[i];
         if (quoted.find(c) != std::string_view::npos) {

@@ -12,7 +12,7 @@ namespace ispace {
 /// left out. Each source also stands as a target of its own without recipe, so that make goes on
 /// when a file that is no longer used was deleted. Characters with a meaning in names are written
 /// as make wants them. \throws UsageError for names that make cannot read: with = ; control
-/// characters, two %, or a blank, backslash or ) at the end
+/// characters, two %, ~ at the beginning, or a blank, backslash or ) at the end
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
 /// Checks -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
