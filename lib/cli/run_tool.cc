@@ -2,10 +2,12 @@
 #include "cli/run_tool.h"
 
 #include <fcntl.h>
+#include <gmp.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -53,6 +55,19 @@ void refuseLargeFiles() {
     ::sigaction(SIGXFSZ, &action, nullptr);
 }
 
+void* orThrow(void* memory) {
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+
+/// Without this GMP (exact geometry) ends the process by an abort where memory is out.
+void letNumbersThrow() {
+    mp_set_memory_functions(
+        [](std::size_t size) { return orThrow(std::malloc(size)); },
+        [](void* old, std::size_t, std::size_t size) { return orThrow(std::realloc(old, size)); },
+        [](void* memory, std::size_t) { std::free(memory); });
+}
+
 /// Says what was thrown. \pre within a handler
 Status sayException(const std::string& tool) {
     try {
@@ -83,6 +98,7 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     occupyStandardStreams();
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
     refuseLargeFiles();
+    letNumbersThrow();
     try {
         try {
             const RunFiles files;

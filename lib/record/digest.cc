@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "record/digest.h"
 
-#include <openssl/evp.h>
+#define OPENSSL_SUPPRESS_DEPRECATED
+#include <openssl/sha.h>
 
 #include <array>
-#include <memory>
-#include <stdexcept>
 
 #include "record/text.h"
 
@@ -13,32 +12,26 @@ namespace ispace {
 
 namespace {
 
+/// By the functions of OpenSSL that need no memory: its newer ones, for which these are deprecated,
+/// read settings, and crash where memory runs out meanwhile.
 class Sha256 {
   public:
-    Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-        check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-    }
-    void add(std::string_view bytes) {
-        check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
-    }
+    Sha256() { SHA256_Init(&context_); }
+    void add(std::string_view bytes) { SHA256_Update(&context_, bytes.data(), bytes.size()); }
     std::string finish() {
-        std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-        unsigned size = 0;
-        check(EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
+        std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+        SHA256_Final(digest.data(), &context_);
         constexpr std::string_view kDigits = "0123456789abcdef";
         std::string text = "sha256:";
-        for (unsigned i = 0; i < size; ++i) {
-            text += kDigits[digest[i] >> 4U];
-            text += kDigits[digest[i] & 15U];
+        for (const unsigned char byte : digest) {
+            text += kDigits[byte >> 4U];
+            text += kDigits[byte & 15U];
         }
         return text;
     }
 
   private:
-    static void check(bool success) {
-        if (!success) throw std::runtime_error("OpenSSL cannot make a SHA-256 digest");
-    }
-    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+    SHA256_CTX context_{};
 };
 
 /// A record of a loaded file with the digest of its content in place of the file's name and of
