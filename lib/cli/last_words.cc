@@ -87,6 +87,9 @@ void sayLine(std::initializer_list<std::string_view> pieces) noexcept {
     }
 }
 
-void sayMemoryIsOut(std::string_view tool) noexcept { sayLine({tool, kNoMemory}); }
+void sayMemoryIsOut(std::string_view tool) noexcept {
+    static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
+    if (!is_told.test_and_set()) sayLine({tool, kNoMemory});
+}
 
 }  // namespace ispace

@@ -14,7 +14,7 @@ namespace ispace {
 /// non-blocking. May be called at any time, also before main().
 void sayLine(std::initializer_list<std::string_view> pieces) noexcept;
 
-/// What is said where memory ran out. Needs none.
+/// What is said where memory ran out, once: libraries may find it out again at the end. Needs none.
 void sayMemoryIsOut(std::string_view tool) noexcept;
 
 }  // namespace ispace

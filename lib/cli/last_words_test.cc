@@ -29,12 +29,23 @@ TEST(LastWords, SayALineOfAnyLength) {
 }
 
 TEST(LastWordsDeathTest, WhatCannotBeCaughtEndsWithStatusOne) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_EXIT(throwInThread(std::bad_alloc()), testing::ExitedWithCode(1),
                 "cli_test: error: not enough memory for this input\n");
     EXPECT_EXIT(throwInThread(std::length_error("x")), testing::ExitedWithCode(1),
                 "cli_test: error: not enough memory for this input\n");
     EXPECT_EXIT(throwInThread(std::runtime_error("pthread_create has failed")),
                 testing::ExitedWithCode(1), "cli_test: error: pthread_create has failed\n");
+}
+
+TEST(LastWordsDeathTest, MemoryIsSaidToBeOutOnce) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(
+        {
+            sayMemoryIsOut("tool");
+            throwInThread(std::bad_alloc());
+        },
+        testing::ExitedWithCode(1), "^tool: error: not enough memory for this input\n$");
 }
 
 TEST(LastWordsDeathTest, AMistakeInTheProgramStaysAnAbort) {
