@@ -89,7 +89,7 @@ for name in 'a=b' 'a;b' $'a\tb' $'a\rb' 'a%b%' 'a\*' 'a ' 'a\' 'a(b)' '~' '~root
     rm -- "./$name" err out
 done
 # The product's name.
-printf 'include out.d\n' >Makefile
+printf '%%:\n\t@echo made\ninclude out.d\n' >Makefile
 for name in 'a|b' 'a*b' 'a&' 'a%b' ' a$b'; do
     envc "$data/room.env" -o "./$name" -MD -MF out.d
     [ "$(make -q -- "$name" 2>&1; echo $?)" = 0 ] || fail "$name is up to date"
