@@ -15,7 +15,7 @@ struct ScanToolOptions {
     std::vector<std::string> operands;
     std::string format = "jsonl";
     std::vector<std::string> select;  ///< globs of ids; empty: all
-    std::optional<int> frames;  ///< of each placed sensor (1 without), or of --motion at most
+    std::optional<int> frames;        ///< of each placed sensor (1 without), or of --motion at most
     bool noise = false;
     std::string poses;  ///< "": placed sensors; "-": stdin
     std::string model;  ///< of --poses
