@@ -60,7 +60,7 @@ void sayWhy(std::string_view tool) {
 
 /// Of a program, and so run before what libraries do at their start.
 using AtStart = void (*)(int, char**, char**);
-[[gnu::used, gnu::section(".preinit_array")]] const AtStart at_start = [](int, char**, char**) {
+[[gnu::used, gnu::section(".preinit_array")]] const AtStart kAtStart = [](int, char**, char**) {
     std::set_terminate(onTerminate);
 };
 

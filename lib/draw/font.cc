@@ -14,19 +14,19 @@
 asm(R"(
     .pushsection .rodata
     .balign 16
-ispace_font_regular:
+kFontRegular:
     .incbin ")" ISPACE_FONT_REGULAR R"("
-ispace_font_regular_end:
+kFontRegularEnd:
     .balign 16
-ispace_font_bold:
+kFontBold:
     .incbin ")" ISPACE_FONT_BOLD R"("
-ispace_font_bold_end:
+kFontBoldEnd:
     .popsection
 )");
 
 extern "C" {
-extern const FT_Byte ispace_font_regular[], ispace_font_regular_end[];
-extern const FT_Byte ispace_font_bold[], ispace_font_bold_end[];
+extern const FT_Byte kFontRegular[], kFontRegularEnd[];
+extern const FT_Byte kFontBold[], kFontBoldEnd[];
 }
 
 namespace ispace {
@@ -57,9 +57,8 @@ cairo_font_face_t* loaded(const FT_Byte* begin, const FT_Byte* end) {
 
 cairo_font_face_t* fontFace(bool bold) {
     // Never destroyed: Cairo's caches refer to them until the process ends.
-    static cairo_font_face_t* const regular_face =
-        loaded(ispace_font_regular, ispace_font_regular_end);
-    static cairo_font_face_t* const bold_face = loaded(ispace_font_bold, ispace_font_bold_end);
+    static cairo_font_face_t* const regular_face = loaded(kFontRegular, kFontRegularEnd);
+    static cairo_font_face_t* const bold_face = loaded(kFontBold, kFontBoldEnd);
     return bold ? bold_face : regular_face;
 }
 

@@ -86,7 +86,8 @@ class Builder {
             findings_.add(fileFinding(
                 elements_,
                 "no walls: nothing encloses a room; add an ispace, wall or fence record"));
-        if (plan_.walls.empty()) findings_.throwIfAny();
+        // What a wall that crosses itself encloses says little, and may take long to find.
+        if (plan_.walls.empty() || !walls_simple_) findings_.throwIfAny();
     }
 
     /// Walls and what is in them. \pre there are walls
@@ -141,7 +142,7 @@ class Builder {
             for (const WallLine& wall : wallLinesOf(record, findings))
                 plan_.add(wall, elements_.size());
             walls_whole_ = walls_whole_ && findings.empty() && plan_.walls.size() > before;
-            if (!findings.empty()) takeFindings(findings);
+            takeFindings(findings);
         }
         elements_.push_back({record, id, bodyBesideWalls(record)});
         corners_ += cornersOf(elements_.back().body);
@@ -150,7 +151,10 @@ class Builder {
             throw FormatError(record.finding(
                 "the shapes up to here have more than " + std::to_string(most_corners_) +
                 " corners: fewer round or checkered things are wanted, or smaller ones"));
-        checkShape(record, elements_.back().body, findings_);
+        Diagnostics findings;
+        checkShape(record, elements_.back().body, findings);
+        walls_simple_ = walls_simple_ && (findings.empty() || !isWall(record));
+        takeFindings(findings);
     }
 
     void takeFindings(const Diagnostics& findings) {
@@ -185,7 +189,8 @@ class Builder {
     std::vector<Element> elements_;
     std::size_t corners_ = 0, most_corners_ = kMostCorners;  // without walls and meshes
     WallPlan plan_;
-    bool walls_whole_ = true;  // every record has all its lines
+    bool walls_whole_ = true;   // every record has all its lines
+    bool walls_simple_ = true;  // none crosses itself
     std::vector<const Record*> inside_;
     std::vector<Opening> openings_;
     WeldedLines welded_;

@@ -49,6 +49,12 @@ TEST(Environment, LRoom) {
     EXPECT_EQ(env.indoor().locate({4, 4}), Side::Outside);
 }
 
+TEST(Environment, WhatATangledFenceEnclosesIsNotAsked) {
+    // Where the point lies would take an overlay of all crossings, of which there may be millions.
+    EXPECT_EQ(findings("fence path=0,0;4,4;4,0;0,4 closed=yes\ninside at=9,9\n"),
+              "room.env:2:12: error: fence crosses itself near (2.0, 2.0)\n");
+}
+
 TEST(Environment, LeavesOtherRecordsAlone) {
     Schemas others({Schema{"laser",
                            RecordType::Placement,

@@ -93,15 +93,15 @@ class Remainder {
 }  // namespace
 
 double Caliper::reach(Vec2 direction) {
-    const auto reachOf = [&](std::size_t i) { return dot(corners_[i] - Point2(), direction); };
+    const auto reach_of = [&](std::size_t i) { return dot(corners_[i] - Point2(), direction); };
     const std::size_t n = corners_.size();
     const bool jumped = dot(direction, last_) < kTurned;
     last_ = direction;
-    double most = reachOf(at_);
+    double most = reach_of(at_);
     std::size_t steps = 0;
     for (const std::size_t step : {std::size_t{1}, n - 1}) {
         for (std::size_t i = (at_ + step) % n; steps < n; i = (i + step) % n, ++steps) {
-            const double next = reachOf(i);
+            const double next = reach_of(i);
             if (next < most && !jumped) break;
             if (next < most) continue;
             most = next;

@@ -23,7 +23,7 @@ class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
     using variant::variant;
     using variant::operator=;
     Value() = default;
-    Value(const Value& other) : variant() { variant::operator=(other); }
+    Value(const Value& other) : variant() { variant::operator=(other); }  // NOLINT
     Value(Value&&) noexcept = default;
     Value& operator=(const Value&) = default;
     Value& operator=(Value&&) noexcept = default;
