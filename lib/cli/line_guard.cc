@@ -26,7 +26,8 @@ std::vector<int> openRegular(const std::vector<std::string>& files) {
     std::vector<int> open;
     open.reserve(files.size());
     for (const std::string& file : files) {
-        const int fd = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        // Where a link was put meanwhile is another file.
+        const int fd = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
         struct stat info = {};
         if (fd >= 0 && ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode))
             open.push_back(fd);

@@ -51,6 +51,13 @@ TEST_F(LineGuardTest, CutsATornLineAtTheEnd) {
     EXPECT_FALSE(fs::exists(file("missing")));
 }
 
+TEST_F(LineGuardTest, CutsNothingBehindALink) {
+    writeAll(file("other"), "one\ntw");
+    fs::create_symlink(file("other"), file("link"));
+    { const LineGuard guard({file("link")}); }
+    EXPECT_EQ(readAll(file("other")), "one\ntw");
+}
+
 TEST_F(LineGuardTest, HoldsNothingElseOpen) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
