@@ -131,7 +131,8 @@ std::string readAll(const std::string& operand) {
         if (size > most) refuseLength(operand, regular);
         if (size < bytes.size()) continue;
         if (!regular && size == kChunk && bytes.find_first_not_of('\0') == std::string::npos)
-            throw FormatError({displayName(operand), 0, 0, "it has nothing but zeros"});
+            throw FormatError(
+                {displayName(operand), 0, 0, "it begins with 64 KiB of zeros, as no input does"});
         bytes.resize(std::min<std::size_t>(2 * size, most + 1));
     }
     bytes.resize(size);

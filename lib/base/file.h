@@ -17,7 +17,7 @@ constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U,
 /// Everything in a file, or on standard input for "-".
 /// \throws std::system_error naming the file; also for a directory
 /// \throws FormatError naming the file for more bytes than an input may have, and for a pipe or a
-/// device that begins with nothing but zeros
+/// device that begins with 64 KiB of zeros
 std::string readAll(const std::string& operand);
 
 /// A file, or standard input for "-", read piece by piece.

@@ -97,6 +97,7 @@ Status sayException(const std::string& tool) {
 int runTool(const std::string& tool, const std::function<void()>& body) {
     occupyStandardStreams();
     std::signal(SIGPIPE, SIG_DFL);  // a parent may have it ignored: filters end silently
+    std::signal(SIGCHLD, SIG_DFL);  // likewise: how a child ended could not be asked
     refuseLargeFiles();
     letNumbersThrow();
     try {

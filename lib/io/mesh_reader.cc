@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -289,6 +290,10 @@ class Reading {
         return ", the most for " + formatBytes(bytes_) + "; is the file damaged?";
     }
     [[noreturn]] void tooMuchMemory() {
+        // The user's own limit, `ulimit -v`, says nothing about the file.
+        rlimit own{};
+        if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur < limits_.memory)
+            throw std::bad_alloc();
         fail(path_, "bad mesh file: it takes more than " + formatBytes(limits_.memory) +
                         " of memory" + forThisSize());
     }

@@ -66,6 +66,14 @@ write('bad/twice.dae', collada(
     ''.join(f'<node id="a{i}"><instance_node url="#a{i + 1}"/><instance_node url="#a{i + 1}"/></node>'
             for i in range(31)) + '<node id="a31">' + leaf + '</node>',
     '<node><instance_node url="#a0"/></node>'))
+# Assimp looks for nodes by their names, too.
+write('bad/named_itself.dae', collada('<node name="a"><instance_node url="#a"/></node>',
+                                      '<node><instance_node url="#a"/></node>'))
+# A byte that is no UTF-8, and capitals, make no check blind.
+twice = gltf([{'children': [i + 1, i + 1]} for i in range(31)] + [{'mesh': 0}])
+write('bad/twice_latin.gltf', b'{"x": "\xff", ' + twice[1:].encode())
+write('good/latin.gltf', b'{"x": "\xff", ' + gltf([{'mesh': 0}])[1:].encode())
+write('bad/capitals.ply', 'PLY\nformat ascii 1.0\nelement vertex 3\nproperty float x')
 write('bad/nested_json.gltf', '[' * 300000)
 write('bad/nested_extras.gltf', gltf([{'mesh': 0}])[:-1] + ', "extras": ' + '[' * 300000 +
       ']' * 300000 + '}')
@@ -139,7 +147,7 @@ envc() { python3 run.py "$binary_dir/bin/envc" "$@"; }
 
 ulimit -c unlimited
 sanitized=no
-grep -q '^ISPACE_SANITIZE:BOOL=ON' "$binary_dir/CMakeCache.txt" && sanitized=yes
+grep -q '^ISPACE_SANITIZE:[A-Z]*=ON' "$binary_dir/CMakeCache.txt" && sanitized=yes
 for file in bad/*.*; do
     case $file in *.bin) continue ;; esac
     printf '#env 1\nispace size=4,3\nmesh at=1,1 file=%s\n' "$file" >room.env
@@ -154,10 +162,13 @@ done | tee hostile.log
 expect_message() { # FILE TEXT
     grep "^$1: " hostile.log | grep -qF -- "$2" || fail "$1: $(grep "^$1: " hostile.log)"
 }
-expect_message bad/itself.dae 'a node that hangs on itself'
-expect_message bad/itself.gltf 'a node that hangs on itself'
-expect_message bad/nested.dae 'nodes that hang on each other more than 1000 deep'
-expect_message bad/nested_nodes.gltf 'nodes that hang on each other more than 1000 deep'
+expect_message bad/itself.dae 'a node that contains itself'
+expect_message bad/itself.gltf 'a node that contains itself'
+expect_message bad/named_itself.dae 'a node that contains itself'
+expect_message bad/twice_latin.gltf 'more than 1000000 nodes'
+expect_message bad/capitals.ply 'without `end_header`'
+expect_message bad/nested.dae 'nodes nested more than 1000 deep'
+expect_message bad/nested_nodes.gltf 'nodes nested more than 1000 deep'
 expect_message bad/twice.gltf 'more than 1000000 nodes'
 expect_message bad/twice.dae 'more than 1000000 nodes'
 expect_message bad/many_nodes.gltf 'more than 1000000 nodes'

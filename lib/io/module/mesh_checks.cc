@@ -30,7 +30,9 @@ constexpr std::size_t kDeepestJson = 500;
 /// Assimp 5.2 never ends on a header that is cut off, and allocates whatever one says: an element
 /// takes a byte of the file at least.
 void checkPlyHeader(std::string_view bytes) {
-    if (!bytes.starts_with("ply")) return;
+    if (bytes.size() < 3 || (bytes[0] | 0x20) != 'p' || (bytes[1] | 0x20) != 'l' ||
+        (bytes[2] | 0x20) != 'y')
+        fail("a PLY file that does not begin with `ply`");
     std::istringstream header(std::string(bytes.substr(0, 1 << 20)));
     for (std::string line; std::getline(header, line) && !header.eof();) {
         std::istringstream words(line);
@@ -104,8 +106,14 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
 };
 
 void checkGltf(std::string_view json) {
+    // What names are made of plays no part here, and assimp takes any bytes; some writers fill a
+    // chunk up with zeros.
+    std::string text(json.substr(0, json.find_last_not_of('\0') + 1));
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+    if (json.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     GltfNodes nodes;
-    (void)nlohmann::json::sax_parse(json.begin(), json.end(), &nodes);
+    if (!nlohmann::json::sax_parse(text, &nodes)) fail("JSON that cannot be parsed");
     nodes.check();
 }
 
@@ -221,9 +229,12 @@ class ColladaNodes {
     }
 
     void check() {
-        for (const auto& [name, node] : instances_)
-            if (const auto found = named_.find(name); found != named_.end())
-                graph_.hang(found->second, node);
+        // Assimp looks for names, too.
+        for (const auto& [url, node] : instances_) {
+            const auto& found = with_id_.contains(url) ? with_id_ : with_name_;
+            for (auto [at, end] = found.equal_range(url); at != end; ++at)
+                graph_.hang(at->second, node);
+        }
         graph_.check();
     }
 
@@ -236,7 +247,8 @@ class ColladaNodes {
         const NodeGraph::Node own = graph_.add();
         if (!open_.empty()) graph_.hang(own, open_.back());
         if (!tag.isEmpty()) open_.push_back(own);
-        if (const std::string_view id = tag.attribute("id"); !id.empty()) named_.emplace(id, own);
+        if (const auto id = tag.attribute("id"); !id.empty()) with_id_.emplace(id, own);
+        if (const auto name = tag.attribute("name"); !name.empty()) with_name_.emplace(name, own);
     }
     void instance(std::string_view url) {
         if (url.starts_with('#')) url.remove_prefix(1);
@@ -245,7 +257,7 @@ class ColladaNodes {
 
     NodeGraph graph_;
     std::vector<NodeGraph::Node> open_;
-    std::map<std::string_view, NodeGraph::Node> named_;
+    std::multimap<std::string_view, NodeGraph::Node> with_id_, with_name_;
     std::vector<std::pair<std::string_view, NodeGraph::Node>> instances_;
 };
 

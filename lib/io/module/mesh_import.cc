@@ -106,8 +106,7 @@ class Gatherer {
             if (++nodes > kMaxMeshNodes)
                 fail("more than " + std::to_string(kMaxMeshNodes) + " nodes");
             if (depth > kMaxMeshNodeDepth)
-                fail("nodes that hang on each other more than " +
-                     std::to_string(kMaxMeshNodeDepth) + " deep");
+                fail("nodes nested more than " + std::to_string(kMaxMeshNodeDepth) + " deep");
             for (unsigned i = 0; i < node->mNumMeshes; ++i) {
                 const aiMesh& part = partOf(*node, i);
                 triangles += part.mNumFaces;

@@ -31,7 +31,7 @@ void NodeGraph::check() const {
         std::vector<Step> path;
         const auto enter = [&](Node node) {
             if (below[node].open)
-                throw std::runtime_error("bad mesh file: a node that hangs on itself");
+                throw std::runtime_error("bad mesh file: a node that contains itself");
             if (below[node].count > 0) return;
             below[node] = {0, 1, true};
             path.push_back({node, 0});
@@ -52,7 +52,7 @@ void NodeGraph::check() const {
                 sum.depth = std::max(sum.depth, below[child].depth + 1);
             }
             if (sum.depth > kMaxMeshNodeDepth)
-                throw std::runtime_error("bad mesh file: nodes that hang on each other more than " +
+                throw std::runtime_error("bad mesh file: nodes nested more than " +
                                          std::to_string(kMaxMeshNodeDepth) + " deep");
             if (sum.count > kMaxMeshNodes)
                 throw std::runtime_error("bad mesh file: more than " +
