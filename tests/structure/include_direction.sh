@@ -20,10 +20,11 @@ violations() {
     }
     function report(what) { print FILENAME ":" FNR ": " what }
     BEGIN {
-        layer("base", ""); layer("geom", "base"); layer("draw", "geom"); layer("record", "geom")
-        layer("env", "draw record"); layer("layout", "env"); layer("io", "layout")
+        layer("base", ""); layer("solve", "base"); layer("geom", "base"); layer("draw", "geom")
+        layer("raster", "geom"); layer("record", "geom"); layer("env", "draw raster record")
+        layer("sensor", "env"); layer("layout", "sensor"); layer("io", "layout")
         layer("trace", "layout"); layer("sense", "trace"); layer("cover", "sense")
-        layer("place", "cover"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
+        layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
         layer("cli", "place net io")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
