@@ -30,39 +30,6 @@ TEST(Grid, CentresNeverDecrease) {
     for (int i = 1; i < grid.rows; ++i) EXPECT_LT(grid.rowCenter(i - 1), grid.rowCenter(i));
 }
 
-TEST(CellSet, AgreesWithPlainBits) {
-    std::mt19937_64 random(7);
-    for (const std::size_t size : {0UL, 1UL, 63UL, 64UL, 65UL, 1000UL}) {
-        std::vector<bool> a(size), b(size);
-        CellSet x(size), y(size);
-        for (std::size_t i = 0; i < size; ++i) {
-            if (random() % 2 != 0) a[i] = true, x.set(i);
-            if (random() % 3 == 0) b[i] = true, y.set(i);
-        }
-        CellSet both = x, either = x, only = x;
-        both &= y;
-        either |= y;
-        only -= y;
-        std::size_t count = 0, common = 0;
-        std::vector<std::size_t> listed, expected;
-        x.forEach([&listed](std::size_t i) { listed.push_back(i); });
-        for (std::size_t i = 0; i < size; ++i) {
-            EXPECT_EQ(x.test(i), a[i]);
-            EXPECT_EQ(both.test(i), a[i] && b[i]);
-            EXPECT_EQ(either.test(i), a[i] || b[i]);
-            EXPECT_EQ(only.test(i), a[i] && !b[i]);
-            count += a[i] ? 1 : 0;
-            common += a[i] && b[i] ? 1 : 0;
-            if (a[i]) expected.push_back(i);
-        }
-        EXPECT_EQ(x.size(), size);
-        EXPECT_EQ(x.count(), count);
-        EXPECT_EQ(countCommon(x, y), common);
-        EXPECT_EQ(listed, expected);
-        EXPECT_EQ(x == y, a == b);
-    }
-}
-
 TEST(CellsIn, WholeGridWhereTheRegionIsItsLimits) {
     const Grid grid{{{0, 0}, {4, 4}}, 10, 10};
     EXPECT_EQ(cellsIn(grid, {{{square(0, 0, 4), {}}}}).count(), 100U);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/cell_set.h"
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+#include <numeric>
+
+namespace ispace {
+
+// Iterators, not subscripts: those are checked in this folder, and these loops are hot.
+
+std::size_t CellSet::count() const {
+    std::size_t sum = 0;
+    for (const std::uint64_t word : words_) sum += static_cast<std::size_t>(std::popcount(word));
+    return sum;
+}
+
+void CellSet::addBits(std::size_t first, std::uint64_t bits) {
+    if (bits == 0) return;
+    std::uint64_t* const word = words_.data() + first / 64;
+    word[0] |= bits << (first % 64);
+    if (first % 64 == 0) return;
+    if (const std::uint64_t rest = bits >> (64 - first % 64); rest != 0) word[1] |= rest;
+}
+
+bool CellSet::empty() const {
+    return std::all_of(words_.begin(), words_.end(), [](std::uint64_t word) { return word == 0; });
+}
+
+CellSet& CellSet::operator|=(const CellSet& other) {
+    assert(cells_ == other.cells_);
+    std::transform(words_.begin(), words_.end(), other.words_.begin(), words_.begin(),
+                   std::bit_or<>());
+    return *this;
+}
+
+CellSet& CellSet::operator&=(const CellSet& other) {
+    assert(cells_ == other.cells_);
+    std::transform(words_.begin(), words_.end(), other.words_.begin(), words_.begin(),
+                   std::bit_and<>());
+    return *this;
+}
+
+CellSet& CellSet::operator-=(const CellSet& other) {
+    assert(cells_ == other.cells_);
+    std::transform(words_.begin(), words_.end(), other.words_.begin(), words_.begin(),
+                   [](std::uint64_t mine, std::uint64_t theirs) { return mine & ~theirs; });
+    return *this;
+}
+
+std::size_t countCommon(const CellSet& a, const CellSet& b) {
+    assert(a.cells_ == b.cells_);
+    return std::transform_reduce(a.words_.begin(), a.words_.end(), b.words_.begin(), std::size_t{0},
+                                 std::plus<>(), [](std::uint64_t mine, std::uint64_t theirs) {
+                                     return static_cast<std::size_t>(std::popcount(mine & theirs));
+                                 });
+}
+
+}  // namespace ispace

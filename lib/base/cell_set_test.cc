@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/cell_set.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace ispace {
+namespace {
+
+TEST(CellSet, AgreesWithPlainBits) {
+    std::mt19937_64 random(7);
+    for (const std::size_t size : {0UL, 1UL, 63UL, 64UL, 65UL, 1000UL}) {
+        std::vector<bool> a(size), b(size);
+        CellSet x(size), y(size);
+        for (std::size_t i = 0; i < size; ++i) {
+            if (random() % 2 != 0) a[i] = true, x.set(i);
+            if (random() % 3 == 0) b[i] = true, y.set(i);
+        }
+        CellSet both = x, either = x, only = x;
+        both &= y;
+        either |= y;
+        only -= y;
+        std::size_t count = 0, common = 0;
+        std::vector<std::size_t> listed, expected;
+        x.forEach([&listed](std::size_t i) { listed.push_back(i); });
+        for (std::size_t i = 0; i < size; ++i) {
+            EXPECT_EQ(x.test(i), a[i]);
+            EXPECT_EQ(both.test(i), a[i] && b[i]);
+            EXPECT_EQ(either.test(i), a[i] || b[i]);
+            EXPECT_EQ(only.test(i), a[i] && !b[i]);
+            count += a[i] ? 1 : 0;
+            common += a[i] && b[i] ? 1 : 0;
+            if (a[i]) expected.push_back(i);
+        }
+        EXPECT_EQ(x.size(), size);
+        EXPECT_EQ(x.count(), count);
+        EXPECT_EQ(countCommon(x, y), common);
+        EXPECT_EQ(listed, expected);
+        EXPECT_EQ(x == y, a == b);
+    }
+}
+
+}  // namespace
+}  // namespace ispace
