@@ -2,6 +2,7 @@
 // tests/golden: compares what a tool writes with what it should write. Standard library only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,5 +23,10 @@ std::string withoutHistory(std::string_view text);
 /// Words that are numbers as a whole (`-1.5`, `3e-4`; not `5cm` or `a1`) are compared within the
 /// tolerance, everything else byte by byte, blanks included.
 std::string difference(std::string_view expected, std::string_view actual, Tolerance tolerance);
+
+/// The CMake source with `ERR "line"` as the end of the row `ispace_golden(name …)`; without any
+/// ERR for an empty line. Nothing if there is no such row.
+std::optional<std::string> withErrorLine(std::string_view source, std::string_view name,
+                                         std::string_view line);
 
 }  // namespace golden

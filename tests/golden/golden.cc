@@ -2,8 +2,9 @@
 // golden [OPTION VALUE]… COMMAND: runs a shell command in a scratch folder and compares exit
 // status, standard output, standard error and the files it makes with what is expected of it.
 //
-//   --expect PREFIX   PREFIX.out and PREFIX.err are the expected texts, PREFIX.FILE those of files
-//                     made; without PREFIX.out or .err nothing may be written there
+//   --expect TOOL/CASE  TOOL/CASE.out and .err are the expected texts, TOOL/CASE.FILE those of
+//                     files made; without .out or .err nothing may be written there
+//   --err LINE        standard error is `TOOL: LINE`; with an empty LINE it is what .err has
 //   --scratch FOLDER  made anew for every run, removed after success
 //   --inputs FOLDER   its files are copied into the scratch folder (repeatable)
 //   --status N        expected exit status, 0 without
@@ -12,8 +13,12 @@
 //   --abs X --rel Y   tolerance of numbers
 //   --exact yes       history is compared, too
 //
-// With UPDATE_GOLDEN=1 in the environment the expectations are written anew instead.
+// With UPDATE_GOLDEN=1 in the environment the expectations are written anew instead; one line of
+// standard error that begins with `TOOL: ` goes to the row of the case in TOOL/CMakeLists.txt.
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -38,6 +43,7 @@ struct Case {
     fs::path expect, scratch;
     std::vector<fs::path> inputs;
     int status = 0;
+    std::string error_line;
     std::set<std::string> creates, pictures;
     golden::Tolerance tolerance;
     bool exact = false;
@@ -64,6 +70,8 @@ Case parseCase(const std::vector<std::string>& words) {
             test.inputs.emplace_back(value);
         } else if (name == "--status") {
             test.status = std::stoi(value);
+        } else if (name == "--err") {
+            test.error_line = value;
         } else if (name == "--creates") {
             test.creates = splitList(value);
         } else if (name == "--pictures") {
@@ -96,6 +104,19 @@ void update(const fs::path& file, const std::string& text) {
         fs::create_directories(file.parent_path());
         std::ofstream(file, std::ios::binary) << text;
     }
+}
+
+/// Rewrites ERR in the row of the case, one process at a time; false if there is no such row.
+bool updateRow(const fs::path& expect, const std::string& line) {
+    const fs::path file = expect.parent_path() / "CMakeLists.txt";
+    const int lock = open(expect.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock < 0 || flock(lock, LOCK_EX) != 0)
+        throw std::runtime_error("cannot lock " + file.string());
+    const std::string before = read(file);
+    const auto after = golden::withErrorLine(before, expect.filename().string(), line);
+    if (after && *after != before) update(file, *after);
+    close(lock);
+    return after.has_value();
 }
 
 fs::path withSuffix(const fs::path& prefix, const std::string& suffix) {
@@ -131,9 +152,9 @@ int run(const Case& test, const fs::path& room) {
     return WIFEXITED(result) ? WEXITSTATUS(result) : 128 + WTERMSIG(result);
 }
 
-class Judge {
+class Verdict {
   public:
-    explicit Judge(const Case& test)
+    explicit Verdict(const Case& test)
         : test_(test), update_(std::getenv("UPDATE_GOLDEN") != nullptr) {}
 
     void text(const std::string& what, const fs::path& expected_file, std::string actual) {
@@ -141,6 +162,23 @@ class Judge {
         if (update_) return update(expected_file, actual);
         const std::string found = golden::difference(read(expected_file), actual, test_.tolerance);
         if (!found.empty()) fail(what + " differs from " + expected_file.string() + ", " + found);
+    }
+
+    void standardError(const std::string& actual) {
+        const fs::path file = withSuffix(test_.expect, "err");
+        const std::string tool = test_.expect.parent_path().filename().string() + ": ";
+        if (update_) {
+            const bool one_line =
+                actual.starts_with(tool) && actual.find('\n') == actual.size() - 1;
+            const std::string line =
+                one_line ? actual.substr(tool.size(), actual.size() - 1 - tool.size()) : "";
+            const bool in_row = updateRow(test_.expect, line) && one_line;
+            return update(file, in_row ? "" : actual);
+        }
+        if (test_.error_line.empty()) return text("standard error", file, actual);
+        const std::string expected = tool + test_.error_line + "\n";
+        const std::string found = golden::difference(expected, actual, test_.tolerance);
+        if (!found.empty()) fail("standard error differs from ERR, " + found);
     }
 
     void picture(const std::string& name, const fs::path& expected_file, const std::string& png) {
@@ -193,17 +231,17 @@ bool passes(const Case& test) {
     const fs::path room = test.scratch / "room";
     furnish(test, room);
     const std::set<std::string> before = namesIn(room);
-    Judge judge(test);
-    judge.status(run(test, room));
-    judge.text("standard output", withSuffix(test.expect, "out"), read(test.scratch / "out"));
-    judge.text("standard error", withSuffix(test.expect, "err"), read(test.scratch / "err"));
-    judge.files(room, before);
-    if (judge.failed()) {
+    Verdict verdict(test);
+    verdict.status(run(test, room));
+    verdict.text("standard output", withSuffix(test.expect, "out"), read(test.scratch / "out"));
+    verdict.standardError(read(test.scratch / "err"));
+    verdict.files(room, before);
+    if (verdict.failed()) {
         std::cout << "command: " << test.command << "\nstderr:\n" << read(test.scratch / "err");
     } else {
         fs::remove_all(test.scratch);
     }
-    return !judge.failed();
+    return !verdict.failed();
 }
 
 }  // namespace
