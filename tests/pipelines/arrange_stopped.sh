@@ -27,31 +27,14 @@ grep -q 'cut short' err || fail "nobody says that time ended it: $(cat err)"
 
 for signal in INT TERM; do
     echo old >best.3dm
-    set -m  # a background job ignores INT unless it has job control
-    arrange "${long[@]}" -o best.3dm 2>err &
-    job=$!
-    set +m
-    sleep 3
-    kill -0 "$job" || fail "the job is over too soon to be interrupted: $(cat err)"
-    kill -"$signal" "$job"
-    status=0
-    wait "$job" || status=$?
-    [ "$status" -eq $((128 + $(kill -l "$signal"))) ] || fail "status $status after SIG$signal"
+    interrupt "$signal" 3 arrange "${long[@]}" -o best.3dm
     is_whole best.3dm
 done
 
 # At once: what there is is written, or nothing.
 for delay in 0.02 0.1 0.2; do
     echo old >best.3dm
-    set -m
-    arrange "${long[@]}" -o best.3dm 2>err &
-    job=$!
-    set +m
-    sleep "$delay"
-    kill -TERM "$job"
-    status=0
-    wait "$job" || status=$?
-    [ "$status" -eq 143 ] || fail "status $status after SIGTERM: $(cat err)"
+    interrupt TERM "$delay" arrange "${long[@]}" -o best.3dm
     [ "$(cat best.3dm)" = old ] || is_whole best.3dm
     ls best.3dm* | grep -v '^best.3dm$' && fail "left behind"
 done

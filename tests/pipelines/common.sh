@@ -40,8 +40,57 @@ expect_error() {
     shift
     expect_status "$wanted" "$@"
     [ ! -s out ] || fail "output in spite of the error: $*"
-    [ "$(wc -l <err)" -eq 1 ] || fail "not one line of error: $*: $(cat err)"
-    grep -q "^$tool: " err || fail "an error without the tool's name: $*: $(cat err)"
+    one_error "$tool" "$*"
+}
+
+# one_error TOOL WHAT: ./err holds one line, which begins with the tool's name.
+one_error() {
+    [ "$(wc -l <err)" -eq 1 ] || fail "not one line of error: $2: $(cat err)"
+    grep -q "^$1: " err || fail "an error without the tool's name: $2: $(cat err)"
+}
+
+# interrupt SIGNAL SECONDS COMMAND…: sends it to the running command, which must end with 128+n.
+interrupt() {
+    local signal=$1 job status=0
+    set -m  # a background job ignores INT unless it has job control
+    "${@:3}" 2>err &
+    job=$!
+    set +m
+    sleep "$2"
+    kill -0 "$job" || fail "the job is over too soon to be interrupted: $(cat err)"
+    kill -"$signal" "$job"
+    wait "$job" || status=$?
+    [ "$status" -eq $((128 + $(kill -l "$signal"))) ] ||
+        fail "status $status after SIG$signal: $(cat err)"
+}
+
+# small_disk: ./disk is a file system of 64 kB; ends the script where mounting is not allowed.
+small_disk() {
+    mkdir disk
+    if ! mount -t tmpfs -o size=64k tmpfs disk 2>/dev/null; then
+        echo "no right to mount: the part with a small file system is left out"
+        exit 0
+    fi
+    trap 'umount disk; cleanup' EXIT
+}
+
+# one_job_of_each_tool: the jobs of scripts that make life hard for a tool are in ${jobs[@]}, words to
+# be split; product writes what the last one made (./out, ./map.png), without what differs between runs.
+one_job_of_each_tool() {
+    envc "$scenes/facilities.env" -o room.glb
+    arrange -q room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 6 -Y 6 --deg 8 -o best.3dm
+    { cat best.3dm; echo 'ranger id=k at=-1,0,1 heading=40 tilt=-20 pixels=64,48 sigma=0.01'; } >more.3dm
+    jobs=(
+        "envc $scenes/facilities.env --to glb"
+        "envc $scenes/facilities.env --to png"
+        "arrange room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 12 -Y 12 --deg 8 -q"
+        "scan room.glb more.3dm --noise --frames 20"
+        "coverage room.glb best.3dm -o map.png"
+        "simrun $data/room.env $data/robots.3dm --until 5 --clock fast"
+    )
+}
+product() {
+    { sed 's/"listen":"[^"]*"/"listen":""/' out; [ ! -e map.png ] || cat map.png; } | cksum
 }
 
 # expect_same A B WHAT

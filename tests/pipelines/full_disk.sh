@@ -34,12 +34,7 @@ for command in "envc $room --to glb" "arrange $room ${placing[*]}" "scan $room $
     grep -q "/dev/full: error: No space left on device" err || fail "$command: $(cat err)"
 done
 
-mkdir disk
-if ! mount -t tmpfs -o size=64k tmpfs disk 2>/dev/null; then
-    echo "no right to mount: the part with a small file system is left out"
-    exit 0
-fi
-trap 'umount disk; cleanup' EXIT
+small_disk
 echo old >disk/target.png
 head -c 60000 /dev/zero >disk/ballast 2>/dev/null || true
 expect_status 1 coverage "$room" "$layout" -o disk/target.png

@@ -5,16 +5,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/../simrun/server.sh"
 
-# A hall 12 m long, a robot in it.
-cat >hall.env <<'END'
-#env 1
-ispace at=0,0 size=12,4
-END
-cat >hall.3dm <<'END'
-#3dm 1
-robot id=r1 model=pioneer-2dx at=-5,0
-laser id=l1 at=0,-1.9 heading=90 range=8
-END
+write_hall
 start hall.env hall.3dm --clock real:20
 
 for reader in one two three; do

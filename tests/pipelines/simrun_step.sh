@@ -7,16 +7,7 @@
 scene=("$data/square.env" "$data/session.3dm")
 
 # The session of simrun_nc.sh by steps: one client drives, one steps, three read a laser.
-cat >hall.env <<'END'
-#env 1
-ispace at=0,0 size=12,4
-END
-cat >hall.3dm <<'END'
-#3dm 1
-robot id=r1 model=pioneer-2dx at=-5,0
-laser id=l1 at=0,-1.9 heading=90 range=8
-laser id=l2 on=r1
-END
+write_hall 'laser id=l2 on=r1'
 # steps RUN N: all readers have the scans of these steps before the next request.
 steps() {
     local reader

@@ -33,26 +33,13 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*run)(vo
 END
 cc -shared -fPIC -O1 count.c -o count.so -ldl
 
-envc "$scenes/facilities.env" -o room.glb
-arrange -q room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 6 -Y 6 --deg 8 -o best.3dm
-{ cat best.3dm; echo 'ranger id=k at=-1,0,1 heading=40 tilt=-20 pixels=64,48 sigma=0.01'; } >more.3dm
-
-jobs=(
-    "envc $scenes/facilities.env --to png"
-    "arrange room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 12 -Y 12 --deg 8 -q"
-    "scan room.glb more.3dm --noise --frames 50"
-    "coverage room.glb best.3dm -o map.png"
-    "simrun $data/room.env $data/robots.3dm --until 5 --clock fast"
-)
+one_job_of_each_tool
 
 # run COMMAND…: with the library; threads are noted in ./log.
 run() {
     rm -f map.png
     : >log
     THREAD_LOG=$scratch/log LD_PRELOAD=$scratch/count.so timeout 120 "$@"
-}
-product() {
-    { sed 's/"listen":"[^"]*"/"listen":""/' out; [ ! -e map.png ] || cat map.png; } | cksum
 }
 
 for job in "${jobs[@]}"; do
@@ -71,7 +58,7 @@ for job in "${jobs[@]}"; do
                 ;;
             1)
                 [ "$most" -gt 0 ] || fail "no thread may be had, which is no error: $job: $(cat err)"
-                [ "$(wc -l <err)" -eq 1 ] || fail "not one line: $job: $(cat err)"
+                one_error "${job%% *}" "$job"
                 ;;
             *) fail "status $status with $most threads: $job: $(cat err)" ;;
         esac

@@ -20,6 +20,13 @@ eventually() {
     fail "in vain: $what (simrun says: $(head -n 5 simrun.err))"
 }
 
+# write_hall [RECORD…]: hall.env, 12 m long; hall.3dm with a robot in it, a laser, and the records.
+write_hall() {
+    printf '%s\n' '#env 1' 'ispace at=0,0 size=12,4' >hall.env
+    printf '%s\n' '#3dm 1' 'robot id=r1 model=pioneer-2dx at=-5,0' \
+        'laser id=l1 at=0,-1.9 heading=90 range=8' "$@" >hall.3dm
+}
+
 # start ARGUMENT…: simrun in the background; sets server and port. What it says is in simrun.err.
 start() {
     rm -f port
