@@ -30,29 +30,13 @@ namespace fs = std::filesystem;
     throw std::system_error(error, std::generic_category(), displayName(name));
 }
 
-/// `fd` closed at the end of the scope, without a check: for reading and for clean-up.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    ~Descriptor() {
-        if (fd_ > STDERR_FILENO) ::close(fd_);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    [[nodiscard]] int get() const { return fd_; }
-    [[nodiscard]] int release() { return std::exchange(fd_, -1); }
-
-  private:
-    int fd_;
-};
-
-int openInput(const std::string& operand) {
-    Descriptor file(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
-    struct stat info {};
-    if (file.get() < 0 || ::fstat(file.get(), &info) != 0) fail(operand, errno);
+/// \param info of the file
+OpenFile openInput(const std::string& operand, struct stat& info) {
+    OpenFile file(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0) fail(operand, errno);
     if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);
-    noteInput(file.get());
-    return file.release();
+    noteInput(file.fd());
+    return file;
 }
 
 /// True if the call that failed is worth another try. A parent or a terminal may have left a stream
@@ -97,6 +81,8 @@ std::string makeStandIn(const std::string& folder, Make make) {
     return "";
 }
 
+std::string pathOf(const OpenFile& file) { return "/proc/self/fd/" + std::to_string(file.fd()); }
+
 [[noreturn]] void refuseLength(const std::string& operand, bool regular) {
     const std::string file = std::to_string(kMostFileBytes);
     throw FormatError({displayName(operand), 0, 0,
@@ -109,23 +95,33 @@ std::string makeStandIn(const std::string& folder, Make make) {
 
 }  // namespace
 
+OpenFile::OpenFile(OpenFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+OpenFile& OpenFile::operator=(OpenFile&& other) noexcept {
+    if (this != &other) {
+        close();
+        fd_ = std::exchange(other.fd_, -1);
+    }
+    return *this;
+}
+
+bool OpenFile::close() {
+    const int fd = std::exchange(fd_, -1);
+    return fd <= STDERR_FILENO || ::close(fd) == 0;
+}
+
 std::string readAll(const std::string& operand) {
-    const bool standard = operand == "-";
-    const Descriptor file(standard ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.get() < 0) fail(operand, errno);
     struct stat info {};
-    if (::fstat(file.get(), &info) != 0) fail(operand, errno);
-    if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);
+    const OpenFile file = openInput(operand, info);
     const bool regular = S_ISREG(info.st_mode);
     const std::uint64_t most = regular ? kMostFileBytes : kMostStreamBytes;
     if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
-    noteInput(file.get());
     std::string bytes;
     constexpr std::size_t kChunk = 1 << 16;
     std::size_t size = 0;
     bytes.resize(regular ? static_cast<std::size_t>(info.st_size) + 1 : kChunk);
     while (true) {
-        const std::size_t n = readSome(file.get(), std::span(bytes).subspan(size), operand);
+        const std::size_t n = readSome(file.fd(), std::span(bytes).subspan(size), operand);
         if (n == 0) break;
         size += n;
         if (size > most) refuseLength(operand, regular);
@@ -139,17 +135,16 @@ std::string readAll(const std::string& operand) {
     return bytes;
 }
 
-InputFile::InputFile(const std::string& operand) : name_(operand), fd_(openInput(operand)) {}
-
-InputFile::~InputFile() {
-    if (fd_ > STDERR_FILENO) ::close(fd_);
+InputFile::InputFile(const std::string& operand) : name_(operand) {
+    struct stat info {};
+    file_ = openInput(operand, info);
 }
 
 bool InputFile::read(std::string& bytes) {
     constexpr std::size_t kChunk = 1 << 16;
     const std::size_t size = bytes.size();
     bytes.resize(size + kChunk);
-    const std::size_t n = readSome(fd_, std::span(bytes).subspan(size), name_);
+    const std::size_t n = readSome(file_.fd(), std::span(bytes).subspan(size), name_);
     bytes.resize(size + n);
     return n > 0;
 }
@@ -160,14 +155,14 @@ struct OutputFile::State {
     std::string temporary;  // its stand-in; empty: written directly or not yet named
     std::string kept;       // another name of the old file until all of a set are in their places
     std::optional<OpenOutput> known;
-    int fd = -1;
+    OpenFile file;
     bool direct = false;
     bool is_first = false;   // there is no old file
     bool is_placed = false;  // the target is the new file
 
     ~State() {
-        if (fd > STDERR_FILENO) ::close(fd);
         drop(temporary);
+        drop(kept);
     }
 
     [[nodiscard]] std::string folder() const {
@@ -178,6 +173,8 @@ struct OutputFile::State {
         if (!file.empty()) ::unlink(file.c_str());
         file.clear();
     }
+    /// Opens the stand-in, with these permissions.
+    void openStandIn(mode_t mode);
     /// Gives the written file a name in the folder.
     void link();
     /// Lets put() be taken back, where the file system can.
@@ -186,15 +183,28 @@ struct OutputFile::State {
     void takeBack();
 };
 
+void OutputFile::State::openStandIn(mode_t mode) {
+    // An unnamed file vanishes with the process, however that ends. It gets its name through /proc,
+    // which a chroot may lack.
+    file = OpenFile(::open(folder().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode));
+    const bool is_known =
+        file.fd() < 0 && errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL;
+    if (is_known || (file.fd() >= 0 && ::access(pathOf(file).c_str(), F_OK) == 0)) return;
+    temporary = makeStandIn(folder(), [&](const std::string& stand_in) {
+        file = OpenFile(::open(stand_in.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
+        return file.fd() < 0 ? -1 : 0;
+    });
+}
+
 void OutputFile::State::link() {
     if (!direct && temporary.empty()) {
-        const std::string from = "/proc/self/fd/" + std::to_string(fd);
+        const std::string from = pathOf(file);
         temporary = makeStandIn(folder(), [&](const std::string& stand_in) {
             return ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, stand_in.c_str(), AT_SYMLINK_FOLLOW);
         });
         if (temporary.empty()) fail(name, errno);
     }
-    if (fd > STDERR_FILENO && ::close(std::exchange(fd, -1)) != 0) fail(name, errno);
+    if (!file.close()) fail(name, errno);
 }
 
 void OutputFile::State::keepOld() {
@@ -229,7 +239,7 @@ OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<Stat
     s.name = target;
     if (target == "-") {
         s.direct = true;
-        s.fd = STDOUT_FILENO;
+        s.file = OpenFile(STDOUT_FILENO);
         s.name = "stdout";
         s.known.emplace("-", s.name);
         return;
@@ -240,30 +250,24 @@ OutputFile::OutputFile(const std::string& target) : state_(std::make_unique<Stat
     const bool exists = ::stat(target.c_str(), &info) == 0;
     if (exists && !S_ISREG(info.st_mode)) {
         s.direct = true;
-        s.fd = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
-        if (s.fd < 0) fail(target, errno);
+        s.file = OpenFile(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+        if (s.file.fd() < 0) fail(target, errno);
         return;
     }
     s.target = followLinks(target);
     s.known.emplace(s.target, target);
     if (exists && ::access(s.target.c_str(), W_OK) != 0) fail(target, errno);
-    const std::string folder = s.folder();
     const mode_t mode = exists ? (info.st_mode & 07777) : 0666;
-    // An unnamed file vanishes with the process, however that ends.
-    s.fd = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
-    if (s.fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
-        s.temporary = makeStandIn(folder, [&](const std::string& name) {
-            s.fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-            return s.fd < 0 ? -1 : 0;
-        });
-    }
-    if (s.fd < 0) fail(target, errno);
-    if (exists) (void)::fchmod(s.fd, mode);
+    s.openStandIn(mode);
+    if (s.file.fd() < 0) fail(target, errno);
+    if (exists) (void)::fchmod(s.file.fd(), mode);
 }
 
 OutputFile::~OutputFile() = default;
 
-void OutputFile::write(std::string_view bytes) { writeFully(state_->fd, bytes, state_->name); }
+void OutputFile::write(std::string_view bytes) {
+    writeFully(state_->file.fd(), bytes, state_->name);
+}
 
 void OutputFile::commit() {
     OutputFile* const alone = this;

@@ -14,6 +14,24 @@ namespace ispace {
 constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U,
                         kMostStreamBytes = std::uint64_t{1} << 30U;
 
+/// A file descriptor, closed at the end unless it is of a standard stream.
+class OpenFile {
+  public:
+    explicit OpenFile(int fd = -1) : fd_(fd) {}
+    ~OpenFile() { close(); }
+    OpenFile(OpenFile&& other) noexcept;
+    OpenFile& operator=(OpenFile&& other) noexcept;
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    [[nodiscard]] int fd() const { return fd_; }
+    /// False, with errno set, if the system could not write all of it.
+    bool close();
+
+  private:
+    int fd_;
+};
+
 /// Everything in a file, or on standard input for "-".
 /// \throws std::system_error naming the file; also for a directory
 /// \throws FormatError naming the file for more bytes than an input may have, and for a pipe or a
@@ -25,16 +43,13 @@ class InputFile {
   public:
     /// \throws std::system_error naming the file; also for a directory
     explicit InputFile(const std::string& operand);
-    ~InputFile();
-    InputFile(const InputFile&) = delete;
-    InputFile& operator=(const InputFile&) = delete;
 
     /// Appends what is there, and waits only if there is nothing; false at the end.
     bool read(std::string& bytes);
 
   private:
     std::string name_;
-    int fd_;
+    OpenFile file_;
 };
 
 /// A product on its way to its place: a regular file is written beside its target and renamed by

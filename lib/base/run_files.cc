@@ -156,6 +156,16 @@ OpenOutput::OpenOutput(std::string target, std::string name)
     is_kept_ = true;
 }
 
+void OpenOutput::done() {
+    is_done_ = true;
+    if (!is_kept_) return;
+    const std::lock_guard lock(guard);
+    const auto place = placeOf(target_);
+    if (!known || !place) return;
+    const auto at = known->outputs.find(*place);
+    if (at != known->outputs.end()) at->second.old.reset();
+}
+
 OpenOutput::~OpenOutput() {
     if (!is_kept_) return;
     const std::lock_guard lock(guard);

@@ -46,8 +46,8 @@ class OpenOutput {
 
     /// Looks again, right before the target is replaced. \throws UsageError
     void check() const;
-    /// It is written now.
-    void done() { is_done_ = true; }
+    /// It is in its place: what it replaced is no output any more.
+    void done();
 
   private:
     std::string target_, name_;

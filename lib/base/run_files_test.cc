@@ -69,6 +69,13 @@ TEST_F(RunFilesTest, NoClaimedOutputIsReadLater) {
     EXPECT_EQ(refusal([&] { noteInput(path("twin")); }), expected);
 }
 
+TEST_F(RunFilesTest, WhatAnOutputHasReplacedMayBeRead) {
+    const RunFiles files;
+    claimOutput(path("room"), "--output");
+    writeAll(path("room"), "new");
+    EXPECT_EQ(refusal([&] { EXPECT_EQ(readAll(path("twin")), "old"); }), "");
+}
+
 TEST_F(RunFilesTest, AnInputReadWhileTheOutputIsWritten) {
     const RunFiles files;
     OutputFile file(path("room"));
@@ -119,16 +126,23 @@ TEST_F(RunFilesTest, TwoOpenOutputsAreTwoFiles) {
 
 TEST_F(RunFilesTest, StreamsAndDevicesDoNotCount) {
     const RunFiles files;
-    noteInput("-");
-    noteInput("");
-    noteInput(path("none"));
-    (void)readAll("/dev/null");
-    claimOutput("/dev/null", "--output");
-    claimOutput("/dev/null", "--trace");
-    claimOutput("-", "--output");
-    claimOutput("", "--trace");
-    claimOutput(path("no/folder/file"), "--curve");
-    writeAll("/dev/null", "gone");
+    const auto read = [&] {
+        noteInput("-");
+        noteInput("");
+        noteInput(path("none"));
+        (void)readAll("/dev/null");
+    };
+    const auto write = [&] {
+        claimOutput("/dev/null", "--output");
+        claimOutput("/dev/null", "--trace");
+        claimOutput("-", "--output");
+        claimOutput("", "--trace");
+        claimOutput(path("no/folder/file"), "--curve");
+        writeAll("/dev/null", "gone");
+    };
+    EXPECT_EQ(refusal(read), "");
+    EXPECT_EQ(refusal(write), "");
+    EXPECT_EQ(refusal(read), "") << "a device that was written";
 }
 
 TEST_F(RunFilesTest, WithoutARunNothingIsKept) {

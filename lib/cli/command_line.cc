@@ -127,6 +127,15 @@ void CommandLine::text(const std::string& names, const std::string& value, std::
     data_->keep(data_->app.add_option(names, variable), value, help, enters);
 }
 
+void CommandLine::file(const std::string& names, const std::string& value, std::string& variable,
+                       const std::string& help, Enters enters) {
+    const auto take = [&variable](const std::string& text) {
+        if (text.empty()) throw UsageError("an empty name is given");
+        variable = text;
+    };
+    parsed(names, value, take, help, enters);
+}
+
 void CommandLine::texts(const std::string& names, const std::string& value,
                         std::vector<std::string>& variable, const std::string& help,
                         Enters enters) {
@@ -167,7 +176,8 @@ void CommandLine::parsed(const std::string& names, const std::string& value,
 
 std::function<void(const std::string&)> CommandLine::guarded(
     const std::string& names, std::function<void(const std::string&)> take) const {
-    const std::string last = names.substr(names.rfind(',') + 1);
+    std::string last = names.substr(names.rfind(',') + 1);
+    if (isCompilerName(last.substr(2))) last.erase(0, 1);
     return [last, take = std::move(take), data = data_.get()](const std::string& s) {
         try {
             take(s);
@@ -192,7 +202,7 @@ void CommandLine::dependencies(DependencyOptions& options, const std::string& ou
     data_->check = [&options, &output] { checkDependencies(options, output); };
     flag("--MD", options.wanted, "write a rule for make that names all files read, too",
          Enters::Nothing);
-    text("--MF", "FILE", options.file,
+    file("--MF", "FILE", options.file,
          "write that rule there (default: the product's name with .d)", Enters::Nothing);
 }
 

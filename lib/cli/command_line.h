@@ -39,6 +39,9 @@ class CommandLine {
     /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
     void text(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);
+    /// The name of a file, which an empty variable of a shell script is not.
+    void file(const std::string& names, const std::string& value, std::string& variable,
+              const std::string& help, Enters enters);
     /// May be given several times.
     void texts(const std::string& names, const std::string& value,
                std::vector<std::string>& variable, const std::string& help, Enters enters);

@@ -2,7 +2,6 @@
 #include "cli/last_words.h"
 
 #include <poll.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <array>

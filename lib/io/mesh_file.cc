@@ -6,7 +6,6 @@
 #include <map>
 #include <system_error>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "base/error.h"

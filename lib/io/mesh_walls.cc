@@ -2,7 +2,6 @@
 #include "io/mesh_walls.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>

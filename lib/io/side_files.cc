@@ -38,14 +38,6 @@ fs::path folderOf(const std::string& path) {
 
 }  // namespace
 
-OpenFile::~OpenFile() { close(); }
-
-OpenFile::OpenFile(OpenFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
-void OpenFile::close() {
-    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
-}
-
 RegularFile openRegular(const std::string& path) {
     struct stat info {};
     const auto check_kind = [&] {

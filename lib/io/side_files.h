@@ -5,24 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "base/file.h"
+
 namespace ispace {
-
-/// A descriptor that is closed at the end.
-class OpenFile {
-  public:
-    explicit OpenFile(int fd) : fd_(fd) {}
-    ~OpenFile();
-    OpenFile(OpenFile&& other) noexcept;
-    OpenFile& operator=(OpenFile&&) = delete;
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
-
-    [[nodiscard]] int fd() const { return fd_; }
-    void close();
-
-  private:
-    int fd_;
-};
 
 /// A regular file, open for reading.
 struct RegularFile {

@@ -2,7 +2,6 @@
 #include "net/conversation.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <initializer_list>
 #include <limits>

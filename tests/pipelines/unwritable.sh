@@ -151,3 +151,14 @@ status=0
 arrange room.env --sensor laser,range=1 --candidates 1,1,4 --trace both >both 2>err || status=$?
 [ "$status" -eq 2 ] || fail "status $status for a trace where stdout goes: $(cat err)"
 [ -z "$(find "$scratch" -name '.ispace.tmp*')" ] || fail "stand-ins are left"
+
+# In a chroot without /proc an unnamed file cannot be given a name; files are made all the same.
+cd "$scratch"
+cat >no_proc.sh <<'END'
+mount -t tmpfs none /proc && "$@" &&
+    [ -z "$(find . -name '.ispace.tmp*')" ]
+END
+if unshare -m mount -t tmpfs none /proc 2>/dev/null; then
+    expect_status 0 unshare -m sh no_proc.sh envc "$room" --to env -o no_proc.env
+    expect_same no_proc.env <(envc "$room" --to env) "another file without /proc"
+fi

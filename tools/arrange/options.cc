@@ -127,7 +127,7 @@ void ArrangeCommand::addPlaceOptions() {
         [&how](const std::string& text) { how.density = readDensity(text); },
         "of all: steps of the lattice and along walls, headings a place (default 0.25,0.25,16)",
         Enters::History);
-    line_.text("--places", "FILE", options_.places_file,
+    line_.file("--places", "FILE", options_.places_file,
                "of list: lines X,Y[,HEADING] (CSV), - is stdin", Enters::BaseName);
     line_.count("-X", "N", how.x, 1, kMostLines,
                 "of grid: interior lines across x (default: 5 per maximum range)", Enters::History);
@@ -238,14 +238,14 @@ void ArrangeCommand::addSearchOptions() {
 }
 
 void ArrangeCommand::addFileOptions() {
-    line_.text("--curve", "FILE", options_.curve_file,
+    line_.file("--curve", "FILE", options_.curve_file,
                "also tell what 1, 2, ... sensors cover: print it, and write FILE (.csv, .png, .svg "
                "or .pdf)",
                Enters::Nothing);
-    line_.text("--trace", "FILE", options_.trace_file,
+    line_.file("--trace", "FILE", options_.trace_file,
                "write every candidate with its value as JSONL, for coverage --trace",
                Enters::Nothing);
-    line_.text("--export-mps", "FILE", options_.mps_file,
+    line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);
 }
@@ -319,22 +319,11 @@ void ArrangeCommand::settleStrategy() {
 }
 
 void ArrangeCommand::settleFiles() const {
-    const std::pair<const char*, const std::string*> files[] = {
-        {"--output", &options_.common.output},
-        {"--curve", &options_.curve_file},
-        {"--trace", &options_.trace_file},
-        {"--export-mps", &options_.mps_file},
-        {"--MF", &options_.common.dependencies.file}};
-    for (const auto& [name, file] : files) {
-        if (file->empty()) {
-            if (line_.given(name)) throw UsageError(std::string(name) + ": an empty name is given");
-            continue;
-        }
-        const bool is_layout = file == &options_.common.output;
-        const bool is_stdout = *file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1";
-        if (!is_layout && is_stdout)
+    for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
+                                     {"--trace", &options_.trace_file},
+                                     {"--export-mps", &options_.mps_file}})
+        if (*file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1")
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
-    }
     if (!options_.curve_file.empty())
         (void)outputFormat({}, options_.curve_file, {"csv", "png", "svg", "pdf"});
 }

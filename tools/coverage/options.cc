@@ -69,7 +69,6 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 }
 
 void checkReport(const CoverageToolOptions& o) {
-    if (o.report.empty()) throw UsageError("--report: an empty name is given");
     if (o.report == "-")
         throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
     static_cast<void>(outputFormat({}, o.report, {"json"}));  // refuses another suffix
@@ -85,14 +84,14 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                      "stdin unless ENV holds placed sensors. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
-    line.text("--report", "FILE", o.report, "write the report there, too, as JSON (.json)",
+    line.file("--report", "FILE", o.report, "write the report there, too, as JSON (.json)",
               Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact figures where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; may be given several times",
                Enters::History);
-    line.text("--compare", "LAYOUT", o.other,
+    line.file("--compare", "LAYOUT", o.other,
               "tell what is gained and lost beside this layout, in figures and on the map",
               Enters::BaseName);
     line.choice("--to", words.to, kFormats, "format of FILE (default: its suffix, else png)",
@@ -106,7 +105,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},
                 "how views are drawn (default contours)", Enters::History);
-    line.text("--trace", "FILE", o.trace,
+    line.file("--trace", "FILE", o.trace,
               "draw the places that arrange --trace wrote to this file on the map, coloured by the "
               "best value there",
               Enters::Nothing);

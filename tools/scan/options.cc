@@ -51,7 +51,7 @@ void ScanCommand::declare() {
                 Enters::History);
     line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
                      Enters::History);
-    line_.text("--poses", "FILE", o.poses,
+    line_.file("--poses", "FILE", o.poses,
                "one reading at each pose of a TUM trajectory, - for stdin: `t x y z qx qy qz qw`",
                Enters::BaseName);
     line_.text("--model", "MODEL[,KEY=VALUE...]", o.model,

@@ -32,12 +32,6 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     addCommonOptions(line_, options_.common, "");
     line_.parse(argc, argv);
     options_.limits.shutdown = options_.shutdown.value_or(true);
-    // An empty variable of a shell script, most likely: the run must not go on without its files.
-    for (const auto& [name, value] : {std::pair("--script", &options_.script),
-                                      {"--record", &options_.record},
-                                      {"--port-file", &options_.port_file}})
-        if (line_.given(name) && value->empty())
-            throw UsageError(std::string(name) + ": the name is empty");
 }
 
 void SimrunCommand::declareRun() {
@@ -57,10 +51,10 @@ void SimrunCommand::declareRun() {
         "--until", "TIME",
         [&o](const std::string& text) { o.until = simTime(text, SimTime(0), kLongestTime); },
         "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
-    line_.text("--script", "FILE", o.script,
+    line_.file("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);
-    line_.text("--record", "DIR", o.record,
+    line_.file("--record", "DIR", o.record,
                "write robots.csv, scans.jsonl, info.csv and timing.csv there", Enters::Nothing);
     line_.parsed(
         "--record-limit", "SIZE",
@@ -75,7 +69,7 @@ void SimrunCommand::declareServer() {
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0: one the system gives (default 127.0.0.1:0)",
         Enters::Nothing);
-    line_.text("--port-file", "FILE", o.port_file,
+    line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(
         "--max-clients", "N",
