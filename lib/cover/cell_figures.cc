@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "cover/cell_pieces.h"
 #include "cover/figures.h"
+#include "raster/cell_groups.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {
@@ -67,14 +67,14 @@ void addPieces(Coverage& coverage, const CellSet& covered) {
     const Grid& grid = coverage.target.grid;
     CellSet inside = covered;
     inside &= coverage.target.indoor;
-    const std::vector<CellPiece> pieces = piecesOf(grid, inside);
+    const std::vector<CellGroup> pieces = piecesOf(grid, inside);
     coverage.report.pieces = pieces.size();
     if (!pieces.empty())
         coverage.report.largest_piece =
             static_cast<double>(pieces.front().cells) / static_cast<double>(inside.count());
     CellSet unseen = coverage.target.free;
     unseen -= covered;
-    for (const CellPiece& piece : piecesOf(grid, unseen))
+    for (const CellGroup& piece : piecesOf(grid, unseen))
         coverage.report.unseen.push_back(
             {grid.center(piece.middle), static_cast<double>(piece.cells) * grid.cellArea()});
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/cover: cells, areas, coverage and its map. Uses sense, draw and below; TBB inside.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "cover/grid.h"
 #include "cover/target.h"
 #include "geom/layers.h"
 #include "layout/scene.h"
+#include "raster/grid.h"
 #include "trace/worlds.h"
 
 namespace ispace {

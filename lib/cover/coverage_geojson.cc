@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "base/number.h"
-#include "cover/contour.h"
 #include "cover/coverage_files.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
+#include "raster/contour.h"
 
 namespace ispace {
 

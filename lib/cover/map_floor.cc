@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 
-#include "cover/contour.h"
 #include "cover/map_parts.h"
 #include "geom/boolean.h"
+#include "raster/contour.h"
 
 namespace ispace {
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "cover/contour.h"
 #include "cover/map_parts.h"
+#include "raster/contour.h"
 
 namespace ispace {
 

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "cover/grid.h"
 #include "env/environment.h"
 #include "geom/curve.h"
 #include "layout/laser.h"
 #include "layout/ranger.h"
 #include "layout/ultrasound.h"
+#include "raster/grid.h"
 #include "trace/ray_world.h"
 
 namespace ispace {

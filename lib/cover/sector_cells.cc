@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "cover/range_rule.h"
-#include "cover/scanline.h"
 #include "cover/sector_limits.h"
 #include "cover/sight_outline.h"
+#include "raster/scanline.h"
 
 namespace ispace {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "cover/grid.h"
 #include "cover/slice_sight.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

@@ -86,7 +86,7 @@ Target makeTarget(const Environment& environment, const CellChoice& cells, doubl
     target.height = height;
     target.indoor = cellsIn(target.grid, environment.indoor());
     target.free = target.indoor;
-    target.free -= cellsBlocked(target.grid, environment.slice(height));
+    target.free -= cellsBlocked(target.grid, environment.slice(height).solids);
     return target;
 }
 

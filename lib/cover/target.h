@@ -3,8 +3,8 @@
 
 #include <variant>
 
-#include "cover/grid.h"
 #include "env/environment.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

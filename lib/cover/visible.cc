@@ -33,7 +33,7 @@ CellSet cellsAround(const Grid& grid, const SliceSight& sight, Point2 place, dou
     CellSet cells = cellsWithin(grid, {&outline, 1});
     Slice touching;
     touching.solids = sight.solidsTouching(place);
-    if (!touching.solids.empty()) cells -= cellsBlocked(grid, touching);
+    if (!touching.solids.empty()) cells -= cellsBlocked(grid, touching.solids);
     return cells;
 }
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "cover/grid.h"
 #include "cover/slice_sight.h"
 #include "layout/laser.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

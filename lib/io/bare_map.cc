@@ -11,8 +11,8 @@
 #include "base/utf8.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
-#include "io/occupancy.h"
-#include "io/picture.h"
+#include "raster/occupancy.h"
+#include "raster/picture.h"
 
 namespace ispace {
 

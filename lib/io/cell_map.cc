@@ -10,13 +10,13 @@
 #include "base/number.h"
 #include "env/check.h"
 #include "geom/box.h"
-#include "io/cell_cleaning.h"
-#include "io/cell_distance.h"
-#include "io/cell_gaps.h"
-#include "io/cell_pieces.h"
 #include "io/cell_report.h"
-#include "io/cell_rooms.h"
-#include "io/outline.h"
+#include "raster/cell_cleaning.h"
+#include "raster/cell_distance.h"
+#include "raster/cell_gaps.h"
+#include "raster/cell_pieces.h"
+#include "raster/cell_rooms.h"
+#include "raster/outline.h"
 
 namespace ispace {
 

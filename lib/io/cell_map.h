@@ -6,7 +6,7 @@
 #include "geom/pose.h"
 #include "io/import_options.h"
 #include "io/import_records.h"
-#include "io/occupancy.h"
+#include "raster/occupancy.h"
 
 namespace ispace {
 

@@ -8,8 +8,8 @@
 
 #include "base/number.h"
 #include "env/check.h"
-#include "io/cell_gaps.h"
-#include "io/cell_rooms.h"
+#include "raster/cell_gaps.h"
+#include "raster/cell_rooms.h"
 
 namespace ispace {
 

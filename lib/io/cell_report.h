@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "io/cell_cleaning.h"
 #include "io/cell_map.h"
-#include "io/cell_pieces.h"
+#include "raster/cell_cleaning.h"
+#include "raster/cell_pieces.h"
 
 namespace ispace {
 

@@ -12,9 +12,9 @@
 #include "geom/boolean.h"
 #include "geom/box.h"
 #include "geom/predicates.h"
-#include "io/cell_raster.h"
-#include "io/occupancy.h"
-#include "io/outline.h"
+#include "raster/cell_raster.h"
+#include "raster/occupancy.h"
+#include "raster/outline.h"
 
 namespace ispace {
 

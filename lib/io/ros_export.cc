@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "base/json_writer.h"
 #include "base/number.h"
-#include "io/cell_raster.h"
 #include "io/slice_owners.h"
+#include "raster/cell_raster.h"
 
 namespace ispace {
 

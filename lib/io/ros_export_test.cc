@@ -14,10 +14,10 @@
 #include "base/number.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
-#include "io/occupancy.h"
-#include "io/pgm.h"
 #include "io/ros_map.h"
 #include "layout/test_layout.h"
+#include "raster/occupancy.h"
+#include "raster/pgm.h"
 
 namespace ispace {
 namespace {

@@ -21,8 +21,8 @@
 #include "geom/pose.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
-#include "io/occupancy.h"
-#include "io/picture.h"
+#include "raster/occupancy.h"
+#include "raster/picture.h"
 
 namespace ispace {
 

@@ -12,10 +12,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "io/occupancy.h"
-#include "io/test_png.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
+#include "raster/occupancy.h"
+#include "raster/test_png.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "cover/grid.h"
 #include "layout/scene.h"
 #include "place/problem.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

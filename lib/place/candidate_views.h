@@ -8,12 +8,12 @@
 #include <span>
 
 #include "base/progress.h"
-#include "cover/grid.h"
 #include "cover/slice_sight.h"
 #include "env/environment.h"
 #include "layout/scene.h"
 #include "place/candidate_set.h"
 #include "place/sites.h"
+#include "raster/grid.h"
 #include "trace/worlds.h"
 
 namespace ispace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "cover/grid.h"
 #include "geom/box_tree.h"
 #include "geom/polygon.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "cover/grid.h"
 #include "cover/plane_field.h"
 #include "cover/sector_cells.h"
+#include "raster/grid.h"
 #include "trace/ray_world.h"
 
 namespace ispace {

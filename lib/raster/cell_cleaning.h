@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "raster/occupancy.h"
+
+namespace ispace {
+
+/// A room of a map, cut out with at least one row and column of other cells around it.
+struct RoomCells {
+    MapCells floor, occupied;
+    CellPlace offset;  ///< of the cut in the map
+};
+
+/// What cleanRoom() did, in pieces and cells.
+struct Cleaning {
+    std::size_t specks = 0, speck_cells = 0;
+    std::size_t spikes = 0, spike_cells = 0;
+    std::size_t slit_cells = 0;
+    std::size_t edges = 0;  ///< sides of cells around the clean floor
+
+    Cleaning& operator+=(const Cleaning& other);
+    /// The map is so noisy that its walls are ragged, too: a speck or spike for each hundred edges.
+    [[nodiscard]] bool isRagged() const { return 100 * (specks + spikes) > edges; }
+};
+
+/// Takes what is below a robot map's own noise out of a room, as far as it is small in metres, too:
+///
+/// - Specks become floor: islands of one or two occupied cells, or as many as chance joins where
+///   single ones are as frequent as on this map; islands that hold no occupied cell, pinholes
+///   between rays, of up to eight. None is wider than 0.3 m, and legs of tables stay from three
+///   cells on.
+/// - Spikes go: strips of floor that are one cell wide, or two where no occupied cell is near, and
+///   what hangs on them, unless that is a room by itself (1 m2, and 0.5 m wide somewhere) or holds
+///   one of `keep`. Strips that rooms need to hang together stay.
+/// - Slits of unknown between rays, one cell wide and with a dead end, become floor.
+/// - Bumps of straight walls, one cell deep and up to three long, become flat; corners keep
+///   their places.
+///
+/// Cells of 0.15 m and more are wide enough to mean something, and nothing is done. What is left is
+/// connected by sides. O(cells).
+Cleaning cleanRoom(RoomCells& room, double resolution, const std::vector<CellPlace>& keep);
+
+}  // namespace ispace

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "raster/cell_smoothing.h"
+
+#include <array>
+#include <cstring>
+
+namespace ispace {
+
+namespace {
+
+constexpr int kLongestBump = 3;  ///< cells
+constexpr int kFlank = 6;        ///< cells
+
+/// Fills slits of unknown between rays: from their tips, as long as a cell has floor on three
+/// sides and what else is around it hangs together. So no line that parts floor opens.
+class SlitFilling {
+  public:
+    explicit SlitFilling(RoomCells& room) : room_(room) {}
+
+    /// \return how many cells became floor
+    std::size_t run() {
+        for (int y = 1; y + 1 < room_.floor.height(); ++y)
+            for (int x = 1; x + 1 < room_.floor.width(); ++x) follow({x, y});
+        return filled_;
+    }
+
+  private:
+    static constexpr std::array<CellPlace, 8> kAround{
+        {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+
+    void follow(CellPlace at) {
+        while (isTip(at)) {
+            room_.floor.insert(at.x, at.y);
+            ++filled_;
+            // At most one group of cells is left around it: the slit goes on there.
+            for (const CellPlace step : kAround) {
+                const CellPlace next{at.x + step.x, at.y + step.y};
+                if (!isTip(next)) continue;
+                at = next;
+                break;
+            }
+        }
+    }
+
+    [[nodiscard]] bool isTip(CellPlace at) const {
+        if (at.x < 1 || at.y < 1 || at.x + 1 >= room_.floor.width() ||
+            at.y + 1 >= room_.floor.height() || room_.floor.contains(at.x, at.y) ||
+            room_.occupied.contains(at.x, at.y))
+            return false;
+        std::array<bool, 8> is_floor{};
+        for (std::size_t i = 0; i < 8; ++i)
+            is_floor[i] = room_.floor.contains(at.x + kAround[i].x, at.y + kAround[i].y);
+        int sides = 0, groups = 0;
+        for (std::size_t i = 0; i < 8; ++i) {
+            if (i % 2 == 0 && is_floor[i]) ++sides;
+            if (!is_floor[i] && is_floor[(i + 7) % 8]) ++groups;
+        }
+        return sides >= 3 && groups == 1;
+    }
+
+    RoomCells& room_;
+    std::size_t filled_ = 0;
+};
+
+/// Flattens walls along one axis: a bump is a run of up to kLongestBump cells of one kind beside a
+/// wall's line that is straight for kFlank cells on each side of it. Tops of round pillars have
+/// shorter sides.
+class Flattener {
+  public:
+    explicit Flattener(MapCells& floor) : floor_(floor) {}
+
+    /// \param along, across unit steps along the wall, and from the wall to the bump
+    void run(CellPlace along, CellPlace across) {
+        for (int y = 0; y < floor_.height(); ++y)
+            for (int x = 0; x < floor_.width(); ++x) {
+                x = firstEdge(x, y, across);
+                if (x == floor_.width()) break;
+                const bool kind = floor_.contains(x, y);
+                if (isKind(x - along.x, y - along.y, kind)) continue;  // no begin of a run
+                if (isKind(x + across.x, y + across.y, kind)) continue;
+                if (!isKind(x - across.x, y - across.y, kind)) continue;
+                flatten({x, y}, along, across, kind);
+            }
+    }
+
+  private:
+    [[nodiscard]] bool isKind(int x, int y, bool kind) const {
+        return floor_.contains(x, y) == kind;
+    }
+    [[nodiscard]] bool inGrid(int x, int y) const {
+        return x >= 0 && y >= 0 && x < floor_.width() && y < floor_.height();
+    }
+
+    /// From (x, y) on along the row, the first cell that is perhaps not of the kind of the one
+    /// across.
+    [[nodiscard]] int firstEdge(int x, int y, CellPlace across) const {
+        constexpr int kAtOnce = 32;
+        const bool in_grid = y + across.y >= 0 && y + across.y < floor_.height();
+        if (x == 0 || !in_grid) return x;
+        const std::uint8_t* const here = floor_.row(y).data();
+        const std::uint8_t* const there = floor_.row(y + across.y).data() + across.x;
+        while (x + kAtOnce < floor_.width() && std::memcmp(here + x, there + x, kAtOnce) == 0)
+            x += kAtOnce;
+        return x;
+    }
+
+    void flatten(CellPlace at, CellPlace along, CellPlace across, bool kind) {
+        int length = 1;
+        while (length <= kLongestBump &&
+               isKind(at.x + length * along.x, at.y + length * along.y, kind))
+            ++length;
+        if (length > kLongestBump) return;
+        // The wall behind is straight, the row of the bump and the one before it are empty.
+        for (int i = -kFlank; i < length + kFlank; ++i) {
+            const int x = at.x + i * along.x;
+            const int y = at.y + i * along.y;
+            if (!isKind(x - across.x, y - across.y, kind)) return;
+            if (isKind(x + across.x, y + across.y, kind)) return;
+            if ((i < 0 || i >= length) && isKind(x, y, kind)) return;
+        }
+        for (int i = 0; i < length; ++i) {
+            const int x = at.x + i * along.x;
+            const int y = at.y + i * along.y;
+            if (!inGrid(x, y)) return;
+            if (kind)
+                floor_.erase(x, y);
+            else
+                floor_.insert(x, y);
+        }
+    }
+
+    MapCells& floor_;
+};
+
+}  // namespace
+
+std::size_t fillSlits(RoomCells& room) { return SlitFilling(room).run(); }
+
+void flattenWalls(MapCells& floor) {
+    Flattener flattener(floor);
+    for (const CellPlace along : {CellPlace{1, 0}, CellPlace{0, 1}})
+        for (const int side : {1, -1}) flattener.run(along, {side * along.y, side * along.x});
+}
+
+}  // namespace ispace

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "raster/occupancy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "raster/test_cells.h"
+
+namespace ispace {
+namespace {
+
+using testing::cellsOf;
+using testing::rowsOf;
+
+TEST(Occupancy, TrinaryComparesStrictly) {
+    OccupancyRule rule;  // 0.65 and 0.196
+    EXPECT_EQ(classify(254, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(206, 255, rule), Cell::Free);     // 0.1922
+    EXPECT_EQ(classify(205, 255, rule), Cell::Unknown);  // 0.19608: map_server's unknown
+    EXPECT_EQ(classify(0, 255, rule), Cell::Occupied);
+    rule.free_thresh = 0.2;
+    rule.occupied_thresh = 0.8;
+    EXPECT_EQ(classify(204, 255, rule), Cell::Unknown);  // exactly 0.2
+    EXPECT_EQ(classify(205, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(51, 255, rule), Cell::Unknown);  // exactly 0.8
+    EXPECT_EQ(classify(50, 255, rule), Cell::Occupied);
+    rule.mode = OccupancyRule::Mode::Scale;
+    EXPECT_EQ(classify(205, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(128, 255, rule), Cell::Unknown);
+}
+
+TEST(Occupancy, NegateTurnsShadesAround) {
+    OccupancyRule rule;
+    rule.negate = true;
+    EXPECT_EQ(classify(0, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(255, 255, rule), Cell::Occupied);
+    EXPECT_EQ(classify(50, 255, rule), Cell::Unknown);
+}
+
+TEST(Occupancy, SixteenBitsMeanTheSame) {
+    EXPECT_EQ(classify(65535, 65535, {}), Cell::Free);
+    EXPECT_EQ(classify(205 * 257, 65535, {}), Cell::Unknown);
+    EXPECT_EQ(classify(100, 65535, {}), Cell::Occupied);
+}
+
+TEST(Occupancy, RawTakesThePixelAsValue) {
+    OccupancyRule rule;
+    rule.mode = OccupancyRule::Mode::Raw;
+    rule.negate = true;  // ignored, as the thresholds are
+    EXPECT_EQ(classify(0, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(100, 255, rule), Cell::Occupied);
+    EXPECT_EQ(classify(99, 255, rule), Cell::Unknown);
+    EXPECT_EQ(classify(255, 255, rule), Cell::Unknown);
+    EXPECT_EQ(classify(100 * 257, 65535, rule), Cell::Occupied);
+}
+
+TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
+    Picture image;
+    image.width = 2;
+    image.height = 2;
+    image.samples = {254, 0, 205, 254};
+    EXPECT_EQ(rowsOf(freeCells(image, {})), (std::vector<std::string>{".#", "#."}));
+    EXPECT_TRUE(freeCells(image, {}).contains(0, 1));
+}
+
+TEST(Occupancy, WidestPlace) {
+    const CellPlace place = widestPlace(cellsOf({".....#",  //
+                                                 ".....#",  //
+                                                 ".....#",  //
+                                                 ".....#",  //
+                                                 ".....#",  //
+                                                 "....#."}));
+    EXPECT_EQ(place.x, 2);
+    EXPECT_EQ(place.y, 3);  // the ring below it holds the corner of the notch
+    const CellPlace corner = widestPlace(cellsOf({"#.", "##"}));
+    EXPECT_EQ(corner.x, 1);
+    EXPECT_EQ(corner.y, 1);
+}
+
+TEST(Occupancy, WidestPlaceEqualsBruteForce) {
+    std::mt19937_64 random(99);
+    for (int round = 0; round < 200; ++round) {
+        MapCells cells(1 + static_cast<int>(random() % 12), 1 + static_cast<int>(random() % 12));
+        for (int y = 0; y < cells.height(); ++y)
+            for (int x = 0; x < cells.width(); ++x)
+                if (random() % 8 != 0) cells.insert(x, y);
+        if (cells.count() == 0) continue;
+        const auto rings = [&cells](int x, int y) {
+            int ring = 0;
+            const auto whole = [&](int r) {
+                for (int v = y - r; v <= y + r; ++v)
+                    for (int u = x - r; u <= x + r; ++u)
+                        if (!cells.contains(u, v)) return false;
+                return true;
+            };
+            while (whole(ring)) ++ring;
+            return ring;
+        };
+        int best = 0;
+        for (int y = 0; y < cells.height(); ++y)
+            for (int x = 0; x < cells.width(); ++x) best = std::max(best, rings(x, y));
+        const CellPlace place = widestPlace(cells);
+        EXPECT_EQ(rings(place.x, place.y), best);
+    }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "raster/png_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/error.h"
+#include "raster/occupancy.h"
+#include "raster/test_png.h"
+
+namespace ispace {
+namespace {
+
+using namespace std::string_literals;
+using Samples = std::vector<std::uint16_t>;
+using Opacity = std::vector<std::uint8_t>;
+
+std::string errorOf(const std::string& bytes) {
+    try {
+        parsePicture(bytes, "map.png");
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(PngPicture, Grey) {
+    const Picture picture = parsePng(pngFile(3, 8, 0, {"\x00\x01\x02"s, "\xcd\xfe\xff"}), "x");
+    EXPECT_EQ(picture.width, 3);
+    EXPECT_EQ(picture.height, 2);
+    EXPECT_EQ(picture.max_value, 765);
+    EXPECT_EQ(picture.samples, (Samples{0, 3, 6, 3 * 205, 3 * 254, 765}));
+    EXPECT_TRUE(picture.opacity.empty());
+}
+
+TEST(PngPicture, BitsPaletteAndColours) {
+    EXPECT_EQ(parsePng(pngFile(9, 1, 0, {"\xaa\x80"}), "x").samples,
+              (Samples{765, 0, 765, 0, 765, 0, 765, 0, 765}));
+    EXPECT_EQ(parsePng(pngFile(2, 4, 0, {"\x0f"}), "x").samples, (Samples{0, 765}));
+    EXPECT_EQ(parsePng(pngFile(2, 8, 2, {"\x01\x02\x03\xff\x00\x0a"s}), "x").samples,
+              (Samples{6, 265}));
+    const std::string palette = pngChunk("PLTE", "\x0a\x0b\x0c\xff\xff\xff");
+    EXPECT_EQ(parsePng(pngFile(2, 8, 3, {"\x01\x00"s}, palette), "x").samples, (Samples{765, 33}));
+}
+
+TEST(PngPicture, Opacity) {
+    const Picture grey = parsePng(pngFile(2, 8, 4, {"\x80\xff\x20\x40"}), "x");
+    EXPECT_EQ(grey.samples, (Samples{384, 96}));
+    EXPECT_EQ(grey.opacity, (Opacity{255, 64}));
+    const Picture color = parsePng(pngFile(1, 8, 6, {"\x01\x02\x03\x04"}), "x");
+    EXPECT_EQ(color.samples, (Samples{6}));
+    EXPECT_EQ(color.opacity, (Opacity{4}));
+    // One entry of the palette is transparent.
+    const std::string palette =
+        pngChunk("PLTE", "\x0a\x0b\x0c\xff\xff\xff") + pngChunk("tRNS", "\x00"s);
+    EXPECT_EQ(parsePng(pngFile(2, 8, 3, {"\x01\x00"s}, palette), "x").opacity, (Opacity{255, 0}));
+}
+
+TEST(PngPicture, SixteenBitsAreRoundedAndNotBent) {
+    const Picture picture = parsePng(pngFile(4, 16, 0, {"\x00\x00\x80\x80\xcd\xcd\xff\xff"s}), "x");
+    EXPECT_EQ(picture.samples, (Samples{0, 3 * 128, 3 * 205, 765}));
+}
+
+TEST(PngPicture, ColourSpacesDoNotCount) {
+    const Samples plain = parsePng(pngFile(2, 8, 0, {"\x40\xcd"}), "x").samples;
+    // A gamma of 1, which would brighten everything; a profile that is none.
+    for (const std::string& chunk : {pngChunk("gAMA", bigEndian32(100000)),
+                                     pngChunk("iCCP", "x\0\0nonsense"s), pngChunk("sRGB", "\x00"s)})
+        EXPECT_EQ(parsePng(pngFile(2, 8, 0, {"\x40\xcd"}, chunk), "x").samples, plain);
+}
+
+TEST(PngPicture, NamesWhatIsWrong) {
+    const std::string good = pngFile(2, 8, 0, {"ab", "cd"});
+    EXPECT_EQ(errorOf(good), "no error");
+    EXPECT_EQ(errorOf(good.substr(0, 20)), "map.png: error: truncated PNG picture");
+    EXPECT_EQ(errorOf(good.substr(0, 8) + good.substr(33)),
+              "map.png: error: bad PNG picture: it does not begin with its header");
+    std::string damaged = good;
+    damaged[45] = static_cast<char>(damaged[45] + 1);  // within the samples
+    EXPECT_EQ(errorOf(damaged).find("map.png: error: bad PNG picture: "), 0U) << errorOf(damaged);
+    EXPECT_EQ(errorOf(pngFile(2, 8, 0, {})).find("map.png: error: bad PNG picture: "), 0U);
+    EXPECT_NE(errorOf("GIF89a").find("map.png: error: a GIF picture: convert it"),
+              std::string::npos);
+    EXPECT_NE(errorOf("nonsense").find("wrong magic"), std::string::npos);
+}
+
+TEST(PngPicture, RefusesAbsurdSizesBeforeItAllocates) {
+    EXPECT_EQ(errorOf(pngFile(200'000'000, 8, 0, {"a"})),
+              "map.png: error: 200000000 x 1 pixels, wanted at most 100000000");
+    EXPECT_EQ(errorOf(pngFile(100'000'000, 16, 6, {"a"})),
+              "map.png: error: truncated PNG picture: 13 bytes of data do not hold 100000000 x 1 "
+              "pixels");
+    EXPECT_NE(errorOf(pngFile(0xffffffff, 8, 0, {"a"})).find("wanted at most"), std::string::npos);
+}
+
+TEST(PngPicture, SurvivesEveryTruncationAndFlippedBits) {
+    const std::string good = pngFile(3, 8, 6, {"abcdefghijkl", "mnopqrstuvwx"});
+    for (std::size_t i = 8; i < good.size(); ++i)
+        EXPECT_NE(errorOf(good.substr(0, i)), "no error") << i;
+    std::mt19937_64 random(77);
+    for (int i = 0; i < 3000; ++i) {
+        std::string bytes = good;
+        for (int k = 0; k < 3; ++k)
+            bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
+        errorOf(bytes);
+    }
+}
+
+TEST(PngPicture, OpacityInMaps) {
+    using Mode = OccupancyRule::Mode;
+    // White and black, opaque and clear.
+    const Picture picture = parsePng(pngFile(4, 8, 4, {"\xff\xff\xff\x00\x00\xff\x00\x00"s}), "x");
+    const auto free = [&](Mode mode, double free_thresh) {
+        OccupancyRule rule;
+        rule.mode = mode;
+        rule.free_thresh = free_thresh;
+        const MapCells cells = freeCells(picture, rule);
+        std::string text;
+        for (int x = 0; x < 4; ++x) text += cells.contains(x, 0) ? '.' : '#';
+        return text;
+    };
+    // Averaged with the three colours: 0, 1/4, 3/4 and 1 dark.
+    EXPECT_EQ(free(Mode::Trinary, 0.2), ".###");
+    EXPECT_EQ(free(Mode::Trinary, 0.3), "..##");
+    EXPECT_EQ(free(Mode::Scale, 0.3), ".###");
+    // Raw: 0 is free whatever its opacity.
+    EXPECT_EQ(free(Mode::Raw, 0.2), "##..");
+}
+
+}  // namespace
+}  // namespace ispace
