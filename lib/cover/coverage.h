@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cover/target.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "layout/scene.h"
 #include "raster/grid.h"
 #include "trace/worlds.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "env/mesh.h"
-#include "geom/ellipse_arcs.h"
+#include "geom/curve.h"
 #include "trace/ray_world.h"
 
 namespace ispace {

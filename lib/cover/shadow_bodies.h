@@ -9,7 +9,7 @@
 
 #include "env/environment.h"
 #include "geom/box.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "geom/pose.h"
 
 namespace ispace {

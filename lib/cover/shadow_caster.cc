@@ -8,7 +8,7 @@
 #include "cover/plane_view.h"
 #include "cover/shadow_bodies.h"
 #include "cover/shadow_footprint.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "geom/visibility.h"
 
 namespace ispace {

@@ -6,7 +6,7 @@
 
 #include "cover/plane_field.h"
 #include "geom/box.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 
 namespace ispace {
 

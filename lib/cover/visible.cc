@@ -6,7 +6,7 @@
 
 #include "cover/range_rule.h"
 #include "cover/sight_outline.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 
 namespace ispace {
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "env/material.h"
 #include "env/mesh.h"
-#include "geom/ellipse.h"
+#include "geom/curve.h"
 #include "geom/polygon.h"
 #include "record/record.h"
 

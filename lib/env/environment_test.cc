@@ -8,7 +8,7 @@
 #include <random>
 
 #include "env/test_scene.h"
-#include "geom/parity.h"
+#include "geom/predicates.h"
 #include "record/yaml.h"
 
 namespace ispace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "geom/box_tree.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -8,7 +8,7 @@
 #include "env/check.h"
 #include "env/openings.h"
 #include "env/texts.h"
-#include "geom/box_tree.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

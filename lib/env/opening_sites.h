@@ -11,7 +11,7 @@
 
 #include "env/environment.h"
 #include "env/walls.h"
-#include "geom/segment_grid.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "geom/ellipse.h"
+#include "geom/curve.h"
 #include "geom/polygon.h"
 
 namespace ispace {

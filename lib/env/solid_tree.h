@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "geom/box_tree.h"
 #include "geom/polygon.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

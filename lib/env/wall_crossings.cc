@@ -5,8 +5,8 @@
 
 #include "env/environment.h"
 #include "env/walls.h"
-#include "geom/box_tree.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -7,10 +7,9 @@
 #include <numeric>
 #include <utility>
 
-#include "geom/box_tree.h"
-#include "geom/overlay.h"
+#include "geom/arrangement.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

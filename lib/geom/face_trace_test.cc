@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "geom/arrangement.h"
 #include "geom/boolean.h"
-#include "geom/overlay.h"
 #include "geom/planar_map.h"
 #include "geom/pose.h"
 #include "geom/test_curves.h"

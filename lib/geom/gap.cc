@@ -4,9 +4,9 @@
 #include <tuple>
 #include <utility>
 
-#include "geom/box_tree.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -1,319 +1,352 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/overlay.h"
 
-#include <CGAL/Arr_consolidated_curve_data_traits_2.h>
-#include <CGAL/Arr_extended_dcel.h>
-#include <CGAL/Arr_segment_traits_2.h>
-#include <CGAL/Arrangement_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-
 #include <algorithm>
-#include <cstdint>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
 #include <utility>
 
-#include "geom/crossings.h"
+#include "geom/overlay_lattice.h"
+#include "geom/predicates.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr int kDropped = -1;
+using lattice::Index;
+using lattice::kNone;
 
-struct HalfedgeMark {
-    bool walked = false;
+/// Of arcs; the same for all arcs of one circle.
+struct Circle {
+    Point2 center;
+    double radius;
 };
 
-struct FaceMark {
-    bool reached = false;
-    int added = 0, removed = 0;  // winding numbers
-    int piece = kDropped;        // faces of one piece are one region
-};
-
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-// Each edge carries the indices of the lines it is part of.
-using Traits =
-    CGAL::Arr_consolidated_curve_data_traits_2<CGAL::Arr_segment_traits_2<Kernel>, std::uint32_t>;
-using Dcel = CGAL::Arr_extended_dcel<Traits, char, HalfedgeMark, FaceMark>;
-using Arrangement = CGAL::Arrangement_2<Traits, Dcel>;
-using Halfedge = Arrangement::Halfedge_handle;
-using Face = Arrangement::Face_handle;
-using Vertex = Arrangement::Vertex_handle;
-using ExactPoint = Arrangement::Point_2;
-
-bool lexLess(const Polygon& a, const Polygon& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
-                                        [](Point2 p, Point2 q) { return lexLess(p, q); });
-}
-
-/// A line from its lower end to its upper, with what it adds to the winding numbers on its left.
-struct Line {
-    Point2 a, b;
-    int added = 0, removed = 0;
-    bool passage = false;  ///< does not keep faces apart
-};
-
-Line turned(const Segment2& s, int added, int removed, bool passage = false) {
-    if (lexLess(s.a, s.b)) return {s.a, s.b, added, removed, passage};
-    return {s.b, s.a, -added, -removed, passage};
-}
-
-/// Equal lines as one, those without length left out: thousands on one place would make the lists
-/// of indices long.
-std::vector<Line> joined(std::vector<Line> lines) {
-    std::erase_if(lines, [](const Line& line) { return line.a == line.b; });
-    std::sort(lines.begin(), lines.end(), [](const Line& l, const Line& m) {
-        return l.a == m.a ? lexLess(l.b, m.b) : lexLess(l.a, m.a);
-    });
-    std::vector<Line> all;
-    for (const Line& line : lines) {
-        if (all.empty() || all.back().a != line.a || all.back().b != line.b) {
-            all.push_back(line);
-        } else {
-            all.back().added += line.added;
-            all.back().removed += line.removed;
-            all.back().passage = all.back().passage && line.passage;
-        }
-    }
-    return all;
-}
-
-Arrangement arrange(const std::vector<Line>& lines) {
-    std::vector<Traits::Curve_2> curves;
-    curves.reserve(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const auto& [a, b, added, removed, passage] = lines[i];
-        curves.emplace_back(
-            Traits::Base_curve_2(Kernel::Point_2(a.x, a.y), Kernel::Point_2(b.x, b.y)),
-            static_cast<std::uint32_t>(i));
-    }
-    Arrangement arrangement;
-    CGAL::insert(arrangement, curves.begin(), curves.end());
-    return arrangement;
-}
-
-template <typename Visit>
-void forEachHalfedge(Face face, Visit visit) {
-    const auto around = [&](Arrangement::Ccb_halfedge_circulator start) {
-        auto edge = start;
-        do visit(Halfedge(edge));
-        while (++edge != start);
+/// Curves with chords for arcs: each vertex and the edge that leaves it.
+struct ChordCurves {
+    struct Vertex {
+        Point2 at;
+        Index layer;
+        Index circle;
     };
-    for (auto c = face->outer_ccbs_begin(); c != face->outer_ccbs_end(); ++c) around(*c);
-    for (auto c = face->inner_ccbs_begin(); c != face->inner_ccbs_end(); ++c) around(*c);
-}
+    std::vector<Vertex> vertices;
+    std::vector<std::size_t> ends;  // of the curves
+    std::vector<Circle> circles;
+    Box2 box;
 
-/// True where the piece on the left of the edge ends.
-bool isBoundary(Halfedge edge) {
-    const int left = edge->face()->data().piece;
-    return left != kDropped && left != edge->twin()->face()->data().piece;
-}
-
-/// How the winding numbers grow from the right of an edge to its left.
-void addLines(Halfedge edge, const std::vector<Line>& lines, FaceMark& mark) {
-    const int step = edge->direction() == CGAL::ARR_LEFT_TO_RIGHT ? 1 : -1;
-    const auto& sources = edge->curve().data();
-    for (auto i = sources.begin(); i != sources.end(); ++i) {
-        mark.added += step * lines[*i].added;
-        mark.removed += step * lines[*i].removed;
-    }
-}
-
-void windFaces(Arrangement& arrangement, const std::vector<Line>& lines) {
-    std::vector<Face> reached{arrangement.unbounded_face()};
-    reached[0]->data().reached = true;
-    while (!reached.empty()) {
-        const Face face = reached.back();
-        reached.pop_back();
-        forEachHalfedge(face, [&](Halfedge edge) {
-            const Face next = edge->twin()->face();
-            if (next->data().reached) return;
-            FaceMark mark = face->data();
-            addLines(edge->twin(), lines, mark);
-            next->set_data(mark);
-            reached.push_back(next);
-        });
-    }
-}
-
-/// Numbers the pieces: faces that are kept(face) and share an edge that is open(edge) are one.
-template <typename Kept, typename Open>
-int joinFaces(Arrangement& arrangement, Kept kept, Open is_open) {
-    int pieces = 0;
-    std::vector<Face> open;
-    for (auto f = arrangement.faces_begin(); f != arrangement.faces_end(); ++f) {
-        if (!kept(f) || f->data().piece != kDropped) continue;
-        f->data().piece = pieces;
-        open.assign(1, f);
-        while (!open.empty()) {
-            const Face face = open.back();
-            open.pop_back();
-            forEachHalfedge(face, [&](Halfedge edge) {
-                const Face next = edge->twin()->face();
-                if (next->data().piece != kDropped || !kept(next) || !is_open(edge)) return;
-                next->data().piece = pieces;
-                open.push_back(next);
-            });
+    explicit ChordCurves(std::span<const Layer> layers) {
+        std::size_t count = 0;
+        for (const Layer& layer : layers)
+            for (const Curve& curve : layer.curves) count += curve.size();
+        vertices.reserve(count);
+        for (Index i = 0; i < layers.size(); ++i) {
+            for (const Curve& curve : layers[i].curves) {
+                for (const CurveEdge& edge : curve) {
+                    if (edge.isArc())
+                        addArc(edge, i);
+                    else
+                        vertices.push_back({edge.from, i, kNone});
+                }
+                ends.push_back(vertices.size());
+            }
         }
-        ++pieces;
+        for (const Vertex& vertex : vertices) box.add(vertex.at);
     }
-    return pieces;
-}
 
-/// A closed walk along the boundary of a piece, the piece on the left.
-using Loop = std::vector<Halfedge>;
-
-Loop walk(Halfedge start) {
-    Loop loop;
-    Halfedge edge = start;
-    do {
-        edge->data().walked = true;
-        loop.push_back(edge);
-        edge = edge->next();
-        // Lines with the same piece on both sides are no boundary: turn past them.
-        while (!isBoundary(edge)) edge = edge->twin()->next();
-    } while (edge != start);
-    return loop;
-}
-
-/// Whether the piece lies outside the loop, decided at its leftmost vertex: at one of the loop's
-/// visits there the direction to the left is within the piece.
-bool isHole(const Loop& loop) {
-    const Kernel kernel;
-    const auto less = kernel.less_xy_2_object();
-    const auto turn = kernel.orientation_2_object();
-    std::size_t leftmost = 0;
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-        if (less(loop[i]->source()->point(), loop[leftmost]->source()->point())) leftmost = i;
+  private:
+    /// Inner vertices lie at the same directions for all arcs of a circle, so that those of
+    /// sensors that stand at one place become the same chords.
+    void addArc(const CurveEdge& edge, Index layer) {
+        using std::numbers::pi;
+        const Index circle = circleOf({edge.center, std::abs(edge.radius)});
+        const auto [center, radius] = circles[circle];
+        vertices.push_back({edge.from, layer, circle});
+        // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
+        constexpr double kFewest = 16, kMost = 1 << 16;
+        const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
+        const double chords = std::clamp(std::ceil(pi / half), kFewest, kMost);
+        const double step = 2 * pi / chords;
+        const Vec2 a = edge.from - center, b = edge.to - center;
+        const double first = std::atan2(a.y, a.x);
+        const double turn = edge.radius > 0 ? 1 : -1;
+        double span = turn * (std::atan2(b.y, b.x) - first);
+        if (span < 0) span += 2 * pi;
+        if (span > 1.5 * pi) return;  // backwards, by rounding: it has no length
+        // Steps from `first` to the next direction, if that is not next to the end.
+        constexpr double kNear = 1.0 / 64;
+        const double last = turn * first / step + span / step - kNear;
+        for (double k = std::floor(turn * first / step + kNear) + 1; k < last; ++k) {
+            const double angle = turn * k * step;
+            vertices.push_back(
+                {center + radius * Vec2{std::cos(angle), std::sin(angle)}, layer, circle});
+        }
     }
-    const Vertex vertex = loop[leftmost]->source();
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        if (loop[i]->source() != vertex) continue;
-        const Halfedge before = loop[i == 0 ? loop.size() - 1 : i - 1];
-        if (turn(vertex->point(), before->source()->point(), loop[i]->target()->point()) ==
-            CGAL::LEFT_TURN)
-            return true;
+
+    /// Circles this near to each other are one: the same place reckoned in two ways (on a robot,
+    /// and written). Else chords that coincide on the lattice would be of two circles.
+    static constexpr double kSameCircle = 1e-9;
+
+    Index circleOf(const Circle& circle) {
+        const auto first = known_.lower_bound(circle.center.x - kSameCircle);
+        for (auto it = first; it != known_.end() && it->first <= circle.center.x + kSameCircle;
+             ++it) {
+            const Circle& other = circles[it->second];
+            if (std::abs(other.center.y - circle.center.y) <= kSameCircle &&
+                std::abs(other.radius - circle.radius) <= kSameCircle)
+                return it->second;
+        }
+        known_.emplace(circle.center.x, static_cast<Index>(circles.size()));
+        circles.push_back(circle);
+        return static_cast<Index>(circles.size() - 1);
     }
-    return false;
-}
 
-/// The nearest double of a coordinate, also where its interval is wide.
-double rounded(const Kernel::FT& value) {
-    if (!value.approx().is_point()) value.exact();
-    return CGAL::to_double(value);
-}
+    std::multimap<double, Index> known_;  // by the x of their middles
+};
 
-/// A vertex that only lines of no account made, on a straight line of the boundary.
-bool isIdle(const ExactPoint& before, Vertex vertex, const ExactPoint& after) {
-    if (vertex->degree() == 2) return false;  // the input's own
-    std::size_t boundaries = 0;
-    auto edge = vertex->incident_halfedges();
-    const auto start = edge;
-    do {
-        if (isBoundary(edge) || isBoundary(edge->twin())) ++boundaries;
-    } while (++edge != start);
-    return boundaries == 2 && CGAL::orientation(before, vertex->point(), after) == CGAL::COLLINEAR;
-}
-
-/// Vertices in doubles, without the repetitions and spikes that rounding makes, from the lowest.
-Polygon roundedCurve(const Loop& loop) {
-    Polygon curve;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Halfedge before = loop[i == 0 ? loop.size() - 1 : i - 1];
-        const Vertex vertex = loop[i]->source();
-        if (isIdle(before->source()->point(), vertex, loop[i]->target()->point())) continue;
-        const Point2 p{rounded(vertex->point().x()) + 0.0, rounded(vertex->point().y()) + 0.0};
-        if (!curve.empty() && curve.back() == p) continue;
-        curve.push_back(p);
-        while (curve.size() >= 3 && curve.end()[-3] == p) curve.resize(curve.size() - 2);
+/// Integer coordinates for the places in a box.
+class Lattice {
+  public:
+    explicit Lattice(const Box2& box) {
+        // Halves first: the whole extent may be more than a double holds.
+        const double half =
+            std::max(box.high.x / 2 - box.low.x / 2, box.high.y / 2 - box.low.y / 2);
+        if (!(half > 0)) return;
+        int exponent;
+        std::frexp(half, &exponent);  // half < 2^exponent
+        unit_ = std::ldexp(1.0, std::max(exponent - lattice::kBits, -1000));
+        middle_ = {middle(box.low.x, box.high.x), middle(box.low.y, box.high.y)};
     }
-    const auto is_spike = [&] {
-        const std::size_t n = curve.size();
-        return n >= 2 && (curve[0] == curve[n - 1] || curve[0] == curve[n - 2] ||
-                          (n >= 3 && curve[1] == curve[n - 1]));
+
+    [[nodiscard]] double unit() const { return unit_; }
+    [[nodiscard]] Point2 middle() const { return middle_; }
+    [[nodiscard]] lattice::Point pointOf(Point2 p) const {
+        return {rounded(p.x - middle_.x), rounded(p.y - middle_.y)};
+    }
+
+  private:
+    /// A multiple of the step where doubles tell them apart, so that the same places are rounded
+    /// the same way wherever the middle is.
+    [[nodiscard]] double middle(double low, double high) const {
+        const double v = low / 2 + high / 2, steps = v / unit_;
+        return std::abs(steps) < 0x1p52 ? std::nearbyint(steps) * unit_ : v;
+    }
+    [[nodiscard]] std::int32_t rounded(double offset) const {
+        constexpr double kMost = 1 << lattice::kBits;
+        return static_cast<std::int32_t>(
+            std::clamp(std::floor(offset / unit_ + 0.5), -kMost, kMost));
+    }
+
+    double unit_ = 0;
+    Point2 middle_;
+};
+
+/// The part of a segment in a box (Liang and Barsky, 1984); its ends round.
+std::optional<Segment2> clipped(const Segment2& s, const Box2& box) {
+    double from = 0, to = 1;
+    const auto clip = [&](double a, double d, double low, double high) {
+        if (d == 0) return low <= a && a <= high;
+        const double t0 = (low - a) / d, t1 = (high - a) / d;
+        from = std::max(from, std::min(t0, t1));
+        to = std::min(to, std::max(t0, t1));
+        return true;
     };
-    while (is_spike()) {
-        if (curve.size() >= 3 && curve[1] == curve.back()) curve.erase(curve.begin());
-        curve.pop_back();
-    }
-    if (curve.size() < 3) return {};
-    rotateToLowest(curve);
-    return curve;
+    const Vec2 d = s.b - s.a;
+    if (!clip(s.a.x, d.x, box.low.x, box.high.x) || !clip(s.a.y, d.y, box.low.y, box.high.y))
+        return std::nullopt;
+    if (!(from < to)) return std::nullopt;
+    return Segment2{from > 0 ? s.a + from * d : s.a, to < 1 ? s.a + to * d : s.b};
 }
 
-std::vector<Region> collect(Arrangement& arrangement, int pieces) {
-    std::vector<Region> regions(static_cast<std::size_t>(pieces));
-    for (auto e = arrangement.halfedges_begin(); e != arrangement.halfedges_end(); ++e) {
-        if (e->data().walked || !isBoundary(e)) continue;
-        const Loop loop = walk(e);
-        Polygon curve = roundedCurve(loop);
-        Region& region = regions[static_cast<std::size_t>(e->face()->data().piece)];
-        // What rounding has turned inside out is thinner than a double can tell.
-        if (isHole(loop)) {
-            if (signedArea(curve) < 0) region.holes.push_back(std::move(curve));
-        } else if (signedArea(curve) > 0) {
-            region.outline = std::move(curve);
-        }
+/// Area between the chord p -> q and the arc: positive if the arc lies to the right. By radial
+/// projection, so that pieces of arcs add up.
+double bulgeOf(const Circle& circle, Point2 p, Point2 q) {
+    const Vec2 a = p - circle.center, b = q - circle.center;
+    const double along = dot(a, b), across = cross(a, b);
+    double angle;
+    constexpr double kSmall = 0.02;
+    if (const double t = across / along; along > 0 && std::abs(t) < kSmall) {
+        const double u = t * t;  // the next term is below 2^-53
+        angle = t * (1 - u * (1.0 / 3 - u * (1.0 / 5 - u * (1.0 / 7 - u * (1.0 / 9)))));
+    } else {
+        angle = std::atan2(across, along);
     }
-    putInOrder(regions);
-    return regions;
+    return (circle.radius * circle.radius * angle - across) / 2;
+}
+
+std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t layers,
+                                        std::span<const Segment2> walls, const Lattice& lattice,
+                                        lattice::PointTable& table) {
+    std::vector<lattice::Edge> edges;
+    edges.reserve(curves.vertices.size() + walls.size());
+    table.reserve(4 * curves.vertices.size() + 2 * walls.size());
+    std::size_t begin = 0;
+    for (const std::size_t end : curves.ends) {
+        if (begin == end) continue;
+        const Index first = table.add(lattice.pointOf(curves.vertices[begin].at));
+        Index from = first;
+        for (std::size_t i = begin; i < end; ++i) {
+            // Closed whatever the curve says.
+            const Index to =
+                i + 1 == end ? first : table.add(lattice.pointOf(curves.vertices[i + 1].at));
+            edges.push_back({from, to, curves.vertices[i].layer, curves.vertices[i].circle, false});
+            from = to;
+        }
+        begin = end;
+    }
+    for (const Segment2& wall : walls) {
+        const auto part = clipped(wall, curves.box);
+        if (!part) continue;
+        edges.push_back({table.add(lattice.pointOf(part->a)), table.add(lattice.pointOf(part->b)),
+                         static_cast<Index>(layers), kNone, true});
+    }
+    return edges;
 }
 
 }  // namespace
 
-void rotateToLowest(Polygon& curve) {
-    const auto from = [&](std::size_t i) {
-        return std::pair(curve[i], curve[(i + 1) % curve.size()]);
-    };
-    std::size_t lowest = 0;
-    for (std::size_t i = 1; i < curve.size(); ++i) {
-        const auto [p, p_next] = from(i);
-        const auto [q, q_next] = from(lowest);
-        if (lexLess(p, q) || (p == q && lexLess(p_next, q_next))) lowest = i;
+LayerOverlay::LayerOverlay(std::span<const Layer> layers, std::span<const Segment2> walls) {
+    const ChordCurves curves(layers);
+    const Lattice lattice(curves.box);
+    unit_ = lattice.unit();
+    if (unit_ == 0) return;
+    middle_ = lattice.middle();
+    lattice::PointTable table;
+    lattice::SetStore sets(layers.size());
+    std::vector<lattice::Edge> edges = latticeEdges(curves, layers.size(), walls, lattice, table);
+    edges = snapRounded(merged(std::move(edges), table.points(), sets), table, sets);
+    const auto labels = labelsOf(layers, table.points(), edges, sets);
+
+    points_.reserve(table.points().size());
+    for (const auto& [x, y] : table.points()) points_.push_back({x, y});
+    edges_.reserve(edges.size());
+    ends_.reserve(edges.size());
+    std::vector<Ends> ends_of_walls;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto& [left, right] = labels[i];
+        const lattice::Edge& edge = edges[i];
+        const Ends ends{edge.from, edge.to, edge.is_wall};
+        if (left != right) {
+            const Point2 from = place(edge.from), to = place(edge.to);
+            edges_.push_back({from, to, left, right});
+            if (edge.circle != kNone) {
+                const Circle& circle = curves.circles[edge.circle];
+                edges_.back().bulge = bulgeOf(circle, from, to);
+                edges_.back().radius = circle.radius;
+                edges_.back().center = circle.center;
+            }
+            ends_.push_back(ends);
+        } else if (edge.is_wall && left != LayerLabel{}) {
+            walls_.push_back(left);
+            ends_of_walls.push_back(ends);
+        }
     }
-    std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(lowest), curve.end());
+    ends_.insert(ends_.end(), ends_of_walls.begin(), ends_of_walls.end());
 }
 
-void putInOrder(std::vector<Region>& regions) {
-    std::erase_if(regions, [](const Region& region) { return region.outline.empty(); });
-    for (Region& region : regions) {
-        std::sort(region.holes.begin(), region.holes.end(),
-                  [](const Polygon& a, const Polygon& b) { return lexLess(a, b); });
+namespace {
+
+/// Puts arcs back in the place of chords, those of the circles that were laid out: what is laid out
+/// again then coincides with them as before.
+class ArcTable {
+  public:
+    explicit ArcTable(std::span<const LayerOverlay::Edge> edges) {
+        for (const LayerOverlay::Edge& edge : edges) {
+            if (edge.radius == 0) continue;
+            const double turn = edge.bulge > 0 ? 1 : -1;
+            arcs_.push_back({edge.from, edge.to, turn * edge.radius, edge.center});
+            arcs_.push_back({edge.to, edge.from, -turn * edge.radius, edge.center});
+        }
+        std::sort(arcs_.begin(), arcs_.end(), less);
     }
-    std::sort(regions.begin(), regions.end(),
-              [](const Region& a, const Region& b) { return lexLess(a.outline, b.outline); });
+
+    [[nodiscard]] Curve curveOf(const Polygon& polygon) const {
+        Curve curve;
+        curve.reserve(polygon.size());
+        forEachEdge(polygon, [&](const Segment2& edge) { add(edgeFrom(edge.a, edge.b), curve); });
+        return withEndsOnCircles(curve);
+    }
+
+  private:
+    static bool less(const CurveEdge& a, const CurveEdge& b) {
+        return a.from != b.from ? lexLess(a.from, b.from) : lexLess(a.to, b.to);
+    }
+
+    [[nodiscard]] CurveEdge edgeFrom(Point2 from, Point2 to) const {
+        auto found = std::lower_bound(arcs_.begin(), arcs_.end(), CurveEdge{from, to}, less);
+        if (found != arcs_.end() && found->from == from && found->to == to) return *found;
+        // Outlines leave out vertices where they go straight on: the first of several pieces.
+        found = std::lower_bound(arcs_.begin(), arcs_.end(), from,
+                                 [](const CurveEdge& a, Point2 p) { return lexLess(a.from, p); });
+        for (; found != arcs_.end() && found->from == from; ++found)
+            if (orientation(from, found->to, to) == Turn::Straight &&
+                dot(found->to - from, to - from) > 0)
+                return {from, to, found->radius, found->center};
+        return {from, to};
+    }
+
+    /// Pieces of one arc one after another become one again, of at most a quarter turn.
+    static void add(const CurveEdge& edge, Curve& curve) {
+        if (!curve.empty() && edge.isArc() && curve.back().radius == edge.radius &&
+            curve.back().center == edge.center) {
+            const Vec2 from = curve.back().from - edge.center, to = edge.to - edge.center;
+            if (dot(from, to) > 0) {
+                curve.back().to = edge.to;
+                return;
+            }
+        }
+        curve.push_back(edge);
+    }
+
+    /// An arc that was cut has its end on a chord: from there on to the circle, so that the area is
+    /// that of LayerOverlay::Edge::bulge.
+    static Curve withEndsOnCircles(const Curve& curve) {
+        constexpr double kNear = 1e-9;  // metres
+        Curve out;
+        out.reserve(curve.size());
+        for (const CurveEdge& edge : curve) {
+            if (!edge.isArc()) {
+                out.push_back(edge);
+                continue;
+            }
+            const auto on_circle = [&edge](Point2 p) {
+                const Vec2 way = p - edge.center;
+                const Point2 q = edge.center + (std::abs(edge.radius) / length(way)) * way;
+                return distance(p, q) > kNear ? q : p;
+            };
+            const Point2 from = on_circle(edge.from), to = on_circle(edge.to);
+            if (from != edge.from) out.push_back({edge.from, from});
+            out.push_back({from, to, edge.radius, edge.center});
+            if (to != edge.to) out.push_back({to, edge.to});
+        }
+        return out;
+    }
+
+    std::vector<CurveEdge> arcs_;
+};
+
+}  // namespace
+
+std::vector<Curve> LayerOverlay::withArcs(std::span<const Region> regions) const {
+    const ArcTable arcs(edges_);
+    std::vector<Curve> curves;
+    for (const Region& region : regions)
+        for (const Polygon& polygon : curvesOf(region)) curves.push_back(arcs.curveOf(polygon));
+    return curves;
 }
 
-std::vector<Region> overlayFaces(std::span<const Segment2> lines,
-                                 std::span<const Segment2> passages) {
-    std::vector<Line> all;
-    all.reserve(lines.size() + passages.size());
-    for (const Segment2& s : lines) all.push_back(turned(s, 0, 0));
-    for (const Segment2& s : passages) all.push_back(turned(s, 0, 0, true));
-    all = joined(std::move(all));
-    Arrangement arrangement = arrange(all);
-    const auto bounded = [](Face face) { return !face->is_unbounded(); };
-    const auto open = [&all](Halfedge edge) {
-        const auto& sources = edge->curve().data();
-        return std::all_of(sources.begin(), sources.end(),
-                           [&all](std::uint32_t i) { return all[i].passage; });
-    };
-    return collect(arrangement, joinFaces(arrangement, bounded, open));
-}
-
-std::vector<Region> overlayDifference(std::span<const Segment2> added,
-                                      std::span<const Segment2> removed) {
-    std::vector<Line> lines;
-    for (const Segment2& s : added) lines.push_back(turned(s, 1, 0));
-    for (const Segment2& s : removed) lines.push_back(turned(s, 0, 1));
-    lines = joined(std::move(lines));
-    std::vector<Segment2> segments;
-    segments.reserve(lines.size());
-    for (const Line& line : lines) segments.push_back({line.a, line.b});
-    mustCrossRarely(segments, "outlines", "leave out some of what lies upon each other");
-    Arrangement arrangement = arrange(lines);
-    windFaces(arrangement, lines);
-    const auto kept = [](Face face) { return face->data().added > 0 && face->data().removed == 0; };
-    return collect(arrangement, joinFaces(arrangement, kept, [](Halfedge) { return true; }));
+std::vector<double> LayerOverlay::areasOf(std::span<const Region> regions) const {
+    const ArcTable arcs(edges_);
+    std::vector<double> areas;
+    areas.reserve(regions.size());
+    for (const Region& region : regions) {
+        double area = 0;
+        for (const Polygon& polygon : curvesOf(region)) area += signedArea(arcs.curveOf(polygon));
+        areas.push_back(area);
+    }
+    return areas;
 }
 
 }  // namespace ispace

@@ -10,11 +10,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "geom/box_tree.h"
-#include "geom/crossings.h"
-#include "geom/overlay.h"
+#include "geom/arrangement.h"
+#include "geom/noding.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -2,6 +2,8 @@
 #include "geom/polygon.h"
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 
 #include "geom/predicates.h"
 
@@ -159,6 +161,150 @@ Side Regions::locate(Point2 p) const {
         if (in_part == Side::Boundary) side = Side::Boundary;
     }
     return side;
+}
+
+namespace {
+
+constexpr std::size_t kLevels = 24;        // scanlines per direction, of each kind
+constexpr std::size_t kManyLevels = 2000;  // the same where the first ones found nothing
+constexpr std::size_t kChordsPerLine = 3;  // the longest are tried
+
+/// The region's edges; `swapped`: with x and y exchanged, so that one scan serves both directions.
+std::vector<Segment2> edgesOf(const Region& region, bool swapped) {
+    std::vector<Segment2> edges;
+    region.forEachEdge([&](const Segment2& e) {
+        edges.push_back(swapped ? Segment2{{e.a.y, e.a.x}, {e.b.y, e.b.x}} : e);
+    });
+    return edges;
+}
+
+double middle(double a, double b) { return a / 2 + b / 2; }
+
+/// Levels halfway between neighbouring vertices, at most `most` of them, widest steps first: each
+/// of them holds a chord of the region.
+std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, std::size_t most) {
+    std::vector<double> ys;
+    ys.reserve(edges.size());
+    for (const Segment2& e : edges) ys.push_back(e.a.y);
+    std::sort(ys.begin(), ys.end());
+    ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
+    std::vector<std::size_t> steps;
+    for (std::size_t i = 1; i < ys.size(); ++i) steps.push_back(i);
+    std::stable_sort(steps.begin(), steps.end(), [&](std::size_t i, std::size_t k) {
+        return ys[i] - ys[i - 1] > ys[k] - ys[k - 1];
+    });
+    steps.resize(std::min(steps.size(), most));
+    std::vector<double> levels;
+    levels.reserve(steps.size());
+    for (const std::size_t i : steps) levels.push_back(middle(ys[i - 1], ys[i]));
+    return levels;
+}
+
+std::vector<double> evenLevels(const std::vector<Segment2>& edges) {
+    Box2 box;
+    for (const Segment2& e : edges) box.add(e.a);
+    std::vector<double> levels;
+    for (std::size_t i = 0; i < kLevels; ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kLevels);
+        levels.push_back(box.low.y + share * box.depth());
+    }
+    return levels;
+}
+
+/// Middles of the longest chords of the region at this level.
+std::vector<Point2> chordMiddles(const std::vector<Segment2>& edges, double y) {
+    std::vector<double> xs;
+    for (const auto& [a, b] : edges) {
+        if ((a.y > y) != (b.y > y)) xs.push_back(a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)));
+    }
+    std::sort(xs.begin(), xs.end());
+    std::vector<std::pair<double, Point2>> chords;
+    for (std::size_t i = 1; i < xs.size(); i += 2)
+        chords.push_back({xs[i] - xs[i - 1], {middle(xs[i - 1], xs[i]), y}});
+    std::stable_sort(chords.begin(), chords.end(),
+                     [](const auto& c, const auto& d) { return c.first > d.first; });
+    chords.resize(std::min(chords.size(), kChordsPerLine));
+    std::vector<Point2> middles;
+    middles.reserve(chords.size());
+    for (const auto& [width, p] : chords) middles.push_back(p);
+    return middles;
+}
+
+/// Distance from the nearest edge, or any smaller number once it is below `enough`.
+double clearance(const std::vector<Segment2>& edges, Point2 p, double enough) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Segment2& e : edges) {
+        nearest = std::min(nearest, distance(p, e));
+        if (nearest <= enough) break;
+    }
+    return nearest;
+}
+
+/// Keeps the candidate farthest from the boundary.
+class Best {
+  public:
+    explicit Best(const Region& region) : region_(region), edges_(edgesOf(region, false)) {}
+
+    void offer(Point2 p) {
+        const double distance = clearance(edges_, p, clearance_);
+        if (distance <= clearance_ || region_.locate(p) != Side::Inside) return;
+        clearance_ = distance;
+        point_ = p;
+    }
+    [[nodiscard]] bool found() const { return clearance_ >= 0; }
+    [[nodiscard]] Point2 point() const { return point_; }
+
+  private:
+    const Region& region_;
+    std::vector<Segment2> edges_;
+    double clearance_ = -1;
+    Point2 point_;
+};
+
+void scan(const Region& region, bool swapped, std::size_t most, Best& best) {
+    const auto edges = edgesOf(region, swapped);
+    auto levels = levelsBetweenVertices(edges, most);
+    const auto even = evenLevels(edges);
+    levels.insert(levels.end(), even.begin(), even.end());
+    for (const double y : levels) {
+        for (const Point2 p : chordMiddles(edges, y)) best.offer(swapped ? Point2{p.y, p.x} : p);
+    }
+}
+
+/// Middles of the triangles at the corners, and the doubles about them: where a region is so thin
+/// that no scanline's middle survives rounding.
+void tryCorners(const Region& region, Best& best) {
+    const auto around = [&](const Polygon& curve) {
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            const Point2 a = curve[i], b = curve[(i + 1) % curve.size()];
+            const Point2 c = curve[(i + 2) % curve.size()];
+            const Point2 center{a.x / 3 + b.x / 3 + c.x / 3, a.y / 3 + b.y / 3 + c.y / 3};
+            constexpr double kFar = std::numeric_limits<double>::infinity();
+            for (const double x :
+                 {std::nextafter(center.x, -kFar), center.x, std::nextafter(center.x, kFar)}) {
+                for (const double y :
+                     {std::nextafter(center.y, -kFar), center.y, std::nextafter(center.y, kFar)})
+                    best.offer({x, y});
+            }
+        }
+    };
+    around(region.outline);
+    for (const Polygon& hole : region.holes) around(hole);
+}
+
+}  // namespace
+
+Point2 interiorPoint(const Region& region) {
+    Best best(region);
+    for (const bool swapped : {false, true}) scan(region, swapped, kLevels, best);
+    if (!best.found()) {
+        for (const bool swapped : {false, true}) scan(region, swapped, kManyLevels, best);
+    }
+    if (!best.found()) tryCorners(region, best);
+    if (!best.found())
+        throw std::invalid_argument(
+            "region without inside: too thin for a point between its edges");
+    return best.point();
 }
 
 }  // namespace ispace

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "geom/curve.h"
-#include "geom/ellipse.h"
 
 namespace ispace {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "geom/visibility_look.h"
 #include "geom/visibility_mesh.h"
+#include "geom/visibility_query.h"
 
 namespace ispace {
 

@@ -19,9 +19,8 @@
 #include "base/simd.h"
 #include "geom/visibility.h"
 #include "geom/visibility_breadth.h"
-#include "geom/visibility_contact.h"
-#include "geom/visibility_look.h"
 #include "geom/visibility_mesh.h"
+#include "geom/visibility_query.h"
 #include "geom/visibility_rounds.h"
 
 namespace ispace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The triangulation that VisibilityMap looks through; private to it.
+// Private to VisibilityMap.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +9,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "geom/box.h"
 #include "geom/predicates.h"
+#include "geom/visibility.h"
 
 namespace ispace {
 
@@ -102,5 +105,29 @@ inline double surelyTurns(Vec2 a, Vec2 b) {
 inline double errorOfTurns(double length) {
     return 2 * kTurnError * (length * length) + kTurnUnderflow;
 }
+
+/// The edges of lines around a viewpoint, and where it moves because of them.
+class ContactFinder {
+  public:
+    explicit ContactFinder(const SightMesh& mesh) : mesh_(mesh) {}
+
+    /// Finds the edges of lines within kSightContact of p. \pre p lies in the triangle
+    void gather(Point2 p, std::uint32_t triangle);
+    [[nodiscard]] bool found() const { return !lines_.empty(); }
+    /// The nearest vertex of those lines that is near enough, else the nearest point of a line.
+    [[nodiscard]] Point2 moved(Point2 p) const;
+    /// Both sides of all edges that were found, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> bothSides();
+
+  private:
+    [[nodiscard]] Segment2 wallOf(std::uint32_t edge) const;
+    [[nodiscard]] double squaredDistance(Point2 p, std::uint32_t edge) const;
+    void add(std::uint32_t triangle);
+
+    const SightMesh& mesh_;
+    std::vector<std::uint32_t> lines_;        // edges, one or both sides of each
+    std::vector<std::uint32_t> triangles_;    // that come as near
+    std::unordered_set<std::uint32_t> many_;  // the same once they are many
+};
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "geom/ellipse_arcs.h"
+#include "geom/curve.h"
 
 namespace ispace {
 

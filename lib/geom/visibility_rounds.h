@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "geom/box_tree.h"
-#include "geom/ellipse.h"
+#include "geom/curve.h"
+#include "geom/spatial_index.h"
 #include "geom/visibility.h"
 
 namespace ispace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "geom/box_tree.h"
 #include "geom/polygon.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

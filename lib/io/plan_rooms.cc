@@ -11,7 +11,7 @@
 #include "base/number.h"
 #include "env/check.h"
 #include "env/texts.h"
-#include "geom/cut_lines.h"
+#include "geom/noding.h"
 #include "geom/planar_map.h"
 #include "io/plan_reach.h"
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "geom/box_tree.h"
 #include "geom/polygon.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

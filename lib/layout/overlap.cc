@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "geom/box_tree.h"
-#include "geom/convex.h"
+#include "geom/boolean.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "env/environment.h"
-#include "geom/box_tree.h"
+#include "geom/spatial_index.h"
 #include "layout/overlap.h"
 
 namespace ispace {

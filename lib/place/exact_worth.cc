@@ -14,7 +14,7 @@
 #include "cover/plane_view.h"
 #include "cover/visible.h"
 #include "env/solid_tree.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "place/sensor_group.h"
 #include "sense/ultrasound.h"
 

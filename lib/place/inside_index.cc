@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "geom/parity.h"
 #include "geom/predicates.h"
 
 namespace ispace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "geom/box_tree.h"
 #include "geom/polygon.h"
+#include "geom/spatial_index.h"
 #include "raster/grid.h"
 
 namespace ispace {

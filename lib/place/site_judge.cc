@@ -5,9 +5,9 @@
 #include <numeric>
 #include <utility>
 
-#include "geom/box_tree.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 #include "place/inside_index.h"
 #include "place/sites.h"
 #include "place/wall_curves.h"

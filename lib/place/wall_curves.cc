@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "env/walls.h"
-#include "geom/box_tree.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
+#include "geom/spatial_index.h"
 #include "place/inside_index.h"
 
 namespace ispace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "geom/box_tree.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 

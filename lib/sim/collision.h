@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "env/band.h"
-#include "geom/segment_grid.h"
+#include "geom/spatial_index.h"
 #include "sim/motion.h"
 
 namespace ispace {

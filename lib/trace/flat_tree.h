@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/ellipse.h"
+#include "geom/curve.h"
 #include "geom/polygon.h"
 
 namespace ispace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "geom/ellipse.h"
+#include "geom/curve.h"
 #include "geom/polygon.h"
 #include "trace/directions.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "geom/ellipse.h"
+#include "geom/curve.h"
 #include "geom/point.h"
 
 namespace ispace {

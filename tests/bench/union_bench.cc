@@ -14,7 +14,7 @@
 
 #include "bench_scenes.h"
 #include "bench_table.h"
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "geom/visibility.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/layers.h"
+#include "geom/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "geom/boolean.h"
-#include "geom/test_layers.h"
+#include "geom/test_overlay.h"
 
 namespace ispace {
 namespace {

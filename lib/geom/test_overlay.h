@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "geom/layers.h"
+#include "geom/overlay.h"
 #include "geom/test_curves.h"
 
 namespace ispace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "geom/boolean.h"
-#include "geom/test_layers.h"
+#include "geom/test_overlay.h"
 
 namespace ispace {
 namespace {

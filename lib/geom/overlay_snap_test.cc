@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/layers_snap.h"
+#include "geom/overlay_lattice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,6 @@
 #include <map>
 #include <random>
 #include <vector>
-
-#include "geom/layers_cells.h"
-#include "geom/layers_graph.h"
 
 namespace ispace::lattice {
 namespace {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/visibility_pieces.h"
+#include "geom/noding.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
 
@@ -15,7 +21,6 @@ namespace {
 
 using Index = std::uint32_t;
 
-constexpr std::size_t kMostCrossings = 500'000;
 /// Pairs of lines looked at, per line and besides.
 constexpr std::size_t kLooksPerLine = 4096, kLooksAnyway = 1U << 26;
 constexpr int kMostRounds = 12;
@@ -78,7 +83,9 @@ class Cutter {
             if (looks_ > kLooksAnyway + kLooksPerLine * segments_.size()) refuse();
             for (std::size_t i = 0; i < cell.size(); ++i)
                 for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
-            if (cuts_.size() > 2 * kMostCrossings + 8 * segments_.size()) refuse();
+            if (static_cast<double>(cuts_.size()) >
+                2 * kMostCrossings + 8.0 * static_cast<double>(segments_.size()))
+                refuse();
         });
         if (cuts_.empty()) return false;
         apply();
@@ -190,13 +197,119 @@ std::vector<LinePiece> piecesOf(std::span<const Segment2> lines) {
         pieces.push_back(
             {{points.standing(lines[i].a), points.standing(lines[i].b)}, static_cast<Index>(i)});
     dropDoubles(pieces);
-    const std::size_t most = pieces.size() + 2 * kMostCrossings;
+    const double most = static_cast<double>(pieces.size()) + 2 * kMostCrossings;
     for (int round = 0; round < kMostRounds; ++round) {
         if (!Cutter(pieces, points, reach).cut()) break;
         dropDoubles(pieces);
-        if (pieces.size() > most) refuse();
+        if (static_cast<double>(pieces.size()) > most) refuse();
     }
     return pieces;
+}
+
+namespace {
+
+constexpr std::size_t kCrossingsPerLine = 20, kCrossingsAnyway = 1000;
+
+/// The lines as they are.
+WeldedLines whole(std::span<const Segment2> lines) {
+    WeldedLines all;
+    all.pieces.assign(lines.begin(), lines.end());
+    all.source.resize(lines.size());
+    std::iota(all.source.begin(), all.source.end(), std::size_t{0});
+    return all;
+}
+
+}  // namespace
+
+WeldedLines cutAtCrossings(std::span<const Segment2> lines) {
+    struct Cut {
+        std::size_t line;
+        double share;
+        Point2 at;
+    };
+    const SegmentTree tree(lines);
+    std::vector<Cut> cuts;
+    const std::size_t most = kCrossingsAnyway + 2 * kCrossingsPerLine * lines.size();
+    for (std::size_t i = 0; i < lines.size() && cuts.size() <= most; ++i) {
+        const Vec2 along = lines[i].b - lines[i].a;
+        tree.search(lines[i], 0, [&](std::size_t k) {
+            // Each pair once, so that both get the same point.
+            if (k <= i || cuts.size() > most || !intersects(lines[i], lines[k])) return;
+            const Vec2 other = lines[k].b - lines[k].a;
+            const double turn = cross(along, other);
+            if (turn == 0) return;
+            const Vec2 between = lines[k].a - lines[i].a;
+            const double share = cross(between, other) / turn,
+                         on_other = cross(between, along) / turn;
+            const Point2 at = lines[i].a + share * along;
+            const auto is_inside = [&](const Segment2& line) {
+                return distance(at, line.a) > kWeldDistance && distance(at, line.b) > kWeldDistance;
+            };
+            if (is_inside(lines[i])) cuts.push_back({i, share, at});
+            if (is_inside(lines[k])) cuts.push_back({k, on_other, at});
+        });
+    }
+    if (cuts.size() > most) return whole(lines);
+    std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
+        return std::pair(a.line, a.share) < std::pair(b.line, b.share);
+    });
+    WeldedLines pieces;
+    auto cut = cuts.begin();
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        Point2 from = lines[i].a;
+        for (; cut != cuts.end() && cut->line == i; ++cut) {
+            if (cut->at == from) continue;
+            pieces.pieces.push_back({from, cut->at});
+            pieces.source.push_back(i);
+            from = cut->at;
+        }
+        pieces.pieces.push_back({from, lines[i].b});
+        pieces.source.push_back(i);
+    }
+    return pieces;
+}
+
+namespace {
+
+/// Pairs of lines by which crossings are counted.
+constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMostSampled = 1U << 22;
+constexpr std::size_t kSureHits = 16;
+
+/// Two digits: it is an estimate.
+std::string roundNumber(double value) {
+    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(value)) - 1));
+    return std::to_string(static_cast<std::uint64_t>(std::round(value / unit) * unit));
+}
+
+}  // namespace
+
+double sampledCrossings(std::span<const Segment2> lines) {
+    const std::size_t n = lines.size();
+    if (n < 2) return 0;
+    std::mt19937_64 random(1);
+    const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMostSampled);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < pairs; ++i) {
+        const std::uint64_t bits = random();
+        const Segment2& s = lines[(bits >> 32U) % n];
+        const Segment2& t = lines[(bits & 0xffffffffU) % n];
+        hits += &s != &t && intersects(s, t);
+    }
+    if (hits < kSureHits) return 0;
+    return static_cast<double>(hits) / static_cast<double>(pairs) * static_cast<double>(n) *
+           static_cast<double>(n) / 2;
+}
+
+void mustCrossRarely(std::span<const Segment2> lines, const std::string& what,
+                     const std::string& hint) {
+    // Of fewer lines not even all pairs are too many.
+    if (static_cast<double>(lines.size()) <= std::sqrt(2 * kMostCrossings)) return;
+    const double crossings = sampledCrossings(lines);
+    if (crossings <= kMostCrossings) return;
+    throw FormatError(Diagnostic{"", 0, 0,
+                                 what + " cross each other about " + roundNumber(crossings) +
+                                     " times, at most " + roundNumber(kMostCrossings) +
+                                     " can be; " + hint});
 }
 
 }  // namespace ispace

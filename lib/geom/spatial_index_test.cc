@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/box_tree.h"
+#include "geom/spatial_index.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <random>
 
 #include "geom/predicates.h"
-#include "geom/segment_grid.h"
 
 namespace ispace {
 namespace {

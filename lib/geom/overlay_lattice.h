@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/geom only: the lattice on which layers are laid over each other, and edges between its
+// points.
+// Inside lib/geom only: edges that meet at common ends only, as a plane graph.
+// Inside lib/geom only.
+// Inside lib/geom only.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geom/overlay.h"
+
+namespace ispace::lattice {
+
+using Index = std::uint32_t;
+constexpr Index kNone = std::numeric_limits<Index>::max();
+
+/// Coordinates are at most 2^kBits from 0, so that all predicates are exact in 64 bits: a cross
+/// product of differences is at most 2^(2 * kBits + 3), twice of that is still less than 2^63.
+constexpr int kBits = 29;
+
+struct Point {
+    std::int32_t x = 0, y = 0;
+    friend bool operator==(const Point&, const Point&) = default;
+};
+
+/// By x, then by y.
+inline bool lexLess(Point a, Point b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
+/// Cross product of b - a and c - a: positive if c lies to the left of a -> b.
+inline std::int64_t cross(Point a, Point b, Point c) {
+    return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
+           (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
+}
+
+/// Dot product of b - a and c - a.
+inline std::int64_t dot(Point a, Point b, Point c) {
+    return (std::int64_t{b.x} - a.x) * (std::int64_t{c.x} - a.x) +
+           (std::int64_t{b.y} - a.y) * (std::int64_t{c.y} - a.y);
+}
+
+/// Both corners belong to it; empty until a point is added.
+struct Box {
+    Point low{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()};
+    Point high{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()};
+
+    void add(Point p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    [[nodiscard]] bool holds(Point p) const {
+        return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
+    }
+};
+
+/// Points, each once, numbered as they came.
+class PointTable {
+  public:
+    void reserve(std::size_t count);
+    /// Its number; a new one if it is not there yet. Amortised O(1)
+    Index add(Point p);
+    [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+
+  private:
+    void grow(std::size_t slots);
+    [[nodiscard]] std::size_t slotOf(Point p) const;
+
+    std::vector<Point> points_;
+    std::vector<Index> slots_;  // open addressing; a power of two, at most half full
+    int shift_ = 64;            // of the hash
+};
+
+/// Sets of layers, by number.
+class SetStore {
+  public:
+    /// Sets 0 ... layers - 1 hold that layer alone, set `layers` is empty.
+    explicit SetStore(std::size_t layers);
+    [[nodiscard]] Index emptySet() const { return empty_; }
+    [[nodiscard]] std::span<const Index> operator[](Index set) const {
+        return std::span(items_).subspan(first_[set], first_[set + 1] - first_[set]);
+    }
+    /// Of the layers in an odd number of sets. \param layers of all sets one after another; is
+    /// sorted
+    Index addOdd(std::vector<Index>& layers);
+
+  private:
+    Index empty_;
+    std::vector<std::size_t> first_;
+    std::vector<Index> items_;  // by set, ascending
+};
+
+/// A straight line between two points of the table.
+struct Edge {
+    Index from = 0, to = 0;
+    Index set = 0;         ///< layers that have it in their boundary, an odd number of times
+    Index circle = kNone;  ///< of the arc for which it stands
+    bool is_wall = false;
+};
+
+/// Each edge once, from its lower end (lexLess); what lies an even number of times in the boundary
+/// of each layer, or has no length, is left out unless it is a wall. O(n)
+std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
+
+/// From its lower end (lexLess) to its upper.
+struct Line {
+    Index from = 0, to = 0;
+};
+
+/// Half-edge 2i leads along line i from its lower end to its upper, 2i + 1 back.
+inline Index twin(Index half) { return half ^ 1U; }
+
+/// The half-edges about each point.
+class PlaneGraph {
+  public:
+    /// O(n log(n))
+    PlaneGraph(const std::vector<Point>& points, const std::vector<Line>& lines);
+
+    [[nodiscard]] Index source(Index half) const {
+        const Line& line = lines_[half / 2];
+        return half % 2 == 0 ? line.from : line.to;
+    }
+    [[nodiscard]] Index target(Index half) const { return source(twin(half)); }
+    [[nodiscard]] Point pointOf(Index vertex) const { return points_[vertex]; }
+    [[nodiscard]] std::size_t vertices() const { return first_.size() - 1; }
+    [[nodiscard]] std::size_t halves() const { return order_.size(); }
+
+    /// Those that leave a point, counter-clockwise. The first follows on the direction straight
+    /// down: before it, and behind the last, lies the direction to the left.
+    [[nodiscard]] std::span<const Index> leaving(Index vertex) const {
+        return std::span(order_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+    }
+    /// Its place among those that leave the same point.
+    [[nodiscard]] Index placeOf(Index half) const { return place_[half]; }
+    /// The next on the way around the face to its left.
+    [[nodiscard]] Index next(Index half) const {
+        const Index back = twin(half);
+        const std::span<const Index> about = leaving(source(back));
+        return about[place_[back] == 0 ? about.size() - 1 : place_[back] - 1];
+    }
+
+    /// For each of these points the line right below the place just to the left of it, or kNone.
+    /// \pre no line that ends at such a point comes from the left. O((n + points) log n)
+    [[nodiscard]] std::vector<Index> linesBelow(const std::vector<Index>& vertices) const;
+
+  private:
+    [[nodiscard]] bool isAbove(Index line, Index other) const;
+    [[nodiscard]] bool isAbove(Point p, Index line) const;
+    void sweepBelow(const std::vector<Index>& vertices, std::vector<Index>& below) const;
+
+    const std::vector<Point>& points_;
+    const std::vector<Line>& lines_;
+    std::vector<std::size_t> first_;  // of the half-edges that leave each point
+    std::vector<Index> order_;
+    std::vector<Index> place_;
+};
+
+/// Edges that meet at common ends only, in place of these (which are merged()): each is led through
+/// points near it. First through ends of others within the square of half-width 1 about them, so
+/// that edges that lay along each other before they were rounded become the same; then through all
+/// ends and crossings, rounded to the lattice (snap rounding, Hobby 1999). No place of an edge
+/// moves by more than 1.42 and then 0.71 steps. Adds points to the table.
+/// \throws FormatError (without a place) for edges that cross by the ten million
+std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets);
+
+/// What lies on both sides of an edge.
+struct EdgeLabels {
+    LayerLabel left, right;
+};
+
+/// Labels of the edges, which are merged() and meet at common ends only; the outside of everything
+/// is {0, 0, 0}. A walk around all points, along which the set of layers that hold the place is
+/// kept. O(layers + edges and what is in their sets), and PlaneGraph::linesBelow for the
+/// components.
+std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
+                                 const std::vector<Edge>& edges, const SetStore& sets);
+
+}  // namespace ispace::lattice
