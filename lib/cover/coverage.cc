@@ -71,7 +71,7 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
     layers.push_back({.curves = curvesWithArcs(indoor), .counts = false, .marks = kIndoorMark});
     double gained = 0, lost = 0;
     try {
-        LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+        Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
             if (label.count == 0 || (label.marks & kIndoorMark) == 0) return;
             if (label.numbers < kOtherNumber) gained += area;
             if (label.numbers % kOtherNumber == 0) lost += area;

@@ -133,7 +133,7 @@ struct Coverage {
     std::vector<SeenSet> sets;
     /// The regions of all sets (count, number i + 1 of set i) over indoor region and free floor
     /// (marks). Nothing where a region is not known or nobody asked.
-    std::optional<LayerOverlay> overlay;
+    std::optional<Overlay> overlay;
 };
 
 /// Measures all placed lasers, rangers and ultrasonic receivers of a scene. Deterministic for any

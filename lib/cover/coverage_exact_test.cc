@@ -88,7 +88,7 @@ double common(const std::vector<const SensorView*>& views) {
     std::vector<Layer> layers;
     for (const SensorView* view : views) layers.push_back({.curves = *view->region});
     const auto all = static_cast<std::int32_t>(views.size());
-    return LayerOverlay(layers).area([all](const LayerLabel& label) { return label.count == all; });
+    return Overlay(layers).area([all](const LayerLabel& label) { return label.count == all; });
 }
 
 TEST(ExactCoverage, UnionIsThatOfInclusionAndExclusion) {

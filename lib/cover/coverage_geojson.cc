@@ -15,7 +15,7 @@ namespace {
 std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
     if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
     std::int32_t most = 0;
-    for (const LayerOverlay::Edge& edge : coverage.overlay->edges())
+    for (const Overlay::Edge& edge : coverage.overlay->edges())
         most = std::max({most, edge.left.count, edge.right.count});
     return static_cast<std::uint32_t>(most);
 }
@@ -23,7 +23,7 @@ std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32
 /// The view of one sensor as pieces.
 std::vector<Region> viewOf(const SensorView& view, const Grid& grid) {
     if (!view.region) return cellRegions(grid, view.cells);
-    return LayerOverlay(std::vector<Layer>{{.curves = *view.region}})
+    return Overlay(std::vector<Layer>{{.curves = *view.region}})
         .regions([](const LayerLabel& label) { return label.count > 0; });
 }
 

@@ -32,7 +32,7 @@ void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
 
 /// Calls add(zone, label, area) for each zone that holds a face of the indoor region.
 template <typename Add>
-void addIndoorAreas(const LayerOverlay& overlay, Add add) {
+void addIndoorAreas(const Overlay& overlay, Add add) {
     overlay.addAreas([&](const LayerLabel& label, double area) {
         if ((label.marks & kIndoorMark) == 0) return;
         for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
@@ -41,8 +41,8 @@ void addIndoorAreas(const LayerOverlay& overlay, Add add) {
 }
 
 /// All sets over indoor region, free floor and some zones.
-LayerOverlay overlayOf(const Coverage& coverage, const Environment& environment,
-                       const std::vector<Region>& free_floor, std::span<const Zone> zones) {
+Overlay overlayOf(const Coverage& coverage, const Environment& environment,
+                  const std::vector<Region>& free_floor, std::span<const Zone> zones) {
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + 2 + zones.size());
     for (std::size_t i = 0; i < coverage.sets.size(); ++i)
@@ -54,7 +54,7 @@ LayerOverlay overlayOf(const Coverage& coverage, const Environment& environment,
         for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
     layers.push_back(markLayer(std::move(free), kFreeMark));
     addZoneLayers(zones, layers);
-    return LayerOverlay(layers, environment.slice(coverage.target.height).sheets);
+    return Overlay(layers, environment.slice(coverage.target.height).sheets);
 }
 
 /// Areas of an overlay, by what they count for.
@@ -77,7 +77,7 @@ struct Areas {
     }
 };
 
-void addZones(std::span<ZoneFigures> figures, const LayerOverlay& overlay) {
+void addZones(std::span<ZoneFigures> figures, const Overlay& overlay) {
     std::vector<double> covered(figures.size());
     addIndoorAreas(overlay, [&](std::size_t zone, const LayerLabel& label, double area) {
         if (label.count > 0) covered[zone] += area;
@@ -86,7 +86,7 @@ void addZones(std::span<ZoneFigures> figures, const LayerOverlay& overlay) {
         figures[i].coverage.exact = shareOf(covered[i], figures[i].area);
 }
 
-void addPieces(CoverageReport& report, const LayerOverlay& overlay) {
+void addPieces(CoverageReport& report, const Overlay& overlay) {
     const std::vector<Region> covered = overlay.regions([](const LayerLabel& label) {
         return label.count > 0 && (label.marks & kIndoorMark) != 0;
     });
@@ -146,7 +146,7 @@ void addReceivers(Coverage& coverage) {
         layers.push_back(markLayer(std::move(*heard), std::uint64_t{1} << i));
     }
     const auto joint = static_cast<std::int64_t>(coverage.sets.size()) - 1;
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     for (std::size_t i = 0; i < receivers.size(); ++i)
         figures[i]->marginal.exact = std::max(0.0, overlay.area([&](const LayerLabel& label) {
             return label.count == 1 && label.numbers == joint && ((label.marks >> i) & 1U) == 0;
@@ -164,7 +164,7 @@ std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
         std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
         addZoneLayers(std::span(zones).subspan(first, count), layers);
-        addIndoorAreas(LayerOverlay(layers), [&](std::size_t zone, const LayerLabel&, double area) {
+        addIndoorAreas(Overlay(layers), [&](std::size_t zone, const LayerLabel&, double area) {
             figures[first + zone].area += area;
         });
     }
@@ -176,10 +176,10 @@ std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
 void addExactFigures(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
     CoverageReport& report = coverage.report;
-    std::optional<LayerOverlay> main;  // with the first zones
+    std::optional<Overlay> main;  // with the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
-        LayerOverlay overlay =
+        Overlay overlay =
             overlayOf(coverage, environment, free_floor, std::span(zones).subspan(first, count));
         addZones(std::span(report.zones).subspan(first, count), overlay);
         if (first == 0) main = std::move(overlay);

@@ -41,7 +41,7 @@ Curves curvesOfCells(const MapPicture& map, const CellSet& seen) {
 }
 
 /// Indoor floor that at least so many sets see: its exact curves.
-Curves exactCurves(const MapPicture& map, const LayerOverlay& overlay, std::uint32_t least) {
+Curves exactCurves(const MapPicture& map, const Overlay& overlay, std::uint32_t least) {
     const auto is_seen = [least](const LayerLabel& label) {
         return (label.marks & kIndoorMark) != 0 && label.count >= static_cast<std::int32_t>(least);
     };

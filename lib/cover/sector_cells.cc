@@ -162,7 +162,7 @@ void SectorRaster::run(const Grid& grid, const SliceSight& sight, Point2 place, 
 
 /// Cells strictly inside the outline of what is seen, within a box about the range.
 void SectorRaster::rasterise(const SliceSight& sight) {
-    sight.look(place_, kBeyondRange * max_range_, region_);
+    sight.query(place_, kBeyondRange * max_range_, region_);
     Box2 box;
     forEachCorner(region_, [&box](Point2 corner) { box.add(corner); });
     const double reach = kBeyondRange * max_range_;
@@ -178,7 +178,7 @@ void SectorRaster::rasterise(const SliceSight& sight) {
         has_last = true;
     };
     forEachCorner(region_, go_to);
-    if (!region_.ends.empty()) go_to(region_.ends.front().from);
+    if (!region_.edges.empty()) go_to(region_.edges.front().from);
     scan_.takeInside(words_);
     for (const Polygon& solid : sight.solidsTouching(place_)) {
         Scanline closed(grid_, box);

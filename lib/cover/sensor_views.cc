@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-static_assert(kSightContact == kContact, "rays and exact regions have the same rule for contact");
+static_assert(kRayEpsilon == kContact, "rays and exact regions have the same rule for contact");
 
 namespace {
 
@@ -186,7 +186,7 @@ std::optional<std::vector<Curve>> regionHeardByEnough(
         layers.push_back({.curves = *view->region});
     }
     try {
-        return LayerOverlay(layers).curves([](const LayerLabel& label) {
+        return Overlay(layers).curves([](const LayerLabel& label) {
             return label.count >= static_cast<std::int32_t>(kLeastReceivers);
         });
     } catch (const FormatError&) {

@@ -21,7 +21,7 @@ double shaded(const std::vector<ShadowBody>& bodies, Point3 sensor, double heigh
     std::vector<Layer> layers;
     for (const ShadowBody& body : bodies)
         for (Layer& layer : shadows.of(body)) layers.push_back(std::move(layer));
-    return LayerOverlay(layers).area([](const LayerLabel& label) { return label.count > 0; });
+    return Overlay(layers).area([](const LayerLabel& label) { return label.count > 0; });
 }
 
 std::vector<ShadowBody> bodiesOf(const std::string& lines) {

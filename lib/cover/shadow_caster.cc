@@ -43,7 +43,7 @@ Curve movedBy(Vec2 way, Curve curve) {
 
 /// What has all marks and is in no shadow, of layers that count from `foot`.
 std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Point2 foot) {
-    std::vector<Curve> curves = LayerOverlay(layers).curves(
+    std::vector<Curve> curves = Overlay(layers).curves(
         [marks](const LayerLabel& label) { return label.marks == marks && label.count == 0; });
     for (Curve& curve : curves) curve = movedBy(foot - Point2{}, std::move(curve));
     return curves;
@@ -64,7 +64,7 @@ std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldO
         Frame3 plane;
         plane.origin = sensor;
         const VisibilityMap map(cutsOf(bodies, plane, footprint.reach));
-        const Curve seen = outlineOf(map.look({0, 0}, footprint.reach));
+        const Curve seen = outlineOf(map.query({0, 0}, footprint.reach));
         if (seen.empty()) return {};
         footprint.mark({seen});
     } else {
@@ -137,7 +137,7 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
                                          plane.frame(), laser.max_range);
     if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
     const VisibilityMap map(lines);
-    const VisibleRegion seen = map.look({0, 0}, laser.max_range);
+    const VisibleRegion seen = map.query({0, 0}, laser.max_range);
     const Curve curve = onPlan(outlineOf(sectorOf(seen, laser.first, laser.span())), plane);
     if (curve.empty()) return std::vector<Curve>{};
     const Point2 foot = sensor.pose.position.onFloor();

@@ -15,9 +15,9 @@ constexpr double kBeyondRange = 1 + 1e-6;
 /// be the same.
 template <typename Visit>
 void forEachCorner(const VisibleRegion& region, Visit visit) {
-    for (const SightEnd& end : region.ends) {
+    for (const SightEdge& end : region.edges) {
         visit(end.from);
-        if (end.line == SightEnd::kArc) {
+        if (end.line == SightEdge::kArc) {
             const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
             const double r2 = region.max_range * region.max_range;
             // Where the tangents meet: on a + b, at t with t (a + b) a = r2.

@@ -16,12 +16,12 @@ class SliceSight {
     explicit SliceSight(Slice slice);
 
     /// As VisibilityMap::look; but nothing is seen from strictly inside a solid, farther than
-    /// kSightContact from its surface.
-    void look(Point2 viewpoint, double max_range, VisibleRegion& region) const;
-    /// The solids whose surface p touches (within kSightContact): sight passes into them there, but
+    /// kRayEpsilon from its surface.
+    void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+    /// The solids whose surface p touches (within kRayEpsilon): sight passes into them there, but
     /// there is nothing to be seen.
     [[nodiscard]] std::vector<Polygon> solidsTouching(Point2 p) const {
-        return solids_.touching(p, kSightContact);
+        return solids_.touching(p, kRayEpsilon);
     }
 
   private:

@@ -26,9 +26,9 @@ bool sees(const Laser& laser, Angle heading, Angle direction) {
 /// Cells strictly inside the outline of what a place sees; some may lie beyond the greatest range.
 CellSet cellsAround(const Grid& grid, const SliceSight& sight, Point2 place, double max_range) {
     VisibleRegion region;
-    sight.look(place, kBeyondRange * max_range, region);
+    sight.query(place, kBeyondRange * max_range, region);
     Polygon outline;
-    outline.reserve(3 * region.ends.size());
+    outline.reserve(3 * region.edges.size());
     forEachCorner(region, [&outline](Point2 corner) { outline.push_back(corner); });
     CellSet cells = cellsWithin(grid, {&outline, 1});
     Slice touching;
@@ -82,7 +82,7 @@ FanLimits fanLimits(const Laser& laser, Angle heading) {
 std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
     const Point2 place = sensor.pose.position.onFloor();
     VisibleRegion region;
-    sight.look(place, sensor.laser.max_range, region);
+    sight.query(place, sensor.laser.max_range, region);
     const FanLimits limits = fanLimits(sensor.laser, sensor.pose.heading);
     Curve outline = outlineOf(sectorOf(region, limits.first, limits.span));
     if (outline.empty()) return {};
@@ -90,7 +90,7 @@ std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor
     if (solids.empty()) return {std::move(outline)};
     std::vector<Layer> layers = {{.curves = {std::move(outline)}, .counts = false, .marks = 1}};
     for (const Polygon& solid : solids) layers.push_back({.curves = {curveOf(solid)}});
-    return LayerOverlay(layers).curves(
+    return Overlay(layers).curves(
         [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
 }
 

@@ -54,7 +54,7 @@ struct Body {
 double topOf(const Body& body);
 
 /// The polygon inscribed in the ellipse with these full axes about `center`, the first along
-/// `heading`, see geom/ellipse.h. Counter-clockwise.
+/// `heading`, see geom/curve.h. Counter-clockwise.
 Polygon ellipse(Point2 center, double length, double width, Angle heading);
 
 /// Rectangle of this length (along heading) and width about `center`, counter-clockwise.

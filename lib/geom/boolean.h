@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two convex polygons, in time linear in their corners: round tables have tens of thousands.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +23,8 @@ std::vector<Region> unite(std::span<const Polygon> solids);
 
 /// Sum of the areas of disjoint regions.
 double totalArea(std::span<const Region> regions);
+
+// Convex polygons, in time linear in their corners: round tables have tens of thousands.
 
 /// How far a convex polygon reaches in directions that are asked in turn. It walks from one answer
 /// to the next: O(1) on average if the directions go once round, O(n) if they jump.

@@ -47,11 +47,11 @@ void addExtremes(Box2& box, const CurveEdge& arc) {
 }
 
 void addVertices(Polygon& polygon, const CurveEdge& arc, double error) {
-    constexpr double kMostChords = 1 << 20;
+    constexpr double kMaxChords = 1 << 20;
     const double radius = std::abs(arc.radius), span = spanOf(arc);
     // The middle of a chord over an angle a lies r (1 - cos(a / 2)) from the arc.
     const double step = 4 * std::asin(std::sqrt(std::min(1.0, error / (2 * radius))));
-    const double count = std::min(kMostChords, std::ceil(span / step));
+    const double count = std::min(kMaxChords, std::ceil(span / step));
     const Vec2 from = arc.from - arc.center;
     const double turn = arc.radius > 0 ? 1 : -1;
     for (double i = 1; i < count; ++i) {

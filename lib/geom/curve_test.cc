@@ -131,7 +131,7 @@ TEST(Curve, ChordsKeepToTheirArcs) {
             double farthest = 0;
             for (std::size_t k = 0; k + 1 < polygon.size(); ++k) {
                 EXPECT_NEAR(distance(center, polygon[k]), 2.5, 1e-12);
-                const double gap = 2.5 - distance(center, {polygon[k], polygon[k + 1]});
+                const double gap = 2.5 - distance(center, Segment2{polygon[k], polygon[k + 1]});
                 EXPECT_LE(gap, error * (1 + 1e-6));
                 farthest = std::max(farthest, gap);
             }
@@ -178,8 +178,8 @@ TEST(Ellipse, OutlineStaysWithinTolerance) {
         double outside = 0, inside = 0;
         forEachEdge(outlineOf(circle), [&](const Segment2& edge) {
             const Point2 middle = edge.a + 0.5 * (edge.b - edge.a);
-            outside = std::max(outside, distance(edge.a, {3, 4}) - radius);
-            inside = std::max(inside, radius - distance(middle, {3, 4}));
+            outside = std::max(outside, distance(edge.a, Point2{3, 4}) - radius);
+            inside = std::max(inside, radius - distance(middle, Point2{3, 4}));
         });
         EXPECT_GT(outside, 0);
         EXPECT_GT(inside, 0);

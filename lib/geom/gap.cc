@@ -14,9 +14,9 @@ namespace {
 
 /// Ways to close a dangling end that are tried: the nearest may lead nowhere new.
 constexpr std::size_t kWaysPerEnd = 4;
-/// Closings that are considered, the narrowest: no plan has more, and heaps of loose lines are
+/// Closings that are considered, the narrowest: no plan has more, and a great many loose lines are
 /// answered in seconds too.
-constexpr std::size_t kMostClosings = 10000;
+constexpr std::size_t kMaxClosings = 10000;
 
 /// What is this near to a line lies on it: a place that was rounded.
 constexpr double kOnLine = 2 * kWeldDistance;
@@ -105,7 +105,7 @@ class GapFinder {
         all.erase(std::unique(all.begin(), all.end(),
                               [](const Closing& c, const Closing& d) { return c.line == d.line; }),
                   all.end());
-        if (all.size() > kMostClosings) all.resize(kMostClosings);
+        if (all.size() > kMaxClosings) all.resize(kMaxClosings);
         return all;
     }
 
@@ -174,7 +174,7 @@ class GapFinder {
 };
 
 /// Comparisons of closings with other lines; beyond that they stay whole, which only takes longer.
-constexpr std::size_t kMostComparisons = 20'000'000;
+constexpr std::size_t kMaxComparisons = 20'000'000;
 
 /// The lines together with all closings, cut and welded once for all.
 class Closed {
@@ -217,7 +217,7 @@ class Closed {
         const Vec2 along = closing.b - closing.a;
         std::vector<double> shares;
         tree.search(closing, 0, [&](std::size_t i) {
-            if (++comparisons_ > kMostComparisons) return;
+            if (++comparisons_ > kMaxComparisons) return;
             const Vec2 other = all[i].b - all[i].a;
             const double denominator = cross(along, other);
             if (denominator == 0 || !intersects(closing, all[i])) return;

@@ -23,7 +23,7 @@ using Index = std::uint32_t;
 
 /// Pairs of lines looked at, per line and besides.
 constexpr std::size_t kLooksPerLine = 4096, kLooksAnyway = 1U << 26;
-constexpr int kMostRounds = 12;
+constexpr int kMaxRounds = 12;
 
 [[noreturn]] void refuse() {
     throw FormatError(
@@ -84,7 +84,7 @@ class Cutter {
             for (std::size_t i = 0; i < cell.size(); ++i)
                 for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
             if (static_cast<double>(cuts_.size()) >
-                2 * kMostCrossings + 8.0 * static_cast<double>(segments_.size()))
+                2 * kMaxCrossings + 8.0 * static_cast<double>(segments_.size()))
                 refuse();
         });
         if (cuts_.empty()) return false;
@@ -197,8 +197,8 @@ std::vector<LinePiece> piecesOf(std::span<const Segment2> lines) {
         pieces.push_back(
             {{points.standing(lines[i].a), points.standing(lines[i].b)}, static_cast<Index>(i)});
     dropDoubles(pieces);
-    const double most = static_cast<double>(pieces.size()) + 2 * kMostCrossings;
-    for (int round = 0; round < kMostRounds; ++round) {
+    const double most = static_cast<double>(pieces.size()) + 2 * kMaxCrossings;
+    for (int round = 0; round < kMaxRounds; ++round) {
         if (!Cutter(pieces, points, reach).cut()) break;
         dropDoubles(pieces);
         if (static_cast<double>(pieces.size()) > most) refuse();
@@ -272,7 +272,7 @@ WeldedLines cutAtCrossings(std::span<const Segment2> lines) {
 namespace {
 
 /// Pairs of lines by which crossings are counted.
-constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMostSampled = 1U << 22;
+constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMaxSampled = 1U << 22;
 constexpr std::size_t kSureHits = 16;
 
 /// Two digits: it is an estimate.
@@ -287,7 +287,7 @@ double sampledCrossings(std::span<const Segment2> lines) {
     const std::size_t n = lines.size();
     if (n < 2) return 0;
     std::mt19937_64 random(1);
-    const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMostSampled);
+    const std::size_t pairs = std::min(kSampledPairs + kSampledPairsPerLine * n, kMaxSampled);
     std::size_t hits = 0;
     for (std::size_t i = 0; i < pairs; ++i) {
         const std::uint64_t bits = random();
@@ -303,13 +303,13 @@ double sampledCrossings(std::span<const Segment2> lines) {
 void mustCrossRarely(std::span<const Segment2> lines, const std::string& what,
                      const std::string& hint) {
     // Of fewer lines not even all pairs are too many.
-    if (static_cast<double>(lines.size()) <= std::sqrt(2 * kMostCrossings)) return;
+    if (static_cast<double>(lines.size()) <= std::sqrt(2 * kMaxCrossings)) return;
     const double crossings = sampledCrossings(lines);
-    if (crossings <= kMostCrossings) return;
+    if (crossings <= kMaxCrossings) return;
     throw FormatError(Diagnostic{"", 0, 0,
                                  what + " cross each other about " + roundNumber(crossings) +
-                                     " times, at most " + roundNumber(kMostCrossings) +
-                                     " can be; " + hint});
+                                     " times, at most " + roundNumber(kMaxCrossings) + " can be; " +
+                                     hint});
 }
 
 }  // namespace ispace

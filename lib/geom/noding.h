@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines cut where they meet, for SightMesh; private to it.
-// Inside lib/geom: a bound on arrangements, whose time and memory grow with the crossings.
+// Lines cut where they meet, and a bound on how often they may.
 #pragma once
 
 #include <cstdint>
@@ -36,13 +35,13 @@ std::vector<LinePiece> piecesOf(std::span<const Segment2> lines);
 WeldedLines cutAtCrossings(std::span<const Segment2> lines);
 
 /// Crossings that an arrangement may have, about: some gigabytes.
-constexpr double kMostCrossings = 500'000;
+constexpr double kMaxCrossings = 500'000;
 
 /// About how many pairs of the lines have a point in common, by a sample of them where there are
 /// many; 0 where too few of the sample do.
 double sampledCrossings(std::span<const Segment2> lines);
 
-/// \throws FormatError (without a place) if the lines cross more than kMostCrossings times: "WHAT
+/// \throws FormatError (without a place) if the lines cross more than kMaxCrossings times: "WHAT
 /// cross each other about N times, at most … can be; HINT"
 void mustCrossRarely(std::span<const Segment2> lines, const std::string& what,
                      const std::string& hint);

@@ -65,9 +65,9 @@ struct ChordCurves {
         const auto [center, radius] = circles[circle];
         vertices.push_back({edge.from, layer, circle});
         // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
-        constexpr double kFewest = 16, kMost = 1 << 16;
+        constexpr double kMin = 16, kMax = 1 << 16;
         const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
-        const double chords = std::clamp(std::ceil(pi / half), kFewest, kMost);
+        const double chords = std::clamp(std::ceil(pi / half), kMin, kMax);
         const double step = 2 * pi / chords;
         const Vec2 a = edge.from - center, b = edge.to - center;
         const double first = std::atan2(a.y, a.x);
@@ -134,9 +134,8 @@ class Lattice {
         return std::abs(steps) < 0x1p52 ? std::nearbyint(steps) * unit_ : v;
     }
     [[nodiscard]] std::int32_t rounded(double offset) const {
-        constexpr double kMost = 1 << lattice::kBits;
-        return static_cast<std::int32_t>(
-            std::clamp(std::floor(offset / unit_ + 0.5), -kMost, kMost));
+        constexpr double kMax = 1 << lattice::kBits;
+        return static_cast<std::int32_t>(std::clamp(std::floor(offset / unit_ + 0.5), -kMax, kMax));
     }
 
     double unit_ = 0;
@@ -207,7 +206,7 @@ std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t l
 
 }  // namespace
 
-LayerOverlay::LayerOverlay(std::span<const Layer> layers, std::span<const Segment2> walls) {
+Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls) {
     const ChordCurves curves(layers);
     const Lattice lattice(curves.box);
     unit_ = lattice.unit();
@@ -252,8 +251,8 @@ namespace {
 /// again then coincides with them as before.
 class ArcTable {
   public:
-    explicit ArcTable(std::span<const LayerOverlay::Edge> edges) {
-        for (const LayerOverlay::Edge& edge : edges) {
+    explicit ArcTable(std::span<const Overlay::Edge> edges) {
+        for (const Overlay::Edge& edge : edges) {
             if (edge.radius == 0) continue;
             const double turn = edge.bulge > 0 ? 1 : -1;
             arcs_.push_back({edge.from, edge.to, turn * edge.radius, edge.center});
@@ -301,7 +300,7 @@ class ArcTable {
     }
 
     /// An arc that was cut has its end on a chord: from there on to the circle, so that the area is
-    /// that of LayerOverlay::Edge::bulge.
+    /// that of Overlay::Edge::bulge.
     static Curve withEndsOnCircles(const Curve& curve) {
         constexpr double kNear = 1e-9;  // metres
         Curve out;
@@ -329,7 +328,7 @@ class ArcTable {
 
 }  // namespace
 
-std::vector<Curve> LayerOverlay::withArcs(std::span<const Region> regions) const {
+std::vector<Curve> Overlay::withArcs(std::span<const Region> regions) const {
     const ArcTable arcs(edges_);
     std::vector<Curve> curves;
     for (const Region& region : regions)
@@ -337,7 +336,7 @@ std::vector<Curve> LayerOverlay::withArcs(std::span<const Region> regions) const
     return curves;
 }
 
-std::vector<double> LayerOverlay::areasOf(std::span<const Region> regions) const {
+std::vector<double> Overlay::areasOf(std::span<const Region> regions) const {
     const ArcTable arcs(edges_);
     std::vector<double> areas;
     areas.reserve(regions.size());

@@ -40,7 +40,7 @@ struct Layer {
 /// kChordError where an arc is crossed (by up to kChordError times the length of a chord where
 /// something ends or passes between an arc and its chord). Deterministic. O((n + crossings) log n)
 /// for what does not crowd at one place; memory about 300 bytes an edge.
-class LayerOverlay {
+class Overlay {
   public:
     /// An edge of the overlay. Label `left` is what lies on its left.
     struct Edge {
@@ -57,7 +57,7 @@ class LayerOverlay {
     /// \throws FormatError (without a place) for outlines that cross by the ten million (16 million
     /// places
     ///         where an edge passes a point of another)
-    explicit LayerOverlay(std::span<const Layer> layers, std::span<const Segment2> walls = {});
+    explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {});
 
     /// Edges between different labels; in an order that depends only on the input.
     [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
@@ -121,7 +121,7 @@ class LayerOverlay {
 };
 
 template <typename Add>
-void LayerOverlay::addAreas(Add add) const {
+void Overlay::addAreas(Add add) const {
     for (const Edge& edge : edges_) {
         const double area = areaLeftOf(edge);
         add(edge.left, area);
@@ -130,7 +130,7 @@ void LayerOverlay::addAreas(Add add) const {
 }
 
 template <typename In>
-double LayerOverlay::area(In in) const {
+double Overlay::area(In in) const {
     double sum = 0;
     for (const Edge& edge : edges_) {
         const bool left = in(edge.left), right = in(edge.right);
@@ -140,7 +140,7 @@ double LayerOverlay::area(In in) const {
 }
 
 template <typename In>
-std::vector<Region> LayerOverlay::regions(In in) const {
+std::vector<Region> Overlay::regions(In in) const {
     std::vector<Sides> sides;
     sides.reserve(ends_.size());
     for (std::size_t i = 0; i < edges_.size(); ++i) {

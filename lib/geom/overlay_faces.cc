@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pieces of what lies on given sides of edges: walks along their boundaries.
+// What lies over each face, and pieces made of faces.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -296,7 +296,7 @@ class PieceTrace {
 
 }  // namespace
 
-std::vector<Region> LayerOverlay::trace(const std::vector<Sides>& sides) const {
+std::vector<Region> Overlay::trace(const std::vector<Sides>& sides) const {
     std::vector<lattice::Point> points;
     points.reserve(points_.size());
     for (const auto& [x, y] : points_) points.push_back({x, y});

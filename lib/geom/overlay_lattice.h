@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside lib/geom only: the lattice on which layers are laid over each other, and edges between its
 // points.
-// Inside lib/geom only: edges that meet at common ends only, as a plane graph.
-// Inside lib/geom only.
-// Inside lib/geom only.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -158,6 +156,24 @@ class PlaneGraph {
     std::vector<Index> order_;
     std::vector<Index> place_;
 };
+
+/// A part of the lattice.
+struct Cell {
+    Box box;                        ///< cells do not overlap and cover all points
+    std::span<const Index> edges;   ///< all that come within kReach of the box, and others
+    std::span<const Index> points;  ///< those in the box
+};
+
+/// In steps of the lattice, in x as well as in y.
+constexpr std::int32_t kReach = 2;
+
+/// Divides the box of all points so that few edges come near to each cell, as far as that can be:
+/// square cells, crowded ones divided again. Where dividing does not part edges (because they lie
+/// along each other) it stops. In an order that depends only on the input. `visit` may add points,
+/// which belong to no cell.
+/// \pre edges begin at their lower end (lexLess)
+void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
+                 const std::function<void(const Cell&)>& visit);
 
 /// Edges that meet at common ends only, in place of these (which are merged()): each is led through
 /// points near it. First through ends of others within the square of half-width 1 about them, so

@@ -13,7 +13,7 @@
 namespace ispace {
 namespace {
 
-TEST(LayerOverlay, thousandEdgesAlongOneLine) {
+TEST(Overlay, thousandEdgesAlongOneLine) {
     // Views that all end at one slanted wall, with ends of their own on it.
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> along(0, 1);
@@ -30,7 +30,7 @@ TEST(LayerOverlay, thousandEdgesAlongOneLine) {
         sum += signedArea(view);
         layers.push_back(layerOf({view}, i));
     }
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     double weighted = 0;
     const std::vector<double> by_depth = depths(overlay, layers.size());
     for (std::size_t k = 0; k < by_depth.size(); ++k)
@@ -45,13 +45,13 @@ TEST(LayerOverlay, thousandEdgesAlongOneLine) {
     }
 }
 
-TEST(LayerOverlay, areasAddUp) {
+TEST(Overlay, areasAddUp) {
     std::mt19937_64 random(8);
     for (int round = 0; round < 30; ++round) {
         const std::vector<Layer> layers = randomStars(random, 2 + round, 5 + round, 5);
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         double own = 0, weighted = 0;
-        for (const Layer& layer : layers) own += LayerOverlay({&layer, 1}).area(kAny);
+        for (const Layer& layer : layers) own += Overlay({&layer, 1}).area(kAny);
         const auto by_depth = depths(overlay, layers.size());
         for (std::size_t k = 0; k < by_depth.size(); ++k)
             weighted += static_cast<double>(k) * by_depth[k];
@@ -60,22 +60,22 @@ TEST(LayerOverlay, areasAddUp) {
     }
 }
 
-TEST(LayerOverlay, inclusionAndExclusion) {
+TEST(Overlay, inclusionAndExclusion) {
     std::mt19937_64 random(9);
     for (int round = 0; round < 40; ++round) {
         const auto all = randomStars(random, 3, 12, 2);
         const auto area = [&](std::vector<Layer> some) {
             const int n = static_cast<int>(some.size());
-            return LayerOverlay(some).area(atLeast(n));
+            return Overlay(some).area(atLeast(n));
         };
         const double one = area({all[0]}) + area({all[1]}) + area({all[2]});
         const double two = area({all[0], all[1]}) + area({all[1], all[2]}) + area({all[0], all[2]});
-        const LayerOverlay overlay(all);
+        const Overlay overlay(all);
         EXPECT_NEAR(overlay.area(kAny), one - two + area(all), 4 * boundOf(overlay, all));
     }
 }
 
-TEST(LayerOverlay, agreesWithExactOverlay) {
+TEST(Overlay, agreesWithExactOverlay) {
     std::mt19937_64 random(10);
     for (int round = 0; round < 20; ++round) {
         const auto layers = randomStars(random, 8, 10, 4);
@@ -84,7 +84,7 @@ TEST(LayerOverlay, agreesWithExactOverlay) {
             polygons.emplace_back();
             for (const CurveEdge& e : layer.curves[0]) polygons.back().push_back(e.from);
         }
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         const auto exact = unite(polygons);
         EXPECT_NEAR(overlay.area(kAny), totalArea(exact), boundOf(overlay, layers));
         const auto pieces = overlay.regions(kAny);
@@ -107,10 +107,10 @@ TEST(LayerOverlay, agreesWithExactOverlay) {
     }
 }
 
-TEST(LayerOverlay, depthsByPixels) {
+TEST(Overlay, depthsByPixels) {
     std::mt19937_64 random(11);
     const auto layers = randomStars(random, 12, 9, 3);
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     const auto by_depth = depths(overlay, layers.size());
     constexpr int kSide = 300;
     constexpr double kCell = 16.0 / kSide;
@@ -131,11 +131,11 @@ TEST(LayerOverlay, depthsByPixels) {
     EXPECT_GT(by_depth[5], 1);
 }
 
-TEST(LayerOverlay, turningMovingReorderingChangeRoundingOnly) {
+TEST(Overlay, turningMovingReorderingChangeRoundingOnly) {
     std::mt19937_64 random(12);
     auto layers = randomStars(random, 10, 8, 4);
     layers.push_back(curveLayer(disc({1, 1}, 3)));
-    const LayerOverlay first(layers);
+    const Overlay first(layers);
     const auto wanted = depths(first, layers.size());
     for (int round = 0; round < 10; ++round) {
         auto others = layers;
@@ -148,14 +148,14 @@ TEST(LayerOverlay, turningMovingReorderingChangeRoundingOnly) {
             for (CurveEdge& e : layer.curves[0])
                 e = {move(e.from), move(e.to), e.radius, move(e.center)};
         }
-        const auto got = depths(LayerOverlay(others), layers.size());
+        const auto got = depths(Overlay(others), layers.size());
         for (std::size_t k = 0; k < got.size(); ++k) EXPECT_NEAR(got[k], wanted[k], 4e-7);
     }
-    const auto again = depths(LayerOverlay(layers), layers.size());
+    const auto again = depths(Overlay(layers), layers.size());
     EXPECT_EQ(again, wanted);
 }
 
-TEST(LayerOverlay, tenThousandTinyTriangles) {
+TEST(Overlay, tenThousandTinyTriangles) {
     std::mt19937_64 random(13);
     std::uniform_real_distribution<double> at(-10, 10), off(-1, 1);
     for (const double size : {1e-8, 0.2}) {
@@ -170,7 +170,7 @@ TEST(LayerOverlay, tenThousandTinyTriangles) {
         for (const Layer& layer : layers)
             own += std::abs(signedArea(
                 {layer.curves[0][0].from, layer.curves[0][1].from, layer.curves[0][2].from}));
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         const auto by_depth = depths(overlay, layers.size());
         for (std::size_t k = 0; k < by_depth.size(); ++k)
             weighted += static_cast<double>(k) * by_depth[k];
@@ -180,7 +180,7 @@ TEST(LayerOverlay, tenThousandTinyTriangles) {
 }
 
 // Slits of no width are turned inside out by rounding: a label is of a set all the same.
-TEST(LayerOverlay, sliversHaveLabelsOfSets) {
+TEST(Overlay, sliversHaveLabelsOfSets) {
     std::mt19937_64 random(14);
     std::uniform_real_distribution<double> at(-10, 10), tiny(-1e-7, 1e-7);
     std::vector<Layer> layers;
@@ -192,7 +192,7 @@ TEST(LayerOverlay, sliversHaveLabelsOfSets) {
                       n + Vec2{tiny(random), tiny(random)}, m + Vec2{tiny(random), tiny(random)}}},
                     std::int64_t{1} << i));
     }
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     EXPECT_GT(overlay.edges().size(), 100U);
     for (const auto& edge : overlay.edges()) {
         for (const LayerLabel& label : {edge.left, edge.right}) {
@@ -205,7 +205,7 @@ TEST(LayerOverlay, sliversHaveLabelsOfSets) {
 }
 
 // A sensor on a robot and one written beside it: the same place, reckoned in two ways.
-TEST(LayerOverlay, DiscsOneRoundingApartAreOne) {
+TEST(Overlay, DiscsOneRoundingApartAreOne) {
     for (const double apart : {0.0, 0x1p-52, 1e-15, 1e-10}) {
         std::vector<Layer> layers;
         for (const double shift : {0.0, apart}) {
@@ -219,17 +219,17 @@ TEST(LayerOverlay, DiscsOneRoundingApartAreOne) {
             }
             layers.push_back({.curves = {disc}});
         }
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         const double both = overlay.area([](const LayerLabel& label) { return label.count > 0; });
         EXPECT_NEAR(both, 81 * std::numbers::pi, 1e-6) << apart;
     }
 }
 
-TEST(LayerOverlay, CurvesHaveArcsAgain) {
+TEST(Overlay, CurvesHaveArcsAgain) {
     Curve half{{{-2, 0}, {2, 0}}, {{2, 0}, {0, 2}, 2, {0, 0}}, {{0, 2}, {-2, 0}, 2, {0, 0}}};
     const Layer layers[] = {{.curves = {half}},
                             {.curves = {curveOf({{0, -1}, {3, -1}, {3, 3}, {0, 3}})}}};
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     const auto in_both = [](const LayerLabel& label) { return label.count == 2; };
     EXPECT_NEAR(signedArea(overlay.curves(in_both)), std::numbers::pi, 1e-7);
     EXPECT_LT(totalArea(overlay.regions(in_both)), std::numbers::pi - 1e-5) << "chords";

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom only.
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -10,24 +9,6 @@
 #include "geom/overlay_lattice.h"
 
 namespace ispace::lattice {
-
-/// A part of the lattice.
-struct Cell {
-    Box box;                        ///< cells do not overlap and cover all points
-    std::span<const Index> edges;   ///< all that come within kReach of the box, and others
-    std::span<const Index> points;  ///< those in the box
-};
-
-/// In steps of the lattice, in x as well as in y.
-constexpr std::int32_t kReach = 2;
-
-/// Divides the box of all points so that few edges come near to each cell, as far as that can be:
-/// square cells, crowded ones divided again. Where dividing does not part edges (because they lie
-/// along each other) it stops. In an order that depends only on the input. `visit` may add points,
-/// which belong to no cell.
-/// \pre edges begin at their lower end (lexLess)
-void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
-                 const std::function<void(const Cell&)>& visit);
 
 namespace {
 
@@ -271,10 +252,10 @@ std::vector<Span> spansOf(const Cell& cell, const std::vector<Edge>& edges,
 
 /// \throws FormatError for more than some gigabytes of them
 void mustBeFew(const std::vector<Pass>& passes) {
-    constexpr std::size_t kMostPasses = 16'000'000;
-    if (passes.size() > kMostPasses)
+    constexpr std::size_t kMaxPasses = 16'000'000;
+    if (passes.size() > kMaxPasses)
         throw FormatError(
-            {"", 0, 0, "outlines cross more than " + std::to_string(kMostPasses) + " times"});
+            {"", 0, 0, "outlines cross more than " + std::to_string(kMaxPasses) + " times"});
 }
 
 /// Ends of edges that lay along another before rounding: both were moved by at most half a step in

@@ -148,12 +148,12 @@ TEST(SnapRounding, halvesAreRoundedUp) {
 }
 
 TEST(SnapRounding, greatestCoordinates) {
-    constexpr std::int32_t kMost = 1 << kBits;
+    constexpr std::int32_t kMax = 1 << kBits;
     std::mt19937_64 random(2);
     for (int round = 0; round < 60; ++round) {
-        Drawing drawing = randomDrawing(random, 4, 6, kMost);
-        drawing.add(0, {{-kMost, -kMost}, {kMost, -kMost}, {kMost, kMost}, {-kMost, kMost}});
-        drawing.add(1, {{-kMost, -kMost}, {kMost, kMost}, {-kMost, kMost}, {kMost, -kMost}});
+        Drawing drawing = randomDrawing(random, 4, 6, kMax);
+        drawing.add(0, {{-kMax, -kMax}, {kMax, -kMax}, {kMax, kMax}, {-kMax, kMax}});
+        drawing.add(1, {{-kMax, -kMax}, {kMax, kMax}, {-kMax, kMax}, {kMax, -kMax}});
         drawing.snap();
         expectPlane(drawing);
         expectClosed(drawing);

@@ -14,10 +14,10 @@
 namespace ispace {
 namespace {
 
-TEST(LayerOverlay, twoSquaresThatOverlap) {
+TEST(Overlay, twoSquaresThatOverlap) {
     const std::vector<Layer> layers{layerOf({test::box(0, 0, 2, 2)}, 3),
                                     layerOf({test::box(1, 1, 3, 3)}, 5)};
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     const auto areas = areasOf(overlay);
     ASSERT_EQ(areas.size(), 3U);
     EXPECT_DOUBLE_EQ(areas.at({1, 3, 0}), 3);
@@ -32,12 +32,12 @@ TEST(LayerOverlay, twoSquaresThatOverlap) {
     EXPECT_EQ(overlay.edges().size(), 12U);
 }
 
-TEST(LayerOverlay, commonEdges) {
+TEST(Overlay, commonEdges) {
     // Along a whole side, along a part of one, at a corner.
     const std::vector<Layer> layers{
         layerOf({test::box(0, 0, 2, 2)}, 1), layerOf({test::box(2, 0, 3, 2)}, 2),
         layerOf({test::box(-1, 0.5, 0, 1)}, 4), layerOf({test::box(3, 2, 4, 3)}, 8)};
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     const auto areas = areasOf(overlay);
     ASSERT_EQ(areas.size(), 4U);
     EXPECT_DOUBLE_EQ(areas.at({1, 1, 0}), 4);
@@ -50,20 +50,20 @@ TEST(LayerOverlay, commonEdges) {
     EXPECT_EQ(pieces[0].outline.size(), 8U);
 }
 
-TEST(LayerOverlay, equalLabelsOnBothSidesHaveNoEdge) {
+TEST(Overlay, equalLabelsOnBothSidesHaveNoEdge) {
     const std::vector<Layer> layers{layerOf({test::box(0, 0, 1, 1)}),
                                     layerOf({test::box(1, 0, 2, 1)})};
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     EXPECT_EQ(overlay.edges().size(), 6U);
     EXPECT_EQ(overlay.regions(kAny)[0].outline, test::box(0, 0, 2, 1));
 }
 
-TEST(LayerOverlay, nestedHolesAndIslands) {
+TEST(Overlay, nestedHolesAndIslands) {
     const std::vector<Layer> layers{
         layerOf({test::box(0, 0, 10, 10), reversed(test::box(1, 1, 9, 9))}, 1),
         layerOf({test::box(2, 2, 8, 8)}, 2), layerOf({test::box(3, 3, 4, 4)}, 4),
         layerOf({test::box(5, 3, 6, 4)}, 8), layerOf({test::box(20, 0, 21, 1)}, 16)};
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     const auto areas = areasOf(overlay);
     ASSERT_EQ(areas.size(), 5U);
     EXPECT_DOUBLE_EQ(areas.at({1, 1, 0}), 36);
@@ -79,11 +79,11 @@ TEST(LayerOverlay, nestedHolesAndIslands) {
     EXPECT_DOUBLE_EQ(totalArea(single), 71);
 }
 
-TEST(LayerOverlay, regionsAreSorted) {
+TEST(Overlay, regionsAreSorted) {
     const std::vector<Layer> layers{
         layerOf({test::box(20, 0, 30, 10), test::box(27, 1, 28, 2), test::box(21, 1, 22, 2)}),
         layerOf({test::box(10, 5, 11, 6)}), layerOf({test::box(0, 0, 1, 1)})};
-    const auto pieces = LayerOverlay(layers).regions(kAny);
+    const auto pieces = Overlay(layers).regions(kAny);
     ASSERT_EQ(pieces.size(), 3U);
     EXPECT_EQ(pieces[0].outline, test::box(0, 0, 1, 1));
     EXPECT_EQ(pieces[1].outline, test::box(10, 5, 11, 6));
@@ -91,24 +91,24 @@ TEST(LayerOverlay, regionsAreSorted) {
     EXPECT_EQ(pieces[2].holes[0][0], (Point2{21, 1}));
 }
 
-TEST(LayerOverlay, identicalLayers) {
+TEST(Overlay, identicalLayers) {
     std::vector<Layer> layers;
     for (int i = 0; i < 50; ++i) {
         layers.push_back(layerOf({test::box(0.1, 0.2, 2.3, 3.1)}, i));
         layers.push_back(layerOf({{{0.1, 3.1}, {0.1, 0.2}, {2.3, 0.2}, {2.3, 3.1}}}, i));
     }
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     EXPECT_EQ(overlay.edges().size(), 4U);
     const auto areas = areasOf(overlay);
     ASSERT_EQ(areas.size(), 1U);
     EXPECT_NEAR(areas.at({100, 50 * 49, 0}), 2.2 * 2.9, 20 * overlay.unit());
 }
 
-TEST(LayerOverlay, marks) {
+TEST(Overlay, marks) {
     const std::vector<Layer> layers{
         layerOf({test::box(0, 0, 2, 2)}, 7), marking(test::box(1, 0, 3, 2), 1),
         marking(test::box(1.5, 0, 3, 2), 2), marking(test::box(1.75, 0, 4, 2), 1)};
-    const auto areas = areasOf(LayerOverlay(layers));
+    const auto areas = areasOf(Overlay(layers));
     EXPECT_DOUBLE_EQ(areas.at({1, 7, 0}), 2);
     EXPECT_DOUBLE_EQ(areas.at({1, 7, 1}), 1);
     EXPECT_DOUBLE_EQ(areas.at({1, 7, 3}), 1);  // with a mark twice as well
@@ -117,21 +117,21 @@ TEST(LayerOverlay, marks) {
     EXPECT_EQ(areas.size(), 5U);
 }
 
-TEST(LayerOverlay, numbersThatWrapAround) {
-    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-    const std::vector<Layer> layers{layerOf({test::box(0, 0, 2, 2)}, kMost),
-                                    layerOf({test::box(0, 0, 2, 3)}, kMost),
+TEST(Overlay, numbersThatWrapAround) {
+    constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+    const std::vector<Layer> layers{layerOf({test::box(0, 0, 2, 2)}, kMax),
+                                    layerOf({test::box(0, 0, 2, 3)}, kMax),
                                     layerOf({test::box(0, 0, 2, 4)}, 11)};
-    const auto areas = areasOf(LayerOverlay(layers));
+    const auto areas = areasOf(Overlay(layers));
     EXPECT_DOUBLE_EQ(areas.at({1, 11, 0}), 2);
 }
 
-TEST(LayerOverlay, lensOfTwoDiscs) {
+TEST(Overlay, lensOfTwoDiscs) {
     for (const double d : {0.3, 1.0, 1.9}) {
         const double r = 1.25;
         const std::vector<Layer> layers{curveLayer(disc({0, 0}, r), 1),
                                         curveLayer(disc({d, 0.1}, r, 0.4), 2)};
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         const double apart = std::hypot(d, 0.1);
         const double lens = 2 * r * r * std::acos(apart / (2 * r)) -
                             apart / 2 * std::sqrt(4 * r * r - apart * apart);
@@ -141,20 +141,20 @@ TEST(LayerOverlay, lensOfTwoDiscs) {
     }
 }
 
-TEST(LayerOverlay, discAndHalfPlane) {
+TEST(Overlay, discAndHalfPlane) {
     const double r = 4, h = 1.3;
     const std::vector<Layer> layers{curveLayer(disc({0.1, 0.2}, r), 1),
                                     layerOf({test::box(-10, 0.2 + h, 10, 10)}, 2)};
     const double cap = r * r * std::acos(h / r) - h * std::sqrt(r * r - h * h);
-    EXPECT_NEAR(LayerOverlay(layers).area(atLeast(2)), cap, 4 * kChordError * kChordError);
+    EXPECT_NEAR(Overlay(layers).area(atLeast(2)), cap, 4 * kChordError * kChordError);
 }
 
-TEST(LayerOverlay, arcsOfOneCircle) {
+TEST(Overlay, arcsOfOneCircle) {
     // Discs that begin at different places are the same but for a few chords.
     std::vector<Layer> layers;
     layers.reserve(10);
     for (int i = 0; i < 10; ++i) layers.push_back(curveLayer(disc({1, 2}, 3, 0.01 + 0.1 * i), i));
-    const LayerOverlay overlay(layers);
+    const Overlay overlay(layers);
     EXPECT_NEAR(overlay.area(kAny), 9 * pi, 1e-12 + boundOf(overlay, layers));
     EXPECT_NEAR(overlay.area(atLeast(10)), 9 * pi, 1e-12 + boundOf(overlay, layers));
     EXPECT_LT(overlay.edges().size(), 600U);
@@ -164,7 +164,7 @@ TEST(LayerOverlay, arcsOfOneCircle) {
     std::reverse(hole.begin(), hole.end());
     for (CurveEdge& e : hole) e = {e.to, e.from, -e.radius, e.center};
     ring.curves.push_back(hole);
-    const LayerOverlay rings({&ring, 1});
+    const Overlay rings({&ring, 1});
     EXPECT_NEAR(rings.area(kAny), 5 * pi, 1e-7);
     for (const auto& edge : rings.edges()) {
         const Vec2 to_center = Point2{1, 2} - edge.from;
@@ -173,33 +173,33 @@ TEST(LayerOverlay, arcsOfOneCircle) {
     EXPECT_NEAR(totalArea(rings.regions(kAny)), 5 * pi, kChordError * 10 * pi);
 }
 
-TEST(LayerOverlay, biteOfAClockwiseArc) {
+TEST(Overlay, biteOfAClockwiseArc) {
     Curve curve = straight({{0, 0}, {4, 0}, {4, 4}, {3, 4}, {1, 4}, {0, 4}});
     curve[3].radius = -1;
     curve[3].center = {2, 4};
-    const LayerOverlay overlay(std::vector<Layer>{curveLayer(curve)});
+    const Overlay overlay(std::vector<Layer>{curveLayer(curve)});
     EXPECT_NEAR(overlay.area(kAny), 16 - pi / 2, 1e-7);
     EXPECT_EQ(overlay.regions(kAny)[0].locate({2, 3.5}), Side::Outside);
 }
 
-TEST(LayerOverlay, arcsOfNoLengthAndTinyOnes) {
+TEST(Overlay, arcsOfNoLengthAndTinyOnes) {
     Curve curve = straight(test::box(0, 0, 1, 1));
     curve.insert(curve.begin() + 1, {{1, 0}, {1, 0}, 0.5, {0.5, 0}});
     curve.insert(curve.begin() + 1, {{1, 0}, {1, 0}, -0.5, {0.5, 0}});
     // Backwards by the last bit: no whole turn.
     curve.insert(curve.begin() + 1, {{1, 0}, {std::nextafter(1, 2), 0}, 0.5, {1, -0.5}});
-    EXPECT_NEAR(LayerOverlay(std::vector<Layer>{curveLayer(curve)}).area(kAny), 1, 1e-8);
+    EXPECT_NEAR(Overlay(std::vector<Layer>{curveLayer(curve)}).area(kAny), 1, 1e-8);
     for (const double radius : {1e-12, 1e-7, 1e-3, 1e6}) {
-        const LayerOverlay overlay(std::vector<Layer>{curveLayer(disc({3, 4}, radius))});
+        const Overlay overlay(std::vector<Layer>{curveLayer(disc({3, 4}, radius))});
         EXPECT_NEAR(overlay.area(kAny), pi * radius * radius, 1e-6 * radius * radius);
     }
 }
 
-TEST(LayerOverlay, wallsPartRegions) {
+TEST(Overlay, wallsPartRegions) {
     const std::vector<Layer> layers{layerOf({test::box(0, 0, 4, 4)}, 1),
                                     layerOf({test::box(2, 0, 6, 4)}, 2)};
     const auto pieces = [&](const std::vector<Segment2>& walls) {
-        return LayerOverlay(layers, walls).regions(kAny);
+        return Overlay(layers, walls).regions(kAny);
     };
     EXPECT_EQ(pieces({}).size(), 1U);
     // From outside through and out again; half way; up to another wall; alone inside.
@@ -229,42 +229,40 @@ TEST(LayerOverlay, wallsPartRegions) {
     walls.push_back({{-1e9, -7}, {1e9, 8}});
     walls.push_back({{100, 100}, {200, 100}});
     walls.push_back({{1, 1}, {1, 1}});
-    const LayerOverlay overlay(layers, walls);
+    const Overlay overlay(layers, walls);
     EXPECT_NEAR(overlay.area(kAny), 24, 1e-7);
-    EXPECT_EQ(overlay.unit(), LayerOverlay(layers).unit());
+    EXPECT_EQ(overlay.unit(), Overlay(layers).unit());
 }
 
-TEST(LayerOverlay, nothing) {
-    EXPECT_TRUE(LayerOverlay({}).edges().empty());
-    EXPECT_TRUE(LayerOverlay({}).regions(kAny).empty());
+TEST(Overlay, nothing) {
+    EXPECT_TRUE(Overlay({}).edges().empty());
+    EXPECT_TRUE(Overlay({}).regions(kAny).empty());
     const std::vector<Layer> layers{Layer{}, curveLayer(Curve{}),
                                     layerOf({{{1, 1}, {1, 1}, {1, 1}}}), layerOf({{{1, 1}}})};
     const std::vector<Segment2> walls{{{0, 0}, {2, 2}}};
-    EXPECT_TRUE(LayerOverlay(layers, walls).edges().empty());
-    EXPECT_EQ(LayerOverlay(layers, walls).area(kAny), 0);
+    EXPECT_TRUE(Overlay(layers, walls).edges().empty());
+    EXPECT_EQ(Overlay(layers, walls).area(kAny), 0);
     // In one line, and there and back.
     const std::vector<Layer> flat{layerOf({{{0, 0}, {1, 1}, {5, 5}, {3, 3}}}),
                                   layerOf({{{0, 0}, {7, 7}}})};
-    EXPECT_TRUE(LayerOverlay(flat, walls).edges().empty());
-    EXPECT_TRUE(LayerOverlay(flat, walls).regions(kAny).empty());
+    EXPECT_TRUE(Overlay(flat, walls).edges().empty());
+    EXPECT_TRUE(Overlay(flat, walls).regions(kAny).empty());
 }
 
-TEST(LayerOverlay, farAndHuge) {
+TEST(Overlay, farAndHuge) {
     for (const double scale : {1e-300, 1e-150, 1e-9, 1.0, 1e9, 1e150}) {
         for (const double off : {0.0, 1e3, 1e8}) {
             const std::vector<Layer> layers{
                 layerOf({test::box(scale * off, 0, scale * (off + 2), 2 * scale)}),
                 layerOf({test::box(scale * (off + 1), scale, scale * (off + 3), 3 * scale)})};
-            EXPECT_NEAR(LayerOverlay(layers).area(kAny) / scale / scale, 7,
-                        scale < 1e-200 ? 10 : 1e-7);
+            EXPECT_NEAR(Overlay(layers).area(kAny) / scale / scale, 7, scale < 1e-200 ? 10 : 1e-7);
         }
     }
-    constexpr double kMost = std::numeric_limits<double>::max();
-    const LayerOverlay all(std::vector<Layer>{layerOf({test::box(-kMost, -kMost, kMost, kMost)})});
+    constexpr double kMax = std::numeric_limits<double>::max();
+    const Overlay all(std::vector<Layer>{layerOf({test::box(-kMax, -kMax, kMax, kMax)})});
     EXPECT_EQ(all.edges().size(), 4U);
     EXPECT_EQ(all.regions(kAny).size(), 1U);
-    const LayerOverlay corner(
-        std::vector<Layer>{layerOf({test::box(kMost / 2, kMost / 2, kMost, kMost)})});
+    const Overlay corner(std::vector<Layer>{layerOf({test::box(kMax / 2, kMax / 2, kMax, kMax)})});
     EXPECT_EQ(corner.edges().size(), 4U);
 }
 

@@ -62,7 +62,7 @@ std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
 /// memory.
 constexpr std::size_t kTouchesPerLine = 32, kTouchesAnyway = 1U << 21;
 /// Looks at lines near a point, per line: so many in a grid, which is quickest for what is evenly
-/// spread, then in a tree; so many there, and besides, only where heaps of long lines cross.
+/// spread, then in a tree; so many there, and besides, only where very many long lines cross.
 constexpr std::size_t kGridLooksPerLine = 64;
 constexpr std::size_t kLooksPerLine = 1024, kLooksAnyway = 1U << 26;
 

@@ -20,7 +20,7 @@ constexpr double kWeldDistance = 1e-6;
 /// touches) log n) for lines that mostly run in two directions at right angles or are short, in
 /// whatever place they are.
 /// \throws FormatError (without a place) for lines that lie upon each other by the million, and for
-/// heaps of long lines in all directions
+/// many long lines in all directions
 struct WeldedLines {
     std::vector<Segment2> pieces;
     std::vector<std::size_t> source;

@@ -66,7 +66,7 @@ inline Layer curveLayer(const Curve& curve, std::int64_t number = 0) {
 
 /// Areas by label, without the outside.
 inline std::map<std::tuple<int, std::int64_t, std::uint64_t>, double> areasOf(
-    const LayerOverlay& overlay) {
+    const Overlay& overlay) {
     std::map<std::tuple<int, std::int64_t, std::uint64_t>, double> areas;
     overlay.addAreas([&](const LayerLabel& label, double area) {
         areas[{label.count, label.numbers, label.marks}] += area;
@@ -75,7 +75,7 @@ inline std::map<std::tuple<int, std::int64_t, std::uint64_t>, double> areasOf(
     return areas;
 }
 
-inline std::vector<double> depths(const LayerOverlay& overlay, std::size_t most) {
+inline std::vector<double> depths(const Overlay& overlay, std::size_t most) {
     std::vector<double> areas(most + 1);
     overlay.addAreas([&](const LayerLabel& label, double area) {
         ASSERT_GE(label.count, 0);
@@ -86,7 +86,7 @@ inline std::vector<double> depths(const LayerOverlay& overlay, std::size_t most)
     return areas;
 }
 
-inline double boundOf(const LayerOverlay& overlay, const std::vector<Layer>& layers) {
+inline double boundOf(const Overlay& overlay, const std::vector<Layer>& layers) {
     double length = 0;
     for (const Layer& layer : layers)
         for (const Curve& curve : layer.curves)

@@ -17,32 +17,32 @@ namespace ispace::test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-inline VisibleRegion look(const std::vector<Segment2>& lines, Point2 viewpoint, double range) {
-    return VisibilityMap(lines).look(viewpoint, range);
+inline VisibleRegion query(const std::vector<Segment2>& lines, Point2 viewpoint, double range) {
+    return VisibilityMap(lines).query(viewpoint, range);
 }
 
 inline double areaSeen(const std::vector<Segment2>& lines, Point2 viewpoint, double range) {
-    return area(look(lines, viewpoint, range));
+    return area(query(lines, viewpoint, range));
 }
 
 /// What the header says of every region; `slack` radians for directions that rounding moves.
 inline void expectSound(const VisibleRegion& region, double slack = 1e-9) {
     const Point2 v = region.viewpoint;
     double turned = 0;
-    for (std::size_t i = 0; i < region.ends.size(); ++i) {
-        const SightEnd& end = region.ends[i];
+    for (std::size_t i = 0; i < region.edges.size(); ++i) {
+        const SightEdge& end = region.edges[i];
         const Vec2 from = end.from - v, to = end.to - v;
         EXPECT_GT(cross(from, to), 0);
         turned += std::atan2(cross(from, to), dot(from, to));
-        if (end.line == SightEnd::kArc) {
+        if (end.line == SightEdge::kArc) {
             EXPECT_GE(dot(from, to), -1e-9 * dot(from, from));
             EXPECT_NEAR(length(from), region.max_range, 1e-9 * region.max_range);
             EXPECT_NEAR(length(to), region.max_range, 1e-9 * region.max_range);
         }
-        const Vec2 next = region.ends[(i + 1) % region.ends.size()].from - v;
+        const Vec2 next = region.edges[(i + 1) % region.edges.size()].from - v;
         EXPECT_NEAR(std::atan2(cross(to, next), dot(to, next)), 0, slack);
     }
-    EXPECT_NEAR(turned, region.ends.empty() ? 0 : 2 * std::numbers::pi, slack);
+    EXPECT_NEAR(turned, region.edges.empty() ? 0 : 2 * std::numbers::pi, slack);
     EXPECT_GE(area(region), 0);
     EXPECT_LE(area(region), std::numbers::pi * region.max_range * region.max_range * (1 + 1e-9));
     EXPECT_NEAR(signedArea(outlineOf(region)), area(region), 1e-9 * (1 + area(region)));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 
-bool isArc(const SightEnd& end) { return end.line == SightEnd::kArc; }
+bool isArc(const SightEdge& end) { return end.line == SightEdge::kArc; }
 
 /// From direction a counter-clockwise to b, in [0, 2 pi).
 double angleBetween(Vec2 a, Vec2 b) {
@@ -20,7 +20,7 @@ double angleBetween(Vec2 a, Vec2 b) {
 }
 
 /// Where sight in a direction ends.
-Point2 endIn(const VisibleRegion& region, const SightEnd& end, Vec2 direction) {
+Point2 endIn(const VisibleRegion& region, const SightEdge& end, Vec2 direction) {
     if (isArc(end)) return region.viewpoint + region.max_range * direction;
     const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
     const double right = -cross(direction, a), left = cross(direction, b);
@@ -29,16 +29,16 @@ Point2 endIn(const VisibleRegion& region, const SightEnd& end, Vec2 direction) {
     return end.from + share * (end.to - end.from);
 }
 
-void addEnd(VisibleRegion& region, const SightEnd& end) {
+void addEnd(VisibleRegion& region, const SightEdge& end) {
     if (cross(end.from - region.viewpoint, end.to - region.viewpoint) > 0)
-        region.ends.push_back(end);
+        region.edges.push_back(end);
 }
 
 }  // namespace
 
 double area(const VisibleRegion& region) {
     double twice = 0;
-    for (const SightEnd& end : region.ends) {
+    for (const SightEdge& end : region.edges) {
         const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
         twice += isArc(end) ? region.max_range * region.max_range * angleBetween(from, to)
                             : cross(from, to);
@@ -48,24 +48,24 @@ double area(const VisibleRegion& region) {
 
 Curve outlineOf(const VisibleRegion& region) {
     Curve curve;
-    if (region.ends.empty()) return curve;
-    curve.reserve(2 * region.ends.size() + 2);
+    if (region.edges.empty()) return curve;
+    curve.reserve(2 * region.edges.size() + 2);
     const auto go_to = [&curve](Point2 from, Point2 to) {
         if (from != to) curve.push_back({from, to});
     };
-    if (!region.is_whole) go_to(region.viewpoint, region.ends.front().from);
-    for (std::size_t i = 0; i < region.ends.size(); ++i) {
-        const SightEnd& end = region.ends[i];
-        if (i > 0) go_to(region.ends[i - 1].to, end.from);
+    if (!region.is_whole) go_to(region.viewpoint, region.edges.front().from);
+    for (std::size_t i = 0; i < region.edges.size(); ++i) {
+        const SightEdge& end = region.edges[i];
+        if (i > 0) go_to(region.edges[i - 1].to, end.from);
         curve.push_back({end.from, end.to});
         if (isArc(end)) {
             curve.back().radius = region.max_range;
             curve.back().center = region.viewpoint;
         }
     }
-    const Point2 last = region.ends.back().to;
+    const Point2 last = region.edges.back().to;
     if (region.is_whole) {
-        go_to(last, region.ends.front().from);
+        go_to(last, region.edges.front().from);
     } else {
         go_to(last, region.viewpoint);
     }
@@ -75,13 +75,13 @@ Curve outlineOf(const VisibleRegion& region) {
 VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     if (span >= Angle::degrees(360)) return region;
     VisibleRegion sector{region.viewpoint, region.max_range, false, {}};
-    if (region.ends.empty() || !(span > Angle())) return sector;
+    if (region.edges.empty() || !(span > Angle())) return sector;
     const Vec2 begin = unitVector(first), stop = unitVector(first + span);
     // The end in which the sector begins is the first one to stop after that: where the angles
     // fall back by almost a turn. The least of them may be a tie, or one of the last by rounding.
     std::vector<double> stops;
-    stops.reserve(region.ends.size());
-    for (const SightEnd& end : region.ends)
+    stops.reserve(region.edges.size());
+    for (const SightEdge& end : region.edges)
         stops.push_back(angleBetween(begin, end.to - region.viewpoint));
     std::size_t start = 0;
     double drop = stops.back() - stops.front();
@@ -90,10 +90,10 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
             drop = stops[i - 1] - stops[i];
             start = i;
         }
-    const std::size_t count = region.ends.size();
-    sector.ends.reserve(count + 1);
+    const std::size_t count = region.edges.size();
+    sector.edges.reserve(count + 1);
     for (std::size_t i = 0; i <= count; ++i) {
-        SightEnd end = region.ends[(start + i) % count];
+        SightEdge end = region.edges[(start + i) % count];
         const bool comes_back = i == count;
         const double from = angleBetween(begin, end.from - region.viewpoint);
         // Whether the first one begins before the sector: then it does so almost a turn later too.
@@ -114,8 +114,8 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
 
 bool holds(const VisibleRegion& region, Point2 p) {
     const Vec2 way = p - region.viewpoint;
-    if (way == Vec2()) return !region.ends.empty();
-    return std::any_of(region.ends.begin(), region.ends.end(), [&](const SightEnd& end) {
+    if (way == Vec2()) return !region.edges.empty();
+    return std::any_of(region.edges.begin(), region.edges.end(), [&](const SightEdge& end) {
         const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
         if (cross(from, way) < 0 || cross(way, to) < 0) return false;
         if (isArc(end)) return dot(way, way) <= region.max_range * region.max_range;

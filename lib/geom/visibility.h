@@ -13,11 +13,11 @@ namespace ispace {
 
 /// Lines this near to a viewpoint do not stop its sight, in metres, nor does what continues them: a
 /// viewpoint on a wall sees both of its sides. The same as a ray's.
-constexpr double kSightContact = 1e-4;
+constexpr double kRayEpsilon = 1e-4;
 
 /// What ends sight over an interval of directions: the piece of a line, or an arc at the greatest
 /// range.
-struct SightEnd {
+struct SightEdge {
     static constexpr std::uint32_t kArc = std::numeric_limits<std::uint32_t>::max();
     Point2 from, to;  ///< counter-clockwise as seen from the viewpoint; never the same
                       ///< direction
@@ -38,17 +38,17 @@ struct VisibleRegion {
     bool is_whole = true;
     /// Counter-clockwise, without gap or overlap of directions; each spans less than a half turn,
     /// arcs at most a quarter. Empty if nothing is seen.
-    std::vector<SightEnd> ends;
+    std::vector<SightEdge> edges;
 };
 
-/// In closed form. O(ends)
+/// In closed form. O(edges)
 double area(const VisibleRegion& region);
-/// The boundary, lines of sight included; empty if nothing is seen. O(ends)
+/// The boundary, lines of sight included; empty if nothing is seen. O(edges)
 Curve outlineOf(const VisibleRegion& region);
 /// The part in directions from `first` counter-clockwise over `span`: the whole turn for a span of
 /// 360 degrees or more, nothing for one of 0 or less. \pre region.is_whole
 VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span);
-/// True if p lies in the region; on its boundary, rounding decides. O(ends)
+/// True if p lies in the region; on its boundary, rounding decides. O(edges)
 bool holds(const VisibleRegion& region, Point2 p);
 
 /// Finds what can be seen between lines from anywhere in the plane.
@@ -62,7 +62,7 @@ bool holds(const VisibleRegion& region, Point2 p);
 ///
 /// Round bodies are closed sets. What they hide begins at the true tangents, in closed form; where
 /// one is seen sight ends at the edges of outlineOf(), whose area is the body's. From inside,
-/// farther than kSightContact from the curve, nothing is seen; within that sight passes into the
+/// farther than kRayEpsilon from the curve, nothing is seen; within that sight passes into the
 /// body, to its far side. Errors of areas stay below 1e-6 m2 for bodies of up to 1 m radius.
 ///
 /// Memory: some 200 bytes a line. Thread-safe. Coordinates and ranges are cut off at 1e75 m.
@@ -77,17 +77,17 @@ class VisibilityMap {
 
     /// Sets `region` to what is seen from a viewpoint up to max_range, in any direction. The memory
     /// of `region` is used again. Every viewpoint has an answer: one on a line (within
-    /// kSightContact, then moved onto it), on an end point, on a crossing, outside of everything.
+    /// kRayEpsilon, then moved onto it), on an end point, on a crossing, outside of everything.
     /// Typically O(what is seen + log n), and O(what is seen) for each round body within range.
     /// \pre max_range >= 0; 0 gives an empty region. +infinity is for where lines enclose the
     ///      viewpoint: free sight then ends at some distance beyond all lines, which
     ///      region.max_range tells
-    void look(Point2 viewpoint, double max_range, VisibleRegion& region) const;
-    [[nodiscard]] VisibleRegion look(Point2 viewpoint, double max_range) const;
+    void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+    [[nodiscard]] VisibleRegion query(Point2 viewpoint, double max_range) const;
 
   private:
     struct Data;
-    void lookPastLines(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+    void queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const;
     std::unique_ptr<Data> data_;
 };
 

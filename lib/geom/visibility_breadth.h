@@ -15,10 +15,10 @@ namespace ispace {
 
 /// Directions of sight that have come equally far: from its right limit to that of the next window.
 struct Window {
-    Vec2 right;            ///< from the viewpoint to the corner of a door
-    std::uint32_t corner;  ///< that door
+    Vec2 right;            ///< from the viewpoint to the corner of a portal
+    std::uint32_t corner;  ///< that portal
     std::uint32_t next;    ///< the window on the left
-    std::uint32_t target;  ///< the door that is got through, or what stops sight
+    std::uint32_t target;  ///< the portal that is got through, or what stops sight
 };
 
 /// A chain of windows, counter-clockwise, and those of them that wait their turn, first come first
@@ -79,43 +79,47 @@ class Windows {
     State s_{windows_here, queue_here, kHere - 1, 0, 0, 0};
 };
 
-/// One look in a large mesh, in which nobody can predict which way sight goes next: a processor
+/// One query in a large mesh, in which nobody can predict which way sight goes next: a processor
 /// that guesses wrong loses more time than the step takes. So all windows go on in turn, one
 /// triangle each, without branches: the steps do not depend on each other and overlap. What is seen
-/// is the same as what Look finds, to the last bit.
+/// is the same as what Expansion finds, to the last bit.
 class BreadthFirst {
   public:
     using Index = std::uint32_t;
 
-    /// \param look turns and stops are left to it
-    BreadthFirst(const Door* doors, Point2 viewpoint, double farthest, Look<false, false>& look)
-        : doors_(doors), viewpoint_(viewpoint), sure_(errorOfTurns(farthest)), look_(look) {}
+    /// \param search turns and stops are left to it
+    BreadthFirst(const Portal* portals, Point2 viewpoint, double farthest,
+                 Expansion<false, false>& search)
+        : portals_(portals),
+          viewpoint_(viewpoint),
+          sure_(errorOfTurns(farthest)),
+          search_(search) {}
 
-    [[nodiscard]] double turn(Index a, Index b) const { return look_.turn(a, b); }
+    [[nodiscard]] double turn(Index a, Index b) const { return search_.turn(a, b); }
     /// Through an edge of a triangle that holds the viewpoint. Edges follow each other
     /// counter-clockwise.
     void throughEdge(Index edge) {
-        const Index target = doors_[beforeOf(edge)].right;
-        windows_.append({look_.wayTo(nextOf(edge)), nextOf(edge), 0, target});
-        if (isDoor(target) != 0) windows_.wait(windows_.count() - 1);
+        const Index target = portals_[beforeOf(edge)].right;
+        windows_.append({search_.wayTo(nextOf(edge)), nextOf(edge), 0, target});
+        if (isPortal(target) != 0) windows_.wait(windows_.count() - 1);
         left_corner_ = beforeOf(edge);
     }
     /// Looks through all edges that were named, and writes what is seen.
     void run() {
-        windows_.append({look_.wayTo(left_corner_), left_corner_, 0, Door::kFree});
+        windows_.append({search_.wayTo(left_corner_), left_corner_, 0, Portal::kFree});
         const Index end = windows_.count() - 1;
         expand();
         for (Index i = 0; i != end;) {
             const Window& window = windows_[i];
             i = window.next;
-            look_.stopAt(window.target, window.right, windows_[i].right);
+            search_.stopAt(window.target, window.right, windows_[i].right);
         }
     }
 
   private:
     /// 1 or 0.
-    static Index isDoor(Index target) { return target >> 31 ^ 1; }
-    static_assert(Door::kBlocked == Index{1} << 31 && Door::kFree >> 31 == 1);
+    static Index isPortal(Index target) { return target >> 31 ^ 1; }
+    static_assert(Portal::kBlocked == Index{1} << 31 && Portal::kFree >> 31 == 1);
 
     template <Index kBatch>
     void advance(Windows::State& s) const;
@@ -135,10 +139,10 @@ class BreadthFirst {
         windows_.setState(s);
     }
 
-    const Door* doors_;
+    const Portal* portals_;
     Point2 viewpoint_;
     double sure_;  // no cross product of two ways is wrong by more
-    Look<false, false>& look_;
+    Expansion<false, false>& search_;
     Index left_corner_ = 0;  // of the last window
     Windows windows_;
 };
@@ -157,9 +161,9 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
         entered[i] = window.target;
         next[i] = window.next;
         const Window& beyond = s.windows[next[i]];
-        const Door& door = doors_[entered[i]];
-        x[i] = door.corner.x - viewpoint_.x;
-        y[i] = door.corner.y - viewpoint_.y;
+        const Portal& portal = portals_[entered[i]];
+        x[i] = portal.corner.x - viewpoint_.x;
+        y[i] = portal.corner.y - viewpoint_.y;
         from_right[i] = window.right.x * y[i] - window.right.y * x[i];
         from_left[i] = beyond.right.x * y[i] - beyond.right.y * x[i];
         is_sure &= std::min(std::abs(from_right[i]), std::abs(from_left[i])) > sure_;
@@ -167,18 +171,18 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
     s.head += kBatch;
     if (!is_sure) [[unlikely]] {
         for (Index i = 0; i < kBatch; ++i) {
-            from_right[i] = look_.turn(s.windows[here[i]].corner, entered[i]);
-            from_left[i] = look_.turn(s.windows[next[i]].corner, entered[i]);
+            from_right[i] = search_.turn(s.windows[here[i]].corner, entered[i]);
+            from_left[i] = search_.turn(s.windows[next[i]].corner, entered[i]);
         }
     }
 #pragma GCC unroll 4
     for (Index i = 0; i < kBatch; ++i) {
-        const Door& door = doors_[entered[i]];
+        const Portal& portal = portals_[entered[i]];
         const Index goes_right = from_right[i] > 0, goes_left = from_left[i] < 0;
         const Index splits = goes_right & goes_left;
-        const Index left = door.left, target = left ^ ((left ^ door.right) & -goes_right);
-        prefetch(doors_, target);
-        prefetch(doors_, left);
+        const Index left = portal.left, target = left ^ ((left ^ portal.right) & -goes_right);
+        prefetch(portals_, target);
+        prefetch(portals_, left);
         Window& window = s.windows[here[i]];
         window.target = target;
         window.next = next[i] ^ ((next[i] ^ s.count) & -splits);
@@ -189,9 +193,9 @@ ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
         spare.next = next[i];
         spare.target = left;
         s.queue[s.tail & s.mask] = here[i];
-        s.tail += isDoor(target);
+        s.tail += isPortal(target);
         s.queue[s.tail & s.mask] = s.count;
-        s.tail += splits & isDoor(left);
+        s.tail += splits & isPortal(left);
         s.count += splits;
     }
 }

@@ -27,9 +27,9 @@ TEST(VisibilityBreadth, MoreWindowsThanFitAtFirst) {
     std::mt19937_64 random(1);
     for (int i = 0; i < 20; ++i) {
         const VisibleRegion region =
-            map.look(test::randomIn(random, {{-7, -7}, {7, 7}}), kInfinity);
+            map.query(test::randomIn(random, {{-7, -7}, {7, 7}}), kInfinity);
         EXPECT_NEAR(area(region), wanted, 1e-9 * wanted);
-        EXPECT_EQ(region.ends.size(), std::size_t{kCorners});
+        EXPECT_EQ(region.edges.size(), std::size_t{kCorners});
     }
 }
 
@@ -40,17 +40,17 @@ TEST(VisibilityBreadth, SameAsOneWayAfterTheOther) {
     int compared = 0;
     for (int i = 0; i < 2000; ++i) {
         const Point2 p = test::randomIn(random, test::boxOf(lines));
-        const VisibleRegion in_turn = map.look(p, kInfinity);
+        const VisibleRegion in_turn = map.query(p, kInfinity);
         // A range that ends beyond all that is seen, but not beyond all lines.
         double farthest = 0;
-        for (const SightEnd& end : in_turn.ends)
+        for (const SightEdge& end : in_turn.edges)
             farthest = std::max({farthest, distance(p, end.from), distance(p, end.to)});
-        const VisibleRegion bounded = map.look(p, 1.001 * farthest);
+        const VisibleRegion bounded = map.query(p, 1.001 * farthest);
         if (farthest > 25) continue;
         ++compared;
-        ASSERT_EQ(in_turn.ends.size(), bounded.ends.size());
-        for (std::size_t k = 0; k < in_turn.ends.size(); ++k) {
-            const SightEnd &a = in_turn.ends[k], &b = bounded.ends[k];
+        ASSERT_EQ(in_turn.edges.size(), bounded.edges.size());
+        for (std::size_t k = 0; k < in_turn.edges.size(); ++k) {
+            const SightEdge &a = in_turn.edges[k], &b = bounded.edges[k];
             EXPECT_TRUE(a.from == b.from && a.to == b.to && a.line == b.line) << i << ' ' << k;
         }
     }

@@ -27,17 +27,17 @@ using test::box;
 using test::edgesOf;
 using test::expectSound;
 using test::kInfinity;
-using test::look;
 using test::nearest;
+using test::query;
 
 TEST(Visibility, FarFromTheOrigin) {
     // A room at 10 000 km, where a double is 2 nm.
     const std::vector<Segment2> room = edgesOf(box(1e7, -1e7, 1e7 + 4, -1e7 + 3));
     const VisibilityMap map(room);
-    EXPECT_NEAR(area(map.look({1e7 + 1, -1e7 + 1}, kInfinity)), 12, 1e-12);
-    EXPECT_NEAR(area(map.look({1e7 + 2, -1e7 + 1.5}, 1)), pi, 1e-8);
-    EXPECT_NEAR(area(map.look({1e7, -1e7 + 1.5}, 1)), pi, 1e-8);
-    expectSound(map.look({1e7 + 1, -1e7 + 1}, 2), 1e-8);
+    EXPECT_NEAR(area(map.query({1e7 + 1, -1e7 + 1}, kInfinity)), 12, 1e-12);
+    EXPECT_NEAR(area(map.query({1e7 + 2, -1e7 + 1.5}, 1)), pi, 1e-8);
+    EXPECT_NEAR(area(map.query({1e7, -1e7 + 1.5}, 1)), pi, 1e-8);
+    expectSound(map.query({1e7 + 1, -1e7 + 1}, 2), 1e-8);
 }
 
 TEST(Visibility, TinyRooms) {
@@ -66,7 +66,7 @@ TEST(Visibility, EveryFiniteNumberHasAnAnswer) {
         for (int i = 0; i < 100; ++i) {
             const Point2 p{any(), any()};
             const double range = i % 5 == 0 ? kInfinity : std::abs(any());
-            const double seen = area(map.look(p, range));
+            const double seen = area(map.query(p, range));
             EXPECT_TRUE(std::isfinite(seen) && seen >= 0)
                 << p.x << ',' << p.y << ' ' << range << " sees " << seen;
         }
@@ -86,9 +86,9 @@ TEST(Visibility, HeapsOfCollinearAndTouchingLines) {
         for (int i = 0; i < 40; ++i) {
             const Point2 p =
                 i % 2 == 0 ? Point2{any(), any()} : Point2{any() + any() / 8, any() + any() / 16};
-            for (const double range : {0.7, 3.0}) expectSound(map.look(p, range), 1e-7);
-            if (nearest(lines, p) > kSightContact) {
-                EXPECT_NEAR(area(map.look(p, 3)), areaByRays(lines, p, 3, 3000), 0.15)
+            for (const double range : {0.7, 3.0}) expectSound(map.query(p, range), 1e-7);
+            if (nearest(lines, p) > kRayEpsilon) {
+                EXPECT_NEAR(area(map.query(p, 3)), areaByRays(lines, p, 3, 3000), 0.15)
                     << "round " << round << " from " << p.x << ',' << p.y;
             }
         }
@@ -103,8 +103,8 @@ TEST(Visibility, DeepCombs) {
         lines.push_back({{double(i), 1}, {i + 0.5, 1 + 1.0 * (1 + i % 3)}});
     const VisibilityMap map(lines);
     for (const Point2 p : {Point2{-5, 0}, Point2{kTeeth / 2.0, -3000}}) {
-        const VisibleRegion region = map.look(p, 1e5);
-        EXPECT_GT(region.ends.size(), 1000U);
+        const VisibleRegion region = map.query(p, 1e5);
+        EXPECT_GT(region.edges.size(), 1000U);
         expectSound(region);
     }
 }
@@ -121,12 +121,12 @@ TEST(Visibility, LinesThatCrossByTheMillionAreRefused) {
 TEST(Visibility, RegionsAreUsedAgain) {
     const std::vector<Segment2> room = edgesOf(box(0, 0, 4, 4));
     const VisibilityMap map(room);
-    VisibleRegion region = map.look({1, 1}, 2);
-    const SightEnd* const memory = region.ends.data();
-    map.look({2, 2}, kInfinity, region);
-    EXPECT_EQ(region.ends.data(), memory);
+    VisibleRegion region = map.query({1, 1}, 2);
+    const SightEdge* const memory = region.edges.data();
+    map.query({2, 2}, kInfinity, region);
+    EXPECT_EQ(region.edges.data(), memory);
     EXPECT_DOUBLE_EQ(area(region), 16);
-    map.look({0, 0}, 1, region);
+    map.query({0, 0}, 1, region);
     EXPECT_NEAR(area(region), pi, 1e-12);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // GCC would load as one what was just stored as two, and processors wait for that: a sixth of the
-// time of a look.
+// time of a search.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")
 #endif
@@ -42,44 +42,44 @@ double farthestIn(const Box2& box, Point2 p) {
 }
 
 /// From a viewpoint at a corner: through the edges opposite to it of all triangles there.
-template <typename Look>
-void lookAroundCorner(const SightMesh& mesh, Index corner, Look& look) {
+template <typename Search>
+void expandAroundCorner(const SightMesh& mesh, Index corner, Search& search) {
     const Index first = corner;
     do {
-        look.throughEdge(corner);
-        const Index behind = mesh.doors[nextOf(corner)].behind;
-        if (behind == Door::kFree) return;
+        search.throughEdge(corner);
+        const Index behind = mesh.portals[nextOf(corner)].behind;
+        if (behind == Portal::kFree) return;
         corner = nextOf(behind);
     } while (corner != first);
 }
 
 /// From a viewpoint in a triangle, in it or on its boundary.
-template <typename Look>
-void lookAround(const SightMesh& mesh, Index triangle, Look& look) {
+template <typename Search>
+void expandAround(const SightMesh& mesh, Index triangle, Search& search) {
     std::array<bool, 3> is_on;
     for (Index i = 0; i < 3; ++i)
-        is_on[i] = !(look.turn(3 * triangle + (i + 1) % 3, 3 * triangle + (i + 2) % 3) > 0);
+        is_on[i] = !(search.turn(3 * triangle + (i + 1) % 3, 3 * triangle + (i + 2) % 3) > 0);
     for (Index i = 0; i < 3; ++i) {
         const Index edge = 3 * triangle + i;
         if (is_on[(i + 1) % 3] && is_on[(i + 2) % 3]) {
-            lookAroundCorner(mesh, edge, look);
+            expandAroundCorner(mesh, edge, search);
             return;
         }
         if (!is_on[i]) continue;
-        const Index behind = mesh.doors[edge].behind;
-        if (is_on[(i + 1) % 3] || is_on[(i + 2) % 3] || behind == Door::kFree) continue;
+        const Index behind = mesh.portals[edge].behind;
+        if (is_on[(i + 1) % 3] || is_on[(i + 2) % 3] || behind == Portal::kFree) continue;
         for (const Index side : {edge, behind}) {
-            look.throughEdge(nextOf(side));
-            look.throughEdge(beforeOf(side));
+            search.throughEdge(nextOf(side));
+            search.throughEdge(beforeOf(side));
         }
         return;
     }
-    for (Index i = 0; i < 3; ++i) look.throughEdge(3 * triangle + i);
+    for (Index i = 0; i < 3; ++i) search.throughEdge(3 * triangle + i);
 }
 
 /// From a viewpoint outside of the box: through the sides that face it, and past them.
-template <typename Look>
-void lookFromOutside(const SightMesh& mesh, Point2 viewpoint, Look& look) {
+template <typename Search>
+void expandFromOutside(const SightMesh& mesh, Point2 viewpoint, Search& search) {
     const Box2& box = mesh.box;
     const std::array<bool, 4> faces{viewpoint.y<box.low.y, viewpoint.x> box.high.x,
                                     viewpoint.y > box.high.y, viewpoint.x < box.low.x};
@@ -88,24 +88,24 @@ void lookFromOutside(const SightMesh& mesh, Point2 viewpoint, Look& look) {
     std::size_t first = 0;
     while (!faces[first] || faces[(first + 1) % 4]) ++first;
     const std::size_t last = faces[(first + 3) % 4] ? (first + 3) % 4 : first;
-    look.throughDoor(mesh.in[first]);
-    if (last != first) look.throughDoor(mesh.in[last]);
-    look.run();
-    const Vec2 begin = look.wayTo(nextOf(mesh.in[last])),
-               end = look.wayTo(beforeOf(mesh.in[first]));
+    search.throughPortal(mesh.in[first]);
+    if (last != first) search.throughPortal(mesh.in[last]);
+    search.run();
+    const Vec2 begin = search.wayTo(nextOf(mesh.in[last])),
+               end = search.wayTo(beforeOf(mesh.in[first]));
     const Vec2 after = perpendicular(begin), before = -perpendicular(end);
-    look.out().addFree(begin, after);
-    look.out().addFree(after, before);
-    look.out().addFree(before, end);
+    search.out().addFree(begin, after);
+    search.out().addFree(after, before);
+    search.out().addFree(before, end);
 }
 
-/// False only if nothing within kSightContact of p lies outside of its triangle or on its boundary.
+/// False only if nothing within kRayEpsilon of p lies outside of its triangle or on its boundary.
 bool isNearEdge(const SightMesh& mesh, Point2 p, Index triangle) {
-    const std::size_t door = std::size_t{3} * triangle;
-    const Vec2 a = mesh.doors[door].corner - p, b = mesh.doors[door + 1].corner - p;
-    const Vec2 c = mesh.doors[door + 2].corner - p;
+    const std::size_t portal = std::size_t{3} * triangle;
+    const Vec2 a = mesh.portals[portal].corner - p, b = mesh.portals[portal + 1].corner - p;
+    const Vec2 c = mesh.portals[portal + 2].corner - p;
     const auto is_near = [](Vec2 from, Vec2 to) {
-        return square(cross(from, to)) <= square(kSightContact) * squaredLength(to - from);
+        return square(cross(from, to)) <= square(kRayEpsilon) * squaredLength(to - from);
     };
     return is_near(a, b) || is_near(b, c) || is_near(c, a);
 }
@@ -124,42 +124,42 @@ Point2 offBoundary(const Box2& box, Point2 p) {
     return {move(p.x, box.low.x, box.high.x), move(p.y, box.low.y, box.high.y)};
 }
 
-/// A look from inside of the box.
-struct Task {
+/// A query from inside of the box.
+struct Query {
     const SightMesh& mesh;
     Point2 viewpoint;
     Index triangle;  ///< with the viewpoint
     double range;
     double farthest;  ///< no corner is farther from the viewpoint
     std::span<const Index> transparent;
-    std::vector<SightEnd>& ends;
+    std::vector<SightEdge>& edges;
 };
 
-template <bool kBounded, bool kContact>
-ISPACE_INLINE void lookInside(const Task& task) {
-    Look<kBounded, kContact> look(task.mesh.doors.data(), task.viewpoint, task.range, task.farthest,
-                                  task.transparent, task.ends);
-    lookAround(task.mesh, task.triangle, look);
-    look.run();
-    look.out().finish();
+template <bool kBounded, bool kTouches>
+ISPACE_INLINE void queryInside(const Query& query) {
+    Expansion<kBounded, kTouches> search(query.mesh.portals.data(), query.viewpoint, query.range,
+                                         query.farthest, query.transparent, query.edges);
+    expandAround(query.mesh, query.triangle, search);
+    search.run();
+    search.out().finish();
 }
 
-/// The same as Look finds. Without clones: they gain nothing here.
-void lookInBreadth(const Task& task) {
-    Look<false, false> look(task.mesh.doors.data(), task.viewpoint, task.range, task.farthest, {},
-                            task.ends);
-    BreadthFirst breadth(task.mesh.doors.data(), task.viewpoint, task.farthest, look);
-    lookAround(task.mesh, task.triangle, breadth);
+/// The same as Expansion finds. Without clones: they gain nothing here.
+void queryInBreadth(const Query& query) {
+    Expansion<false, false> search(query.mesh.portals.data(), query.viewpoint, query.range,
+                                   query.farthest, {}, query.edges);
+    BreadthFirst breadth(query.mesh.portals.data(), query.viewpoint, query.farthest, search);
+    expandAround(query.mesh, query.triangle, breadth);
     breadth.run();
-    look.out().finish();
+    search.out().finish();
 }
 
-// What most looks are.
-ISPACE_SIMD_CLONES [[gnu::flatten]] void lookFreely(const Task& task) {
-    lookInside<false, false>(task);
+// What most queries are.
+ISPACE_SIMD_CLONES [[gnu::flatten]] void queryFreely(const Query& query) {
+    queryInside<false, false>(query);
 }
-ISPACE_SIMD_CLONES [[gnu::flatten]] void lookBounded(const Task& task) {
-    lookInside<true, false>(task);
+ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
+    queryInside<true, false>(query);
 }
 
 }  // namespace
@@ -177,35 +177,35 @@ VisibilityMap::VisibilityMap(VisibilityMap&&) noexcept = default;
 VisibilityMap& VisibilityMap::operator=(VisibilityMap&&) noexcept = default;
 VisibilityMap::~VisibilityMap() = default;
 
-void VisibilityMap::look(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    lookPastLines(viewpoint, max_range, region);
+void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
+    queryLines(viewpoint, max_range, region);
     if (!data_->rounds.empty()) data_->rounds.cut(region);
 }
 
-void VisibilityMap::lookPastLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
+void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
     const SightMesh& mesh = data_->mesh;
     viewpoint = withinSight(viewpoint);
     region.viewpoint = viewpoint;
     region.max_range = max_range;
     region.is_whole = true;
-    region.ends.clear();
+    region.edges.clear();
     if (!(max_range > 0)) return;
 
     const bool inside = isStrictlyInside(mesh.box, viewpoint);
     if (!inside) viewpoint = offBoundary(mesh.box, viewpoint);
     Index triangle = 0;
-    bool contact = false;
-    std::optional<ContactFinder> finder;
+    bool touches = false;
+    std::optional<TouchedLines> finder;
     std::span<const Index> transparent;
     if (inside) {
         triangle = mesh.locate(viewpoint);
         if (isNearEdge(mesh, viewpoint, triangle)) {
             finder.emplace(mesh);
             finder->gather(viewpoint, triangle);
-            contact = finder->found();
+            touches = finder->found();
         }
     }
-    if (contact) {
+    if (touches) {
         viewpoint = finder->moved(viewpoint);
         triangle = mesh.locateFrom(viewpoint, triangle);
         finder->gather(viewpoint, triangle);
@@ -216,30 +216,31 @@ void VisibilityMap::lookPastLines(Point2 viewpoint, double max_range, VisibleReg
         std::min(max_range, std::isinf(max_range) ? std::max(farthestIn(mesh.box, viewpoint),
                                                              data_->rounds.farthest(viewpoint))
                                                   : kFarthestSight);
-    if (contact) region.viewpoint = viewpoint;
+    if (touches) region.viewpoint = viewpoint;
     region.max_range = range;
     const bool bounded = range < farthestIn(mesh.cells_box, viewpoint);
     const double farthest = farthestIn(mesh.box, viewpoint);
     if (!inside) {
-        Look<true, false> look(mesh.doors.data(), viewpoint, range, farthest, {}, region.ends);
-        lookFromOutside(mesh, viewpoint, look);
-        look.out().finish();
+        Expansion<true, false> search(mesh.portals.data(), viewpoint, range, farthest, {},
+                                      region.edges);
+        expandFromOutside(mesh, viewpoint, search);
+        search.out().finish();
         return;
     }
-    const Task task{mesh, viewpoint, triangle, range, farthest, transparent, region.ends};
-    if (contact)
-        lookInside<true, true>(task);
+    const Query query{mesh, viewpoint, triangle, range, farthest, transparent, region.edges};
+    if (touches)
+        queryInside<true, true>(query);
     else if (bounded)
-        lookBounded(task);
-    else if (mesh.doors.size() < 3 * kManyTriangles)
-        lookFreely(task);
+        queryBounded(query);
+    else if (mesh.portals.size() < 3 * kManyTriangles)
+        queryFreely(query);
     else
-        lookInBreadth(task);
+        queryInBreadth(query);
 }
 
-VisibleRegion VisibilityMap::look(Point2 viewpoint, double max_range) const {
+VisibleRegion VisibilityMap::query(Point2 viewpoint, double max_range) const {
     VisibleRegion region;
-    look(viewpoint, max_range, region);
+    query(viewpoint, max_range, region);
     return region;
 }
 

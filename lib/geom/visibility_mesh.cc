@@ -164,33 +164,33 @@ SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
     const Delaunay net = triangulate(lines, box);
     const std::vector<Delaunay::Face_handle> faces = numberedFaces(net, box);
     const LineFinder finder(lines, names);
-    doors.resize(3 * faces.size());
-    const auto door_of = [](const Delaunay::Face_handle& face, int i) {
+    portals.resize(3 * faces.size());
+    const auto portal_of = [](const Delaunay::Face_handle& face, int i) {
         return 3 * face->info() + static_cast<Index>(i);
     };
     for (const auto& face : faces) {
         for (int i = 0; i < 3; ++i) {
-            const Index edge = door_of(face, i);
+            const Index edge = portal_of(face, i);
             const auto next = face->neighbor(i);
             const Point2 from = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::ccw(i)));
             const Point2 to = pointOf(face->vertex(CGAL::Triangulation_cw_ccw_2::cw(i)));
-            Index target = Door::kFree;
+            Index target = Portal::kFree;
             if (net.is_infinite(next)) {
                 // Counter-clockwise: along the lower side in x, along the right one in y.
                 const bool level = from.y == to.y;
                 in[level ? (to.x > from.x ? 0U : 2U) : (to.y > from.y ? 1U : 3U)] = edge;
             } else {
-                target = door_of(next, next->index(face));
+                target = portal_of(next, next->index(face));
             }
-            doors[edge].corner = pointOf(face->vertex(i));
-            doors[edge].behind = target;
+            portals[edge].corner = pointOf(face->vertex(i));
+            portals[edge].behind = target;
             if (face->is_constrained(i)) {
                 // Once for both sides.
-                doors[edge].line = target < edge ? doors[target].line : finder.find(from, to);
-                target = Door::kBlocked | edge;
+                portals[edge].line = target < edge ? portals[target].line : finder.find(from, to);
+                target = Portal::kBlocked | edge;
             }
-            doors[beforeOf(edge)].right = target;
-            doors[nextOf(edge)].left = target;
+            portals[beforeOf(edge)].right = target;
+            portals[nextOf(edge)].left = target;
         }
     }
     makeCells(faces.size());
@@ -235,26 +235,26 @@ void SightMesh::makeCells(std::size_t count) {
 Index SightMesh::locateFrom(Point2 p, Index triangle) const {
     // A walk towards p may go in circles where lines keep triangles from being Delaunay: after some
     // steps it takes edges in random order, and at last every triangle has its turn.
-    constexpr int kStraightSteps = 200, kMostSteps = 100'000;
+    constexpr int kStraightSteps = 200, kMaxSteps = 100'000;
     const auto is_right = [&](Index edge) {
-        const Point2 a = doors[nextOf(edge)].corner, b = doors[beforeOf(edge)].corner;
+        const Point2 a = portals[nextOf(edge)].corner, b = portals[beforeOf(edge)].corner;
         const double turn = surelyTurns(a - p, b - p);
         if (turn != 0) return turn < 0;
         return orientation(p, a, b) == Turn::Right;
     };
-    std::uint32_t random = 1, came = Door::kFree;
-    for (int step = 0; step < kMostSteps; ++step) {
+    std::uint32_t random = 1, came = Portal::kFree;
+    for (int step = 0; step < kMaxSteps; ++step) {
         if (step > kStraightSteps) random = random * 1664525U + 1013904223U;
-        Index next = Door::kFree;
-        for (Index k = 0; k < 3 && next == Door::kFree; ++k) {
+        Index next = Portal::kFree;
+        for (Index k = 0; k < 3 && next == Portal::kFree; ++k) {
             const Index edge = 3 * triangle + (k + (random >> 16)) % 3;
-            if (edge != came && is_right(edge)) next = doors[edge].behind;
+            if (edge != came && is_right(edge)) next = portals[edge].behind;
         }
-        if (next == Door::kFree) return triangle;
+        if (next == Portal::kFree) return triangle;
         came = next;
         triangle = next / 3;
     }
-    for (triangle = 0; std::size_t{3} * triangle < doors.size(); ++triangle)
+    for (triangle = 0; std::size_t{3} * triangle < portals.size(); ++triangle)
         if (!is_right(3 * triangle) && !is_right(3 * triangle + 1) && !is_right(3 * triangle + 2))
             return triangle;
     return 0;
@@ -266,35 +266,35 @@ using Index = std::uint32_t;
 
 double squaredLength(Vec2 v) { return dot(v, v); }
 
-constexpr double kSquaredContact = kSightContact * kSightContact;
+constexpr double kSquaredEpsilon = kRayEpsilon * kRayEpsilon;
 
 }  // namespace
 
-void ContactFinder::gather(Point2 p, Index triangle) {
+void TouchedLines::gather(Point2 p, Index triangle) {
     lines_.clear();
     triangles_.clear();
     many_.clear();
     add(triangle);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
         for (Index edge = 3 * triangles_[i], k = 0; k < 3; ++k, ++edge) {
-            if (squaredDistance(p, edge) > kSquaredContact) continue;
+            if (squaredDistance(p, edge) > kSquaredEpsilon) continue;
             if (mesh_.isLine(edge)) lines_.push_back(edge);
-            const Index behind = mesh_.doors[edge].behind;
-            if (behind != Door::kFree) add(behind / 3);
+            const Index behind = mesh_.portals[edge].behind;
+            if (behind != Portal::kFree) add(behind / 3);
         }
     }
 }
 
-Point2 ContactFinder::moved(Point2 p) const {
-    double least = kSquaredContact;
+Point2 TouchedLines::moved(Point2 p) const {
+    double least = kSquaredEpsilon;
     Point2 nearest = p;
     bool is_vertex = false;
     for (const Index edge : lines_) {
         for (const Index end : {nextOf(edge), beforeOf(edge)}) {
-            const double squared = squaredLength(mesh_.doors[end].corner - p);
+            const double squared = squaredLength(mesh_.portals[end].corner - p);
             if (!(squared <= least)) continue;
             least = squared;
-            nearest = mesh_.doors[end].corner;
+            nearest = mesh_.portals[end].corner;
             is_vertex = true;
         }
     }
@@ -309,23 +309,23 @@ Point2 ContactFinder::moved(Point2 p) const {
     return nearest;
 }
 
-std::span<const Index> ContactFinder::bothSides() {
+std::span<const Index> TouchedLines::bothSides() {
     const std::size_t count = lines_.size();
-    for (std::size_t i = 0; i < count; ++i) lines_.push_back(mesh_.doors[lines_[i]].behind);
+    for (std::size_t i = 0; i < count; ++i) lines_.push_back(mesh_.portals[lines_[i]].behind);
     std::sort(lines_.begin(), lines_.end());
     lines_.erase(std::unique(lines_.begin(), lines_.end()), lines_.end());
     return lines_;
 }
 
-Segment2 ContactFinder::wallOf(Index edge) const {
-    return {mesh_.doors[nextOf(edge)].corner, mesh_.doors[beforeOf(edge)].corner};
+Segment2 TouchedLines::wallOf(Index edge) const {
+    return {mesh_.portals[nextOf(edge)].corner, mesh_.portals[beforeOf(edge)].corner};
 }
 
-double ContactFinder::squaredDistance(Point2 p, Index edge) const {
+double TouchedLines::squaredDistance(Point2 p, Index edge) const {
     return squaredLength(nearestPoint(wallOf(edge), p) - p);
 }
 
-void ContactFinder::add(Index triangle) {
+void TouchedLines::add(Index triangle) {
     // Seldom more than a few.
     constexpr std::size_t kFew = 32;
     if (triangles_.size() < kFew) {

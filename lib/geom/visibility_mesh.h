@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangulation that VisibilityMap looks through; private to it.
-// Private to VisibilityMap.
+// Private to VisibilityMap: the triangulation that sight passes through.
 #pragma once
 
 #include <algorithm>
@@ -19,16 +18,17 @@
 namespace ispace {
 
 /// Corner and edge i of triangle t, at index 3 t + i: the edge lies opposite to the corner, corners
-/// are counter-clockwise. Also the door by which sight enters the triangle through that edge: from
-/// there the corner lies straight ahead, corner i + 2 on the right and corner i + 1 on the left.
+/// are counter-clockwise. Also the portal by which sight enters the triangle through that edge:
+/// from there the corner lies straight ahead, corner i + 2 on the right and corner i + 1 on the
+/// left.
 ///
 /// 32 bytes and aligned: all that one step of sight needs is one half of a cache line.
-struct alignas(32) Door {
+struct alignas(32) Portal {
     Point2 corner;
-    /// Where sight gets through the edges right (i + 1) and left (i + 2) of the corner: a door, or
-    /// that edge with kBlocked set if it is of a line, or kFree.
+    /// Where sight gets through the edges right (i + 1) and left (i + 2) of the corner: a portal,
+    /// or that edge with kBlocked set if it is of a line, or kFree.
     std::uint32_t right = 0, left = 0;
-    /// The door on the other side of edge i, be it of a line or not, or kFree.
+    /// The portal on the other side of edge i, be it of a line or not, or kFree.
     std::uint32_t behind = 0;
     /// Of which line edge i is, if of any.
     std::uint32_t line = 0;
@@ -47,18 +47,18 @@ inline Point2 withinSight(Point2 p) {
 }
 
 /// The next and the one before of the same triangle, counter-clockwise. Without branches.
-inline std::uint32_t nextOf(std::uint32_t door) {
-    return door + 1 - 3 * static_cast<std::uint32_t>(door % 3 == 2);
+inline std::uint32_t nextOf(std::uint32_t portal) {
+    return portal + 1 - 3 * static_cast<std::uint32_t>(portal % 3 == 2);
 }
-inline std::uint32_t beforeOf(std::uint32_t door) {
-    return door - 1 + 3 * static_cast<std::uint32_t>(door % 3 == 0);
+inline std::uint32_t beforeOf(std::uint32_t portal) {
+    return portal - 1 + 3 * static_cast<std::uint32_t>(portal % 3 == 0);
 }
 
 /// Lines, and a box around them that is none, triangulated: sight beyond the box is free.
 struct SightMesh {
-    std::vector<Door> doors;
+    std::vector<Portal> portals;
     Box2 box;                         ///< of all triangles; lines lie strictly inside
-    std::array<std::uint32_t, 4> in;  ///< doors through its lower, right, upper and left side
+    std::array<std::uint32_t, 4> in;  ///< portals through its lower, right, upper and left side
 
     // A triangle near each of these cells over the lines.
     Box2 cells_box;
@@ -69,13 +69,13 @@ struct SightMesh {
     /// \throws FormatError (without a place) for lines that cross by the million
     explicit SightMesh(std::span<const Segment2> lines);
 
-    /// What stops sight from inside at an edge, or the door behind it.
+    /// What stops sight from inside at an edge, or the portal behind it.
     [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {
-        return doors[beforeOf(edge)].right;
+        return portals[beforeOf(edge)].right;
     }
     [[nodiscard]] bool isLine(std::uint32_t edge) const {
         const std::uint32_t target = targetOf(edge);
-        return target >= Door::kBlocked && target != Door::kFree;
+        return target >= Portal::kBlocked && target != Portal::kFree;
     }
     /// A triangle with p inside or on its boundary. \pre p strictly inside the box
     [[nodiscard]] std::uint32_t locate(Point2 p) const { return locateFrom(p, cells[cellOf(p)]); }
@@ -107,11 +107,11 @@ inline double errorOfTurns(double length) {
 }
 
 /// The edges of lines around a viewpoint, and where it moves because of them.
-class ContactFinder {
+class TouchedLines {
   public:
-    explicit ContactFinder(const SightMesh& mesh) : mesh_(mesh) {}
+    explicit TouchedLines(const SightMesh& mesh) : mesh_(mesh) {}
 
-    /// Finds the edges of lines within kSightContact of p. \pre p lies in the triangle
+    /// Finds the edges of lines within kRayEpsilon of p. \pre p lies in the triangle
     void gather(Point2 p, std::uint32_t triangle);
     [[nodiscard]] bool found() const { return !lines_.empty(); }
     /// The nearest vertex of those lines that is near enough, else the nearest point of a line.

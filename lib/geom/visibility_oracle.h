@@ -27,7 +27,7 @@ class VisibilityOracle {
     /// Number of the face that a point lies strictly in.
     [[nodiscard]] std::optional<std::size_t> faceOf(Point2 p);
     /// What is seen from a point in a face, its corners as doubles; their sum.
-    [[nodiscard]] Vec2 look(Point2 p, std::size_t face) const;
+    [[nodiscard]] Vec2 query(Point2 p, std::size_t face) const;
 
   private:
     struct Data;

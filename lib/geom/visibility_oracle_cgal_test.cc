@@ -99,7 +99,7 @@ std::optional<std::size_t> VisibilityOracle::faceOf(Point2 p) {
     return data_->faces.size() - 1;
 }
 
-Vec2 VisibilityOracle::look(Point2 p, std::size_t face) const {
+Vec2 VisibilityOracle::query(Point2 p, std::size_t face) const {
     data_->out.clear();
     data_->visibility.compute_visibility(exact(p), data_->faces[face], data_->out);
     Vec2 sum;

@@ -49,7 +49,7 @@ TEST(VisibilityOracle, FromRandomPlaces) {
         for (int i = 0; i < c.looks; ++i) {
             const Point2 p = test::randomIn(random, box);
             const double wanted = oracle.areaFrom(p);
-            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted)
+            EXPECT_NEAR(area(map.query(p, kInfinity)), wanted, 1e-9 * wanted)
                 << "plan " << c.seed << " from " << p.x << ", " << p.y;
         }
     }
@@ -64,7 +64,7 @@ TEST(VisibilityOracle, FromVertices) {
         for (std::size_t i = 0; i < lines.size(); i += step) {
             const Point2 p = lines[i].a;
             const double wanted = oracle.areaFrom(p);
-            const VisibleRegion region = map.look(p, kInfinity);
+            const VisibleRegion region = map.query(p, kInfinity);
             EXPECT_EQ(region.viewpoint, p);
             EXPECT_NEAR(area(region), wanted, 1e-9 * wanted)
                 << "plan " << c.seed << " from vertex " << i;
@@ -81,7 +81,7 @@ TEST(VisibilityOracle, FromWalls) {
         for (std::size_t i = 0; i < lines.size(); i += step) {
             Point2 p;
             const double wanted = oracle.areaFrom(lines[i], 1 + static_cast<int>(i) % 7, p);
-            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted)
+            EXPECT_NEAR(area(map.query(p, kInfinity)), wanted, 1e-9 * wanted)
                 << "plan " << c.seed << " from wall " << i;
         }
     }
@@ -101,11 +101,11 @@ TEST(VisibilityOracle, CrossingLines) {
         for (int i = 0; i < 60; ++i) {
             const Point2 p{place(random), place(random)};
             const auto touches = [p](const Segment2& line) {
-                return distance(p, line) <= kSightContact;
+                return distance(p, line) <= kRayEpsilon;
             };
             if (std::any_of(lines.begin(), lines.end(), touches)) continue;
             const double wanted = oracle.areaFrom(p);
-            EXPECT_NEAR(area(map.look(p, kInfinity)), wanted, 1e-9 * wanted) << "round " << round;
+            EXPECT_NEAR(area(map.query(p, kInfinity)), wanted, 1e-9 * wanted) << "round " << round;
         }
     }
 }

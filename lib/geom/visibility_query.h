@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to VisibilityMap.
-// Private to VisibilityMap.
 //
 // Triangular expansion: F. Bungiu, M. Hemmer, J. Hershberger, K. Huang, A. Kröller, Efficient
 // computation of visibility polygons, 2014. Windows are limited by vertices, never by points made
@@ -19,17 +18,17 @@
 
 namespace ispace {
 
-/// Collects what ends sight, counter-clockwise; inline, as it is most of what a look does besides
+/// Collects what ends sight, counter-clockwise; inline, as it is most of what a query does besides
 /// finding its way.
-class EndWriter {
+class EdgeWriter {
   public:
-    EndWriter(Point2 viewpoint, double range, std::vector<SightEnd>& ends)
-        : viewpoint_(viewpoint), range_(range), ends_(ends) {}
+    EdgeWriter(Point2 viewpoint, double range, std::vector<SightEdge>& edges)
+        : viewpoint_(viewpoint), range_(range), edges_(edges) {}
 
     ISPACE_INLINE void addLine(std::uint32_t line, Point2 from, Point2 to) {
         if (has_arc_) flushArc();
-        if (!ends_.empty()) {
-            SightEnd& last = ends_.back();
+        if (!edges_.empty()) {
+            SightEdge& last = edges_.back();
             if (last.line == line && last.to == from &&
                 cross(last.from - viewpoint_, to - viewpoint_) > 0) {
                 last.to = to;
@@ -37,7 +36,7 @@ class EndWriter {
             }
         }
         // Else it has no width that doubles can tell.
-        if (cross(from - viewpoint_, to - viewpoint_) > 0) ends_.push_back({from, to, line});
+        if (cross(from - viewpoint_, to - viewpoint_) > 0) edges_.push_back({from, to, line});
     }
 
     /// Nothing stops sight from one direction to another, less than a half turn on.
@@ -55,15 +54,15 @@ class EndWriter {
 
     void finish() {
         if (has_arc_) flushArc();
-        if (ends_.size() < 2) return;
-        SightEnd& first = ends_.front();
-        const SightEnd& last = ends_.back();
+        if (edges_.size() < 2) return;
+        SightEdge& first = edges_.front();
+        const SightEdge& last = edges_.back();
         if (first.line != last.line || last.to != first.from) return;
         const Vec2 from = last.from - viewpoint_, to = first.to - viewpoint_;
         if (!(cross(from, to) > 0)) return;
-        if (first.line == SightEnd::kArc && dot(from, to) < 0) return;
+        if (first.line == SightEdge::kArc && dot(from, to) < 0) return;
         first.from = last.from;
-        ends_.pop_back();
+        edges_.pop_back();
     }
 
   private:
@@ -75,7 +74,7 @@ class EndWriter {
     }
     void addArc(Vec2 from, Vec2 to) {
         const Point2 a = onCircle(from), b = onCircle(to);
-        if (cross(a - viewpoint_, b - viewpoint_) > 0) ends_.push_back({a, b, SightEnd::kArc});
+        if (cross(a - viewpoint_, b - viewpoint_) > 0) edges_.push_back({a, b, SightEdge::kArc});
     }
     void addQuarter() {
         const Vec2 to = perpendicular(arc_from_);
@@ -89,17 +88,17 @@ class EndWriter {
 
     Point2 viewpoint_;
     double range_;
-    std::vector<SightEnd>& ends_;
+    std::vector<SightEdge>& edges_;
     bool has_arc_ = false;  // begun, and not yet written
     Vec2 arc_from_, arc_to_;
 };
 
-/// What will be needed if sight gets there; harmless where that is no door.
-inline void prefetch(const Door* doors, std::uint32_t target) {
-    // The place may lie beyond the doors: nothing is read there.
+/// What will be needed if sight gets there; harmless where that is no portal.
+inline void prefetch(const Portal* portals, std::uint32_t target) {
+    // The place may lie beyond the portals: nothing is read there.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
-    __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(doors) +
-                                                     target * sizeof(Door)));
+    __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(portals) +
+                                                     target * sizeof(Portal)));
 }
 
 /// Two numbers, one each for the right and the left limit: what is chosen between two pairs is so
@@ -131,11 +130,11 @@ ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     return {from_x + part * way.x, from_y + part * way.y};
 }
 
-/// Sight that waits until what lies on its right is done: past the corner of a door, on its left.
+/// Sight that waits until what lies on its right is done: past the corner of a portal, on its left.
 struct Pending {
     std::uint32_t target;       ///< what lies there
-    std::uint32_t corner;       ///< the door whose corner is the right limit
-    std::uint32_t left_vertex;  ///< a door whose corner is the left limit
+    std::uint32_t corner;       ///< the portal whose corner is the right limit
+    std::uint32_t left_vertex;  ///< a portal whose corner is the left limit
     Vec2 right, left;           ///< the limits, from the viewpoint
 };
 
@@ -172,46 +171,46 @@ class PendingStack {
     PendingStack() {}
 };
 
-/// One look, to the end of one way after the other. Bounded: some line may lie beyond the range.
-/// Contact: some lines are transparent.
-template <bool kBounded, bool kContact>
-class Look {
+/// One query, depth first: to the end of one way after the other. Bounded: some line may lie beyond
+/// the range. Touches: some lines are transparent.
+template <bool kBounded, bool kTouches>
+class Expansion {
   public:
     using Index = std::uint32_t;
 
     /// \param farthest no corner is farther from the viewpoint
-    Look(const Door* doors, Point2 viewpoint, double range, double farthest,
-         std::span<const Index> transparent, std::vector<SightEnd>& ends)
-        : doors_(doors),
+    Expansion(const Portal* portals, Point2 viewpoint, double range, double farthest,
+              std::span<const Index> transparent, std::vector<SightEdge>& edges)
+        : portals_(portals),
           viewpoint_(viewpoint),
           squared_range_(range * range),
           sure_(errorOfTurns(farthest)),
           transparent_(transparent),
-          out_(viewpoint, range, ends) {}
+          out_(viewpoint, range, edges) {}
 
     /// Through an edge of a triangle that holds the viewpoint. Edges follow each other
     /// counter-clockwise.
     void throughEdge(Index edge) {
-        begin(doors_[beforeOf(edge)].right, nextOf(edge), beforeOf(edge));
+        begin(portals_[beforeOf(edge)].right, nextOf(edge), beforeOf(edge));
     }
     /// From outside of all triangles; in the same order.
-    void throughDoor(Index door) { begin(door, beforeOf(door), nextOf(door)); }
+    void throughPortal(Index portal) { begin(portal, beforeOf(portal), nextOf(portal)); }
 
-    /// Looks through all edges and doors that were named, and writes what is seen.
+    /// Looks through all edges and portals that were named, and writes what is seen.
     void run();
 
     /// Writes down what sight ends at between two limits, counter-clockwise: a line, or kFree.
     void stopAt(Index target, const Vec2& right, const Vec2& left);
-    EndWriter& out() { return out_; }
+    EdgeWriter& out() { return out_; }
 
-    [[nodiscard]] Vec2 wayTo(Index door) const { return doors_[door].corner - viewpoint_; }
+    [[nodiscard]] Vec2 wayTo(Index portal) const { return portals_[portal].corner - viewpoint_; }
 
-    /// Above 0 if the corner of door b lies to the left of that of a.
+    /// Above 0 if the corner of portal b lies to the left of that of a.
     [[nodiscard]] double turn(Index a, Index b) const {
         const double turn = surelyTurns(wayTo(a), wayTo(b));
         if (turn != 0) [[likely]]
             return turn;
-        return static_cast<int>(orientation(viewpoint_, doors_[a].corner, doors_[b].corner));
+        return static_cast<int>(orientation(viewpoint_, portals_[a].corner, portals_[b].corner));
     }
 
   private:
@@ -220,8 +219,8 @@ class Look {
 
     /// A vertex that limits what is looked through.
     struct Limit {
-        Index door;  ///< its corner is the vertex
-        Vec2 way;    ///< to the vertex
+        Index portal;  ///< its corner is the vertex
+        Vec2 way;      ///< to the vertex
     };
 
     void begin(Index target, Index right, Index left) {
@@ -230,28 +229,28 @@ class Look {
 
     /// What sight gets to past a line that is transparent.
     [[nodiscard]] Index passed(Index target) const {
-        if (!kContact || target < Door::kBlocked || target == Door::kFree) return target;
-        const Index edge = target - Door::kBlocked;
+        if (!kTouches || target < Portal::kBlocked || target == Portal::kFree) return target;
+        const Index edge = target - Portal::kBlocked;
         const bool is_transparent =
             std::binary_search(transparent_.begin(), transparent_.end(), edge);
-        return is_transparent ? doors_[edge].behind : target;
+        return is_transparent ? portals_[edge].behind : target;
     }
 
     [[nodiscard]] bool isBeyond(Index edge) const;
     void stopWithinRange(Index line, const Segment2& wall, Pair shares, const Vec2& right,
                          const Vec2& left);
 
-    const Door* doors_;
+    const Portal* portals_;
     Point2 viewpoint_;
     double squared_range_;
     double sure_;                         // no cross product of two ways is wrong by more
     std::span<const Index> transparent_;  // edges, both sides of each, ascending
-    EndWriter out_;
+    EdgeWriter out_;
     PendingStack pending_;
 };
 
-template <bool kBounded, bool kContact>
-void Look<kBounded, kContact>::run() {
+template <bool kBounded, bool kTouches>
+void Expansion<kBounded, kTouches>::run() {
     pending_.reverse();  // the rightmost one first
     while (!pending_.empty()) {
         const Pending& next = pending_.pop();
@@ -260,37 +259,37 @@ void Look<kBounded, kContact>::run() {
         Limit left{next.left_vertex, next.left};
         // Whether the end points of the edge may both lie beyond the range.
         bool may_be_beyond = kBounded && squaredLength(right.way) > squared_range_;
-        while (target < Door::kBlocked && !(may_be_beyond && isBeyond(target))) {
-            const Door& door = doors_[target];
-            const Limit corner{target, door.corner - viewpoint_};
+        while (target < Portal::kBlocked && !(may_be_beyond && isBeyond(target))) {
+            const Portal& portal = portals_[target];
+            const Limit corner{target, portal.corner - viewpoint_};
             if (kBounded) may_be_beyond = squaredLength(corner.way) > squared_range_;
             // Whichever way sight goes.
-            prefetch(doors_, door.left);
-            prefetch(doors_, door.right);
+            prefetch(portals_, portal.left);
+            prefetch(portals_, portal.right);
             double from_right = cross(right.way, corner.way);
             double from_left = cross(left.way, corner.way);
             if (!(std::min(std::abs(from_right), std::abs(from_left)) > sure_)) [[unlikely]] {
-                from_right = turn(right.door, target);
-                from_left = turn(left.door, target);
+                from_right = turn(right.portal, target);
+                from_left = turn(left.portal, target);
             }
             if (!(from_right > 0)) {
-                target = passed(door.left);
+                target = passed(portal.left);
                 continue;
             }
             if (from_left < 0) {
                 // Both: the left one waits.
-                pending_.push({passed(door.left), target, left.door, corner.way, left.way});
+                pending_.push({passed(portal.left), target, left.portal, corner.way, left.way});
                 left = corner;
             }
-            target = passed(door.right);
+            target = passed(portal.right);
         }
-        stopAt(target < Door::kBlocked ? Door::kFree : target, right.way, left.way);
+        stopAt(target < Portal::kBlocked ? Portal::kFree : target, right.way, left.way);
     }
 }
 
 /// Whether all of an edge lies beyond the range.
-template <bool kBounded, bool kContact>
-bool Look<kBounded, kContact>::isBeyond(Index edge) const {
+template <bool kBounded, bool kTouches>
+bool Expansion<kBounded, kTouches>::isBeyond(Index edge) const {
     const Vec2 a = wayTo(nextOf(edge)), b = wayTo(beforeOf(edge)), along = b - a;
     const bool ends_are = std::min(squaredLength(a), squaredLength(b)) > squared_range_;
     const bool end_is_nearest = std::max(dot(a, along), -dot(b, along)) >= 0;
@@ -298,15 +297,15 @@ bool Look<kBounded, kContact>::isBeyond(Index edge) const {
     return ends_are & (end_is_nearest | line_is);
 }
 
-template <bool kBounded, bool kContact>
-ISPACE_INLINE void Look<kBounded, kContact>::stopAt(Index target, const Vec2& right,
-                                                    const Vec2& left) {
-    if (target == Door::kFree) {
+template <bool kBounded, bool kTouches>
+ISPACE_INLINE void Expansion<kBounded, kTouches>::stopAt(Index target, const Vec2& right,
+                                                         const Vec2& left) {
+    if (target == Portal::kFree) {
         out_.addFree(right, left);
         return;
     }
-    const Index edge = target - Door::kBlocked, line = doors_[edge].line;
-    const Point2 &from = doors_[nextOf(edge)].corner, &to = doors_[beforeOf(edge)].corner;
+    const Index edge = target - Portal::kBlocked, line = portals_[edge].line;
+    const Point2 &from = portals_[nextOf(edge)].corner, &to = portals_[beforeOf(edge)].corner;
     const Segment2 wall{{from.x, from.y}, {to.x, to.y}};
     const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_;
     const Pair shares = crossings(Pair{right.x, left.x}, Pair{right.y, left.y}, a, b);
@@ -319,9 +318,9 @@ ISPACE_INLINE void Look<kBounded, kContact>::stopAt(Index target, const Vec2& ri
 }
 
 /// The same for a wall that does not lie within the range as a whole.
-template <bool kBounded, bool kContact>
-void Look<kBounded, kContact>::stopWithinRange(Index line, const Segment2& wall, Pair shares,
-                                               const Vec2& right, const Vec2& left) {
+template <bool kBounded, bool kTouches>
+void Expansion<kBounded, kTouches>::stopWithinRange(Index line, const Segment2& wall, Pair shares,
+                                                    const Vec2& right, const Vec2& left) {
     const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_, along = b - a;
     const double from = shares[0], to = shares[1];
     // Where the line through the wall is nearest, and within the range, as shares of the wall.

@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidest = 1e9;
 
 /// Directions about the middle of a shadow, by the tangent of their angle from it. Along a straight
-/// line the nearness of its places, one over their distance ahead, is linear in that.
+/// line the inverse range of its places, one over their distance ahead, is linear in that.
 struct ShadowFrame {
     Point2 viewpoint;
     Vec2 ahead;  ///< unit vector
@@ -32,7 +32,7 @@ struct ShadowFrame {
     }
 };
 
-/// Nearness over slope: of a line, or of the circle at the greatest range.
+/// Inverse range over slope: of a line, or of the circle at the greatest range.
 struct Reach {
     double at_zero = 0, rise = 0;  ///< of a line
     double range = 0;              ///< of the circle; 0: a line
@@ -52,7 +52,7 @@ struct Reach {
 /// A piece of the near side of a body, or what was seen before, over an interval of slopes.
 struct Part {
     static constexpr std::size_t kNoEdge = std::numeric_limits<std::size_t>::max();
-    std::size_t end;             ///< index among the region's ends
+    std::size_t end;             ///< index among the region's edges
     std::size_t edge = kNoEdge;  ///< of the body's near side, if that is nearer
     double low, high;
 };
@@ -62,7 +62,7 @@ struct Part {
 struct NearSide {
     ShadowFrame frame;
     std::vector<Vec2> places;
-    double nearest = kInfinity;  ///< upper bound of its nearness
+    double nearest = kInfinity;  ///< upper bound of its inverse range
 
     [[nodiscard]] double slope(std::size_t i) const {
         if (i == 0 && widest) return -kWidest;
@@ -132,7 +132,7 @@ NearSide farSide(Point2 viewpoint, const Ellipse& round, const Polygon& outline)
     places.reserve(far.size());
     for (const Point2 place : far) places.push_back(side.frame.local(place - viewpoint));
     // Close to the viewpoint sight along the surface ends within the body.
-    const double close = places.empty() ? kSightContact : length(places.front()) / 2;
+    const double close = places.empty() ? kRayEpsilon : length(places.front()) / 2;
     side.add({close / kWidest, -close});
     for (const Vec2 place : places) side.add(place);
     side.add({close / kWidest, close});
@@ -154,7 +154,7 @@ class Cut {
     bool find(Vec2 right, Vec2 left) {
         right_ = right;
         left_ = left;
-        const std::size_t count = region_.ends.size();
+        const std::size_t count = region_.edges.size();
         std::size_t first = count;
         for (std::size_t i = 0; i < count && first == count; ++i)
             if (cross(from(i), right) >= 0 && cross(right, to(i)) > 0) first = i;
@@ -167,8 +167,8 @@ class Cut {
     /// Whether something of the body may be nearer than what was seen.
     [[nodiscard]] bool mayBeSeen() const {
         for (std::size_t k = 0; k < covered_; ++k) {
-            const SightEnd& end = region_.ends[at(k)];
-            if (end.line == SightEnd::kArc) {
+            const SightEdge& end = region_.edges[at(k)];
+            if (end.line == SightEdge::kArc) {
                 if (1 / region_.max_range < side_.nearest) return true;
                 continue;
             }
@@ -187,17 +187,19 @@ class Cut {
     }
 
   private:
-    [[nodiscard]] std::size_t at(std::size_t k) const { return (first_ + k) % region_.ends.size(); }
-    [[nodiscard]] Vec2 from(std::size_t i) const {
-        return region_.ends[i].from - region_.viewpoint;
+    [[nodiscard]] std::size_t at(std::size_t k) const {
+        return (first_ + k) % region_.edges.size();
     }
-    [[nodiscard]] Vec2 to(std::size_t i) const { return region_.ends[i].to - region_.viewpoint; }
+    [[nodiscard]] Vec2 from(std::size_t i) const {
+        return region_.edges[i].from - region_.viewpoint;
+    }
+    [[nodiscard]] Vec2 to(std::size_t i) const { return region_.edges[i].to - region_.viewpoint; }
     [[nodiscard]] double slopeOf(Vec2 way) const {
         const Vec2 local = side_.frame.local(way);
         return local.y / local.x;
     }
     [[nodiscard]] Reach reachOf(std::size_t i) const {
-        if (region_.ends[i].line == SightEnd::kArc) return {0, 0, region_.max_range};
+        if (region_.edges[i].line == SightEdge::kArc) return {0, 0, region_.max_range};
         return Reach::ofLine(side_.frame.local(from(i)), side_.frame.local(to(i)));
     }
     [[nodiscard]] Reach edgeReach(std::size_t edge) const {
@@ -276,13 +278,13 @@ class Cut {
 
     /// Puts the parts in the place of what was seen.
     void write() {
-        std::vector<SightEnd> made;
-        const SightEnd& first = region_.ends[first_];
-        const SightEnd& last = region_.ends[at(covered_ - 1)];
+        std::vector<SightEdge> made;
+        const SightEdge& first = region_.edges[first_];
+        const SightEdge& last = region_.edges[at(covered_ - 1)];
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const Part& part = parts_[k];
             const bool is_body = part.edge != Part::kNoEdge;
-            SightEnd end = is_body ? bodyEnd(part) : seenEnd(part);
+            SightEdge end = is_body ? bodyEnd(part) : seenEnd(part);
             if (!is_body && k == 0) end.from = first.from;
             if (!is_body && k + 1 == parts_.size()) end.to = last.to;
             if (is_body && k == 0) push({first.from, seenPlace(first_, right_), first.line}, made);
@@ -290,20 +292,21 @@ class Cut {
             if (is_body && k + 1 == parts_.size())
                 push({seenPlace(at(covered_ - 1), left_), last.to, last.line}, made);
         }
-        auto& ends = region_.ends;
-        std::rotate(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(first_), ends.end());
-        ends.erase(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(covered_));
-        ends.insert(ends.begin(), made.begin(), made.end());
+        auto& edges = region_.edges;
+        std::rotate(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(first_),
+                    edges.end());
+        edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(covered_));
+        edges.insert(edges.begin(), made.begin(), made.end());
     }
-    void push(const SightEnd& end, std::vector<SightEnd>& made) const {
+    void push(const SightEdge& end, std::vector<SightEdge>& made) const {
         if (cross(end.from - region_.viewpoint, end.to - region_.viewpoint) > 0)
             made.push_back(end);
     }
     [[nodiscard]] Point2 seenPlace(std::size_t i, Vec2 way) const {
         return reachOf(i).place(side_.frame, slopeOf(way));
     }
-    [[nodiscard]] SightEnd seenEnd(const Part& part) const {
-        const SightEnd& old = region_.ends[part.end];
+    [[nodiscard]] SightEdge seenEnd(const Part& part) const {
+        const SightEdge& old = region_.edges[part.end];
         const Reach reach = reachOf(part.end);
         const auto place = [&](double slope, Point2 own, Vec2 way) {
             return side_.frame.local(way).x > 0 && slope == slopeOf(way)
@@ -313,7 +316,7 @@ class Cut {
         return {place(part.low, old.from, from(part.end)), place(part.high, old.to, to(part.end)),
                 old.line};
     }
-    [[nodiscard]] SightEnd bodyEnd(const Part& part) const {
+    [[nodiscard]] SightEdge bodyEnd(const Part& part) const {
         const Reach reach = edgeReach(part.edge);
         const auto place = [&](double slope, std::size_t i) {
             if (slope != side_.slope(i)) return reach.place(side_.frame, slope);
@@ -372,17 +375,17 @@ std::vector<std::uint32_t> RoundBodies::within(const VisibleRegion& region) cons
 }
 
 void RoundBodies::cut(VisibleRegion& region) const {
-    if (empty() || region.ends.empty()) return;
+    if (empty() || region.edges.empty()) return;
     const Point2 viewpoint = region.viewpoint;
     for (const std::uint32_t i : within(region)) {
         const Ellipse& round = rounds_[i];
         const std::uint32_t line = first_line_ + i;
         const double height = round.heightOf(viewpoint);
-        if (height < -kSightContact) {
-            region.ends.clear();
+        if (height < -kRayEpsilon) {
+            region.edges.clear();
             return;
         }
-        if (height <= kSightContact) {
+        if (height <= kRayEpsilon) {
             const NearSide side = farSide(viewpoint, round, outlines_[i]);
             Cut cut(region, side, line);
             if (cut.find()) cut.apply();

@@ -13,16 +13,16 @@
 namespace ispace {
 
 /// Round bodies in the way of sight. What lies in their shadow is cut from a region that was found
-/// without them: no look crosses their outlines edge by edge.
+/// without them: no query crosses their outlines edge by edge.
 class RoundBodies {
   public:
-    /// \param first_line what the first of them is called in SightEnd::line
+    /// \param first_line what the first of them is called in SightEdge::line
     RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line);
 
     [[nodiscard]] bool empty() const { return rounds_.empty(); }
     /// No round body is farther from p.
     [[nodiscard]] double farthest(Point2 p) const;
-    /// Cuts the shadows of all of them from what is seen. O(ends) for each that is within range.
+    /// Cuts the shadows of all of them from what is seen. O(edges) for each that is within range.
     void cut(VisibleRegion& region) const;
 
   private:

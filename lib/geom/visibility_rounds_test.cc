@@ -76,7 +76,7 @@ TEST(VisibilityRounds, AreaPastOneIsClosedForm) {
             v.y > depth - 0.001)
             continue;
         const VisibilityMap map(room(width, depth), {&round, 1});
-        const VisibleRegion seen = map.look(v, i % 2 == 0 ? 50 : kInfinity);
+        const VisibleRegion seen = map.query(v, i % 2 == 0 ? 50 : kInfinity);
         expectSound(seen);
         const double error = std::fabs(area(seen) - areaPast(round, v, width, depth));
         EXPECT_LE(error, 1e-6) << i << ' ' << radius << ' ' << other;
@@ -126,7 +126,7 @@ TEST(VisibilityRounds, ManyThatHideAndCutEachOther) {
         for (const Ellipse& round : rounds) is_clear = is_clear && round.heightOf(v) > 0.001;
         if (!is_clear) continue;
         const double range = i % 2 == 0 ? 20 : uniform(1, 5);
-        const VisibleRegion seen = VisibilityMap(lines, rounds).look(v, range);
+        const VisibleRegion seen = VisibilityMap(lines, rounds).query(v, range);
         expectSound(seen);
         constexpr int kRays = 400'000;
         EXPECT_NEAR(area(seen), byRays(lines, rounds, v, range, kRays), 4e-4) << i;
@@ -138,11 +138,11 @@ TEST(VisibilityRounds, WithinRangeOnly) {
     const Ellipse disc({3, 0}, 2, 2, {});
     const std::vector<Segment2> walls = room(0.5, 0.5);
     const VisibilityMap map({}, {&disc, 1});
-    EXPECT_NEAR(area(map.look({0, 0}, 1.9)), std::numbers::pi * 1.9 * 1.9, 1e-9);
-    EXPECT_NEAR(area(map.look({0, 0}, 2)), std::numbers::pi * 4, 1e-6);
+    EXPECT_NEAR(area(map.query({0, 0}, 1.9)), std::numbers::pi * 1.9 * 1.9, 1e-9);
+    EXPECT_NEAR(area(map.query({0, 0}, 2)), std::numbers::pi * 4, 1e-6);
     // Both circles cut out a lens: r = 1 about (3, 0), R = 2.5 about the viewpoint; and nothing
     // lies in the body's shadow nearer than R but between lens and tangents.
-    const VisibleRegion seen = map.look({0, 0}, 2.5);
+    const VisibleRegion seen = map.query({0, 0}, 2.5);
     expectSound(seen);
     const double a = std::acos((9 + 2.5 * 2.5 - 1) / (2 * 3 * 2.5));
     const double b = std::acos((9 + 1 - 2.5 * 2.5) / (2 * 3));
@@ -155,7 +155,7 @@ TEST(VisibilityRounds, TouchingAWall) {
     for (const double y : {0.0, 0.5}) {
         const Ellipse disc({4, y}, 1, 1, {});
         const VisibilityMap map(room(8, 6), {&disc, 1});
-        const VisibleRegion seen = map.look({4, 5}, 20);
+        const VisibleRegion seen = map.query({4, 5}, 20);
         expectSound(seen);
         const double far = 5 - y, reach = std::sqrt(far * far - 0.25);
         const double turn = std::asin(0.5 / far);
@@ -175,7 +175,7 @@ TEST(VisibilityRounds, FromItsSurface) {
     const Ellipse disc({4, 3}, 1, 1, Angle::degrees(10));
     const VisibilityMap map(room(8, 6), {&disc, 1});
     for (const double height : {0.0, 5e-5, -5e-5, 9.9e-5}) {
-        const VisibleRegion seen = map.look({4, 3.5 + height}, 20);
+        const VisibleRegion seen = map.query({4, 3.5 + height}, 20);
         expectSound(seen);
         // The half of the room on this side of the tangent; and the inside of the body.
         const double free = 8 * (2.5 - height), inside = std::numbers::pi * 0.25;
@@ -184,19 +184,19 @@ TEST(VisibilityRounds, FromItsSurface) {
         EXPECT_FALSE(holds(seen, {4, 2.4}));
         EXPECT_FALSE(holds(seen, {4.6, 3.4}));
     }
-    EXPECT_TRUE(map.look({4, 3.3}, 20).ends.empty());
-    EXPECT_NEAR(area(map.look({4, 3.5 + 1.1e-4}, 20)), areaPast(disc, {4, 3.5 + 1.1e-4}, 8, 6),
+    EXPECT_TRUE(map.query({4, 3.3}, 20).edges.empty());
+    EXPECT_NEAR(area(map.query({4, 3.5 + 1.1e-4}, 20)), areaPast(disc, {4, 3.5 + 1.1e-4}, 8, 6),
                 1e-6);
 }
 
 TEST(VisibilityRounds, HiddenByAWallAndInFrontOfIt) {
     std::vector<Segment2> lines = room(8, 6);
-    const double before = area(VisibilityMap(lines).look({1, 1}, 20));
+    const double before = area(VisibilityMap(lines).query({1, 1}, 20));
     lines.push_back({{4, 0}, {4, 6}});
     const Ellipse hidden({6, 3}, 1, 1, {}), seen({2.5, 3}, 1, 1, {});
-    EXPECT_EQ(area(VisibilityMap(lines, {&hidden, 1}).look({1, 1}, 20)),
-              area(VisibilityMap(lines).look({1, 1}, 20)));
-    EXPECT_NEAR(area(VisibilityMap(lines, {&seen, 1}).look({1, 1}, 20)),
+    EXPECT_EQ(area(VisibilityMap(lines, {&hidden, 1}).query({1, 1}, 20)),
+              area(VisibilityMap(lines).query({1, 1}, 20)));
+    EXPECT_NEAR(area(VisibilityMap(lines, {&seen, 1}).query({1, 1}, 20)),
                 areaPast(seen, {1, 1}, 4, 6), 1e-6);
     EXPECT_NEAR(before, 48, 1e-9);
 }

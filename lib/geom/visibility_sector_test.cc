@@ -22,7 +22,7 @@ TEST(SectorOf, SectorAndTheRestAreTheWholeOnAGrid) {
         const VisibilityMap map(lines);
         for (int trial = 0; trial < 40; ++trial) {
             const VisibleRegion seen =
-                map.look({whole(-4, 4), whole(-4, 4)}, trial % 2 == 0 ? 5 : 0.5);
+                map.query({whole(-4, 4), whole(-4, 4)}, trial % 2 == 0 ? 5 : 0.5);
             const Angle first = Angle::degrees(15 * whole(-24, 24));
             const Angle span = Angle::degrees(15 * whole(1, 23));
             const VisibleRegion sector = sectorOf(seen, first, span);
@@ -37,7 +37,7 @@ TEST(SectorOf, SectorAndTheRestAreTheWholeOnAGrid) {
 TEST(SectorOf, SidesAlongALineOfSight) {
     // The fan begins in the direction of the wall's end, which rounds to either side of it.
     const std::vector<Segment2> wall = {{{-1, 3}, {0, 1}}};
-    const VisibleRegion seen = VisibilityMap(wall).look({-2, 2}, 3);
+    const VisibleRegion seen = VisibilityMap(wall).query({-2, 2}, 3);
     double before = 0;
     for (const double first : {44.9, 44.9999999, 45.0, 45.0000001, 45.1}) {
         const double now = area(sectorOf(seen, Angle::degrees(first), Angle::degrees(135)));

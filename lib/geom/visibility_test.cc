@@ -26,18 +26,18 @@ using test::box;
 using test::edgesOf;
 using test::expectSound;
 using test::kInfinity;
-using test::look;
 using test::nearest;
+using test::query;
 
 TEST(Visibility, SquareRoom) {
     const std::vector<Segment2> room = edgesOf(box(0, 0, 4, 4));
     for (const Point2 p : {Point2{2, 2}, Point2{1, 3.5}, Point2{0.3, 0.2}}) {
-        const VisibleRegion region = look(room, p, kInfinity);
+        const VisibleRegion region = query(room, p, kInfinity);
         EXPECT_EQ(region.viewpoint, p);
-        EXPECT_EQ(region.ends.size(), 4U);
+        EXPECT_EQ(region.edges.size(), 4U);
         EXPECT_DOUBLE_EQ(area(region), 16);
         expectSound(region);
-        for (const SightEnd& end : region.ends) {
+        for (const SightEdge& end : region.edges) {
             EXPECT_EQ(room[end.line].a, end.from);
             EXPECT_EQ(room[end.line].b, end.to);
         }
@@ -48,14 +48,14 @@ TEST(Visibility, SquareRoom) {
     const double cut = range * range * (half - std::sin(2 * half) / 2);
     EXPECT_NEAR(areaSeen(room, {2, 2}, range), pi * range * range - 4 * cut, 1e-12);
     EXPECT_NEAR(areaSeen(room, {2, 2}, 10), 16, 1e-12);
-    expectSound(look(room, {2, 2}, range));
-    EXPECT_EQ(look(room, {2, 2}, range).ends.size(), 8U);
+    expectSound(query(room, {2, 2}, range));
+    EXPECT_EQ(query(room, {2, 2}, range).edges.size(), 8U);
 }
 
 TEST(Visibility, NoLines) {
     for (const Point2 p : {Point2{0, 0}, Point2{0.3, -0.7}, Point2{1, 1}, Point2{-1, 0.5},
                            Point2{-8, 3}, Point2{1e6, 1e6}, Point2{1, 7}}) {
-        const VisibleRegion region = look({}, p, 3);
+        const VisibleRegion region = query({}, p, 3);
         EXPECT_NEAR(area(region), 9 * pi, 1e-8);
         expectSound(region, 1e-8);
         EXPECT_TRUE(holds(region, p + Vec2{2.9, 0}));
@@ -65,18 +65,18 @@ TEST(Visibility, NoLines) {
 }
 
 TEST(Visibility, ZeroRangeSeesNothing) {
-    const VisibleRegion region = look(edgesOf(box(0, 0, 4, 4)), {1, 1}, 0);
-    EXPECT_TRUE(region.ends.empty());
+    const VisibleRegion region = query(edgesOf(box(0, 0, 4, 4)), {1, 1}, 0);
+    EXPECT_TRUE(region.edges.empty());
     EXPECT_EQ(area(region), 0);
     EXPECT_TRUE(outlineOf(region).empty());
     EXPECT_FALSE(holds(region, {1, 1}));
-    EXPECT_TRUE(sectorOf(region, Angle(), Angle::degrees(90)).ends.empty());
+    EXPECT_TRUE(sectorOf(region, Angle(), Angle::degrees(90)).edges.empty());
 }
 
 TEST(Visibility, OneWallHidesWhatIsBehind) {
     // A wall of 2 m, 1 m away: the quarter behind it is hidden but for the triangle before it.
     const std::vector<Segment2> wall{{{1, 1}, {-1, 1}}};
-    const VisibleRegion region = look(wall, {0, 0}, 5);
+    const VisibleRegion region = query(wall, {0, 0}, 5);
     EXPECT_NEAR(area(region), 25 * pi * 3 / 4 + 1, 1e-12);
     expectSound(region);
     EXPECT_TRUE(holds(region, {0.5, 0.99}));
@@ -98,9 +98,9 @@ TEST(Visibility, FromBeyondTheTriangles) {
     for (int i = 0; i < 48; ++i) {
         const Point2 p = Point2{3, -2} + 300 * unitVector(Angle::degrees(7.5 * i));
         for (const double range : {250.0, 299.0, 302.0, 400.0}) {
-            const VisibleRegion region = map.look(p, range);
+            const VisibleRegion region = map.query(p, range);
             expectSound(region);
-            EXPECT_NEAR(area(region), area(wide.look(p, range)), 1e-9 * range * range) << i;
+            EXPECT_NEAR(area(region), area(wide.query(p, range)), 1e-9 * range * range) << i;
         }
     }
 }
@@ -112,8 +112,8 @@ TEST(Visibility, VerticesAreExact) {
     const VisibilityMap map(lines);
     int exact = 0;
     for (int i = 0; i < 50; ++i) {
-        for (const SightEnd& end : map.look(test::randomInside(random, plan), 6).ends) {
-            if (end.line == SightEnd::kArc) continue;
+        for (const SightEdge& end : map.query(test::randomInside(random, plan), 6).edges) {
+            if (end.line == SightEdge::kArc) continue;
             for (const Point2 p : {end.from, end.to}) {
                 for (const Point2 vertex : {lines[end.line].a, lines[end.line].b}) {
                     if (distance(p, vertex) > 1e-12) continue;
@@ -130,17 +130,17 @@ TEST(Visibility, AWallDoesNotStopSightFromIt) {
     const std::vector<Segment2> room = edgesOf(box(0, 0, 4, 4));
     const double half_disc = pi / 2;
     for (const double off : {0.0, 1e-17, -1e-17, 1e-9, 5e-5, -9e-5}) {
-        const VisibleRegion region = look(room, {2, off}, 1);
+        const VisibleRegion region = query(room, {2, off}, 1);
         EXPECT_EQ(region.viewpoint, (Point2{2, 0}));
         EXPECT_NEAR(area(region), 2 * half_disc, 1e-12) << off;
         expectSound(region);
         // From a corner, all around.
-        EXPECT_EQ(look(room, {off, off / 4}, 1).viewpoint, (Point2{0, 0}));
+        EXPECT_EQ(query(room, {off, off / 4}, 1).viewpoint, (Point2{0, 0}));
         EXPECT_NEAR(areaSeen(room, {off, off / 4}, 1), pi, 1e-12);
     }
     // A little farther off it does.
     for (const double off : {2e-4, -2e-4}) {
-        EXPECT_EQ(look(room, {2, off}, 1).viewpoint, (Point2{2, off}));
+        EXPECT_EQ(query(room, {2, off}, 1).viewpoint, (Point2{2, off}));
         EXPECT_NEAR(areaSeen(room, {2, off}, 1), half_disc, 1e-3);
     }
     // What continues the wall does not stop it, and what crosses it does.
@@ -157,8 +157,8 @@ TEST(Visibility, PiecesOfAWallAreOne) {
     std::vector<Segment2> lines = edgesOf(box(0, 0, 4, 4));
     lines.push_back({{4, 2}, {7, 2}});
     lines.push_back({{1, 4}, {1, 6}});
-    const VisibleRegion region = look(lines, {2, 2.5}, kInfinity);
-    EXPECT_EQ(region.ends.size(), 4U);
+    const VisibleRegion region = query(lines, {2, 2.5}, kInfinity);
+    EXPECT_EQ(region.edges.size(), 4U);
     EXPECT_DOUBLE_EQ(area(region), 16);
 }
 
@@ -172,12 +172,12 @@ TEST(Visibility, DoubledAndOverlappingLinesCountOnce) {
         16 - areaSeen({lines[0], lines[1], lines[2], lines[3], lines.back()}, {3, 1}, kInfinity);
     EXPECT_NEAR(hidden, 0.5 * 1.75 / 2 - 0.125 + 0.0, 0.5);
     EXPECT_NEAR(areaSeen(lines, {3, 1}, kInfinity), 16 - hidden, 1e-12);
-    expectSound(look(lines, {2, 2}, kInfinity));
+    expectSound(query(lines, {2, 2}, kInfinity));
 }
 
 TEST(Visibility, CollinearLinesAlone) {
     const std::vector<Segment2> lines{{{0, 0}, {1, 0}}, {{2, 0}, {3, 0}}, {{5, 0}, {9, 0}}};
-    expectSound(look(lines, {4, 0}, 6));
+    expectSound(query(lines, {4, 0}, 6));
     EXPECT_NEAR(areaSeen(lines, {4, 0}, 6), 36 * pi, 1e-12);
     EXPECT_NEAR(areaSeen(lines, {1.5, 0}, 6), 36 * pi, 1e-12);
     EXPECT_NEAR(areaSeen(lines, {2.5, 1}, 4), areaByRays(lines, {2.5, 1}, 4, 20000), 1e-2);
@@ -205,9 +205,9 @@ TEST(Visibility, AgreesWithRaysAtAnyRange) {
     VisibleRegion region;
     for (int i = 0; i < 120; ++i) {
         const Point2 p = test::randomIn(random, i % 4 == 0 ? wide : around);
-        if (nearest(lines, p) <= kSightContact) continue;
+        if (nearest(lines, p) <= kRayEpsilon) continue;
         for (const double range : {0.2, 1.0, 3.0, 9.0, 40.0}) {
-            map.look(p, range, region);
+            map.query(p, range, region);
             expectSound(region);
             const double wanted = areaByRays(lines, p, range, 2000);
             EXPECT_NEAR(area(region), wanted, 0.02 * range * range) << p.x << ',' << p.y;
@@ -224,7 +224,7 @@ TEST(Visibility, LargerRangesSeeMore) {
         double last = 0;
         for (const double range :
              {1e-6, 1e-3, 0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 20.0, kInfinity}) {
-            const double here = area(map.look(p, range));
+            const double here = area(map.query(p, range));
             EXPECT_GE(here, last * (1 - 1e-12));
             last = here;
         }
@@ -241,8 +241,8 @@ TEST(Visibility, IsSymmetric) {
     int seen = 0;
     for (int i = 0; i < 1000; ++i) {
         const Point2 a = test::randomInside(random, plan), b = test::randomInside(random, plan);
-        const bool a_sees_b = holds(map.look(a, range), b);
-        EXPECT_EQ(a_sees_b, holds(map.look(b, range), a));
+        const bool a_sees_b = holds(map.query(a, range), b);
+        EXPECT_EQ(a_sees_b, holds(map.query(b, range), a));
         const bool is_free =
             distance(a, b) < range && std::none_of(lines.begin(), lines.end(), [&](auto& line) {
                 return intersects(line, {a, b});
@@ -273,7 +273,7 @@ TEST(Visibility, MovedAndTurnedPlansHaveTheSameAreas) {
                              : i % 3 == 1 ? line.a + share(random) * (line.b - line.a)
                                           : line.b;
             for (const double range : {0.5, 4.0}) {
-                EXPECT_NEAR(area(other.look(moved * p, range)), area(map.look(p, range)),
+                EXPECT_NEAR(area(other.query(moved * p, range)), area(map.query(p, range)),
                             100 * slack * range)
                     << "point " << i << " at " << far_away;
             }
@@ -287,7 +287,7 @@ TEST(Visibility, SectorsAddUp) {
     const Region plan = test::makePlan(15, {2, 1, 9, 6, 20});
     const VisibilityMap map(test::linesOf(plan));
     for (int i = 0; i < 200; ++i) {
-        const VisibleRegion whole = map.look(test::randomInside(random, plan), 3);
+        const VisibleRegion whole = map.query(test::randomInside(random, plan), 3);
         for (const int parts : {1, 2, 3, 7, 40}) {
             const double first = i == 0 ? 0 : start(random), span = 360.0 / parts;
             double sum = 0;
@@ -310,7 +310,7 @@ TEST(Visibility, SectorsAddUp) {
 }
 
 TEST(Visibility, SectorsInTheOpen) {
-    const VisibleRegion disc = look({}, {1, 2}, 2);
+    const VisibleRegion disc = query({}, {1, 2}, 2);
     for (const double span : {1.0, 90.0, 180.0, 270.0, 359.0}) {
         const VisibleRegion sector = sectorOf(disc, Angle::degrees(-45), Angle::degrees(span));
         EXPECT_NEAR(area(sector), 2 * pi * span / 180, 1e-12) << span;
@@ -321,8 +321,8 @@ TEST(Visibility, SectorsInTheOpen) {
             EXPECT_EQ(outline[i].from, outline[i - 1].to);
         EXPECT_NEAR(perimeter(outline), 4 + 2 * pi * span / 90 / 2 * 1, 1e-9) << span;
     }
-    EXPECT_TRUE(sectorOf(disc, Angle(), Angle()).ends.empty());
-    EXPECT_TRUE(sectorOf(disc, Angle(), Angle::degrees(-3)).ends.empty());
+    EXPECT_TRUE(sectorOf(disc, Angle(), Angle()).edges.empty());
+    EXPECT_TRUE(sectorOf(disc, Angle(), Angle::degrees(-3)).edges.empty());
     EXPECT_FALSE(sectorOf(disc, Angle(), Angle()).is_whole);
     const VisibleRegion right = sectorOf(disc, Angle::degrees(-90), Angle::degrees(180));
     EXPECT_TRUE(holds(right, {2, 2}));
@@ -334,7 +334,7 @@ TEST(Visibility, OutlinesJoin) {
     const Region plan = test::makePlan(16, {2, 2, 9, 6, 20});
     const VisibilityMap map(test::linesOf(plan));
     for (int i = 0; i < 100; ++i) {
-        const VisibleRegion region = map.look(test::randomInside(random, plan), 3.5);
+        const VisibleRegion region = map.query(test::randomInside(random, plan), 3.5);
         const Curve outline = outlineOf(region);
         for (std::size_t k = 0; k < outline.size(); ++k)
             EXPECT_EQ(outline[k].to, outline[(k + 1) % outline.size()].from);
@@ -352,10 +352,10 @@ TEST(Visibility, LinesOfEndsAreThere) {
     }
     const VisibilityMap map(lines);
     for (int i = 0; i < 200; ++i) {
-        const VisibleRegion region = map.look({place(random), place(random)}, 5);
+        const VisibleRegion region = map.query({place(random), place(random)}, 5);
         expectSound(region);
-        for (const SightEnd& end : region.ends) {
-            if (end.line == SightEnd::kArc) continue;
+        for (const SightEdge& end : region.edges) {
+            if (end.line == SightEdge::kArc) continue;
             ASSERT_LT(end.line, lines.size());
             EXPECT_LT(distance(end.from, lines[end.line]), 1e-12);
             EXPECT_LT(distance(end.to, lines[end.line]), 1e-12);

@@ -20,7 +20,7 @@ struct PlanSize {
     int outline_corners = 40;   ///< on a ragged outline
 };
 
-/// A plan whose curves do not touch: an outline with notches, rooms between walls with door gaps
+/// A plan whose curves do not touch: an outline with notches, rooms between walls with portal gaps
 /// (walls are thin boxes, a centimetre apart at their ends), furniture of any shape; turned.
 class PlanMaker {
   public:
@@ -68,11 +68,11 @@ class PlanMaker {
         }
     }
 
-    /// Two boxes along a side of a room, with a door between them.
+    /// Two boxes along a side of a room, with a portal between them.
     void addWall(Region& plan, Point2 from, Vec2 along) {
-        const double door = 0.5 + 2 * share(), end = kRoom - kWall - kGap;
+        const double portal = 0.5 + 2 * share(), end = kRoom - kWall - kGap;
         const double start = kWall + kGap;
-        for (const auto& [a, b] : {std::pair(start, door), std::pair(door + 0.9, end)}) {
+        for (const auto& [a, b] : {std::pair(start, portal), std::pair(portal + 0.9, end)}) {
             const Vec2 half = (kWall / 2) * perpendicular(along);
             addHole(plan, {from + a * along - half, from + b * along - half,
                            from + b * along + half, from + a * along + half});

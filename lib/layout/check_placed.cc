@@ -82,10 +82,10 @@ void PlacedCheck::checkPoint(std::size_t placed, Diagnostics& findings) {
     });
     for (auto& [element, mesh] : context_->meshes) {
         const Box2 at{p.onFloor(), p.onFloor()};
-        if (!meets(mesh.box(), at) || p.z <= mesh.layer().bottom || p.z >= mesh.layer().top)
+        if (!meets(mesh.box(), at) || p.z <= mesh.heights().bottom || p.z >= mesh.heights().top)
             continue;
         for (const Polygon& solid : mesh.at(p.z).solids)
-            if (isDeepIn(solid, p.onFloor())) tops[element] = mesh.layer().top;
+            if (isDeepIn(solid, p.onFloor())) tops[element] = mesh.heights().top;
     }
     for (const auto& [element, top] : tops)
         findings.add(finding(placed, " stands inside " + context_->name(element) + " at " +
@@ -112,7 +112,7 @@ const PlacedCheck::MeshBand& PlacedCheck::bandOf(std::size_t element, double hei
 
 std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle) {
     std::map<std::size_t, Met> met;
-    const Layer layer{0, circle.height};
+    const HeightRange heights{0, circle.height};
     const auto look = [&](std::size_t element, const Polygon& footprint) {
         const bool is_line = footprint.size() == 2;
         const Point2 nearest = nearestOf(footprint, circle.center);
@@ -125,12 +125,12 @@ std::map<std::size_t, PlacedCheck::Met> PlacedCheck::metBy(const Circle& circle)
     };
     const Box2 box = boxAbout(circle.center, circle.radius);
     context_->parts.search(box, [&](const Part& part) {
-        if (sharedLayer(part, layer).isShared()) look(part.element, part.footprint);
+        if (sharedHeights(part, heights).isShared()) look(part.element, part.footprint);
     });
     for (const auto& entry : context_->meshes) {
         const std::size_t element = entry.first;
         const MeshCuts& mesh = entry.second;
-        if (!meets(mesh.box(), box) || !sharedLayer(mesh.layer(), layer).isShared()) continue;
+        if (!meets(mesh.box(), box) || !sharedHeights(mesh.heights(), heights).isShared()) continue;
         const MeshBand& near = bandOf(element, circle.height);
         near.solids.search(box, [&](std::size_t i) { look(element, near.band.solids[i]); });
         near.sheets.search(box, [&](std::size_t i) {

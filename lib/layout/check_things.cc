@@ -28,7 +28,7 @@ void addDirections(const Polygon& polygon, std::vector<Vec2>& out) {
     }
 }
 
-/// A pair of parts with a layer in common.
+/// A pair of parts with heights in common.
 using PartPair = std::pair<const Part*, const Part*>;
 
 /// The shortest way on which the second parts come beyond the first ones.
@@ -113,16 +113,17 @@ std::vector<std::size_t> ThingCheck::neighbours(std::size_t element) const {
         if (other != element && (other > element || !context_->isObject(other)))
             out.push_back(other);
     };
-    const auto look = [&](const Box2& box, const auto& layer) {
+    const auto look = [&](const Box2& box, const auto& heights) {
         context_->parts.search(box, [&](const Part& part) {
-            if (sharedLayer(part, layer).isShared()) add(part.element);
+            if (sharedHeights(part, heights).isShared()) add(part.element);
         });
         for (const auto& [other, mesh] : context_->meshes)
-            if (meets(mesh.box(), box) && sharedLayer(mesh.layer(), layer).isShared()) add(other);
+            if (meets(mesh.box(), box) && sharedHeights(mesh.heights(), heights).isShared())
+                add(other);
     };
     for (const Part& part : context_->parts.of(element)) look(bounds(part.footprint), part);
     const auto mesh = context_->meshes.find(element);
-    if (mesh != context_->meshes.end()) look(mesh->second.box(), mesh->second.layer());
+    if (mesh != context_->meshes.end()) look(mesh->second.box(), mesh->second.heights());
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -149,7 +150,7 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
     std::optional<Overlap> deepest;
     PartPair deepest_pair;
     const auto look = [&](const Part& first, const Part& second) {
-        if (!sharedLayer(first, second).isShared()) return;
+        if (!sharedHeights(first, second).isShared()) return;
         if (beside.size() < kMostPairs) beside.push_back({&first, &second});
         const auto overlap = overlapOf(first.footprint, second.footprint);
         if (!overlap) return;
@@ -170,18 +171,18 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
 
 std::optional<Point2> ThingCheck::sharedMesh(MeshCuts& mesh, std::size_t other) {
     for (const Part& part : context_->parts.of(other)) {
-        const Layer layer = sharedLayer(mesh.layer(), part);
-        if (!layer.isShared() || !meets(mesh.box(), bounds(part.footprint))) continue;
-        for (const double height : mesh.heightsIn(layer))
+        const HeightRange heights = sharedHeights(mesh.heights(), part);
+        if (!heights.isShared() || !meets(mesh.box(), bounds(part.footprint))) continue;
+        for (const double height : mesh.heightsIn(heights))
             if (auto place = sharedPlace(mesh.at(height), part.footprint)) return place;
     }
     return std::nullopt;
 }
 
 std::optional<Point2> ThingCheck::sharedMeshes(MeshCuts& a, MeshCuts& b) {
-    const Layer layer = sharedLayer(a.layer(), b.layer());
-    if (!layer.isShared() || !meets(a.box(), b.box())) return std::nullopt;
-    for (const double height : a.heightsIn(layer))
+    const HeightRange heights = sharedHeights(a.heights(), b.heights());
+    if (!heights.isShared() || !meets(a.box(), b.box())) return std::nullopt;
+    for (const double height : a.heightsIn(heights))
         if (auto place = sharedPlace(a.at(height), b.at(height))) return place;
     return std::nullopt;
 }

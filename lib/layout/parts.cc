@@ -43,12 +43,12 @@ std::span<const Part> Parts::of(std::size_t element) const {
 }
 
 MeshCuts::MeshCuts(const Body& body) : body_(&body) {
-    layer_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    heights_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const Mesh& mesh : body.meshes)
         for (const Point3& p : mesh.vertices) {
             box_.add(p.onFloor());
-            layer_.bottom = std::min(layer_.bottom, p.z);
-            layer_.top = std::max(layer_.top, p.z);
+            heights_.bottom = std::min(heights_.bottom, p.z);
+            heights_.top = std::max(heights_.top, p.z);
         }
 }
 
@@ -60,14 +60,15 @@ const Slice& MeshCuts::at(double height) {
     return place->second;
 }
 
-std::vector<double> MeshCuts::heightsIn(const Layer& layer) const {
+std::vector<double> MeshCuts::heightsIn(const HeightRange& heights) const {
     constexpr int kLevels = 32, kMost = 5;
     std::vector<double> levels;
     for (int i = 0; i < kLevels; ++i) {
-        const double height = layer_.bottom + (layer_.top - layer_.bottom) * (i + 0.5) / kLevels;
-        if (height > layer.bottom && height < layer.top) levels.push_back(height);
+        const double height =
+            heights_.bottom + (heights_.top - heights_.bottom) * (i + 0.5) / kLevels;
+        if (height > heights.bottom && height < heights.top) levels.push_back(height);
     }
-    if (levels.empty()) return {layer.bottom + (layer.top - layer.bottom) / 2};
+    if (levels.empty()) return {heights.bottom + (heights.top - heights.bottom) / 2};
     std::vector<double> some;
     const std::size_t count = std::min<std::size_t>(levels.size(), kMost);
     for (std::size_t i = 0; i < count; ++i)

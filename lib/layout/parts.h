@@ -24,14 +24,14 @@ struct Part {
 };
 
 /// Heights that two things share.
-struct Layer {
+struct HeightRange {
     double bottom = 0, top = 0;
     /// More than touching.
     [[nodiscard]] bool isShared() const { return top - bottom > kTouching; }
 };
 
 template <typename A, typename B>
-Layer sharedLayer(const A& a, const B& b) {
+HeightRange sharedHeights(const A& a, const B& b) {
     return {std::max(a.bottom, b.bottom), std::min(a.top, b.top)};
 }
 
@@ -61,15 +61,15 @@ class MeshCuts {
     explicit MeshCuts(const Body& body);
 
     [[nodiscard]] const Box2& box() const { return box_; }
-    [[nodiscard]] const Layer& layer() const { return layer_; }
+    [[nodiscard]] const HeightRange& heights() const { return heights_; }
     const Slice& at(double height);
-    /// Heights within a layer at which to look, few and the same ones for layers that share them.
-    [[nodiscard]] std::vector<double> heightsIn(const Layer& layer) const;
+    /// Heights within a range at which to look, few and the same ones for ranges that share them.
+    [[nodiscard]] std::vector<double> heightsIn(const HeightRange& heights) const;
 
   private:
     const Body* body_;
     Box2 box_;
-    Layer layer_;
+    HeightRange heights_;
     std::map<double, Slice> cuts_;
 };
 

@@ -99,7 +99,7 @@ std::vector<Floor> floorsOf(const Environment& environment, const Worth& worth) 
                     return worth.weights[i - 1].second;
             return 1.0;
         };
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         for (const double weight : weights) {
             if (weight <= 0) continue;
             const auto weighs = [&](const LayerLabel& label) { return weight_of(label) == weight; };
@@ -150,7 +150,7 @@ class Sights {
         return laser != nullptr && scansSlice({{}, *laser, pose});
     }
     [[nodiscard]] bool isBuried(const Pose3& pose) const {
-        return solids_.at(pose.position.z).isInside(pose.position.onFloor(), kSightContact);
+        return solids_.at(pose.position.z).isInside(pose.position.onFloor(), kRayEpsilon);
     }
 
     const Environment& environment_;
@@ -245,7 +245,7 @@ struct ExactWorth::Data {
             if (!meet(floors[i].box, own.box)) continue;
             const std::vector<Layer> layers = {markLayer(floors[i].curves, 1),
                                                {.curves = {curveOf(cornersOf(own.box))}}};
-            own.floors[i].curves = LayerOverlay(layers).curves(
+            own.floors[i].curves = Overlay(layers).curves(
                 [](const LayerLabel& label) { return label.marks == 1 && label.count == 1; });
         }
         return own.floors;
@@ -264,7 +264,7 @@ struct ExactWorth::Data {
             if (meet(view.box, near)) layers.push_back(view.layer);
         for (std::size_t i = 0; i < moving.size(); ++i)
             if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
-        const LayerOverlay overlay(layers);
+        const Overlay overlay(layers);
         const bool is_receiver = isReceiver(movables[in_hand].device);
         for (std::size_t i = 0; i < floors.size(); ++i) {
             const std::uint64_t mark = std::uint64_t{1} << i;
@@ -284,7 +284,7 @@ struct ExactWorth::Data {
         std::vector<Layer> layers = missing;
         layers.push_back(view.layer);
         double gain = 0;
-        LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+        Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
             if (label.count > 0) gain += weightOf(label.marks) * area;
         });
         return gain;
@@ -327,7 +327,7 @@ double ExactWorth::value() const {
     for (const View& view : data_->standing) layers.push_back(view.layer);
     for (const View& view : data_->moving) layers.push_back(view.layer);
     double value = 0;
-    LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+    Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
         if (Data::setsAt(label) >= data_->options.demand)
             value += data_->weightOf(label.marks) * area;
     });

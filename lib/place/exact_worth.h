@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// What at least `demand` sensors see is worth, exactly: its area in closed form (LayerOverlay)
+/// What at least `demand` sensors see is worth, exactly: its area in closed form (Overlay)
 /// times the weight that it has. Lasers and rangers count one by one, all ultrasonic receivers
 /// together as one, where enough of them hear.
 ///

@@ -42,7 +42,7 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices, 
 
 /// Goes on from a layout in continuous x, y and heading: sensor after sensor, a pattern search
 /// (Hooke and Jeeves 1961: steps along the axes and their pattern, halved where none helps) on the
-/// exact worth of what at least `demand` sensors see, in closed form (LayerOverlay), with all that
+/// exact worth of what at least `demand` sensors see, in closed form (Overlay), with all that
 /// stands in the scene (but for what has the id of a movable). A sensor's z, tilt and roll stay,
 /// and the heading of one that sees the same at each. Steps lead to whole multiples of 0.1 mm and
 /// 0.001 degrees, and count if they gain more than 1e-9 of all there is to cover; a sensor without

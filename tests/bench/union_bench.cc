@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a floor k views cover together: the area of their union and the area seen by each
-// number of them at once, by LayerOverlay, beside the bare union by CGAL (exact kernel). Views of
+// number of them at once, by Overlay, beside the bare union by CGAL (exact kernel). Views of
 // lasers (4 m, 180 degrees) at free places of offices: some 26 vertices each and arcs.
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -43,7 +43,7 @@ Case makeCase(const std::string& name, const Scene& scene, std::size_t count) {
     });
     const VisibilityMap map(lines);
     for (const PlacedLaser& sensor : bench::fans(scene, count, true)) {
-        const VisibleRegion whole = map.look(sensor.pose.position.onFloor(), kRange);
+        const VisibleRegion whole = map.query(sensor.pose.position.onFloor(), kRange);
         const Angle first = sensor.pose.heading - Angle::degrees(90);
         const Curve curve = outlineOf(sectorOf(whole, first, Angle::degrees(180)));
         const Polygon polygon = chords(curve);
@@ -70,7 +70,7 @@ Case makeCase(const std::string& name, const Scene& scene, std::size_t count) {
 /// Area seen by k views, of which the first is that of the union.
 std::vector<double> depthsOf(const std::vector<Layer>& layers) {
     std::vector<double> areas(layers.size() + 1);
-    LayerOverlay(layers).addAreas([&](const LayerLabel& label, double area) {
+    Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
         areas[static_cast<std::size_t>(label.count)] += area;
     });
     areas[0] = 0;
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
         {{"union",
           "Union of k views (4 m, 180 degrees): milliseconds for its area and that of all depths "
           "by\n"
-          "LayerOverlay, for the union alone by CGAL::join, their ratio, and how the time grows\n"
+          "Overlay, for the union alone by CGAL::join, their ratio, and how the time grows\n"
           "beside n log n of the edges (chords included)\n" +
               bench::leftCell("scene", 12) + bench::cell("k", 6) + bench::cell("edges", 8) +
               bench::cell("layers", 9) + bench::cell("CGAL", 10) + bench::cell("ratio", 8) +

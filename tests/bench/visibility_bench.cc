@@ -96,8 +96,8 @@ void fail(const std::string& name, Point2 p, const char* what, double ours, doub
 }
 
 bool isEnclosed(const VisibleRegion& region) {
-    return std::none_of(region.ends.begin(), region.ends.end(),
-                        [](const SightEnd& end) { return end.line == SightEnd::kArc; });
+    return std::none_of(region.edges.begin(), region.edges.end(),
+                        [](const SightEdge& end) { return end.line == SightEdge::kArc; });
 }
 
 /// Ends the program unless a part of the regions has the areas that CGAL says.
@@ -106,14 +106,14 @@ void verify(const Case& test) {
     VisibleRegion region;
     for (std::size_t i = 0; i < test.viewpoints.size(); ++i) {
         const Point2 p = test.viewpoints[i];
-        test.map->look(p, kInfinity, region);
+        test.map->query(p, kInfinity, region);
         const double whole = area(region);
         if (i < kCompared && test.cgal != nullptr && isEnclosed(region) && region.viewpoint == p) {
             const double wanted = test.cgal->areaFrom(p);
             if (!(std::abs(whole - wanted) <= 1e-9 * wanted))
                 fail(test.name, p, "area", whole, wanted);
         }
-        test.map->look(p, kShortRange, region);
+        test.map->query(p, kShortRange, region);
         const double most = std::numbers::pi * kShortRange * kShortRange * (1 + 1e-12);
         if (!(area(region) <= std::min(whole * (1 + 1e-9), most)))
             fail(test.name, p, "short range", area(region), whole);
@@ -128,8 +128,8 @@ void measure(benchmark::State& state, const Case& test) {
         contest.add([&, range] {
             ends = 0;
             for (const Point2 p : test.viewpoints) {
-                test.map->look(p, range, region);
-                ends += region.ends.size();
+                test.map->query(p, range, region);
+                ends += region.edges.size();
             }
             if (std::isinf(range)) seen = ends;
         });
@@ -137,7 +137,7 @@ void measure(benchmark::State& state, const Case& test) {
     if (test.cgal != nullptr) {
         contest.add([&] {
             for (std::size_t i = 0; i < test.viewpoints.size(); ++i)
-                benchmark::DoNotOptimize(test.cgal->look(test.viewpoints[i], test.faces[i]));
+                benchmark::DoNotOptimize(test.cgal->query(test.viewpoints[i], test.faces[i]));
         });
     }
     const bench::Others others;
@@ -181,10 +181,10 @@ std::string stemOf(const std::string& file) { return std::filesystem::path(file)
 void mustGoRound(const std::string& name, const VisibleRegion& region) {
     const Point2 v = region.viewpoint;
     double turned = 0;
-    for (std::size_t i = 0; i < region.ends.size(); ++i) {
-        const SightEnd& end = region.ends[i];
+    for (std::size_t i = 0; i < region.edges.size(); ++i) {
+        const SightEdge& end = region.edges[i];
         const Vec2 from = end.from - v, to = end.to - v;
-        const Vec2 next = region.ends[(i + 1) % region.ends.size()].from - v;
+        const Vec2 next = region.edges[(i + 1) % region.edges.size()].from - v;
         if (!(cross(from, to) > 0)) fail(name, v, "turn of an end", cross(from, to), 1);
         turned += std::atan2(cross(from, to), dot(from, to));
         const double gap = std::atan2(cross(to, next), dot(to, next));
@@ -215,12 +215,12 @@ void check(const std::string& file) {
     int compared = 0;
     for (int i = 0; i < kLooks; ++i) {
         const Point2 p = anyViewpoint(random, lines, box);
-        map.look(p, kInfinity, region);
+        map.query(p, kInfinity, region);
         mustGoRound(file, region);
         const bool is_enclosed = isEnclosed(region);
         const double whole = is_enclosed ? area(region) : kInfinity;
         const bool is_clear = std::none_of(lines.begin(), lines.end(), [p](const Segment2& line) {
-            return distance(p, line) <= kSightContact;
+            return distance(p, line) <= kRayEpsilon;
         });
         if (compared < kCompared && is_enclosed && is_clear) {
             ++compared;
@@ -229,7 +229,7 @@ void check(const std::string& file) {
         }
         double last = 0;
         for (const double range : {0.01, 0.5, 4.0, 30.0}) {
-            map.look(p, range, region);
+            map.query(p, range, region);
             mustGoRound(file, region);
             const double here = area(region);
             const double most = std::min(whole, std::numbers::pi * range * range);
