@@ -83,12 +83,12 @@ Page layOut(const MapPicture& map) {
 }
 
 /// Title and main figures, of which as many as fit.
-void drawHead(Canvas& canvas, const MapPicture& map, const Page& page) {
+void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     if (map.options.title.empty()) return;
     const double width = page.width - 2 * page.margin;
-    const TextStyle title{1.35 * page.em, true, Align::Left, map_colors::kInk, {}};
-    canvas.text({page.margin, page.title_base}, fitText(map.options.title, width, title), title);
-    const TextStyle style{page.em, false, Align::Left, map_colors::kFaintInk, {}};
+    const TextStyle title{1.35 * page.em, true, Align::Left, palette::kInk, {}};
+    picture.text({page.margin, page.title_base}, fitText(map.options.title, width, title), title);
+    const TextStyle style{page.em, false, Align::Left, palette::kFaintInk, {}};
     std::string line;
     for (const std::string& part : mainFigures(map)) {
         std::string longer = line;
@@ -97,19 +97,7 @@ void drawHead(Canvas& canvas, const MapPicture& map, const Page& page) {
         if (!line.empty() && textWidth(longer, style) > width) break;
         line = std::move(longer);
     }
-    canvas.text({page.margin, page.subtitle_base}, fitText(line, width, style), style);
-}
-
-PictureFormat pictureFormat(MapFormat format) {
-    switch (format) {
-        case MapFormat::Svg:
-            return PictureFormat::Svg;
-        case MapFormat::Pdf:
-            return PictureFormat::Pdf;
-        case MapFormat::Png:
-            break;
-    }
-    return PictureFormat::Png;
+    picture.text({page.margin, page.subtitle_base}, fitText(line, width, style), style);
 }
 
 }  // namespace
@@ -125,17 +113,17 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     map.terse = options.width < 50 * map.em;
     const Page page = layOut(map);
     map.view = page.view;
-    Canvas canvas(pictureFormat(options.format), page.width, std::ceil(page.height));
-    drawHead(canvas, map, page);
-    drawPlan(canvas, map);
+    Picture picture(page.width, std::ceil(page.height));
+    drawHead(picture, map, page);
+    drawPlan(picture, map);
     const double rim = page.margin - 0.2 * page.em;
     const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
                      {page.plan.high.x + rim, page.plan.high.y + rim}};
-    drawTrace(canvas, map, frame);
-    drawMarks(canvas, map, frame);
-    drawScaleBar(canvas, page.scale_corner, page.scale_most, page.view.scale, page.em);
-    drawLegend(canvas, page.legend, page.legend_corner, page.legend_width, page.em);
-    return canvas.encode();
+    drawTrace(picture, map, frame);
+    drawMarks(picture, map, frame);
+    drawScaleBar(picture, page.scale_corner, page.scale_most, page.view.scale, page.em);
+    drawLegend(picture, page.legend, page.legend_corner, page.legend_width, page.em);
+    return picture.write(options.format);
 }
 
 }  // namespace ispace

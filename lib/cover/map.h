@@ -6,10 +6,9 @@
 
 #include "cover/coverage.h"
 #include "cover/trace_file.h"
+#include "draw/picture.h"
 
 namespace ispace {
-
-enum class MapFormat { Png, Svg, Pdf };
 
 /// What the colour of covered floor tells.
 enum class MapColor {
@@ -25,7 +24,7 @@ enum class FanStyle {
 };
 
 struct MapOptions {
-    MapFormat format = MapFormat::Png;
+    PictureFormat format = PictureFormat::Png;
     int width = 1200;        ///< pixels; svg and pdf use it as their nominal width
     std::string title = {};  ///< e.g. base name of ENV; "" for none
     MapColor color = MapColor::Redundancy;

@@ -64,41 +64,41 @@ Curves curvesOfSet(const MapPicture& map, const SeenSet& set) {
     return curvesOfCells(map, set.cells);
 }
 
-void drawRedundancy(Canvas& canvas, const MapPicture& map) {
+void drawRedundancy(Picture& picture, const MapPicture& map) {
     const Shades shades = shadesFor(map.coverage.report);
     // Each class is laid over those below it, so that no seam shows between two.
     for (int shade = 1; shade <= shades.count; ++shade)
-        canvas.fill(seenCurves(map, shades.least(shade)), shades.color(shade));
+        picture.area(seenCurves(map, shades.least(shade)), {shades.color(shade)});
 }
 
 /// Floor that several see: stripes in their colours, or without colours if there are many.
-void drawShared(Canvas& canvas, const MapPicture& map, const std::vector<Curves>& sets) {
+void drawShared(Picture& picture, const MapPicture& map, const std::vector<Curves>& sets) {
     const Curves shared = seenCurves(map, 2);
-    canvas.fill(shared, map_colors::kShared);
+    picture.area(shared, {palette::kShared});
     if (sets.size() > kMostStriped) {
-        canvas.hatch(shared, {map_colors::kSharedHatch, 0.6 * map.em, 0.08 * map.em});
+        picture.area(shared, {Hatch{palette::kSharedHatch, 0.6 * map.em, 0.08 * map.em}});
         return;
     }
-    canvas.pushClip(std::span(shared));
+    picture.pushClip(std::span(shared));
     const auto count = static_cast<double>(sets.size());
     const double width = std::max(1.2 / count, 0.3) * map.em;
     for (std::size_t i = 0; i < sets.size(); ++i)
-        canvas.hatch(sets[i],
-                     {stripeColor(map, i), count * width, width, static_cast<double>(i) * width});
-    canvas.pop();
+        picture.area(sets[i], {Hatch{stripeColor(map, i), count * width, width,
+                                     static_cast<double>(i) * width}});
+    picture.pop();
 }
 
-void drawBySensor(Canvas& canvas, const MapPicture& map) {
+void drawBySensor(Picture& picture, const MapPicture& map) {
     std::vector<Curves> sets;
     sets.reserve(map.coverage.sets.size());
     for (const SeenSet& set : map.coverage.sets) sets.push_back(curvesOfSet(map, set));
-    for (std::size_t i = 0; i < sets.size(); ++i) canvas.fill(sets[i], floorColor(map, i));
-    if (sets.size() > 1) drawShared(canvas, map, sets);
+    for (std::size_t i = 0; i < sets.size(); ++i) picture.area(sets[i], {floorColor(map, i)});
+    if (sets.size() > 1) drawShared(picture, map, sets);
 }
 
 /// Both, gained and lost. Those that one sees alone are drawn over what both do: where the curves
 /// of the two run together, no seam shows.
-void drawComparison(Canvas& canvas, const MapPicture& map) {
+void drawComparison(Picture& picture, const MapPicture& map) {
     const bool exact = map.coverage.overlay && map.other->overlay;
     const Curves now = exact ? exactCurves(map, *map.coverage.overlay, 1)
                              : curvesOfCells(map, coveredCells(map.coverage));
@@ -113,15 +113,15 @@ void drawComparison(Canvas& canvas, const MapPicture& map) {
                           {low.x - far, high.y + far}});
         return curves;
     };
-    canvas.fill(now, map_colors::kBoth);
-    canvas.fill(before, map_colors::kBoth);
-    canvas.pushClip(std::span<const Polygon>(outside(before)));
-    canvas.fill(now, map_colors::kGained);
-    canvas.pop();
-    canvas.pushClip(std::span<const Polygon>(outside(now)));
-    canvas.fill(before, map_colors::kLost);
-    canvas.hatch(before, {map_colors::kLostHatch, 0.55 * map.em, 0.1 * map.em});
-    canvas.pop();
+    picture.area(now, {palette::kBoth});
+    picture.area(before, {palette::kBoth});
+    picture.pushClip(std::span<const Polygon>(outside(before)));
+    picture.area(now, {palette::kGained});
+    picture.pop();
+    picture.pushClip(std::span<const Polygon>(outside(now)));
+    picture.area(before, {palette::kLost});
+    picture.area(before, {Hatch{palette::kLostHatch, 0.55 * map.em, 0.1 * map.em}});
+    picture.pop();
 }
 
 }  // namespace
@@ -176,21 +176,21 @@ std::vector<Polygon> outsideOf(const Regions& indoor) {
     return outside;
 }
 
-void drawFloor(Canvas& canvas, const MapPicture& map) {
+void drawFloor(Picture& picture, const MapPicture& map) {
     const Regions& indoor = map.scene.environment.indoor();
-    canvas.fill(curvesOf(indoor), map_colors::kUncovered);
-    canvas.pushClip(curvesOf(indoor));
+    picture.area(curvesOf(indoor), {palette::kFloor});
+    picture.pushClip(curvesOf(indoor));
     if (map.other != nullptr)
-        drawComparison(canvas, map);
+        drawComparison(picture, map);
     else if (map.options.color == MapColor::Sensor)
-        drawBySensor(canvas, map);
+        drawBySensor(picture, map);
     else
-        drawRedundancy(canvas, map);
-    canvas.pop();
+        drawRedundancy(picture, map);
+    picture.pop();
     const std::vector<Polygon> outside = outsideOf(indoor);
-    canvas.fill(outside, map_colors::kOutside);
-    canvas.hatch(outside,
-                 {map_colors::kOutsideHatch, 0.7 * map.em, 0.07 * map.em, 0, Angle::degrees(-45)});
+    picture.area(outside, {palette::kOutside});
+    picture.area(outside, {Hatch{palette::kOutsideHatch, 0.7 * map.em, 0.07 * map.em, 0,
+                                 Angle::degrees(-45)}});
 }
 
 }  // namespace ispace

@@ -6,7 +6,7 @@
 namespace ispace {
 namespace {
 
-using namespace map_colors;
+using namespace palette;
 
 /// The map of a layout in an empty room of 8 m x 8 m, compared with that of another.
 std::string comparisonOf(const std::string& now, const std::string& before, bool exact = true,
@@ -18,7 +18,7 @@ std::string comparisonOf(const std::string& now, const std::string& before, bool
     Coverage coverage = measureCoverage(scene, worlds, options);
     const Coverage other = measureCoverage(other_scene, worlds, options);
     compare(coverage, other, scene.environment.indoor(), "old.3dm");
-    return drawCoverageMap(scene, coverage, {MapFormat::Png, width, ""}, &other);
+    return drawCoverageMap(scene, coverage, {PictureFormat::Png, width, ""}, &other);
 }
 
 // Fans of a quarter turn from the middle to the walls.
@@ -84,12 +84,12 @@ TEST(MapFloor, OutsideIsWhatLiesInHolesAndIsNoRoom) {
 
 TEST(MapFloor, HolesOfRoomsWithinRoomsAreHatched) {
     const PlanPixels pixels(mapOf(nested("inside at=3.5,0\ninside at=1.5,0\n")), 8);
-    EXPECT_EQ(pixels.at(3.5, 0.3), pixelOf(kUncovered));
-    EXPECT_EQ(pixels.at(1.5, 0.3), pixelOf(kUncovered));
+    EXPECT_EQ(pixels.at(3.5, 0.3), pixelOf(kFloor));
+    EXPECT_EQ(pixels.at(1.5, 0.3), pixelOf(kFloor));
     for (const double x : {0.3, 2.5}) {
         int other = 0;
         for (double y = -0.5; y < 0.5; y += 0.01)
-            if (pixels.at(x, y) != pixelOf(kUncovered)) ++other;
+            if (pixels.at(x, y) != pixelOf(kFloor)) ++other;
         EXPECT_GT(other, 90) << x;
     }
 }
@@ -102,8 +102,8 @@ TEST(MapFloor, ExactOutlinesHaveNoSteps) {
     for (double away = 0.8; away < 4.2; away += 0.01) {
         const Point2 inside = Point2{} + away * along - 0.02 * left;
         const Point2 outside = Point2{} + away * along + 0.02 * left;
-        ASSERT_FALSE(isNear(pixels.at(inside.x, inside.y), kUncovered)) << away;
-        ASSERT_TRUE(isNear(pixels.at(outside.x, outside.y), kUncovered)) << away;
+        ASSERT_FALSE(isNear(pixels.at(inside.x, inside.y), kFloor)) << away;
+        ASSERT_TRUE(isNear(pixels.at(outside.x, outside.y), kFloor)) << away;
     }
 }
 
@@ -112,8 +112,8 @@ TEST(MapFloor, ArcsAreRound) {
         mapOf("ispace size=8,8\nlaser at=0,0 heading=0 fov=360 range=3\n", {.width = 2400}), 8);
     for (int turn = 0; turn < 360; ++turn) {
         const Vec2 way = unitVector(Angle::degrees(turn + 0.5));
-        ASSERT_FALSE(isNear(pixels.at(2.985 * way.x, 2.985 * way.y), kUncovered)) << turn;
-        ASSERT_TRUE(isNear(pixels.at(3.02 * way.x, 3.02 * way.y), kUncovered)) << turn;
+        ASSERT_FALSE(isNear(pixels.at(2.985 * way.x, 2.985 * way.y), kFloor)) << turn;
+        ASSERT_TRUE(isNear(pixels.at(3.02 * way.x, 3.02 * way.y), kFloor)) << turn;
     }
 }
 
@@ -129,11 +129,11 @@ TEST(MapFloor, SensorsHaveTheirColoursAndShareStripes) {
         EXPECT_TRUE(isNear(pixels.at(2, -1), floorColor(map, 0)));
         EXPECT_TRUE(isNear(pixels.at(1, 2), floorColor(map, 1)));
         EXPECT_NE(floorColor(map, 0), floorColor(map, 1));
-        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered));
+        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kFloor));
         // Where both see, half of the floor has the stripes of each, less their soft sides.
         for (const std::size_t set : {0U, 1U})
             EXPECT_NEAR(pixels.shareOf(stripeColor(map, set), 3, 1.3, 40), 0.45, 0.05) << set;
-        EXPECT_EQ(pixels.shareOf(kUncovered, 3, 1.3, 40), 0);
+        EXPECT_EQ(pixels.shareOf(kFloor, 3, 1.3, 40), 0);
     }
 }
 
@@ -144,7 +144,7 @@ TEST(MapFloor, ColoursOfSensorsAreLightButDarkerThanUnseenFloor) {
     for (std::size_t set = 0; set < kSeriesColors; ++set) {
         const Color floor = floorColor({scene, coverage, options}, set);
         EXPECT_GT(lightness(floor), 0.7) << set;
-        EXPECT_LT(lightness(floor), lightness(kUncovered) - 0.07) << set;
+        EXPECT_LT(lightness(floor), lightness(kFloor) - 0.07) << set;
         for (std::size_t other = 0; other < set; ++other)
             EXPECT_NE(floor, floorColor({scene, coverage, options}, other));
     }
@@ -158,7 +158,7 @@ TEST(MapFloor, ManySensorsShareAPlainHatch) {
     EXPECT_GT(pixels.shareOf(kShared, 2, 2, 40), 0.7);
     EXPECT_GT(pixels.shareOf(kShared, 2, 2, 40) + pixels.shareOf(kSharedHatch, 2, 2, 40), 0.71);
     EXPECT_LT(pixels.shareOf(kShared, 2, 2, 40), 0.95);
-    EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered));
+    EXPECT_EQ(pixels.at(-2, -2), pixelOf(kFloor));
 }
 
 TEST(MapFloor, ComparisonsTellKeptGainedLostAndUnseen) {
@@ -168,7 +168,7 @@ TEST(MapFloor, ComparisonsTellKeptGainedLostAndUnseen) {
         EXPECT_EQ(pixels.at(-1, 2.5), pixelOf(kBoth)) << exact;
         EXPECT_EQ(pixels.at(1, 2.5), pixelOf(kBoth)) << exact;
         EXPECT_EQ(pixels.at(2.5, 1), pixelOf(kBoth)) << exact;
-        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kUncovered)) << exact;
+        EXPECT_EQ(pixels.at(-2, -2), pixelOf(kFloor)) << exact;
         EXPECT_EQ(pixels.shareOf(kLost, 0, 0, 350), 0) << exact;
     }
     for (const bool exact : {false, true}) {

@@ -84,11 +84,11 @@ Figure shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t 
 LegendBlock shadesBlock(const CoverageReport& report) {
     LegendBlock block = figureBlock("Floor seen by", report.redundancy_exact.has_value());
     const auto add = [&](Color color, std::string text, std::size_t first, std::size_t end) {
-        LegendItem item{Sign::Patch, color, map_colors::kObjectEdge, std::move(text), ""};
+        LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
         setFigure(item, block, shareSeenBy(report, first, end), percent);
         block.items.push_back(std::move(item));
     };
-    add(map_colors::kUncovered, "no sensor", 0, 1);
+    add(palette::kFloor, "no sensor", 0, 1);
     if (report.redundancy.size() < 2) return block;
     const Shades shades = shadesFor(report);
     for (int shade = 1; shade <= shades.count; ++shade) {
@@ -110,8 +110,8 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
         setFigure(item, block, shareSeenBy(report, first, end), percent);
         block.items.push_back(std::move(item));
     };
-    using namespace map_colors;
-    add({Sign::Patch, kUncovered, kObjectEdge, "no sensor", ""}, 0, 1);
+    using namespace palette;
+    add({Sign::Patch, kFloor, kObjectEdge, "no sensor", ""}, 0, 1);
     if (sets > 0) add({Sign::None, {}, {}, "one (in its colour)", ""}, 1, 2);
     if (sets < 2) return block;
     const bool striped = sets <= kMostStriped;
@@ -144,12 +144,12 @@ LegendBlock comparisonBlock(const CoverageReport& report) {
     };
     const Figure now = areaOf(report.coverage, report.indoor_area);
     const Figure any = sum(now, comparison.lost, 1);
-    using namespace map_colors;
+    using namespace palette;
     add(Sign::Patch, kBoth, kObjectEdge, "kept", sum(now, comparison.gained, -1));
     add(Sign::Patch, kGained, kObjectEdge, "gained", comparison.gained);
     add(Sign::Hatched, kLost, kLostHatch, "lost", comparison.lost);
     const Figure whole{report.indoor_area, report.indoor_area};
-    add(Sign::Patch, kUncovered, kObjectEdge, "unseen", sum(whole, any, -1));
+    add(Sign::Patch, kFloor, kObjectEdge, "unseen", sum(whole, any, -1));
     return block;
 }
 
@@ -188,7 +188,7 @@ LegendBlock sensorsBlock(const MapPicture& map) {
     const std::size_t listed = listedOf(sensors.size(), map.terse ? 5 : 9);
     const bool colored = map.options.color == MapColor::Sensor && map.other == nullptr;
     for (std::size_t i = 0; i < listed; ++i) {
-        LegendItem item{Sign::Sensor, {0, 0, 0, 0}, map_colors::kObjectEdge, sensors[i].id, ""};
+        LegendItem item{Sign::Sensor, {0, 0, 0, 0}, palette::kObjectEdge, sensors[i].id, ""};
         item.mark = markOf(map, i);
         item.mark.heading = Angle();
         if (colored) item.color = floorColor(map, setOf(map.coverage, i));
@@ -202,7 +202,7 @@ LegendBlock sensorsBlock(const MapPicture& map) {
         const std::string name =
             map.coverage.report.comparison ? map.coverage.report.comparison->name : "";
         LegendItem item{Sign::Sensor, {0, 0, 0, 0}, {}, name.empty() ? "the other" : name, ""};
-        item.mark = {ViewKind::Laser, Angle(), map_colors::kOtherSensor, true};
+        item.mark = {ViewKind::Laser, Angle(), palette::kOtherSensor, true};
         item.value = countsOf(map.other->sensors);
         block.items.push_back(std::move(item));
     }
@@ -267,7 +267,7 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     const auto add = [&block](bool shown, Sign sign, Color color, Color edge, std::string text) {
         if (shown) block.items.push_back({sign, color, edge, std::move(text), ""});
     };
-    using namespace map_colors;
+    using namespace palette;
     add(contents.walls, Sign::Line, kWall, {}, "wall");
     add(contents.openings, Sign::Line, kOpening, {}, "wall above, below, or glass");
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,

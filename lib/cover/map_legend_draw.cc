@@ -21,7 +21,7 @@ double heightOf(const LegendBlock& block, double em) {
 }
 
 /// The colours of places tried, from left to right.
-void drawScale(Canvas& canvas, double left, double y, double em) {
+void drawScale(Picture& picture, double left, double y, double em) {
     constexpr int kSteps = 24;
     const double half = 0.42 * em, step = kSignWidth * em / kSteps;
     for (int i = 0; i < kSteps; ++i) {
@@ -29,48 +29,48 @@ void drawScale(Canvas& canvas, double left, double y, double em) {
         // Each reaches to the end, so that no seam shows.
         const double to = left + kSignWidth * em;
         const Polygon patch = {{from, y - half}, {to, y - half}, {to, y + half}, {from, y + half}};
-        canvas.fill(patch, triedColor(i / (kSteps - 1.0)));
+        picture.area(patch, {triedColor(i / (kSteps - 1.0))});
     }
 }
 
-void drawPatch(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
+void drawPatch(Picture& picture, const LegendItem& item, double left, double y, double em) {
     const double right = left + kSignWidth * em, half = 0.42 * em;
     const Polygon patch = {
         {left, y - half}, {right, y - half}, {right, y + half}, {left, y + half}};
-    canvas.fill(patch, item.color);
+    picture.area(patch, {item.color});
     if (item.sign == Sign::Hatched)
-        canvas.hatch(std::span(&patch, 1), {item.edge, 0.5 * em, 0.09 * em});
-    canvas.stroke(patch, {map_colors::kObjectEdge, em / 16});
+        picture.area(std::span(&patch, 1), {Hatch{item.edge, 0.5 * em, 0.09 * em}});
+    picture.area(patch, {Stroke{palette::kObjectEdge, em / 16}});
 }
 
 /// The sign of an item, in a box kSignWidth em wide from `left` on, middle at y.
-void drawSign(Canvas& canvas, const LegendItem& item, double left, double y, double em) {
+void drawSign(Picture& picture, const LegendItem& item, double left, double y, double em) {
     const double right = left + kSignWidth * em;
     switch (item.sign) {
         case Sign::None:
             break;
         case Sign::Patch:
         case Sign::Hatched:
-            drawPatch(canvas, item, left, y, em);
+            drawPatch(picture, item, left, y, em);
             break;
         case Sign::Line:
-            canvas.line({left, y}, {right, y}, {item.color, em / 7});
+            picture.line({left, y}, {right, y}, {item.color, em / 7});
             break;
         case Sign::Dashes:
-            canvas.line({left, y}, {right, y}, {item.color, em / 10, {em / 2, em / 3}});
+            picture.line({left, y}, {right, y}, {item.color, em / 10, {em / 2, em / 3}});
             break;
         case Sign::Sensor:
-            if (item.color.alpha > 0) drawPatch(canvas, item, left, y, em);
-            drawSensorMark(canvas, {left + 0.45 * em, y}, item.mark, 0.3 * em);
+            if (item.color.alpha > 0) drawPatch(picture, item, left, y, em);
+            drawSensorMark(picture, {left + 0.45 * em, y}, item.mark, 0.3 * em);
             break;
         case Sign::Spot:
-            drawSpotSign(canvas, {left + kSignWidth / 2 * em, y}, item.number, em);
+            drawSpotSign(picture, {left + kSignWidth / 2 * em, y}, item.number, em);
             break;
         case Sign::Scale:
-            drawScale(canvas, left, y, em);
+            drawScale(picture, left, y, em);
             break;
         case Sign::Ring:
-            drawChosenRing(canvas, {left + kSignWidth / 2 * em, y}, 0.5 * em, em);
+            drawChosenRing(picture, {left + kSignWidth / 2 * em, y}, 0.5 * em, em);
             break;
     }
 }
@@ -84,7 +84,7 @@ struct ColumnWidths {
 ColumnWidths columnsOf(const LegendBlock& block, double em) {
     ColumnWidths widths;
     if (block.columns[0].empty()) return widths;
-    const TextStyle style{em, false, Align::Right, map_colors::kInk, {}};
+    const TextStyle style{em, false, Align::Right, palette::kInk, {}};
     widths = {textWidth(block.columns[1], style), textWidth(block.columns[0], style)};
     for (const LegendItem& item : block.items) {
         widths.second = std::max(widths.second, textWidth(item.second, style));
@@ -95,51 +95,51 @@ ColumnWidths columnsOf(const LegendBlock& block, double em) {
     return widths;
 }
 
-void drawItem(Canvas& canvas, const LegendItem& item, const ColumnWidths& columns, Point2 corner,
+void drawItem(Picture& picture, const LegendItem& item, const ColumnWidths& columns, Point2 corner,
               double width, double em) {
     const double base = corner.y + em * kLine * 0.5 + 0.36 * em;
     const double indent = item.sign == Sign::None ? 0 : (kSignWidth + 0.6) * em;
-    drawSign(canvas, item, corner.x, corner.y + em * kLine * 0.5, em);
-    const TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
+    drawSign(picture, item, corner.x, corner.y + em * kLine * 0.5, em);
+    const TextStyle style{em, false, Align::Left, palette::kInk, {}};
     TextStyle value_style = style;
     value_style.align = Align::Right;
     if (item.sign == Sign::Sensor || item.sign == Sign::Spot)
-        value_style.color = map_colors::kFaintInk;
+        value_style.color = palette::kFaintInk;
     const double right = corner.x + width;
     double room = width - indent;
     if (columns.second > 0) {
         const double first = right - columns.second - kColumnGap * em;
-        canvas.text({first, base}, item.value, value_style);
+        picture.text({first, base}, item.value, value_style);
         room -= right - first + kColumnGap * em;
         room -= item.second.empty() ? textWidth(item.value, value_style) : columns.first;
-        value_style.color = map_colors::kFaintInk;
-        canvas.text({right, base}, item.second, value_style);
+        value_style.color = palette::kFaintInk;
+        picture.text({right, base}, item.second, value_style);
     } else {
         // What does not fit is cut on both sides alike.
         const double needed = textWidth(item.text, style) + 0.7 * em;
         const double most = std::max(0.5 * room, room - needed);
         const std::string value = fitText(item.value, most, value_style);
-        canvas.text({right, base}, value, value_style);
+        picture.text({right, base}, value, value_style);
         room -= textWidth(value, value_style) + (value.empty() ? 0 : 0.7 * em);
     }
-    canvas.text({corner.x + indent, base}, fitText(item.text, room, style), style);
+    picture.text({corner.x + indent, base}, fitText(item.text, room, style), style);
 }
 
-void drawHead(Canvas& canvas, const LegendBlock& block, const ColumnWidths& columns, Point2 corner,
-              double width, double em) {
-    const TextStyle title{em, true, Align::Left, map_colors::kInk, {}};
+void drawHead(Picture& picture, const LegendBlock& block, const ColumnWidths& columns,
+              Point2 corner, double width, double em) {
+    const TextStyle title{em, true, Align::Left, palette::kInk, {}};
     const double base = corner.y + em, right = corner.x + width;
     double room = width;
     if (columns.second > 0) {
-        const TextStyle head{em, false, Align::Right, map_colors::kFaintInk, {}};
+        const TextStyle head{em, false, Align::Right, palette::kFaintInk, {}};
         const double first = columns.second + kColumnGap * em;
-        canvas.text({right - first, base}, block.columns[0], head);
-        canvas.text({right, base}, block.columns[1], head);
+        picture.text({right - first, base}, block.columns[0], head);
+        picture.text({right, base}, block.columns[1], head);
         room -= first + textWidth(block.columns[0], head) + kColumnGap * em;
     }
-    canvas.text({corner.x, base}, fitText(block.title, room, title), title);
-    canvas.line({corner.x, corner.y + 1.3 * em}, {right, corner.y + 1.3 * em},
-                {map_colors::kObjectEdge, em / 16});
+    picture.text({corner.x, base}, fitText(block.title, room, title), title);
+    picture.line({corner.x, corner.y + 1.3 * em}, {right, corner.y + 1.3 * em},
+                 {palette::kObjectEdge, em / 16});
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ LegendLayout layOutLegend(std::vector<LegendBlock> blocks, int columns, double e
     return layout;
 }
 
-void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, double width,
+void drawLegend(Picture& picture, const LegendLayout& layout, Point2 corner, double width,
                 double em) {
     const double gap = 2 * em;
     const auto count = static_cast<double>(layout.columns.size());
@@ -169,10 +169,10 @@ void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, doubl
         double y = corner.y;
         for (const LegendBlock& block : blocks) {
             const ColumnWidths widths = columnsOf(block, em);
-            drawHead(canvas, block, widths, {x, y}, column_width, em);
+            drawHead(picture, block, widths, {x, y}, column_width, em);
             y += em * kLine;
             for (const LegendItem& item : block.items) {
-                drawItem(canvas, item, widths, {x, y}, column_width, em);
+                drawItem(picture, item, widths, {x, y}, column_width, em);
                 y += em * kLine;
             }
             y += kBlockGap * em;
@@ -181,7 +181,7 @@ void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, doubl
     }
 }
 
-void drawScaleBar(Canvas& canvas, Point2 corner, double most, double page_per_metre, double em) {
+void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em) {
     const double limit = most / page_per_metre;
     double metres = std::pow(10, std::floor(std::log10(limit)));
     for (const double factor : {5, 2}) {
@@ -191,15 +191,15 @@ void drawScaleBar(Canvas& canvas, Point2 corner, double most, double page_per_me
         }
     }
     const double right = corner.x + metres * page_per_metre;
-    const Stroke stroke{map_colors::kInk, em / 8};
+    const Stroke stroke{palette::kInk, em / 8};
     const std::vector<Point2> bar = {
         {corner.x, corner.y - 0.4 * em}, corner, {right, corner.y}, {right, corner.y - 0.4 * em}};
-    canvas.polyline(bar, stroke);
-    canvas.line({corner.x + (right - corner.x) / 2, corner.y},
-                {corner.x + (right - corner.x) / 2, corner.y - 0.25 * em},
-                {map_colors::kInk, em / 12});
-    const TextStyle style{em, false, Align::Left, map_colors::kInk, {}};
-    canvas.text({right + 0.6 * em, corner.y}, formatDouble(metres) + " m", style);
+    picture.lines(std::span(&bar, 1), {stroke});
+    picture.line({corner.x + (right - corner.x) / 2, corner.y},
+                 {corner.x + (right - corner.x) / 2, corner.y - 0.25 * em},
+                 {palette::kInk, em / 12});
+    const TextStyle style{em, false, Align::Left, palette::kInk, {}};
+    picture.text({right + 0.6 * em, corner.y}, formatDouble(metres) + " m", style);
 }
 
 }  // namespace ispace

@@ -9,9 +9,9 @@ namespace ispace {
 namespace {
 
 Image markImage(const SensorMark& mark) {
-    Canvas canvas(PictureFormat::Png, 200, 200);
-    drawSensorMark(canvas, {100, 100}, mark, 20);
-    return decodePng(canvas.encode());
+    Picture picture(200, 200);
+    drawSensorMark(picture, {100, 100}, mark, 20);
+    return decodePng(picture.write(PictureFormat::Png));
 }
 
 std::size_t count(const Image& image, Color color) {
@@ -81,9 +81,9 @@ TEST(MapMarks, OtherSensorsAreHollowAndGrey) {
     const Coverage other = measureCoverage(other_scene, worlds, {});
     compare(coverage, other, scene.environment.indoor(), "old");
     const PlanPixels pixels(drawCoverageMap(scene, coverage, {}, &other), 8);
-    EXPECT_EQ(pixels.at(-2, 0), pixelOf(map_colors::kInk));
+    EXPECT_EQ(pixels.at(-2, 0), pixelOf(palette::kInk));
     EXPECT_EQ(pixels.at(2, 0), 0xFFFFFFU);
-    EXPECT_GT(pixels.shareOf(map_colors::kOtherSensor, 2, 0, 8), 0.1);
+    EXPECT_GT(pixels.shareOf(palette::kOtherSensor, 2, 0, 8), 0.1);
 }
 
 TEST(MapMarks, SpotsHaveSignsThatKeepOffSensors) {
@@ -92,8 +92,8 @@ TEST(MapMarks, SpotsHaveSignsThatKeepOffSensors) {
     coverage.report.unseen = {{{-2, -2}, 9}, {{3, 3}, 8}};
     const PlanPixels pixels(drawCoverageMap(scene, coverage, {}), 8);
     const int radius = 11;  // of a sign
-    EXPECT_GT(pixels.shareOf(map_colors::kWhite, -2, -2, radius), 0.3);
-    EXPECT_GT(pixels.shareOf(map_colors::kInk, -2, -2, radius), 0.05);
+    EXPECT_GT(pixels.shareOf(palette::kWhite, -2, -2, radius), 0.3);
+    EXPECT_GT(pixels.shareOf(palette::kInk, -2, -2, radius), 0.05);
     EXPECT_EQ(pixels.at(3, 3), pixelOf(seriesColor(0)));  // not covered by the second sign
 }
 
@@ -116,7 +116,7 @@ TEST(MapMarks, LabelsDoNotOverlap) {
     for (int i = 0; i < 30; ++i)
         lines += "laser id=laser" + std::to_string(i) + " at=" + std::to_string(-3.5 + 0.22 * i) +
                  "," + std::to_string(i % 3 * 0.2) + " range=1\n";
-    const std::string svg = mapOf(lines, {MapFormat::Svg, 800, ""});
+    const std::string svg = mapOf(lines, {PictureFormat::Svg, 800, ""});
     std::vector<Point2> labels;
     for (int i = 0; i < 30; ++i)
         for (const Point2& p : placesOf(svg, "laser" + std::to_string(i)))
@@ -136,7 +136,7 @@ TEST(MapMarks, ZonesAreNamedWhereThereIsRoom) {
     const std::string svg = mapOf(
         "ispace size=8,8\nzone id=wide-enough at=-2,0 size=3,2\nzone id=much-too-narrow at=2,0 "
         "size=0.3,2\n",
-        {MapFormat::Svg, 800, ""});
+        {PictureFormat::Svg, 800, ""});
     EXPECT_EQ(placesOf(svg, "wide-enough").size(), 2U);      // plan and legend
     EXPECT_EQ(placesOf(svg, "much-too-narrow").size(), 1U);  // legend
 }
@@ -169,7 +169,7 @@ TEST(MapViews, BeamsEndAtWhatTheyMeetOrAtTheirRange) {
                                   {.fans = FanStyle::Beams}),
                             8);
     const auto line_at = [&pixels](double x, double y) {
-        return pixels.at(x, y) != pixelOf(map_colors::kUncovered);
+        return pixels.at(x, y) != pixelOf(palette::kFloor);
     };
     EXPECT_TRUE(line_at(1.3, 0));
     EXPECT_FALSE(line_at(2.8, 0));

@@ -10,36 +10,10 @@
 
 #include "cover/coverage.h"
 #include "cover/map.h"
-#include "draw/canvas.h"
+#include "draw/palette.h"
+#include "draw/picture.h"
 
 namespace ispace {
-
-/// Colours of everything that is no data. Floor that is not seen is the lightest, so that what is
-/// seen stands out in grey as well.
-namespace map_colors {
-constexpr Color kInk = Color::rgb(0x1F2328);
-constexpr Color kFaintInk = Color::rgb(0x57606A);
-constexpr Color kWhite = Color::rgb(0xFFFFFF);
-constexpr Color kUncovered = Color::rgb(0xFBF5E9);
-constexpr Color kOutside = Color::rgb(0xE4E4E4);
-constexpr Color kOutsideHatch = Color::rgb(0xB4B4B4);
-constexpr Color kOpening = Color::rgb(0xA39B90);
-constexpr Color kWall = Color::rgb(0x24292F);
-constexpr Color kSolid = Color::rgb(0x7D746B);
-constexpr Color kSolidEdge = Color::rgb(0x4A443E);
-constexpr Color kObject = Color::rgb(0xE2D9CD);
-constexpr Color kObjectEdge = Color::rgb(0x9A9085);
-constexpr Color kZone = Color::rgb(0x6E3A8E);
-/// Floor that several sensors see, where colours tell which one does: below the stripes.
-constexpr Color kShared = Color::rgb(0xD4D4D4);
-constexpr Color kSharedHatch = Color::rgb(0x6B6B6B);
-/// Of comparisons: blue and orange, far apart for any colour vision; in grey the hatch tells.
-constexpr Color kBoth = Color::rgb(0xC3CDD8);
-constexpr Color kGained = Color::rgb(0x4A96C9);
-constexpr Color kLost = Color::rgb(0xF3B562);
-constexpr Color kLostHatch = Color::rgb(0x9C4A00);
-constexpr Color kOtherSensor = Color::rgb(0x6E7781);
-}  // namespace map_colors
 
 /// What is drawn, and where on the page.
 struct MapPicture {
@@ -99,7 +73,7 @@ constexpr std::size_t kMostStriped = 6;
 /// What lies in holes of the indoor region and is no room, as curves by the even-odd rule.
 std::vector<Polygon> outsideOf(const Regions& indoor);
 /// Indoor floor in the colours of coverage.
-void drawFloor(Canvas& canvas, const MapPicture& map);
+void drawFloor(Picture& picture, const MapPicture& map);
 
 // Sensors (map_views.cc, map_sensors.cc).
 
@@ -111,27 +85,27 @@ Stroke sensorStroke(const MapPicture& map, std::size_t sensor);
 /// Colour of its mark.
 Color sensorColor(const MapPicture& map, std::size_t sensor);
 /// Contours or beams. In metres: a view is open.
-void drawViews(Canvas& canvas, const MapPicture& map);
+void drawViews(Picture& picture, const MapPicture& map);
 
 /// Mark of a sensor: a disc for lasers, a square for rangers, a triangle for receivers.
 struct SensorMark {
     ViewKind kind = ViewKind::Laser;
     std::optional<Angle> heading = {};  ///< as seen, y up; none: it looks straight up or down
-    Color color = map_colors::kInk;
+    Color color = palette::kInk;
     bool hollow = false;
 };
 SensorMark markOf(const MapPicture& map, std::size_t sensor);
-void drawSensorMark(Canvas& canvas, Point2 page, const SensorMark& mark, double radius);
+void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius);
 /// A number in a disc; its radius is kSpotRadius * em.
 constexpr double kSpotRadius = 0.62;
-void drawSpotSign(Canvas& canvas, Point2 page, const std::string& number, double em);
+void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em);
 
 /// Unseen spots that are marked and listed: the first ones, if they are not small beside the room.
 std::size_t markedSpots(const MapPicture& map);
 
 /// Marks and ids of the sensors, signs of unseen spots, on top of the plan; all keep within
 /// `frame` (page units).
-void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame);
+void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame);
 
 // What a search tried (map_trace.cc).
 
@@ -149,10 +123,10 @@ std::vector<TriedPlace> placesTried(const std::vector<TriedPose>& trace);
 /// for any colour vision and in grey. \param share 0 (worst) to 1 (best)
 Color triedColor(double share);
 
-void drawChosenRing(Canvas& canvas, Point2 page, double radius, double em);
+void drawChosenRing(Picture& picture, Point2 page, double radius, double em);
 /// Dots with a tick in the best heading, the best on top; places of chosen sensors in rings. All
 /// keep within `frame` (page units).
-void drawTrace(Canvas& canvas, const MapPicture& map, const Box2& frame);
+void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame);
 
 // Plan (map_plan.cc).
 
@@ -168,7 +142,7 @@ struct MapContents {
 MapContents contentsOf(const Scene& scene, const Coverage& coverage);
 
 /// Everything within the plan but marks and what was tried.
-void drawPlan(Canvas& canvas, const MapPicture& map);
+void drawPlan(Picture& picture, const MapPicture& map);
 
 // Legend (map_legend.cc, map_legend_draw.cc).
 
@@ -208,10 +182,11 @@ struct LegendLayout {
     double height = 0;
 };
 LegendLayout layOutLegend(std::vector<LegendBlock> blocks, int columns, double em);
-void drawLegend(Canvas& canvas, const LegendLayout& layout, Point2 corner, double width, double em);
+void drawLegend(Picture& picture, const LegendLayout& layout, Point2 corner, double width,
+                double em);
 
 /// A bar of round length (1, 2, 5 times a power of ten), at most `most` page units long, with its
 /// label; `corner` is its lower left end.
-void drawScaleBar(Canvas& canvas, Point2 corner, double most, double page_per_metre, double em);
+void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em);
 
 }  // namespace ispace

@@ -18,17 +18,17 @@ bool isWall(const Element& element) {
     return type == RecordType::Wall || type == RecordType::Space;
 }
 
-void drawObjects(Canvas& canvas, const Scene& scene, double height, double em) {
+void drawObjects(Picture& picture, const Scene& scene, double height, double em) {
     for (const bool at_height : {false, true}) {
-        const Color inner = at_height ? map_colors::kSolid : map_colors::kObject;
-        const Stroke edge{at_height ? map_colors::kSolidEdge : map_colors::kObjectEdge, em / 16};
+        const Color inner = at_height ? palette::kSolid : palette::kObject;
+        const Stroke edge{at_height ? palette::kSolidEdge : palette::kObjectEdge, em / 16};
         for (const Element& element : scene.environment.elements()) {
             if (isWall(element)) continue;
             for (const Prism& prism : element.body.prisms) {
                 if (standsAt(prism, height) != at_height) continue;
                 // What does not stand in the way lets the floor's colour through.
-                canvas.fill(prism.footprint, at_height ? inner : inner.faded(0.6));
-                canvas.stroke(prism.footprint, edge);
+                picture.area(prism.footprint, {at_height ? inner : inner.faded(0.6)});
+                picture.area(prism.footprint, {edge});
             }
         }
     }
@@ -48,30 +48,30 @@ bool stopsAt(const Sheet& sheet, double height) {
 }
 
 /// Lines and bodies of walls: those that let sight pass first, pale, so that the others' ends show.
-void drawWalls(Canvas& canvas, const Scene& scene, double height, double scale, double em) {
+void drawWalls(Picture& picture, const Scene& scene, double height, double scale, double em) {
     const double width = wallWidth(scene.environment, scale, em);
     for (const bool stopping : {false, true}) {
-        const Color color = stopping ? map_colors::kWall : map_colors::kOpening;
+        const Color color = stopping ? palette::kWall : palette::kOpening;
         for (const Element& element : scene.environment.elements()) {
             std::vector<Segment2> lines;
             for (const Sheet& sheet : element.body.sheets)
                 if (stopsAt(sheet, height) == stopping) lines.push_back(sheet.line);
-            if (!lines.empty()) canvas.lines(lines, {color, stopping ? width : width / 2});
+            if (!lines.empty()) picture.lines(lines, {Stroke{color, stopping ? width : width / 2}});
             if (!isWall(element)) continue;
             for (const Prism& prism : element.body.prisms) {
                 if (standsAt(prism, height) != stopping) continue;
-                if (stopping) canvas.fill(prism.footprint, color);
-                canvas.stroke(prism.footprint, {color, em / 16});
+                if (stopping) picture.area(prism.footprint, {color});
+                picture.area(prism.footprint, {Stroke{color, em / 16}});
             }
         }
     }
 }
 
-void drawZones(Canvas& canvas, const MapPicture& map) {
+void drawZones(Picture& picture, const MapPicture& map) {
     for (const Element& element : map.scene.environment.elements())
         if (element.record.keyword() == "zone")
-            canvas.stroke(zoneOutline(element.record),
-                          {map_colors::kZone, map.em / 10, {map.em / 2, map.em / 3}});
+            picture.area(zoneOutline(element.record),
+                         {Stroke{palette::kZone, map.em / 10, {map.em / 2, map.em / 3}}});
 }
 
 }  // namespace
@@ -96,22 +96,22 @@ MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     return contents;
 }
 
-void drawPlan(Canvas& canvas, const MapPicture& map) {
+void drawPlan(Picture& picture, const MapPicture& map) {
     const Box2& limits = map.limits();
     const double rim = map.em / 4 / map.view.scale;  // walls on the limits are drawn whole
     const Polygon frame = {{limits.low.x - rim, limits.low.y - rim},
                            {limits.high.x + rim, limits.low.y - rim},
                            {limits.high.x + rim, limits.high.y + rim},
                            {limits.low.x - rim, limits.high.y + rim}};
-    canvas.pushView(map.view);
-    canvas.pushClip(frame);
-    drawFloor(canvas, map);
-    drawViews(canvas, map);
-    drawObjects(canvas, map.scene, map.coverage.target.height, map.em);
-    drawWalls(canvas, map.scene, map.coverage.target.height, map.view.scale, map.em);
-    drawZones(canvas, map);
-    canvas.pop();
-    canvas.pop();
+    picture.pushView(map.view);
+    picture.pushClip(frame);
+    drawFloor(picture, map);
+    drawViews(picture, map);
+    drawObjects(picture, map.scene, map.coverage.target.height, map.em);
+    drawWalls(picture, map.scene, map.coverage.target.height, map.view.scale, map.em);
+    drawZones(picture, map);
+    picture.pop();
+    picture.pop();
 }
 
 }  // namespace ispace

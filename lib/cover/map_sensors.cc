@@ -110,14 +110,14 @@ Polygon bodyOf(ViewKind kind, double radius) {
     return {{0, tip}, {-side, -tip / 2}, {side, -tip / 2}};
 }
 
-void fillBody(Canvas& canvas, ViewKind kind, double radius, Color color, double rim = 0) {
+void fillBody(Picture& picture, ViewKind kind, double radius, Color color, double rim = 0) {
     if (kind == ViewKind::Laser) {
-        canvas.fillCircle({}, radius + rim, color);
+        picture.circle({}, radius + rim, {color});
         return;
     }
     const Polygon body = bodyOf(kind, radius);
-    if (rim > 0) canvas.stroke(body, {color, 2 * rim});
-    canvas.fill(body, color);
+    if (rim > 0) picture.area(body, {Stroke{color, 2 * rim}});
+    picture.area(body, {color});
 }
 
 Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
@@ -125,7 +125,7 @@ Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
 }
 
 /// Marks of those that stand on the plan; `hollow`: of the layout that this one is compared with.
-void drawSensors(Canvas& canvas, const MapPicture& map, const Box2& frame, bool hollow,
+void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, bool hollow,
                  LabelPlacer& places) {
     const std::vector<SensorView>& sensors = map.coverage.sensors;
     const double radius = map.em * (sensors.size() > kCrowd ? 0.24
@@ -136,39 +136,37 @@ void drawSensors(Canvas& canvas, const MapPicture& map, const Box2& frame, bool 
         if (!contains(frame, {page, page})) continue;
         SensorMark mark = markOf(map, i);
         mark.hollow = hollow;
-        if (hollow) mark.color = map_colors::kOtherSensor;
+        if (hollow) mark.color = palette::kOtherSensor;
         // On top of another one it is smaller, so that both are seen.
         const auto is_here = [&](const SensorView& sensor) {
             return distance(pageOf(map, sensor), page) < 0.4 * radius;
         };
         const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
         const bool on_top = std::any_of(sensors.begin(), end, is_here);
-        drawSensorMark(canvas, page, mark, on_top ? 0.5 * radius : radius);
+        drawSensorMark(picture, page, mark, on_top ? 0.5 * radius : radius);
         places.addMark(page, mark.heading);
     }
 }
 
-void drawIds(Canvas& canvas, const MapPicture& map, const Box2& frame, LabelPlacer& places) {
+void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPlacer& places) {
     const std::vector<SensorView>& sensors = map.coverage.sensors;
     const bool crowd = sensors.size() > kCrowd;
     const double size = crowd ? std::max(10.0, 0.7 * map.em) : map.em;
-    const TextStyle style{size, true, Align::Center, map_colors::kInk,
-                          map_colors::kWhite.faded(0.85)};
+    const TextStyle style{size, true, Align::Center, palette::kInk, palette::kWhite.faded(0.85)};
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const Point2 page = pageOf(map, sensors[i]);
         if (!contains(frame, {page, page})) continue;
         const std::string id = fitText(sensors[i].id, 10 * size, style);
         const Angle heading = markOf(map, i).heading.value_or(Angle());
         if (const auto middle = places.placeLabel(page, heading, textWidth(id, style), size, crowd))
-            canvas.text({middle->x, middle->y + 0.36 * size}, id, style);
+            picture.text({middle->x, middle->y + 0.36 * size}, id, style);
     }
 }
 
 /// Names of zones in their first free corner; the legend names those that have no room.
-void drawZoneNames(Canvas& canvas, const MapPicture& map, LabelPlacer& places) {
+void drawZoneNames(Picture& picture, const MapPicture& map, LabelPlacer& places) {
     const double size = std::max(10.0, 0.85 * map.em), inset = 0.4 * map.em;
-    const TextStyle style{size, false, Align::Left, map_colors::kZone,
-                          map_colors::kWhite.faded(0.8)};
+    const TextStyle style{size, false, Align::Left, palette::kZone, palette::kWhite.faded(0.8)};
     for (const Element& element : map.scene.environment.elements()) {
         if (element.record.keyword() != "zone") continue;
         const Box2 zone = bounds(zoneOutline(element.record));
@@ -183,7 +181,7 @@ void drawZoneNames(Canvas& canvas, const MapPicture& map, LabelPlacer& places) {
               Point2{high.x - inset - width, high.y - inset - size},
               Point2{high.x - inset - width, low.y + inset}}) {
             if (!places.take({corner, {corner.x + width, corner.y + size}})) continue;
-            canvas.text({corner.x, corner.y + 0.86 * size}, name, style);
+            picture.text({corner.x, corner.y + 0.86 * size}, name, style);
             break;
         }
     }
@@ -201,30 +199,30 @@ SensorMark markOf(const MapPicture& map, std::size_t sensor) {
     return mark;
 }
 
-void drawSensorMark(Canvas& canvas, Point2 page, const SensorMark& mark, double radius) {
-    using map_colors::kWhite;
-    canvas.pushView({1, {0, 0}, page});
+void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius) {
+    using palette::kWhite;
+    picture.pushView({1, {0, 0}, page});
     if (mark.heading) {
         const Vec2 forward = unitVector(*mark.heading), left = perpendicular(forward);
         const Point2 center, tip = center + 3.4 * radius * forward;
         const Point2 neck = center + 1.9 * radius * forward;
         const Polygon head = {tip, neck + 0.85 * radius * left, neck - 0.85 * radius * left};
-        canvas.line(center, neck, {kWhite, radius});
-        canvas.stroke(head, {kWhite, 0.6 * radius});
-        canvas.line(center, neck, {mark.color, 0.5 * radius});
-        canvas.fill(head, mark.color);
+        picture.line(center, neck, {kWhite, radius});
+        picture.area(head, {Stroke{kWhite, 0.6 * radius}});
+        picture.line(center, neck, {mark.color, 0.5 * radius});
+        picture.area(head, {mark.color});
     }
-    fillBody(canvas, mark.kind, radius, kWhite, 0.3 * radius);
-    fillBody(canvas, mark.kind, radius, mark.color);
-    if (mark.hollow) fillBody(canvas, mark.kind, 0.5 * radius, kWhite);
-    canvas.pop();
+    fillBody(picture, mark.kind, radius, kWhite, 0.3 * radius);
+    fillBody(picture, mark.kind, radius, mark.color);
+    if (mark.hollow) fillBody(picture, mark.kind, 0.5 * radius, kWhite);
+    picture.pop();
 }
 
-void drawSpotSign(Canvas& canvas, Point2 page, const std::string& number, double em) {
-    canvas.fillCircle(page, kSpotRadius * em, map_colors::kWhite);
-    canvas.strokeCircle(page, kSpotRadius * em, {map_colors::kInk, em / 12});
-    const TextStyle style{std::max(10.0, 0.85 * em), true, Align::Center, map_colors::kInk, {}};
-    canvas.text({page.x, page.y + 0.36 * style.size}, number, style);
+void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em) {
+    picture.circle(page, kSpotRadius * em, {palette::kWhite});
+    picture.circle(page, kSpotRadius * em, {Stroke{palette::kInk, em / 12}});
+    const TextStyle style{std::max(10.0, 0.85 * em), true, Align::Center, palette::kInk, {}};
+    picture.text({page.x, page.y + 0.36 * style.size}, number, style);
 }
 
 std::size_t markedSpots(const MapPicture& map) {
@@ -236,19 +234,19 @@ std::size_t markedSpots(const MapPicture& map) {
     return count;
 }
 
-void drawMarks(Canvas& canvas, const MapPicture& map, const Box2& frame) {
+void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
     LabelPlacer places(frame, map.em);
     if (map.other != nullptr) {
         const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
-        drawSensors(canvas, other, frame, true, places);
+        drawSensors(picture, other, frame, true, places);
     }
-    drawSensors(canvas, map, frame, false, places);
+    drawSensors(picture, map, frame, false, places);
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
         const Point2 page = map.view * map.coverage.report.unseen[i].place;
-        drawSpotSign(canvas, places.placeSign(page), std::to_string(i + 1), map.em);
+        drawSpotSign(picture, places.placeSign(page), std::to_string(i + 1), map.em);
     }
-    drawIds(canvas, map, frame, places);
-    drawZoneNames(canvas, map, places);
+    drawIds(picture, map, frame, places);
+    drawZoneNames(picture, map, places);
 }
 
 }  // namespace ispace

@@ -23,11 +23,11 @@ TEST(Map, ShowsFloorWallsAndObjectsWhereTheyAre) {
     ASSERT_GT(pixels.scale, 90);
     EXPECT_EQ(pixels.at(3, 3), pixelOf(sequentialColor(1, 1)));
     EXPECT_EQ(pixels.at(2, 1), pixelOf(sequentialColor(1, 1)));
-    EXPECT_EQ(pixels.at(3, -3), pixelOf(map_colors::kUncovered));
-    EXPECT_EQ(pixels.at(-1, 3), pixelOf(map_colors::kUncovered));
-    EXPECT_EQ(pixels.at(-3, -3), pixelOf(map_colors::kSolid));
-    EXPECT_NE(pixels.at(-3, 0), pixelOf(map_colors::kSolid));
-    EXPECT_NE(pixels.at(-3, 0), pixelOf(map_colors::kUncovered));
+    EXPECT_EQ(pixels.at(3, -3), pixelOf(palette::kFloor));
+    EXPECT_EQ(pixels.at(-1, 3), pixelOf(palette::kFloor));
+    EXPECT_EQ(pixels.at(-3, -3), pixelOf(palette::kSolid));
+    EXPECT_NE(pixels.at(-3, 0), pixelOf(palette::kSolid));
+    EXPECT_NE(pixels.at(-3, 0), pixelOf(palette::kFloor));
     EXPECT_EQ(pixels.at(0.01, 0.01), pixelOf(seriesColor(0)));
     EXPECT_EQ(pixels.Image::at(5, 5), 0xFFFFFFU);
 }
@@ -42,7 +42,8 @@ TEST(Map, FloorShowsThroughWhatStandsAboveOrBelow) {
 }
 
 TEST(Map, EqualScenesGiveEqualBytes) {
-    for (const MapFormat format : {MapFormat::Png, MapFormat::Svg, MapFormat::Pdf}) {
+    for (const PictureFormat format :
+         {PictureFormat::Png, PictureFormat::Svg, PictureFormat::Pdf}) {
         const MapOptions options{format, 900, "office.glb"};
         const std::string first = mapOf(kOffice, options);
         EXPECT_GT(first.size(), 10000U);
@@ -77,7 +78,7 @@ TEST(Map, SvgIsWellFormedAndSmall) {
     for (const MapColor color : {MapColor::Redundancy, MapColor::Sensor}) {
         for (const FanStyle fans : {FanStyle::Contours, FanStyle::Beams}) {
             const std::string svg =
-                mapOf(kOffice, {MapFormat::Svg, 1200, "a <b> & \"c\"", color, fans});
+                mapOf(kOffice, {PictureFormat::Svg, 1200, "a <b> & \"c\"", color, fans});
             EXPECT_TRUE(isWellFormed(svg));
             EXPECT_LT(svg.size(), 300000U);
             EXPECT_NE(svg.find("width=\"1200px\""), std::string::npos);
@@ -88,9 +89,9 @@ TEST(Map, SvgIsWellFormedAndSmall) {
 TEST(Map, SvgHoldsTitleIdsAndFiguresAsText) {
     const std::string svg =
         mapOf("ispace size=8,8\nlaser id=left-one at=0,0 heading=45 fov=90 range=20\n",
-              {MapFormat::Svg, 1200, "a <b> & \"c\""});
+              {PictureFormat::Svg, 1200, "a <b> & \"c\""});
     for (const std::string text :
-         {"a &lt;b&gt; &amp; \"c\"", "left-one", "1 laser", "no sensor", "75.0%", "2 m",
+         {"a &lt;b&gt; &amp; &quot;c&quot;", "left-one", "1 laser", "no sensor", "75.0%", "2 m",
           "Coverage 25.0% (cells 25.0%) · 16.0 m² of 64.0 m² · 1 laser"})
         EXPECT_NE(svg.find(">" + text + "</text>"), std::string::npos) << text;
 }
@@ -104,19 +105,19 @@ TEST(Map, HostileNamesAreOnlyText) {
     coverage.report.zones[0].id = "]]>\xF0\x9F\x98";
     for (const int width : {200, 400, 1200}) {
         const std::string svg = drawCoverageMap(
-            scene, coverage, {MapFormat::Svg, width, "\x02<!--" + std::string(500, 'x')});
+            scene, coverage, {PictureFormat::Svg, width, "\x02<!--" + std::string(500, 'x')});
         EXPECT_TRUE(isWellFormed(svg));
         EXPECT_EQ(svg.find("<script"), std::string::npos);
         EXPECT_EQ(svg.find("<!--"), std::string::npos);
         for (const char c : svg) ASSERT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= 0x20);
-        decodePng(drawCoverageMap(scene, coverage, {MapFormat::Png, width, "\x02"}));
+        decodePng(drawCoverageMap(scene, coverage, {PictureFormat::Png, width, "\x02"}));
     }
 }
 
 TEST(Map, HeadShowsAsManyFiguresAsFit) {
-    const std::string wide = mapOf(kOffice, {MapFormat::Svg, 1200, "office"});
+    const std::string wide = mapOf(kOffice, {PictureFormat::Svg, 1200, "office"});
     EXPECT_NE(wide.find("· 4 lasers</text>"), std::string::npos);
-    const std::string narrow = mapOf(kOffice, {MapFormat::Svg, 250, "office"});
+    const std::string narrow = mapOf(kOffice, {PictureFormat::Svg, 250, "office"});
     EXPECT_EQ(narrow.find("· 4 lasers</text>"), std::string::npos);
     EXPECT_NE(narrow.find(">Coverage "), std::string::npos);
     const std::size_t begin = narrow.find(">Coverage ");
@@ -125,7 +126,7 @@ TEST(Map, HeadShowsAsManyFiguresAsFit) {
 }
 
 TEST(Map, PdfIsAPdfWithoutDate) {
-    const std::string pdf = mapOf(kOffice, {MapFormat::Pdf, 1200, "office"});
+    const std::string pdf = mapOf(kOffice, {PictureFormat::Pdf, 1200, "office"});
     EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
     EXPECT_EQ(pdf.find("Date"), std::string::npos);
 }
@@ -135,7 +136,7 @@ TEST(Map, KeepsTheWidthThatIsAskedForAtAnyAspect) {
                                    "ispace size=0.01,0.01", "ispace size=9000,7000"}) {
         for (const int width : {200, 400, 1200}) {
             const Image pixels = decodePng(
-                mapOf(room + "\nlaser at=0,0 heading=30\n", {MapFormat::Png, width, "a room"}));
+                mapOf(room + "\nlaser at=0,0 heading=30\n", {PictureFormat::Png, width, "a room"}));
             EXPECT_EQ(pixels.width, width);
             EXPECT_LT(pixels.height, 4 * width) << room;
             EXPECT_GT(pixels.height, width / 5) << room;
@@ -144,13 +145,13 @@ TEST(Map, KeepsTheWidthThatIsAskedForAtAnyAspect) {
 }
 
 TEST(Map, RefusesWidthsItCannotLayOut) {
-    EXPECT_THROW(mapOf("ispace", {MapFormat::Png, 0, ""}), UsageError);
-    EXPECT_THROW(mapOf("ispace", {MapFormat::Svg, 199, ""}), UsageError);
-    EXPECT_THROW(mapOf("ispace", {MapFormat::Svg, 1'000'000, ""}), UsageError);
+    EXPECT_THROW(mapOf("ispace", {PictureFormat::Png, 0, ""}), UsageError);
+    EXPECT_THROW(mapOf("ispace", {PictureFormat::Svg, 199, ""}), UsageError);
+    EXPECT_THROW(mapOf("ispace", {PictureFormat::Svg, 1'000'000, ""}), UsageError);
 }
 
 TEST(Map, DrawsTheWidestToo) {
-    const std::string svg = mapOf(kOffice, {MapFormat::Svg, 12000, "office"});
+    const std::string svg = mapOf(kOffice, {PictureFormat::Svg, 12000, "office"});
     EXPECT_NE(svg.find("width=\"12000px\""), std::string::npos);
     EXPECT_EQ(decodePng(mapOf("ispace size=60,1\nlaser at=0,0\n", {.width = 6000})).width, 6000);
     EXPECT_EQ(decodePng(mapOf(kOffice, {.width = 200})).width, 200);
@@ -158,8 +159,8 @@ TEST(Map, DrawsTheWidestToo) {
 
 TEST(Map, TextIsNeverBelowTenPixels) {
     for (const int width : {200, 400, 1200}) {
-        const std::string svg =
-            mapOf(kOffice, {MapFormat::Svg, width, "office", MapColor::Sensor, FanStyle::Beams});
+        const std::string svg = mapOf(
+            kOffice, {PictureFormat::Svg, width, "office", MapColor::Sensor, FanStyle::Beams});
         const std::string name = "font-size=\"";
         for (std::size_t at = svg.find(name); at != std::string::npos; at = svg.find(name, at + 1))
             ASSERT_GE(std::stod(svg.substr(at + name.size())), 10);

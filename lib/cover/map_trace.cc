@@ -72,12 +72,12 @@ Color triedColor(double share) {
             a.blue + part * (b.blue - a.blue), 1};
 }
 
-void drawChosenRing(Canvas& canvas, Point2 page, double radius, double em) {
-    canvas.strokeCircle(page, radius, {map_colors::kWhite, em / 4});
-    canvas.strokeCircle(page, radius, {map_colors::kInk, em / 9});
+void drawChosenRing(Picture& picture, Point2 page, double radius, double em) {
+    picture.circle(page, radius, {Stroke{palette::kWhite, em / 4}});
+    picture.circle(page, radius, {Stroke{palette::kInk, em / 9}});
 }
 
-void drawTrace(Canvas& canvas, const MapPicture& map, const Box2& frame) {
+void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
     const std::vector<TriedPlace> places = placesTried(map.options.trace);
     if (places.empty()) return;
     const double radius = dotRadius(map, places.size());
@@ -104,13 +104,13 @@ void drawTrace(Canvas& canvas, const MapPicture& map, const Box2& frame) {
         if (radius > kLeastTicked) {
             // Pale rims lift dots off dark floor; the palest dot is darker than any pale floor.
             const double rim = std::min(0.25 * radius, map.em / 16);
-            canvas.lines(own.dots, {map_colors::kWhite, 2 * (radius + rim)});
-            canvas.lines(own.ticks, {map_colors::kWhite, 0.55 * radius + 2 * rim});
-            canvas.lines(own.ticks, {color, 0.55 * radius});
+            picture.lines(own.dots, {Stroke{palette::kWhite, 2 * (radius + rim)}});
+            picture.lines(own.ticks, {Stroke{palette::kWhite, 0.55 * radius + 2 * rim}});
+            picture.lines(own.ticks, {Stroke{color, 0.55 * radius}});
         }
-        canvas.lines(own.dots, {color, 2 * radius});
+        picture.lines(own.dots, {Stroke{color, 2 * radius}});
     }
-    for (const Point2 page : chosen) drawChosenRing(canvas, page, 0.68 * map.em, map.em);
+    for (const Point2 page : chosen) drawChosenRing(picture, page, 0.68 * map.em, map.em);
 }
 
 }  // namespace ispace

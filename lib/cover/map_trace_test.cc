@@ -61,11 +61,11 @@ TEST(MapTrace, DotsTicksAndRingsStandAtTheirPlaces) {
     EXPECT_TRUE(isNear(pixels.at(2, 2 + away), bestColor()));
     EXPECT_FALSE(isNear(pixels.at(2 + away, 2), bestColor()));
     EXPECT_TRUE(isNear(pixels.at(-2 + away, 2), worstColor()));
-    EXPECT_EQ(pixels.at(-3, -1), pixelOf(map_colors::kUncovered));
+    EXPECT_EQ(pixels.at(-3, -1), pixelOf(palette::kFloor));
     // The ring of the chosen one only.
     const double ring = 0.68 * 17 / pixels.scale;
-    EXPECT_TRUE(isNear(pixels.at(2, -2 + ring), map_colors::kInk));
-    EXPECT_FALSE(isNear(pixels.at(-2, 2 + ring), map_colors::kInk));
+    EXPECT_TRUE(isNear(pixels.at(2, -2 + ring), palette::kInk));
+    EXPECT_FALSE(isNear(pixels.at(-2, 2 + ring), palette::kInk));
 }
 
 TEST(MapTrace, SensorsLieOnTopAndTheBestOnTheOthers) {
@@ -84,13 +84,13 @@ TEST(MapTrace, ManyDotsAreSmall) {
                 tried(-4 + (i + 0.5) * 8 / 100, -4 + (j + 0.5) * 8 / 100, 0, i < 50 ? 0.1 : 0.2));
     const PlanPixels pixels = traceMap("ispace size=8,8\n", trace);
     // Between dots the floor still shows.
-    EXPECT_GT(pixels.shareOf(map_colors::kUncovered, -2, 0, 40), 0.04);
+    EXPECT_GT(pixels.shareOf(palette::kFloor, -2, 0, 40), 0.04);
     EXPECT_GT(pixels.shareOf(worstColor(), -2, 0, 40), 0.04);
     EXPECT_GT(pixels.shareOf(bestColor(), 2, 0, 40), 0.04);
     EXPECT_EQ(pixels.shareOf(bestColor(), -2, 0, 40), 0);
     MapOptions options;
     options.trace = std::move(trace);
-    options.format = MapFormat::Svg;
+    options.format = PictureFormat::Svg;
     EXPECT_LT(mapOf("ispace size=8,8\n", options).size(), 2'000'000U);
 }
 
@@ -127,7 +127,8 @@ TEST(MapTrace, LegendTellsTheEndsOfTheScale) {
 TEST(MapTrace, AllFormatsAndTheSameBytes) {
     MapOptions options;
     options.trace = {tried(-2, 2, 0, 0.1), tried(2, 2, 0, 0.2, true)};
-    for (const MapFormat format : {MapFormat::Png, MapFormat::Svg, MapFormat::Pdf}) {
+    for (const PictureFormat format :
+         {PictureFormat::Png, PictureFormat::Svg, PictureFormat::Pdf}) {
         options.format = format;
         const std::string picture = mapOf("ispace size=8,8\n", options);
         EXPECT_EQ(picture, mapOf("ispace size=8,8\n", options));

@@ -19,7 +19,7 @@ std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
     return drawable(map, contours(map.coverage.target.grid, view.cells));
 }
 
-void drawContours(Canvas& canvas, const MapPicture& map, const std::vector<Polygon>& curves,
+void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
                   const Stroke& line) {
     constexpr std::size_t kMostBands = 12;  // soft rims help to tell few views apart, and hide many
     const bool plain = map.other == nullptr && map.options.color == MapColor::Redundancy;
@@ -27,14 +27,14 @@ void drawContours(Canvas& canvas, const MapPicture& map, const std::vector<Polyg
         const Box2& limits = map.limits();
         const double rim = std::min(
             0.9 * map.em, 0.04 * map.view.scale * std::min(limits.width(), limits.depth()));
-        canvas.pushClip(std::span(curves));
-        canvas.stroke(curves, {line.color.faded(0.16), rim});
-        canvas.pop();
+        picture.pushClip(std::span(curves));
+        picture.area(curves, {Stroke{line.color.faded(0.16), rim}});
+        picture.pop();
     }
     // A pale rim lifts the line off stripes.
     if (map.other == nullptr && map.options.color == MapColor::Sensor)
-        canvas.stroke(curves, {map_colors::kWhite.faded(0.7), line.width + map.em / 9});
-    canvas.stroke(curves, line);
+        picture.area(curves, {Stroke{palette::kWhite.faded(0.7), line.width + map.em / 9}});
+    picture.area(curves, {line});
 }
 
 /// The beams on the plan, from above: each to what it meets, or to the maximum range. Where the
@@ -65,12 +65,12 @@ bool showsBeams(const MapPicture& map, const SensorView& view) {
            !view.beams.empty() && map.scene.lasers[view.index].laser.sweep == SweepAxis::None;
 }
 
-void drawBeams(Canvas& canvas, const MapPicture& map, std::size_t sensor) {
+void drawBeams(Picture& picture, const MapPicture& map, std::size_t sensor) {
     Stroke line = sensorStroke(map, sensor);
     line.dashes.clear();
     line.width = map.em / 24;
     line.color = line.color.faded(0.6);
-    canvas.lines(beamsOf(map, map.coverage.sensors[sensor]), line);
+    picture.lines(beamsOf(map, map.coverage.sensors[sensor]), {line});
 }
 
 }  // namespace
@@ -83,14 +83,14 @@ std::size_t setOf(const Coverage& coverage, std::size_t sensor) {
 }
 
 Color sensorColor(const MapPicture& map, std::size_t sensor) {
-    return map.other != nullptr ? map_colors::kInk : setColor(map, setOf(map.coverage, sensor));
+    return map.other != nullptr ? palette::kInk : setColor(map, setOf(map.coverage, sensor));
 }
 
 Stroke sensorStroke(const MapPicture& map, std::size_t sensor) {
     const double em = map.em;
     const std::vector<SensorView>& sensors = map.coverage.sensors;
     const bool many = map.coverage.sets.size() > kManySensors;
-    if (map.other != nullptr) return {map_colors::kInk.faded(many ? 0.3 : 0.55), em / 16};
+    if (map.other != nullptr) return {palette::kInk.faded(many ? 0.3 : 0.55), em / 16};
     const Color color = sensorColor(map, sensor);
     Stroke stroke{color.faded(0.95), em / 9};
     if (many) stroke = {color.faded(sensors.size() > 3 * kManySensors ? 0.4 : 0.6), em / 18};
@@ -103,7 +103,7 @@ Stroke sensorStroke(const MapPicture& map, std::size_t sensor) {
     return stroke;
 }
 
-void drawViews(Canvas& canvas, const MapPicture& map) {
+void drawViews(Picture& picture, const MapPicture& map) {
     const std::vector<SensorView>& sensors = map.coverage.sensors;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const SensorView& view = sensors[i];
@@ -111,15 +111,15 @@ void drawViews(Canvas& canvas, const MapPicture& map) {
         if (view.kind == ViewKind::Receiver) {
             // What one of them hears counts for nothing alone.
             const Color faint = line.color.faded(0.5 * line.color.alpha);
-            canvas.stroke(contoursOf(map, view), {faint, map.em / 24});
+            picture.area(contoursOf(map, view), {Stroke{faint, map.em / 24}});
         } else if (showsBeams(map, view)) {
-            drawBeams(canvas, map, i);
+            drawBeams(picture, map, i);
         } else {
-            drawContours(canvas, map, contoursOf(map, view), line);
+            drawContours(picture, map, contoursOf(map, view), line);
         }
     }
     if (!sensors.empty() && sensors.back().kind == ViewKind::Receiver)
-        drawContours(canvas, map, contoursOf(map, map.coverage.sets.back()),
+        drawContours(picture, map, contoursOf(map, map.coverage.sets.back()),
                      sensorStroke(map, sensors.size() - 1));
 }
 

@@ -56,7 +56,7 @@ struct PlanPixels : Image {
     PlanPixels(const std::string& png, double side) : Image(decodePng(png)), half(side / 2) {
         margin = static_cast<int>(std::max(width / 40.0, 1.4 * width / 1200.0 * 17));
         int right = margin;  // found on the wall's own line
-        while (Image::at(right + 1, margin) == pixelOf(map_colors::kWall)) ++right;
+        while (Image::at(right + 1, margin) == pixelOf(palette::kWall)) ++right;
         scale = (right - margin) / side;
     }
     /// At a place of the room.

@@ -7,14 +7,10 @@
 
 namespace ispace {
 
-namespace {
-
 Color mixed(Color a, Color b, double share) {
     const auto mix = [share](double from, double to) { return from + share * (to - from); };
-    return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), 1};
+    return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), a.alpha};
 }
-
-}  // namespace
 
 Color seriesColor(std::size_t index) {
     constexpr std::array<std::uint32_t, kSeriesColors> kOkabeIto = {

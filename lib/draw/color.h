@@ -31,6 +31,9 @@ constexpr std::size_t kSeriesColors = 7;
 /// vision tell apart, without its yellow, too pale on white; it repeats after kSeriesColors.
 Color seriesColor(std::size_t index);
 
+/// Of the two, mixed as they stand: `share` of `b`, 0..1; opacity of `a`.
+Color mixed(Color a, Color b, double share);
+
 /// `share` of the colour on white.
 Color tint(Color color, double share);
 

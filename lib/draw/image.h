@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,5 +24,6 @@ struct Image {
 /// Reads a PNG back, e.g. to look at what was drawn; transparency counts as black.
 /// \throws FormatError if the bytes are no whole PNG
 Image decodePng(std::string_view bytes);
+std::string encodePng(const Image& image);
 
 }  // namespace ispace

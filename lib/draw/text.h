@@ -20,7 +20,7 @@ struct TextStyle {
     std::optional<Color> halo = {};  ///< a rim of this colour keeps text readable on lines
 };
 
-/// Length of the text as Canvas::text sets it, in page units. Control characters and bad UTF-8
+/// Length of the text as Picture::text sets it, in page units. Control characters and bad UTF-8
 /// show as '?', here and in all text.
 double textWidth(std::string_view text, const TextStyle& style);
 

@@ -19,9 +19,4 @@ Color displayColor(Material material) {
     return {encoded(look.color[0]), encoded(look.color[1]), encoded(look.color[2]), look.opacity};
 }
 
-Color mixed(Color a, Color b, double share) {
-    const auto part = [share](double x, double y) { return x + share * (y - x); };
-    return {part(a.red, b.red), part(a.green, b.green), part(a.blue, b.blue), a.alpha};
-}
-
 }  // namespace ispace

@@ -9,7 +9,4 @@ namespace ispace {
 /// The colour of a material as screens and paper have it: sRGB of its linear RGB, with its opacity.
 Color displayColor(Material material);
 
-/// Of the two, mixed as they stand: `share` of `b`, 0..1; opacity of `a`.
-Color mixed(Color a, Color b, double share);
-
 }  // namespace ispace

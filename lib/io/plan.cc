@@ -96,9 +96,7 @@ std::string drawPlan(const Scene& scene, const PlanOptions& options) {
         addPlaced(plan, scene);
     }
     addFrame(plan, options.title, notes);
-    std::stable_sort(plan.items.begin(), plan.items.end(),
-                     [](const DrawnItem& a, const DrawnItem& b) { return a.layer < b.layer; });
-    return on_paper ? planSvg(plan, options.title) : planPng(plan);
+    return writePlan(plan, options.format, options.title);
 }
 
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "draw/canvas.h"
+#include "draw/picture.h"
 #include "layout/scene.h"
 
 namespace ispace {

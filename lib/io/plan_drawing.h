@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "draw/canvas.h"
+#include "draw/picture.h"
 #include "geom/box.h"
 #include "layout/scene.h"
 
@@ -106,8 +106,6 @@ void addObstacles(PlanDrawing& plan, const Environment& environment, double heig
 /// Grid, coordinates, title, bar of scale and what is said beside it.
 void addFrame(PlanDrawing& plan, const std::string& title, const std::vector<std::string>& notes);
 
-// The two back ends.
-std::string planPng(const PlanDrawing& plan);
-std::string planSvg(const PlanDrawing& plan, const std::string& title);
+std::string writePlan(const PlanDrawing& plan, PictureFormat format, const std::string& title);
 
 }  // namespace ispace

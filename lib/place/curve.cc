@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "draw/canvas.h"
+#include "draw/picture.h"
 
 namespace ispace {
 
@@ -71,7 +71,7 @@ Axis shareAxis(const std::vector<CurvePoint>& points) {
 
 /// The picture and where its axes lie on the page.
 struct Chart {
-    Canvas& canvas;
+    Picture& picture;
     const std::vector<CurvePoint>& points;
     double em;
     Box2 plot;  ///< page units: low is the upper left corner
@@ -98,20 +98,20 @@ void drawAxes(const Chart& chart) {
     const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(chart.shares.step))));
     chart.shares.forEachTick([&](double value) {
         const double y = chart.at(chart.sensors.first, value / 100).y;
-        chart.canvas.line({plot.low.x, y}, {plot.high.x, y}, {kGridLine, em / 16});
-        chart.canvas.text({plot.low.x - 0.5 * em, y + 0.36 * em}, percent(value / 100, decimals),
-                          chart.text(Align::Right));
+        chart.picture.line({plot.low.x, y}, {plot.high.x, y}, {kGridLine, em / 16});
+        chart.picture.text({plot.low.x - 0.5 * em, y + 0.36 * em}, percent(value / 100, decimals),
+                           chart.text(Align::Right));
     });
     chart.sensors.forEachTick([&](double count) {
         const double x = chart.at(count, 0).x;
-        chart.canvas.line({x, plot.high.y}, {x, plot.high.y + 0.35 * em}, {kInk, em / 14});
-        chart.canvas.text({x, plot.high.y + 1.5 * em}, formatFixed(count, 0),
-                          chart.text(Align::Center));
+        chart.picture.line({x, plot.high.y}, {x, plot.high.y + 0.35 * em}, {kInk, em / 14});
+        chart.picture.text({x, plot.high.y + 1.5 * em}, formatFixed(count, 0),
+                           chart.text(Align::Center));
     });
-    chart.canvas.line({plot.low.x, plot.high.y}, plot.high, {kInk, em / 14});
-    chart.canvas.line({plot.low.x, plot.low.y}, {plot.low.x, plot.high.y}, {kInk, em / 14});
-    chart.canvas.text({(plot.low.x + plot.high.x) / 2, plot.high.y + 3.1 * em}, "sensors",
-                      chart.text(Align::Center));
+    chart.picture.line({plot.low.x, plot.high.y}, plot.high, {kInk, em / 14});
+    chart.picture.line({plot.low.x, plot.low.y}, {plot.low.x, plot.high.y}, {kInk, em / 14});
+    chart.picture.text({(plot.low.x + plot.high.x) / 2, plot.high.y + 3.1 * em}, "sensors",
+                       chart.text(Align::Center));
 }
 
 /// The figures beside their dots, where they have room.
@@ -124,7 +124,7 @@ void drawFigures(const Chart& chart) {
     for (const CurvePoint& point : chart.points) {
         const Point2 dot = chart.at(point.sensors, point.value);
         if (dot.y + 1.6 * em > chart.plot.high.y) continue;
-        chart.canvas.text({dot.x + 0.35 * em, dot.y + 1.35 * em}, percent(point.value, 1), style);
+        chart.picture.text({dot.x + 0.35 * em, dot.y + 1.35 * em}, percent(point.value, 1), style);
     }
 }
 
@@ -136,46 +136,34 @@ void drawLines(const Chart& chart) {
     gap.insert(gap.end(), bounds.rbegin(), bounds.rend());
     const bool alone = values.size() == 1;
     if (alone)
-        chart.canvas.line(values[0], bounds[0], {kGap, 0.8 * em});
+        chart.picture.line(values[0], bounds[0], {kGap, 0.8 * em});
     else if (!gap.empty())
-        chart.canvas.fill(gap, kGap);
+        chart.picture.area(gap, {kGap});
     const double dot = std::clamp(
         0.2 * chart.plot.width() / std::max(1.0, chart.sensors.last - chart.sensors.first), em / 8,
         0.28 * em);
     if (!alone) {
-        chart.canvas.polyline(bounds, {boundColor(), em / 9, {em / 2, em / 4}});
-        chart.canvas.polyline(values, {valueColor(), em / 7});
+        chart.picture.lines(bounds, {Stroke{boundColor(), em / 9, {em / 2, em / 4}}});
+        chart.picture.lines(values, {Stroke{valueColor(), em / 7}});
     }
     for (const Point2 place : bounds)
-        chart.canvas.line({place.x - dot, place.y}, {place.x + dot, place.y},
-                          {boundColor(), em / 7});
-    for (const Point2 place : values) chart.canvas.fillCircle(place, dot, valueColor());
+        chart.picture.line({place.x - dot, place.y}, {place.x + dot, place.y},
+                           {boundColor(), em / 7});
+    for (const Point2 place : values) chart.picture.circle(place, dot, {valueColor()});
 }
 
 /// What is drawn how, in a line from `left` on.
 void drawKey(const Chart& chart, double left, double base) {
     const double em = chart.em, y = base - 0.36 * em;
-    chart.canvas.line({left, y}, {left + 1.6 * em, y}, {valueColor(), em / 7});
-    chart.canvas.fillCircle({left + 0.8 * em, y}, 0.28 * em, valueColor());
+    chart.picture.line({left, y}, {left + 1.6 * em, y}, {valueColor(), em / 7});
+    chart.picture.circle({left + 0.8 * em, y}, 0.28 * em, {valueColor()});
     const TextStyle style = chart.text(Align::Left, kInk);
     const std::string found = "coverage found", most = "at most, of these candidates";
-    chart.canvas.text({left + 2.1 * em, base}, found, style);
+    chart.picture.text({left + 2.1 * em, base}, found, style);
     const double next = left + 3.6 * em + textWidth(found, style);
-    chart.canvas.line({next, y}, {next + 1.6 * em, y}, {boundColor(), em / 9, {em / 2, em / 4}});
+    chart.picture.line({next, y}, {next + 1.6 * em, y}, {boundColor(), em / 9, {em / 2, em / 4}});
     const double room = chart.plot.high.x - next - 2.1 * em;
-    chart.canvas.text({next + 2.1 * em, base}, fitText(most, room, style), style);
-}
-
-PictureFormat pictureFormat(CurveFormat format) {
-    switch (format) {
-        case CurveFormat::Svg:
-            return PictureFormat::Svg;
-        case CurveFormat::Pdf:
-            return PictureFormat::Pdf;
-        case CurveFormat::Png:
-            break;
-    }
-    return PictureFormat::Png;
+    chart.picture.text({next + 2.1 * em, base}, fitText(most, room, style), style);
 }
 
 }  // namespace
@@ -214,7 +202,7 @@ std::string curveText(const std::vector<CurvePoint>& points) {
 }
 
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,
-                      CurveFormat format, int width) {
+                      PictureFormat format, int width) {
     if (width < kLeastWidth || width > kMostWidth)
         throw UsageError("a curve " + std::to_string(width) +
                          " pixels wide cannot be drawn, wanted " + std::to_string(kLeastWidth) +
@@ -229,8 +217,8 @@ std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& 
     const double top = key_base + 1.8 * em;
     const double left = margin + 3.4 * em, right = width - margin - 2.6 * em;
     const double bottom = std::max(top + 8 * em, 0.6 * width);
-    Canvas canvas(pictureFormat(format), width, std::ceil(bottom + 3.4 * em + margin));
-    const Chart chart{canvas,
+    Picture picture(width, std::ceil(bottom + 3.4 * em + margin));
+    const Chart chart{picture,
                       sorted,
                       em,
                       {{left, top}, {right, bottom}},
@@ -238,13 +226,13 @@ std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& 
                       shareAxis(sorted)};
     if (!title.empty()) {
         const TextStyle style{1.35 * em, true, Align::Left, kInk, {}};
-        canvas.text({margin, margin + 1.1 * em}, fitText(title, width - 2 * margin, style), style);
+        picture.text({margin, margin + 1.1 * em}, fitText(title, width - 2 * margin, style), style);
     }
     drawKey(chart, margin, key_base);
     drawAxes(chart);
     drawLines(chart);
     drawFigures(chart);
-    return canvas.encode();
+    return picture.write(format);
 }
 
 }  // namespace ispace

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "draw/picture.h"
+
 namespace ispace {
 
 /// What so many sensors reach.
@@ -18,11 +20,10 @@ std::string curveCsv(const std::vector<CurvePoint>& points);
 /// The same for people, aligned, per cent.
 std::string curveText(const std::vector<CurvePoint>& points);
 
-enum class CurveFormat { Png, Svg, Pdf };
 /// Coverage over the number of sensors: the values as a line with dots, the bounds as a line above
 /// them, the gap between them shaded; axes in whole sensors and per cent, a title. Points may come
 /// in any order. Equal input gives equal bytes. \throws UsageError for a width that no map may have
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,
-                      CurveFormat format, int width);
+                      PictureFormat format, int width);
 
 }  // namespace ispace

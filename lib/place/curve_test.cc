@@ -58,7 +58,7 @@ TEST(Curve, TextIsAligned) {
 }
 
 TEST(Curve, LinesRiseAndTheBoundLiesAbove) {
-    const Image image = decodePng(drawCurve(rising(8), "title", CurveFormat::Png, 1000));
+    const Image image = decodePng(drawCurve(rising(8), "title", PictureFormat::Png, 1000));
     ASSERT_EQ(image.width, 1000);
     int before = image.height, compared = 0;
     for (int column = 250; column < 900; ++column) {
@@ -77,7 +77,7 @@ TEST(Curve, LinesRiseAndTheBoundLiesAbove) {
 TEST(Curve, GapIsShaded) {
     const std::vector<CurvePoint> wide = {{1, 0.1, 0.9}, {2, 0.1, 0.9}, {3, 0.1, 0.9}};
     const auto shaded = [](const std::vector<CurvePoint>& points) {
-        const Image image = decodePng(drawCurve(points, "", CurveFormat::Png, 600));
+        const Image image = decodePng(drawCurve(points, "", PictureFormat::Png, 600));
         const Color blue = Color::rgb(0x0072B2);
         return std::count_if(image.pixels.begin(), image.pixels.end(), [&](std::uint32_t pixel) {
             return isNear(pixel, pixelOf(tint(blue, 0.14)));
@@ -93,45 +93,45 @@ bool shows(const std::string& svg, const std::string& text) {
 }
 
 TEST(Curve, TicksAreRoundAndReachOverAll) {
-    const std::string eight = drawCurve(rising(8), "my room", CurveFormat::Svg, 800);
+    const std::string eight = drawCurve(rising(8), "my room", PictureFormat::Svg, 800);
     for (const char* const text : {"my room", "0%", "20%", "100%", "0", "1", "8", "sensors"})
         EXPECT_TRUE(shows(eight, text)) << text;
     EXPECT_TRUE(shows(eight, "25.9%"));  // the figure of the first
-    const std::string forty = drawCurve(rising(40), "", CurveFormat::Svg, 800);
+    const std::string forty = drawCurve(rising(40), "", PictureFormat::Svg, 800);
     EXPECT_TRUE(shows(forty, "40"));
     EXPECT_FALSE(shows(forty, "39"));
     EXPECT_FALSE(shows(forty, "25.9%"));  // no room
-    const std::string low = drawCurve({{0, 0, 0}, {5, 0.015, 0.0175}}, "", CurveFormat::Svg, 800);
+    const std::string low = drawCurve({{0, 0, 0}, {5, 0.015, 0.0175}}, "", PictureFormat::Svg, 800);
     EXPECT_TRUE(shows(low, "2.0%"));
     EXPECT_FALSE(shows(low, "2.5%"));
-    const std::string late = drawCurve({{30, 0.5, 1}, {31, 0.6, 1}}, "", CurveFormat::Svg, 800);
+    const std::string late = drawCurve({{30, 0.5, 1}, {31, 0.6, 1}}, "", PictureFormat::Svg, 800);
     EXPECT_TRUE(shows(late, "30"));
     EXPECT_FALSE(shows(late, "29"));
     EXPECT_FALSE(shows(late, "0"));
 }
 
 TEST(Curve, OnePointAndNone) {
-    const Image one = decodePng(drawCurve({{3, 0.5, 0.8}}, "t", CurveFormat::Png, 2000));
+    const Image one = decodePng(drawCurve({{3, 0.5, 0.8}}, "t", PictureFormat::Png, 2000));
     const auto count = [&one](Color color) {
         return std::count(one.pixels.begin(), one.pixels.end(), pixelOf(color));
     };
     EXPECT_GT(count(seriesColor(3)), 10);
     EXPECT_GT(count(seriesColor(0)), 5);
-    EXPECT_FALSE(drawCurve({}, "", CurveFormat::Png, 200).empty());
-    EXPECT_FALSE(drawCurve({{0, 0, 0}}, "", CurveFormat::Pdf, 12000).empty());
+    EXPECT_FALSE(drawCurve({}, "", PictureFormat::Png, 200).empty());
+    EXPECT_FALSE(drawCurve({{0, 0, 0}}, "", PictureFormat::Pdf, 12000).empty());
 }
 
 TEST(Curve, OrderDoesNotMatterAndBytesAreTheSame) {
     std::vector<CurvePoint> back = rising(5);
     std::reverse(back.begin(), back.end());
-    for (const CurveFormat format : {CurveFormat::Png, CurveFormat::Svg, CurveFormat::Pdf})
+    for (const PictureFormat format : {PictureFormat::Png, PictureFormat::Svg, PictureFormat::Pdf})
         EXPECT_EQ(drawCurve(rising(5), "t", format, 500), drawCurve(back, "t", format, 500));
-    EXPECT_TRUE(drawCurve(rising(5), "t", CurveFormat::Pdf, 500).starts_with("%PDF"));
+    EXPECT_TRUE(drawCurve(rising(5), "t", PictureFormat::Pdf, 500).starts_with("%PDF"));
 }
 
 TEST(Curve, WidthHasLimits) {
-    EXPECT_THROW(drawCurve(rising(2), "", CurveFormat::Png, 199), UsageError);
-    EXPECT_THROW(drawCurve(rising(2), "", CurveFormat::Png, 12001), UsageError);
+    EXPECT_THROW(drawCurve(rising(2), "", PictureFormat::Png, 199), UsageError);
+    EXPECT_THROW(drawCurve(rising(2), "", PictureFormat::Png, 12001), UsageError);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "draw/canvas.h"
+#include "draw/picture.h"
 #include "sense/depth_picture.h"
 #include "sense/figure_parts.h"
 
@@ -123,35 +123,35 @@ std::string subtitle(const Ranger& ranger) {
 }
 
 /// The scale as a bar with ticks, and what black means, in a column from `top` to `bottom`.
-void drawLegend(Canvas& canvas, const Scale& scale, double left, double top, double bottom) {
+void drawLegend(Picture& picture, const Scale& scale, double left, double top, double bottom) {
     const double bar_bottom = bottom - 2.4 * kText;
     const int steps = static_cast<int>(bar_bottom - top);
     Image bar{1, steps, {}};
     bar.pixels.reserve(static_cast<std::size_t>(steps));
     for (int i = 0; i < steps; ++i)  // near at the bottom
         bar.pixels.push_back(Scale::color((steps - i - 0.5) / steps));
-    canvas.image({left, top}, bar, kBarWidth, 1);
+    picture.image({left, top}, std::move(bar), kBarWidth, 1);
     const Stroke edge{kInk, 1};
     const auto frame = [&](double from, double to) {
-        canvas.stroke(Polygon{{left + 0.5, from + 0.5},
-                              {left + kBarWidth - 0.5, from + 0.5},
-                              {left + kBarWidth - 0.5, to - 0.5},
-                              {left + 0.5, to - 0.5}},
-                      edge);
+        picture.area(Polygon{{left + 0.5, from + 0.5},
+                             {left + kBarWidth - 0.5, from + 0.5},
+                             {left + kBarWidth - 0.5, to - 0.5},
+                             {left + 0.5, to - 0.5}},
+                     {edge});
     };
     frame(top, top + steps);
 
     const TextStyle label{kText, false, Align::Left, kInk, {}};
     for (const double tick : scale.ticks(steps / (2.6 * kText))) {
         const double y = top + steps * (1 - scale.shareOf(tick));
-        canvas.line({left + kBarWidth, y}, {left + kBarWidth + 5, y}, edge);
-        canvas.text({left + kBarWidth + 10, y + 0.36 * kText}, metres(tick), label);
+        picture.line({left + kBarWidth, y}, {left + kBarWidth + 5, y}, edge);
+        picture.text({left + kBarWidth + 10, y + 0.36 * kText}, metres(tick), label);
     }
     const double box = bottom - kText - 2;
-    canvas.fill(
+    picture.area(
         Polygon{{left, box}, {left + kBarWidth, box}, {left + kBarWidth, bottom}, {left, bottom}},
-        Color::rgb(kNoReturn));
-    canvas.text({left + kBarWidth + 10, bottom - 2.5}, "no return", label);
+        {Color::rgb(kNoReturn)});
+    picture.text({left + kBarWidth + 10, bottom - 2.5}, "no return", label);
 }
 
 }  // namespace
@@ -160,23 +160,23 @@ std::string colorDepthPng(const PlacedRanger& sensor, const DepthFrame& frame) {
     const Ranger& ranger = sensor.ranger;
     const Scale scale(ranger);
     const Zoom zoom(ranger);
-    const Image image = colored(ranger, frame, scale, zoom.stride);
+    Image image = colored(ranger, frame, scale, zoom.stride);
     const double width = image.width * zoom.x, height = image.height * zoom.y;
     const double shown = std::max<double>(height, kLeastHeight);
-    Canvas canvas(PictureFormat::Png, kMargin + std::max(width, 320.0) + kBarGap + kLegendWidth,
-                  kHead + shown + kMargin);
+    Picture picture(kMargin + std::max(width, 320.0) + kBarGap + kLegendWidth,
+                    kHead + shown + kMargin);
 
-    const double room = canvas.width() - 2 * kMargin;
+    const double room = picture.width() - 2 * kMargin;
     const TextStyle title{kTitle, true, Align::Left, kInk, {}};
     const TextStyle small{kText, false, Align::Left, kFaint, {}};
-    canvas.text({kMargin, 25},
-                fitText(figureTitle(sensor.id, ranger.model, "ranger", frame.frame, frame.pose),
-                        room, title),
-                title);
-    canvas.text({kMargin, 45}, fitText(subtitle(ranger), room, small), small);
-    canvas.image({kMargin, kHead}, image, zoom.x, zoom.y);
-    drawLegend(canvas, scale, kMargin + width + kBarGap, kHead, kHead + shown);
-    return canvas.encode();
+    picture.text({kMargin, 25},
+                 fitText(figureTitle(sensor.id, ranger.model, "ranger", frame.frame, frame.pose),
+                         room, title),
+                 title);
+    picture.text({kMargin, 45}, fitText(subtitle(ranger), room, small), small);
+    picture.image({kMargin, kHead}, std::move(image), zoom.x, zoom.y);
+    drawLegend(picture, scale, kMargin + width + kBarGap, kHead, kHead + shown);
+    return picture.write(PictureFormat::Png);
 }
 
 }  // namespace ispace

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "draw/canvas.h"
+#include "draw/picture.h"
 #include "sense/figure_parts.h"
 
 namespace ispace {
@@ -46,72 +46,72 @@ struct Layout {
     }
 };
 
-void drawView(Canvas& canvas, const Laser& laser, double extent) {
+void drawView(Picture& picture, const Laser& laser, double extent) {
     const Angle from = onPage(laser.first), to = onPage(laser.first + laser.span());
     if (laser.span() >= Angle::degrees(360)) {
-        canvas.fillCircle({}, extent, kView);
+        picture.circle({}, extent, {kView});
         return;
     }
-    canvas.fillSector({}, extent, from, to, kView);
+    picture.sector({}, extent, from, to, {kView});
     for (const Angle edge : {laser.first, laser.last()})
-        canvas.line({}, place(edge, extent), {kViewEdge, 1});
+        picture.line({}, place(edge, extent), {kViewEdge, 1});
 }
 
-void drawGrid(Canvas& canvas, const Layout& layout) {
+void drawGrid(Picture& picture, const Layout& layout) {
     const Stroke fine{kGrid, 1};
     const int rings = static_cast<int>(std::floor(layout.extent / layout.ring + 1e-6));
-    for (int k = 1; k <= rings; ++k) canvas.strokeCircle({}, k * layout.ring, fine);
-    canvas.strokeCircle({}, layout.extent, {kFaint, 1});
+    for (int k = 1; k <= rings; ++k) picture.circle({}, k * layout.ring, {fine});
+    picture.circle({}, layout.extent, {Stroke{kFaint, 1}});
     for (int degrees = 0; degrees < 360; degrees += 30)
-        canvas.line(place(Angle::degrees(degrees), 0.25 * layout.ring),
-                    place(Angle::degrees(degrees), layout.extent), fine);
+        picture.line(place(Angle::degrees(degrees), 0.25 * layout.ring),
+                     place(Angle::degrees(degrees), layout.extent), fine);
 }
 
 /// Text centred at a place of the page.
-void writeAt(Canvas& canvas, Point2 page, std::string_view text, const TextStyle& style) {
+void writeAt(Picture& picture, Point2 page, std::string_view text, const TextStyle& style) {
     constexpr double kHalfCapital = 0.36;  // of the size
-    canvas.pushView({1, {}, {page.x, page.y + kHalfCapital * style.size}});
-    canvas.text({}, text, style);
-    canvas.pop();
+    picture.pushView({1, {}, {page.x, page.y + kHalfCapital * style.size}});
+    picture.text({}, text, style);
+    picture.pop();
 }
 
 /// Bearings outside the rim, distances on their rings.
-void drawLabels(Canvas& canvas, const Layout& layout) {
+void drawLabels(Picture& picture, const Layout& layout) {
     TextStyle style{layout.em, false, Align::Center, kFaint, {}};
     for (int spoke = -5; spoke <= 6; ++spoke) {
         const Angle bearing = Angle::degrees(30 * spoke);
-        const Point2 rim = canvas.toPage(place(bearing, layout.extent));
+        const Point2 rim = picture.toPage(place(bearing, layout.extent));
         const Vec2 out = unitVector(onPage(bearing));
         const std::string label = degrees(bearing);
         const double gap_x = 0.6 * layout.em + textWidth(label, style) / 2, gap_y = 1.1 * layout.em;
-        writeAt(canvas, {rim.x + gap_x * out.x, rim.y - gap_y * out.y}, label, style);
+        writeAt(picture, {rim.x + gap_x * out.x, rim.y - gap_y * out.y}, label, style);
     }
     style.halo = Color::rgb(0xFFFFFF).faded(0.85);
     style.color = kInk;
     const int rings = static_cast<int>(std::floor(layout.extent / layout.ring + 1e-6));
     const Angle between_spokes = Angle::degrees(-165);
     for (int k = 1; k <= rings; ++k) {
-        const Point2 at = canvas.toPage(place(between_spokes, k * layout.ring));
-        writeAt(canvas, at, metres(k * layout.ring), style);
+        const Point2 at = picture.toPage(place(between_spokes, k * layout.ring));
+        writeAt(picture, at, metres(k * layout.ring), style);
     }
 }
 
-void drawReturns(Canvas& canvas, const Laser& laser, const Scan& scan, const Layout& layout) {
+void drawReturns(Picture& picture, const Laser& laser, const Scan& scan, const Layout& layout) {
     const double radius = std::clamp(layout.size / 380, 1.2, 6.0) * layout.extent / layout.disc;
     for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
         const double range = scan.ranges[k];
         if (std::isfinite(range))
-            canvas.fillCircle(place(laser.bearing(static_cast<int>(k)), range), radius, kReturn);
+            picture.circle(place(laser.bearing(static_cast<int>(k)), range), radius, {kReturn});
     }
 }
 
 /// A triangle that points to bearing 0.
-void drawSensor(Canvas& canvas, const Layout& layout) {
+void drawSensor(Picture& picture, const Layout& layout) {
     const double metre = layout.extent / layout.disc, size = 0.62 * layout.em * metre;
     const Polygon mark = {
         {0, 1.15 * size}, {-0.8 * size, -0.75 * size}, {0.8 * size, -0.75 * size}};
-    canvas.fill(mark, kInk);
-    canvas.stroke(mark, {Color::rgb(0xFFFFFF), 1.2});
+    picture.area(mark, {kInk});
+    picture.area(mark, {Stroke{Color::rgb(0xFFFFFF), 1.2}});
 }
 
 std::string subtitle(const Laser& laser, const Scan& scan) {
@@ -131,7 +131,7 @@ std::string subtitle(const Laser& laser, const Scan& scan) {
 
 std::string obstacleMapPng(const PlacedLaser& sensor, const Scan& scan, int pixels) {
     const Laser& laser = sensor.laser;
-    Canvas canvas(PictureFormat::Png, pixels, pixels);
+    Picture picture(pixels, pixels);
     const Layout layout(laser, scan, pixels);
     const double margin = layout.em, room = layout.size - 2 * margin;
     const TextStyle title{1.25 * layout.em, true, Align::Left, kInk, {}};
@@ -139,17 +139,17 @@ std::string obstacleMapPng(const PlacedLaser& sensor, const Scan& scan, int pixe
     std::string heading = figureTitle(sensor.id, laser.model, "laser", scan.frame, scan.pose);
     if (laser.sweep != SweepAxis::None)
         heading.append(", scan ").append(std::to_string(scan.number));
-    canvas.text({margin, 1.8 * layout.em}, fitText(heading, room, title), title);
-    canvas.text({margin, 3.3 * layout.em}, fitText(subtitle(laser, scan), room, small), small);
+    picture.text({margin, 1.8 * layout.em}, fitText(heading, room, title), title);
+    picture.text({margin, 3.3 * layout.em}, fitText(subtitle(laser, scan), room, small), small);
 
-    canvas.pushView({layout.disc / layout.extent, {}, layout.center});
-    drawView(canvas, laser, layout.extent);
-    drawGrid(canvas, layout);
-    drawLabels(canvas, layout);
-    drawReturns(canvas, laser, scan, layout);
-    drawSensor(canvas, layout);
-    canvas.pop();
-    return canvas.encode();
+    picture.pushView({layout.disc / layout.extent, {}, layout.center});
+    drawView(picture, laser, layout.extent);
+    drawGrid(picture, layout);
+    drawLabels(picture, layout);
+    drawReturns(picture, laser, scan, layout);
+    drawSensor(picture, layout);
+    picture.pop();
+    return picture.write(PictureFormat::Png);
 }
 
 }  // namespace ispace

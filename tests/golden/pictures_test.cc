@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "draw/canvas.h"
+#include "draw/picture.h"
 
 namespace golden {
 namespace {
@@ -11,10 +11,10 @@ namespace {
 /// A page with a square of this side.
 std::string png(double side, std::uint32_t color, double width = 100) {
     using namespace ispace;
-    Canvas canvas(PictureFormat::Png, width, 100);
-    canvas.fill(Polygon{{10, 10}, {10 + side, 10}, {10 + side, 10 + side}, {10, 10 + side}},
-                Color::rgb(color));
-    return canvas.encode();
+    Picture picture(width, 100);
+    picture.area(Polygon{{10, 10}, {10 + side, 10}, {10 + side, 10 + side}, {10, 10 + side}},
+                 {Color::rgb(color)});
+    return picture.write(PictureFormat::Png);
 }
 
 TEST(PictureDifference, IgnoresShadesAndSinglePixels) {

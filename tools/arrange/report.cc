@@ -106,9 +106,9 @@ void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>
         writeAll(file, curveCsv(curve));
         return;
     }
-    CurveFormat picture = CurveFormat::Png;
-    if (format == "svg") picture = CurveFormat::Svg;
-    if (format == "pdf") picture = CurveFormat::Pdf;
+    PictureFormat picture = PictureFormat::Png;
+    if (format == "svg") picture = PictureFormat::Svg;
+    if (format == "pdf") picture = PictureFormat::Pdf;
     constexpr int kWidth = 900;
     writeAll(file, drawCurve(curve, "Coverage by number of sensors", picture, kWidth));
 }

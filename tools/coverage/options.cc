@@ -35,9 +35,9 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
                 Enters::History);
 }
 
-MapFormat mapFormat(const std::string& name) {
-    if (name == "svg") return MapFormat::Svg;
-    return name == "pdf" ? MapFormat::Pdf : MapFormat::Png;
+PictureFormat mapFormat(const std::string& name) {
+    if (name == "svg") return PictureFormat::Svg;
+    return name == "pdf" ? PictureFormat::Pdf : PictureFormat::Png;
 }
 
 bool isMap(const std::string& format) {

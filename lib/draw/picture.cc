@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/picture.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "base/utf8.h"
+
+namespace ispace {
+
+namespace {
+
+using Kind = DisplayList::Kind;
+
+std::uint32_t index(std::size_t size) { return static_cast<std::uint32_t>(size); }
+
+}  // namespace
+
+Picture::Picture(double width, double height, PageUnit unit)
+    : width_(width), height_(height), unit_(unit) {
+    if (!(width >= 1 && width <= kLongestSide && height >= 1 && height <= kLongestSide))
+        throw UsageError("a picture of " + formatFixed(width, 0) + " x " + formatFixed(height, 0) +
+                         " cannot be drawn, wanted 1 to " + formatFixed(kLongestSide, 0) +
+                         " each way");
+}
+
+void Picture::describe(std::string title, std::string description) {
+    title_ = std::move(title);
+    description_ = std::move(description);
+}
+
+void Picture::pushView(const PageView& view) {
+    views_.push_back(view);
+    pushed_.push_back(Pushed::View);
+}
+
+void Picture::pushClip(std::span<const Polygon> inside) {
+    // Nothing shows through an empty clip.
+    const Polygon nowhere = {{-1, -1}};
+    push(Kind::Group, {}, inside.empty() ? std::span(&nowhere, 1) : inside);
+}
+
+void Picture::pushLayer(std::string_view name, std::span<const Polygon> clip) {
+    push(Kind::Layer, {"", std::string(name)}, clip);
+}
+
+void Picture::pushGroup(std::string_view id, std::string_view title) {
+    push(Kind::Group, {std::string(id), std::string(title)}, {});
+}
+
+void Picture::push(Kind kind, DisplayList::Name name, std::span<const Polygon> clip) {
+    add(kind, add(clip), {});
+    list_.names.push_back(std::move(name));
+    pushed_.push_back(Pushed::Mark);
+}
+
+void Picture::pop() {
+    assert(!pushed_.empty());
+    const Pushed last = pushed_.back();
+    pushed_.pop_back();
+    if (last == Pushed::View) {
+        views_.pop_back();
+        return;
+    }
+    const Kind kind = list_.shapes.back().kind;
+    const bool is_empty = kind == Kind::Layer || kind == Kind::Group;
+    if (is_empty && (kind == Kind::Layer || list_.names.back().id.empty())) {
+        list_.shapes.pop_back();
+        list_.names.pop_back();
+    } else {
+        add(Kind::End, {}, {});
+    }
+}
+
+Point2 Picture::toPage(Point2 p) const {
+    // Cairo counts in 24.8 fixed point: what lies far off the page is brought near it.
+    constexpr double kFar = 1e6;
+    const Point2 page = views_.empty() ? p : views_.back() * p;
+    return {std::clamp(page.x, -kFar, kFar), std::clamp(page.y, -kFar, kFar)};
+}
+
+std::pair<std::uint32_t, std::uint32_t> Picture::add(std::span<const Polygon> curves) {
+    const std::uint32_t first = index(list_.ends.size() - 1);
+    for (const Polygon& curve : curves) {
+        if (curve.empty()) continue;
+        for (const Point2 p : curve) list_.points.push_back(toPage(p));
+        list_.ends.push_back(index(list_.points.size()));
+    }
+    return {first, index(list_.ends.size() - 1)};
+}
+
+void Picture::add(Kind kind, std::pair<std::uint32_t, std::uint32_t> range, Inks inks) {
+    // Neighbours are mostly of one style.
+    const std::size_t known = list_.inks.size();
+    const bool again = inks.size() <= known &&
+                       std::equal(inks.begin(), inks.end(),
+                                  list_.inks.end() - static_cast<std::ptrdiff_t>(inks.size()));
+    if (!again) list_.inks.insert(list_.inks.end(), inks.begin(), inks.end());
+    const std::uint32_t first_ink = index(list_.inks.size() - inks.size());
+    list_.shapes.push_back(
+        {kind, range.first, range.second, first_ink, first_ink + index(inks.size())});
+}
+
+void Picture::area(std::span<const Polygon> curves, Inks inks) {
+    if (const auto range = add(curves); range.first < range.second) add(Kind::Area, range, inks);
+}
+
+void Picture::lines(std::span<const std::vector<Point2>> chains, Inks inks) {
+    if (const auto range = add(chains); range.first < range.second) add(Kind::Lines, range, inks);
+}
+
+void Picture::lines(std::span<const Segment2> segments, Inks inks) {
+    if (segments.empty()) return;
+    const std::uint32_t first = index(list_.ends.size() - 1);
+    const Segment2* previous = nullptr;
+    for (const Segment2& segment : segments) {
+        if (previous == nullptr || !(previous->b == segment.a)) {
+            if (previous != nullptr) list_.ends.push_back(index(list_.points.size()));
+            list_.points.push_back(toPage(segment.a));
+        }
+        list_.points.push_back(toPage(segment.b));
+        previous = &segment;
+    }
+    list_.ends.push_back(index(list_.points.size()));
+    add(Kind::Lines, {first, index(list_.ends.size() - 1)}, inks);
+}
+
+void Picture::line(Point2 a, Point2 b, const Stroke& stroke) {
+    const Segment2 segment{a, b};
+    lines(std::span(&segment, 1), {stroke});
+}
+
+void Picture::circle(Point2 center, double radius, Inks inks) {
+    addArc({toPage(center), toPage(radius), Angle(), Angle::degrees(360)}, inks);
+}
+
+void Picture::sector(Point2 center, double radius, Angle from, Angle to, Inks inks) {
+    addArc({toPage(center), toPage(radius), from, to}, inks);
+}
+
+void Picture::addArc(const DisplayList::Arc& arc, Inks inks) {
+    list_.arcs.push_back(arc);
+    list_.arcs.back().radius = std::min(arc.radius, 1e6);
+    add(Kind::Arc, {index(list_.arcs.size() - 1), 0}, inks);
+}
+
+void Picture::image(Point2 corner, Image image, double pixel_width, double pixel_height) {
+    if (image.width < 1 || image.height < 1) return;
+    list_.images.push_back(
+        {toPage(corner), std::move(image), toPage(pixel_width), toPage(pixel_height)});
+    add(Kind::Image, {index(list_.images.size() - 1), 0}, {});
+}
+
+void Picture::text(Point2 anchor, std::string_view text, const TextStyle& style) {
+    if (text.empty()) return;
+    list_.texts.push_back({toPage(anchor), printable(text), style});
+    add(Kind::Text, {index(list_.texts.size() - 1), 0}, {});
+}
+
+std::string Picture::write(PictureFormat format) const {
+    assert(pushed_.empty());
+    switch (format) {
+        case PictureFormat::Svg:
+            return writeSvg(*this);
+        case PictureFormat::Pdf:
+            return writePdf(*this);
+        case PictureFormat::Png:
+            break;
+    }
+    return writePng(*this);
+}
+
+std::vector<Segment2> hatchLines(const Hatch& hatch, const Box2& box) {
+    std::vector<Segment2> lines;
+    if (box.empty()) return lines;
+    const Vec2 seen = unitVector(hatch.direction);
+    const Vec2 along{seen.x, -seen.y}, left_of{-seen.y, -seen.x};
+    const double reach = std::hypot(box.width(), box.depth()) / 2 + hatch.width;
+    const double spacing = std::max(hatch.spacing, 0.5);
+    const Vec2 middle = box.center() - Point2{};
+    const double at = dot(left_of, middle), begin = dot(along, middle);
+    const auto number = [&](double place) { return (place - hatch.offset) / spacing; };
+    const double last = std::floor(number(at + reach));
+    for (double k = std::ceil(number(at - reach)); k <= last; ++k) {
+        const Point2 foot = Point2{} + (k * spacing + hatch.offset) * left_of;
+        lines.push_back({foot + (begin - reach) * along, foot + (begin + reach) * along});
+    }
+    return lines;
+}
+
+Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape) {
+    Box2 box;
+    for (std::uint32_t i = shape.first; i < shape.last; ++i)
+        for (const Point2 p : picture.list().curve(i))
+            box.add(
+                {std::clamp(p.x, 0.0, picture.width()), std::clamp(p.y, 0.0, picture.height())});
+    return box;
+}
+
+}  // namespace ispace
