@@ -57,4 +57,17 @@ std::size_t countCommon(const CellSet& a, const CellSet& b) {
                                  });
 }
 
+CellParts partOf(const CellSet& cells) {
+    CellParts parts;
+    cells.forEach([&parts](std::size_t cell) {
+        const auto index = static_cast<std::uint32_t>(cell);
+        if (!parts.runs.empty() && parts.runs.back().end == index)
+            ++parts.runs.back().end;
+        else
+            parts.runs.push_back({index, index + 1});
+    });
+    parts.first = {0, static_cast<std::uint32_t>(parts.runs.size())};
+    return parts;
+}
+
 }  // namespace ispace

@@ -46,4 +46,22 @@ void CellSet::forEach(Visit visit) const {
             visit(i * 64 + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
+/// Cells next to each other, in the order of the grid: first, first + 1, ..., end - 1. A run may
+/// go on from the end of a row to the beginning of the next.
+struct CellRun {
+    std::uint32_t first = 0, end = 0;
+    friend bool operator==(const CellRun&, const CellRun&) = default;
+};
+
+/// Cells in parts, each part a list of disjoint runs, ascending.
+struct CellParts {
+    std::vector<CellRun> runs;
+    std::vector<std::uint32_t> first;  ///< part k: runs [first[k], first[k + 1])
+
+    [[nodiscard]] std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
+};
+
+/// The runs of a set, one part. O(cells / 64 + runs)
+CellParts partOf(const CellSet& cells);
+
 }  // namespace ispace

@@ -378,19 +378,6 @@ void SectorRaster::addRun(CellRun run) {
 
 }  // namespace
 
-CellParts partOf(const CellSet& cells) {
-    CellParts parts;
-    cells.forEach([&parts](std::size_t cell) {
-        const auto index = static_cast<std::uint32_t>(cell);
-        if (!parts.runs.empty() && parts.runs.back().end == index)
-            ++parts.runs.back().end;
-        else
-            parts.runs.push_back({index, index + 1});
-    });
-    parts.first = {0, static_cast<std::uint32_t>(parts.runs.size())};
-    return parts;
-}
-
 void cellsBySector(const Grid& grid, const SliceSight& sight, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts) {
     thread_local SectorRaster raster;  // for its memory

@@ -5,28 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "base/cell_set.h"
 #include "cover/slice_sight.h"
 #include "raster/grid.h"
 
 namespace ispace {
-
-/// Cells next to each other, in the order of the grid: first, first + 1, ..., end - 1. A run may
-/// go on from the end of a row to the beginning of the next.
-struct CellRun {
-    std::uint32_t first = 0, end = 0;
-    friend bool operator==(const CellRun&, const CellRun&) = default;
-};
-
-/// Cells in parts, each part a list of disjoint runs, ascending.
-struct CellParts {
-    std::vector<CellRun> runs;
-    std::vector<std::uint32_t> first;  ///< part k: runs [first[k], first[k + 1])
-
-    [[nodiscard]] std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
-};
-
-/// The runs of a set, one part. O(cells / 64 + runs)
-CellParts partOf(const CellSet& cells);
 
 /// Sets `parts` to what a level sensor sees from a place up to max_range, if it may face anywhere,
 /// in cells by their direction, which is directionOf() to the bit. Part i holds cells in directions

@@ -297,14 +297,5 @@ TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
     EXPECT_EQ(parts.size(), 3U);
 }
 
-TEST(PartOf, RunsOfASet) {
-    CellSet set(200);
-    for (const std::size_t cell : {0, 1, 2, 63, 64, 65, 130, 199}) set.set(cell);
-    const CellParts parts = partOf(set);
-    EXPECT_EQ(parts.runs, (std::vector<CellRun>{{0, 3}, {63, 66}, {130, 131}, {199, 200}}));
-    EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 4}));
-    EXPECT_EQ(partOf(CellSet(10)).size(), 1U);
-}
-
 }  // namespace
 }  // namespace ispace
