@@ -38,7 +38,15 @@ void writeModel(const SceneProblem& model, std::ostream& mps) {
     std::vector<std::string> names;
     names.reserve(model.kinds().size());
     for (const SensorKind& kind : model.kinds()) names.push_back(kind.id);
-    writeMps(model.problem(), names, mps);
+    const auto pose_text = [&model](const Choice& choice) {
+        const Pose3 pose = model.poseOf(choice);
+        std::string text;
+        for (const double number : {pose.position.x, pose.position.y, pose.position.z,
+                                    pose.heading.degrees(), pose.tilt.degrees()})
+            text.append(text.empty() ? "" : " ").append(formatDouble(number));
+        return text;
+    };
+    writeMps(model.problem(), names, "x y z (m) heading tilt (degrees)", pose_text, mps);
 }
 
 SearchResult find(const SceneProblem& model, Arrangement& result, Progress& progress) {

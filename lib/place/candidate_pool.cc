@@ -200,7 +200,7 @@ struct CandidatePool::Data {
 
     /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
     /// places, shared out over all levels and tilts.
-    bool addLevels(CandidateSet& set, const SensorKind& kind, const std::vector<Level>& levels,
+    bool addLevels(PosedCandidates& set, const SensorKind& kind, const std::vector<Level>& levels,
                    std::size_t least) {
         const std::vector<Angle> tilts = tiltsOf(kind);
         std::size_t places = 0;
@@ -262,7 +262,7 @@ struct CandidatePool::Data {
 
     /// Hierarchical Random: R1 places; for each sensor R2 more about the best one for it. Places
     /// found for one sensor serve the others, too. False if progress says stop.
-    bool addRandom(CandidateSet& set, const SensorKind& kind) {
+    bool addRandom(PosedCandidates& set, const SensorKind& kind) {
         const Drawn first = randomLevels(options.first_places, true, [&](std::uint64_t k) {
             return randomPlace(environment.limits(), options.seed, kind.id, k);
         });
@@ -306,7 +306,7 @@ CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, con
 CandidatePool::~CandidatePool() = default;
 
 CandidatePool::Made CandidatePool::make(const SensorKind& kind) {
-    Made made{std::make_unique<CandidateSet>(data_->target.grid.size())};
+    Made made{std::make_unique<PosedCandidates>(data_->target.grid.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
     made.is_complete =

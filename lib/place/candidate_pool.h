@@ -7,7 +7,7 @@
 
 #include "cover/target.h"
 #include "place/arrange_options.h"
-#include "place/candidate_set.h"
+#include "place/posed_candidates.h"
 #include "place/sensor_group.h"
 #include "trace/worlds.h"
 
@@ -34,7 +34,7 @@ class CandidatePool {
     /// yet.
     /// \throws UnmetError if there is no valid place, UsageError for more memory than is allowed
     struct Made {
-        std::unique_ptr<CandidateSet> set;
+        std::unique_ptr<PosedCandidates> set;
         bool is_complete = true;
     };
     Made make(const SensorKind& kind);

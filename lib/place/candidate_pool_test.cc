@@ -24,7 +24,7 @@ struct Pooled {
     Target target;
     std::vector<SensorKind> kinds;
     SilentProgress silent;
-    std::unique_ptr<CandidateSet> set;
+    std::unique_ptr<PosedCandidates> set;
 
     Pooled(Scene made, const char* sensor, const ArrangeOptions& options)
         : scene(std::move(made)),
@@ -171,7 +171,7 @@ CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Pr
 }
 
 /// Fails unless the candidates are some of these, in their order, and see the same.
-void expectSomeOf(const CandidateSet& some, const CandidateSet& all) {
+void expectSomeOf(const PosedCandidates& some, const PosedCandidates& all) {
     std::size_t i = 0;
     for (std::size_t k = 0; k < some.size(); ++k) {
         while (i < all.size() && all.pose(i) != some.pose(k)) ++i;
@@ -237,7 +237,7 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
         for (const int columns : {8, 16, 20, 32, 64, 89, 100, 160, 233})
             for (const int rows : {8, 30, 34, 64, 144}) {
                 const std::vector<Site> sites = latticeOf(columns, rows);
-                CandidateSet set(grid.size());
+                PosedCandidates set(grid.size());
                 StopWhen progress(afterAsking(0));
                 EXPECT_EQ(addCandidates(set, views, sites, 1U << 30U, progress),
                           sites.size() == 64);
@@ -260,13 +260,13 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
                                {{0, 0, 1}, {}, Angle::degrees(-30), {}});
     const std::vector<Site> sites = latticeOf(60, 40);
     SilentProgress silent;
-    CandidateSet all(grid.size());
+    PosedCandidates all(grid.size());
     ASSERT_TRUE(addCandidates(all, views, sites, 1U << 30U, silent));
     ASSERT_EQ(all.sites(), sites.size());
     std::set<std::size_t> sizes;
     for (const int asked : {0, 10, 70, 100, 110, 140, 160, 200, 300, 2000}) {
         StopWhen progress(afterAsking(asked));
-        CandidateSet some(grid.size());
+        PosedCandidates some(grid.size());
         ASSERT_FALSE(addCandidates(some, views, sites, 1U << 30U, progress));
         ASSERT_GE(some.sites(), 64U);
         ASSERT_NO_FATAL_FAILURE(expectSomeOf(some, all));
@@ -293,7 +293,7 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     // The thesis counts what lies within the limits, indoor or not.
     const CellPrices ones(std::vector<std::uint32_t>(target.grid.size(), 1));
     const auto best_of = [&](const std::vector<Site>& sites) {
-        CandidateSet set(target.grid.size());
+        PosedCandidates set(target.grid.size());
         addCandidates(set, views, sites, 1U << 30U, silent);
         std::vector<std::uint32_t> values(set.size());
         set.priceAll(ones, values);

@@ -45,14 +45,12 @@ CandidateSet::CandidateSet(std::size_t cells)
     assert(cells < std::size_t{1} << 31U);
 }
 
-void CandidateSet::addSite(const Pose3& mount, std::span<const Angle> headings,
-                           std::span<const PartRange> ranges, const CellParts& parts) {
-    assert(headings.size() == ranges.size() && !headings.empty() && parts.size() > 0);
-    Site site{.mount = mount, .first_candidate = size()};
+void CandidateSet::addSite(std::span<const PartRange> ranges, const CellParts& parts) {
+    assert(!ranges.empty() && parts.size() > 0);
+    Site site{.first_candidate = size()};
     addRuns(parts, site);
     ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
-    headings_.insert(headings_.end(), headings.begin(), headings.end());
-    site_of_.insert(site_of_.end(), headings.size(), static_cast<std::uint32_t>(sites_.size()));
+    site_of_.insert(site_of_.end(), ranges.size(), static_cast<std::uint32_t>(sites_.size()));
     sites_.push_back(site);
 }
 
@@ -85,21 +83,13 @@ void CandidateSet::addRuns(const CellParts& parts, Site& site) {
     site.runs = static_cast<std::uint32_t>(count);
 }
 
-void CandidateSet::addSite(const Pose3& pose, const CellSet& seen) {
-    const Angle heading = pose.heading;
+void CandidateSet::addSite(const CellSet& seen) {
     const PartRange none;
-    addSite(pose, {&heading, 1}, {&none, 1}, partOf(seen));
-}
-
-Pose3 CandidateSet::pose(std::size_t candidate) const {
-    Pose3 pose = sites_[site_of_[candidate]].mount;
-    pose.heading = headings_[candidate];
-    return pose;
+    addSite({&none, 1}, partOf(seen));
 }
 
 std::size_t CandidateSet::bytes() const {
-    return sites_.size() * sizeof(Site) +
-           size() * (sizeof(PartRange) + sizeof(std::uint32_t) + sizeof(Angle)) +
+    return sites_.size() * sizeof(Site) + size() * (sizeof(PartRange) + sizeof(std::uint32_t)) +
            (part_runs_.size() + runs_) * sizeof(std::uint32_t);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/place: candidates and optimisers that place sensors. Uses cover and below; TBB inside.
+// lib/solve: weighted coverage problems, their solutions and bounds. Uses base alone; TBB inside.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cover/sector_cells.h"
-#include "geom/pose.h"
+#include "base/cell_set.h"
 
 namespace ispace {
 
@@ -31,10 +30,10 @@ class CellPrices {
     std::vector<std::uint32_t> sums_;
 };
 
-/// Poses that sensors of one kind may take, with the cells they would see there.
+/// Candidates of one kind, each with the cells it covers.
 ///
-/// Candidates with one place share what can be seen from it: its cells in parts by direction, and
-/// each candidate a range of parts. Memory: 4 bytes a run of cells and a part and 20 a candidate, a
+/// The candidates of a site share what can be seen from it: its cells in parts by direction, and
+/// each candidate a range of parts. Memory: 4 bytes a run of cells and a part and 12 a candidate, a
 /// fraction of a bitset each.
 class CandidateSet {
   public:
@@ -48,23 +47,20 @@ class CandidateSet {
     explicit CandidateSet(std::size_t cells);
 
     /// Adds a site: `parts` are the directed ones and then one that every candidate sees (as of
-    /// cellsBySector). Candidate k has headings[k] and ranges[k]; no cell may be in two of the
-    /// parts that one candidate sees. \pre mount's heading is not used; headings.size() ==
-    /// ranges.size() > 0
-    void addSite(const Pose3& mount, std::span<const Angle> headings,
-                 std::span<const PartRange> ranges, const CellParts& parts);
+    /// cellsBySector). Candidate k sees ranges[k]; no cell may be in two of the parts that one
+    /// candidate sees. \pre there are ranges
+    void addSite(std::span<const PartRange> ranges, const CellParts& parts);
     /// A site with one candidate that sees this.
-    void addSite(const Pose3& pose, const CellSet& seen);
+    void addSite(const CellSet& seen);
 
     [[nodiscard]] std::size_t cells() const { return cells_; }
-    [[nodiscard]] std::size_t size() const { return headings_.size(); }
+    [[nodiscard]] std::size_t size() const { return ranges_.size(); }
     [[nodiscard]] std::size_t sites() const { return sites_.size(); }
     /// The candidates of a site follow each other: [firstOf(site), firstOf(site + 1)).
     [[nodiscard]] std::size_t firstOf(std::size_t site) const {
-        return site == sites_.size() ? headings_.size() : sites_[site].first_candidate;
+        return site == sites_.size() ? size() : sites_[site].first_candidate;
     }
     [[nodiscard]] std::size_t siteOf(std::size_t candidate) const { return site_of_[candidate]; }
-    [[nodiscard]] Pose3 pose(std::size_t candidate) const;
     /// Memory of what grows with sites.
     [[nodiscard]] std::size_t bytes() const;
     /// Those kept: what lies in two parts or is very long counts twice or more.
@@ -97,7 +93,6 @@ class CandidateSet {
     /// Runs are kept in 32 bits: the first cell above, the length (at least 1) below. All runs of a
     /// site lie together, by parts, those of the undirected one last.
     struct Site {
-        Pose3 mount;
         std::size_t first_candidate = 0;
         std::size_t first_part = 0;           ///< in part_runs_
         std::uint32_t block = 0, offset = 0;  ///< its first run
@@ -125,7 +120,6 @@ class CandidateSet {
     // By candidate:
     std::vector<PartRange> ranges_;
     std::vector<std::uint32_t> site_of_;
-    std::vector<Angle> headings_;
     // Never moved as they grow: that would take twice the memory.
     std::vector<std::vector<std::uint32_t>> blocks_;
 };

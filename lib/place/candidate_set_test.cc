@@ -60,13 +60,11 @@ struct Model {
     void addRandomSite(Random& random, std::size_t directed) {
         const std::size_t cells = set.cells();
         const auto where = randomParts(random, cells, directed + 1, 0.6);
-        std::vector<Angle> headings;
         std::vector<CandidateSet::PartRange> ranges;
         const std::size_t count = 1 + random() % 6;
         for (std::size_t k = 0; k < count; ++k) {
             const auto begin = static_cast<std::uint32_t>(directed == 0 ? 0 : random() % directed);
             const auto size = static_cast<std::uint32_t>(random() % (directed + 1));
-            headings.push_back(Angle::degrees(static_cast<double>(k)));
             ranges.push_back({begin, size});
             CellSet all(cells);
             for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -76,23 +74,18 @@ struct Model {
             }
             seen.push_back(std::move(all));
         }
-        const auto number = static_cast<double>(set.sites());
-        set.addSite({{number, 2, 3}, {}, Angle::degrees(5), {}}, headings, ranges,
-                    partsOf(where, directed + 1));
+        set.addSite(ranges, partsOf(where, directed + 1));
     }
 };
 
 TEST(CandidateSet, HandMade) {
     CandidateSet set(10);
-    const std::vector<Angle> headings = {Angle::degrees(0), Angle::degrees(180)};
     // Parts {0, 1}, {2}, {5, 6, 7}, and {9} for all.
     const std::vector<CandidateSet::PartRange> ranges = {{0, 2}, {2, 2}};
-    set.addSite({{1, 2, 0.15}, {}, {}, {}}, headings, ranges,
-                {{{0, 2}, {2, 3}, {5, 8}, {9, 10}}, {0, 1, 2, 3, 4}});
+    set.addSite(ranges, {{{0, 2}, {2, 3}, {5, 8}, {9, 10}}, {0, 1, 2, 3, 4}});
     CellSet only(10);
     only.set(4);
-    const Pose3 pose{{3, 4, 1}, Angle::degrees(7), Angle::degrees(-30), {}};
-    set.addSite(pose, only);
+    set.addSite(only);
     ASSERT_EQ(set.size(), 3U);
     ASSERT_EQ(set.sites(), 2U);
     EXPECT_EQ(set.runs(), 5U);
@@ -100,8 +93,6 @@ TEST(CandidateSet, HandMade) {
     EXPECT_EQ(set.firstOf(2), 3U);
     EXPECT_EQ(set.siteOf(1), 0U);
     EXPECT_EQ(set.siteOf(2), 1U);
-    EXPECT_EQ(set.pose(1), (Pose3{{1, 2, 0.15}, Angle::degrees(180), {}, {}}));
-    EXPECT_EQ(set.pose(2), pose);
     const std::vector<std::uint32_t> powers = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512};
     std::vector<std::uint32_t> values(3);
     set.priceAll(CellPrices(powers), values);
@@ -142,9 +133,8 @@ TEST(CandidateSet, AgreesWithSetsOfCells) {
 TEST(CandidateSet, RangesAroundTheEndWithEmptyParts) {
     // Only part 4 of 6 has cells; all parts from 5 on around to 4.
     CandidateSet set(8);
-    const std::vector<Angle> headings(3);
     const std::vector<CandidateSet::PartRange> ranges = {{5, 6}, {5, 5}, {4, 1}};
-    set.addSite({}, headings, ranges, {{{2, 5}}, {0, 0, 0, 0, 0, 1, 1, 1}});
+    set.addSite(ranges, {{{2, 5}}, {0, 0, 0, 0, 0, 1, 1, 1}});
     const std::vector<std::uint32_t> ones(8, 1);
     std::vector<std::uint32_t> values(3);
     set.priceAll(CellPrices(ones), values);
@@ -157,12 +147,11 @@ TEST(CandidateSet, LongRunsOnLargeGrids) {
     const std::size_t cells = 10'000'000;  // lengths then have 8 bits
     CandidateSet set(cells);
     CellParts parts{{{0, 10'000'000}}, {0, 1}};
-    const Angle heading;
     const CandidateSet::PartRange none;
-    set.addSite({}, {&heading, 1}, {&none, 1}, parts);
+    set.addSite({&none, 1}, parts);
     parts = {{{9'999'000, 9'999'255}, {9'999'256, 9'999'512}, {9'999'513, 10'000'000}}, {0, 1, 3}};
     const CandidateSet::PartRange one{0, 1};
-    set.addSite({}, {&heading, 1}, {&one, 1}, parts);
+    set.addSite({&one, 1}, parts);
     EXPECT_EQ(set.cellsOf(0).count(), cells);
     EXPECT_EQ(set.cellsOf(1).count(), 998U);
     std::vector<std::uint32_t> values(2);
@@ -177,7 +166,7 @@ TEST(CandidateSet, SumsMayWrapAround) {
     CellSet cells(4);
     cells.set(1);
     cells.set(3);
-    set.addSite({}, cells);
+    set.addSite(cells);
     std::vector<std::uint32_t> values(1);
     set.priceAll(CellPrices(prices), values);
     EXPECT_EQ(values[0], 4'000'000'007);

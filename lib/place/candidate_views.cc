@@ -218,7 +218,7 @@ namespace {
 /// candidates everywhere, and nearly all go to the set at once.
 class Scanner {
   public:
-    Scanner(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+    Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
             std::size_t least, Progress& progress)
         : set_(set),
           data_(views.data()),
@@ -370,7 +370,7 @@ class Scanner {
         set_.addSite(mount, headings, ranges_, parts_[i]);
     }
 
-    CandidateSet& set_;
+    PosedCandidates& set_;
     const CandidateViews::Data& data_;
     std::span<const Site> sites_;
     Progress& progress_;
@@ -388,7 +388,7 @@ class Scanner {
 
 }  // namespace
 
-bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t most_bytes, Progress& progress, std::size_t least) {
     assert(set.cells() == views.data().grid.size());
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));

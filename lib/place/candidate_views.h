@@ -11,7 +11,7 @@
 #include "cover/slice_sight.h"
 #include "env/environment.h"
 #include "layout/scene.h"
-#include "place/candidate_set.h"
+#include "place/posed_candidates.h"
 #include "place/sites.h"
 #include "raster/grid.h"
 #include "trace/worlds.h"
@@ -69,7 +69,7 @@ constexpr std::size_t kLeastPlaces = 64;
 /// does not depend on the number of threads. Sites all over the list are looked at first. False if
 /// progress said to stop: then those that were done are there, in order, at least `least` of them
 /// (or all), spread over the list. \throws UsageError once set.bytes() is more than most_bytes
-bool addCandidates(CandidateSet& set, const CandidateViews& views, std::span<const Site> sites,
+bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t most_bytes, Progress& progress, std::size_t least = kLeastPlaces);
 
 }  // namespace ispace

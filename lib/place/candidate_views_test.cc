@@ -113,7 +113,7 @@ void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Si
     const CandidateViews views(scene.environment, worlds, target.grid, kPlane, mounted.device,
                                mounted.mount, only_free ? &target.free : nullptr, sights);
     ASSERT_EQ(views.isRound(), mounted.is_round);
-    CandidateSet set(target.grid.size());
+    PosedCandidates set(target.grid.size());
     SilentProgress quiet;
     ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet));
     ASSERT_EQ(set.sites(), sites.size());
@@ -269,7 +269,7 @@ TEST(CandidateViews, SeeNothingFromWithinSolids) {
         if (mounted.mount.position.z > 1.9) continue;
         const CandidateViews views(scene.environment, worlds, grid, 0, mounted.device,
                                    mounted.mount);
-        CandidateSet set(grid.size());
+        PosedCandidates set(grid.size());
         const std::vector<Site> sites = {{{0.1, 0.2}, {Angle(), Angle::degrees(-90)}}};
         ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet));
         for (std::size_t i = 0; i < set.size(); ++i) EXPECT_TRUE(set.cellsOf(i).empty());
@@ -297,7 +297,7 @@ TEST(CandidateViews, TheSameForAnyNumberOfThreads) {
     std::vector<std::vector<CellRun>> runs;
     for (const std::size_t threads : {1, 2, 4}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        CandidateSet set(grid.size());
+        PosedCandidates set(grid.size());
         SilentProgress quiet;
         ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet));
         ASSERT_EQ(set.size(), 8 * sites.size());
@@ -333,7 +333,7 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
     const std::vector<Site> sites = manySites(2000);
     const CandidateViews views(scene.environment, worlds, grid, 0, laserWith(3, -90, 180),
                                poseAt({0, 0, kScanHeight}, 0, 0));
-    CandidateSet set(grid.size());
+    PosedCandidates set(grid.size());
     ShortProgress progress(600);
     EXPECT_FALSE(addCandidates(set, views, sites, kPlenty, progress));
     EXPECT_EQ(progress.phase_, "scanning candidates");
@@ -343,7 +343,7 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
     EXPECT_GE(set.sites(), 600U);
     EXPECT_LT(set.sites(), 2000U);
 
-    CandidateSet large(grid.size());
+    PosedCandidates large(grid.size());
     SilentProgress quiet;
     try {
         addCandidates(large, views, sites, 200'000, quiet);
@@ -358,7 +358,7 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
 }
 
 /// Fails unless both have the same candidates.
-void expectEqual(const CandidateSet& set, const CandidateSet& expected) {
+void expectEqual(const PosedCandidates& set, const PosedCandidates& expected) {
     ASSERT_EQ(set.sites(), expected.sites());
     ASSERT_EQ(set.size(), expected.size());
     EXPECT_EQ(set.runs(), expected.runs());
@@ -386,7 +386,7 @@ TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
             if ((device == 9 && count > 70) || (device == 0 && count > 700)) continue;
             const std::vector<Site> sites = manySites(count);
             for (const std::size_t least : {0U, 1U, 50U}) {
-                CandidateSet set(grid.size()), expected(grid.size());
+                PosedCandidates set(grid.size()), expected(grid.size());
                 ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet, least));
                 for (const Site& site : sites)
                     ASSERT_TRUE(addCandidates(expected, views, {&site, 1}, kPlenty, quiet));

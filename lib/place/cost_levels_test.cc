@@ -21,7 +21,7 @@ bool isSame(double a, double b) { return !isCheaper(a, b) && !isCheaper(b, a); }
 class CostLevelsTest : public testing::Test {
   protected:
     CostLevelsTest() : candidates_(1) {
-        for (int i = 0; i < 1000; ++i) candidates_.addSite(Pose3(), CellSet(1));
+        for (int i = 0; i < 1000; ++i) candidates_.addSite(CellSet(1));
     }
     std::vector<Kind> kindsOf(const std::vector<double>& costs, int most) const {
         std::vector<Kind> kinds;

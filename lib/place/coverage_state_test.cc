@@ -60,7 +60,7 @@ TEST(CoverageState, StepsCountByTheSensorsThatAreLacking) {
     CandidateSet candidates(7);
     CellSet last(7);
     last.set(6);
-    candidates.addSite(Pose3(), last);
+    candidates.addSite(last);
     Problem problem;
     problem.weights = {1, 1, 1, 1, 1, 1, 3};
     problem.met = {0, 1, 2, 3, 4, 9, 0};
@@ -100,7 +100,7 @@ TEST(CoverageState, PartsOfLargeWeightsAreScaledToFit) {
     CandidateSet candidates(3);
     CellSet all(3);
     for (std::size_t cell = 0; cell < 3; ++cell) all.set(cell);
-    candidates.addSite(Pose3(), all);
+    candidates.addSite(all);
     Problem problem;
     problem.weights = {std::numeric_limits<std::uint32_t>::max() - 1, 1, 0};
     problem.demand = 8;
@@ -117,7 +117,7 @@ TEST(CoverageState, PartsOfLargeWeightsAreScaledToFit) {
 TEST(CoverageState, LimitsFollowOrderAndCandidates) {
     const CandidateSet none(1);
     CandidateSet one(1);
-    one.addSite(Pose3(), CellSet(1));
+    one.addSite(CellSet(1));
     Problem problem;
     problem.weights = {1};
     problem.kinds = {{&one, 5}, {&none, 2}, {&one, 1}};

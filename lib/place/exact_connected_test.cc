@@ -34,7 +34,7 @@ struct Row {
     void add(const std::vector<std::size_t>& cells) {
         CellSet seen(20);
         for (const std::size_t cell : cells) seen.set(cell);
-        candidates.addSite(Pose3(), seen);
+        candidates.addSite(seen);
     }
 };
 

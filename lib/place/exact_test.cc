@@ -218,7 +218,7 @@ TEST(ReducedProblem, CellsThatTheSameSeeAreOne) {
     for (const std::size_t i : {0U, 1U, 2U, 5U, 6U}) left.set(i);
     for (const std::size_t i : {2U, 6U, 7U}) right.set(i);
     for (std::size_t i = 0; i < 8; ++i) other.set(i);
-    for (const CellSet& seen : {left, right, other}) set.addSite(Pose3(), seen);
+    for (const CellSet& seen : {left, right, other}) set.addSite(seen);
     Problem problem;
     problem.weights = {1, 2, 3, 4, 5, 6, 7, 8};
     problem.kinds = {{&set, 1, 1, 1}};

@@ -88,7 +88,7 @@ TEST(PlaceFewest, EqualsBruteForceWithCostsFarApart) {
 void addCandidate(CandidateSet& set, const std::vector<std::size_t>& cells) {
     CellSet seen(set.cells());
     for (const std::size_t cell : cells) seen.set(cell);
-    set.addSite(Pose3(), seen);
+    set.addSite(seen);
 }
 
 TEST(PlaceFewest, SmallCostsCountBesideLargeOnes) {
@@ -213,8 +213,8 @@ TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {
     for (std::size_t first = 0; first < 6; first += 2) {
         CellSet seen(10);
         for (std::size_t i = first; i < first + 3; ++i) seen.set(i);
-        set.addSite(Pose3(), seen);
-        set.addSite(Pose3(), seen);
+        set.addSite(seen);
+        set.addSite(seen);
     }
     Problem problem;
     problem.weights.assign(10, 1);

@@ -153,10 +153,10 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
         return set;
     };
     CandidateSet candidates(cells), others(cells);
-    candidates.addSite(Pose3(), set_of(0, 6));
-    candidates.addSite(Pose3(), set_of(6, 12));
-    candidates.addSite(Pose3(), set_of(1, 4));
-    others.addSite(Pose3(), set_of(0, 12));
+    candidates.addSite(set_of(0, 6));
+    candidates.addSite(set_of(6, 12));
+    candidates.addSite(set_of(1, 4));
+    others.addSite(set_of(0, 12));
     Problem problem;
     problem.weights.assign(cells, 1);
     problem.demand = 2;
@@ -171,7 +171,7 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     EXPECT_EQ(placeGreedily(problem, progress).chosen, same_place);
     // What follows may be dearer and meet more: a first step towards that is worth something.
     CandidateSet few(cells);
-    few.addSite(Pose3(), set_of(0, 4));
+    few.addSite(set_of(0, 4));
     problem.demand = 5;
     problem.kinds = {{&others, 3, 1, 1}, {&few, 3, 2, 4}};
     problem.budget = 3;
@@ -267,11 +267,11 @@ TEST(GreedySearch, TakesGainPerCostOrGainWhateverIsMore) {
     for (std::size_t cell = 0; cell < 3; ++cell) {
         CellSet one(cells);
         one.set(cell);
-        cheap.addSite(Pose3(), one);
+        cheap.addSite(one);
     }
     CellSet four(cells);
     for (std::size_t cell = 2; cell < 6; ++cell) four.set(cell);
-    dear.addSite(Pose3(), four);
+    dear.addSite(four);
     Problem problem;
     problem.weights.assign(cells, 1);
     problem.kinds = {{&cheap, 3, 1, 1}, {&dear, 1, 4.5, 1}};
@@ -289,8 +289,8 @@ TEST(GreedySearch, PlacesAllAlsoWhereNothingIsGained) {
     CandidateSet candidates(2), none(2);
     CellSet first(2);
     first.set(0);
-    candidates.addSite(Pose3(), CellSet(2));
-    candidates.addSite(Pose3(), first);
+    candidates.addSite(CellSet(2));
+    candidates.addSite(first);
     Problem problem;
     problem.weights = {1, 1};
     problem.kinds = {{&candidates, 4}, {&none, 2}};
@@ -309,8 +309,8 @@ TEST(GreedySearch, LeavesOutWhatCannotBeConnected) {
     low.set(1);
     high.set(2);
     high.set(3);
-    candidates.addSite(Pose3(), low);
-    apart.addSite(Pose3(), high);
+    candidates.addSite(low);
+    apart.addSite(high);
     Problem problem;
     problem.weights = {1, 1, 1, 1};
     problem.kinds = {{&candidates, 1}, {&apart, 1}};
@@ -363,7 +363,7 @@ TEST(GreedySearch, HeaviestWeightsDoNotOverflow) {
     for (std::size_t cell = 0; cell < 2; ++cell) {
         CellSet one(2);
         one.set(cell);
-        candidates.addSite(Pose3(), one);
+        candidates.addSite(one);
     }
     Problem problem;
     problem.weights = {1, std::numeric_limits<std::uint32_t>::max() - 2};

@@ -66,22 +66,23 @@ CountedView viewOf(const Problem& problem, const Choice& choice) {
 /// The sites of a kind, as places for sensors that add nothing.
 class SpareSites {
   public:
-    SpareSites(const CandidateSet& candidates, std::span<const std::uint32_t> weights)
-        : candidates_(candidates),
-          distances_(candidates.sites(), std::numeric_limits<double>::infinity()),
-          sees_(candidates.sites()) {
-        std::vector<std::uint32_t> values(candidates.size());
-        candidates.priceAll(CellPrices(weights), values);
+    SpareSites(const Problem& problem, std::size_t kind,
+               const std::function<Point3(const Choice&)>& position_of)
+        : candidates_(*problem.kinds[kind].candidates),
+          distances_(candidates_.sites(), std::numeric_limits<double>::infinity()),
+          sees_(candidates_.sites()) {
+        std::vector<std::uint32_t> values(candidates_.size());
+        candidates_.priceAll(CellPrices(problem.weights), values);
         for (std::size_t i = 0; i < values.size(); ++i)
-            if (values[i] > 0) sees_[candidates.siteOf(i)] = true;
+            if (values[i] > 0) sees_[candidates_.siteOf(i)] = true;
+        for (std::size_t site = 0; site < candidates_.sites(); ++site)
+            positions_.push_back(position_of({kind, candidates_.firstOf(site)}));
     }
 
     /// A sensor stands there.
     void occupy(Point3 place) {
-        for (std::size_t site = 0; site < distances_.size(); ++site) {
-            const Point3 own = candidates_.pose(candidates_.firstOf(site)).position;
-            distances_[site] = std::min(distances_[site], length(own - place));
-        }
+        for (std::size_t site = 0; site < distances_.size(); ++site)
+            distances_[site] = std::min(distances_[site], length(positions_[site] - place));
     }
 
     /// The farthest from all sensors, the first among equals; nothing where each has one.
@@ -107,6 +108,7 @@ class SpareSites {
     }
 
     const CandidateSet& candidates_;
+    std::vector<Point3> positions_;
     std::vector<double> distances_;
     std::vector<bool> sees_;
 };
@@ -122,19 +124,22 @@ std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Met& met) 
 /// Where sensors stand, and what they see together.
 class Spread {
   public:
-    Spread(const Problem& problem, std::span<const Point3> standing, std::span<const Choice> busy)
-        : problem_(problem), met_(problem.met.begin(), problem.met.end()) {
+    Spread(const Problem& problem, std::span<const Point3> standing,
+           const std::function<Point3(const Choice&)>& position_of, std::span<const Choice> busy)
+        : problem_(problem),
+          position_of_(position_of),
+          met_(problem.met.begin(), problem.met.end()) {
         met_.resize(problem.cells());
         sites_.reserve(problem.kinds.size());
-        for (const Kind& kind : problem.kinds)
-            sites_.emplace_back(*kind.candidates, problem.weights);
+        for (std::size_t kind = 0; kind < problem.kinds.size(); ++kind)
+            sites_.emplace_back(problem, kind, position_of);
         for (const Point3& place : standing) occupy(place);
         for (const Choice& choice : busy) take(choice);
     }
 
     void take(const Choice& choice) {
         count(viewOf(problem_, choice), 1, met_);
-        occupy(problem_.kinds[choice.kind].candidates->pose(choice.candidate).position);
+        occupy(position_of_(choice));
     }
 
     /// A place for one more of this kind.
@@ -150,6 +155,7 @@ class Spread {
     }
 
     const Problem& problem_;
+    const std::function<Point3(const Choice&)>& position_of_;
     Met met_;
     std::vector<SpareSites> sites_;  // by kind
 };
@@ -193,13 +199,14 @@ std::vector<std::string> idleSensors(const Problem& problem, const Coverage& cov
 }
 
 void spreadIdle(const Problem& problem, std::span<const Point3> standing,
+                const std::function<Point3(const Choice&)>& position_of,
                 std::vector<Choice>& chosen) {
     const std::vector<std::size_t> idle = idleChoices(problem, chosen);
     if (idle.empty()) return;
     std::vector<Choice> busy;
     for (std::size_t i = 0; i < chosen.size(); ++i)
         if (!std::binary_search(idle.begin(), idle.end(), i)) busy.push_back(chosen[i]);
-    Spread spread(problem, standing, busy);
+    Spread spread(problem, standing, position_of, busy);
     for (const std::size_t i : idle) {
         const Choice before = chosen[i];
         if (const auto next = spread.next(before.kind)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ std::vector<std::string> idleSensors(const Problem& problem, const Coverage& cov
 /// those that see anything that counts, with the heading in which most is seen that few others see.
 /// What hangs together stays so. `standing`: where the sensors are that stand already.
 void spreadIdle(const Problem& problem, std::span<const Point3> standing,
+                const std::function<Point3(const Choice&)>& position_of,
                 std::vector<Choice>& chosen);
 
 }  // namespace ispace

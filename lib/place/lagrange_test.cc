@@ -18,7 +18,7 @@ TEST(Lagrange, IsTheSumWhereNothingOverlaps) {
     for (std::size_t i = 0; i < 10; ++i) first.set(i);
     for (std::size_t i = 10; i < 17; ++i) second.set(i);
     for (std::size_t i = 17; i < 20; ++i) third.set(i);
-    for (const CellSet& seen : {first, second, third}) set.addSite(Pose3(), seen);
+    for (const CellSet& seen : {first, second, third}) set.addSite(seen);
     Problem problem;
     problem.weights.assign(30, 1);
     problem.kinds = {{&set, 2, 1, 1}};
@@ -35,7 +35,7 @@ TEST(Lagrange, MultipliersFindThatTwoOverlap) {
         CellSet seen(3);
         for (std::size_t i = 0; i < 3; ++i)
             if (i != out) seen.set(i);
-        set.addSite(Pose3(), seen);
+        set.addSite(seen);
     }
     Problem problem;
     problem.weights = {5, 5, 5};

@@ -28,8 +28,9 @@ class MpsWriter {
                 lacks_[cell] = problem.demand - met;
         }
     }
-    void write() {
-        writeComments();
+    void write(const std::string& legend,
+               const std::function<std::string(const Choice&)>& describe) {
+        writeComments(legend, describe);
         writeRows();
         line({"COLUMNS"});
         line({"    MARKER 'MARKER' 'INTORG'"});
@@ -61,7 +62,8 @@ class MpsWriter {
         name += std::to_string(candidate);
         return name;
     }
-    void writeComments();
+    void writeComments(const std::string& legend,
+                       const std::function<std::string(const Choice&)>& describe);
     void writeRows();
     void writeSensor(std::size_t kind, std::size_t candidate);
     void writeCells();
@@ -75,7 +77,8 @@ class MpsWriter {
     std::uint64_t met_already_ = 0;
 };
 
-void MpsWriter::writeComments() {
+void MpsWriter::writeComments(const std::string& legend,
+                              const std::function<std::string(const Choice&)>& describe) {
     line(
         {"* Where sensors see most. y_CELL is 1 if the cell is covered, x_KIND_INDEX if a sensor"});
     line({"* stands there. The objective is to be minimised: the value is ",
@@ -83,16 +86,10 @@ void MpsWriter::writeComments() {
     line({"* The weights of all cells together: ", std::to_string(problem_.totalWeight())});
     if (problem_.is_connected)
         line({"* That the views hang together is not part of this model: its value is a bound."});
-    line({"* Candidate: x y z (m) heading tilt (degrees)"});
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-        const CandidateSet& set = *problem_.kinds[k].candidates;
-        for (std::size_t i = 0; i < set.size(); ++i) {
-            const Pose3 pose = set.pose(i);
-            line({"* ", nameOf(k, i), ": ", formatDouble(pose.position.x), " ",
-                  formatDouble(pose.position.y), " ", formatDouble(pose.position.z), " ",
-                  formatDouble(pose.heading.degrees()), " ", formatDouble(pose.tilt.degrees())});
-        }
-    }
+    line({"* Candidate: ", legend});
+    for (std::size_t k = 0; k < names_.size(); ++k)
+        for (std::size_t i = 0; i < problem_.kinds[k].candidates->size(); ++i)
+            line({"* ", nameOf(k, i), ": ", describe({k, i})});
 }
 
 void MpsWriter::writeRows() {
@@ -144,9 +141,11 @@ void MpsWriter::writeLimits() {
 
 }  // namespace
 
-void writeMps(const Problem& problem, const std::vector<std::string>& kinds, std::ostream& out) {
+void writeMps(const Problem& problem, const std::vector<std::string>& kinds,
+              const std::string& legend, const std::function<std::string(const Choice&)>& describe,
+              std::ostream& out) {
     assert(kinds.size() == problem.kinds.size());
-    MpsWriter(problem, kinds, out).write();
+    MpsWriter(problem, kinds, out).write(legend, describe);
 }
 
 }  // namespace ispace

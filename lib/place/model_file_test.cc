@@ -21,7 +21,9 @@ struct Model {
 
 Model modelOf(const Problem& problem, const std::vector<std::string>& kinds) {
     std::stringstream file;
-    writeMps(problem, kinds, file);
+    writeMps(
+        problem, kinds, "number", [](const Choice& c) { return std::to_string(c.candidate); },
+        file);
     Model model;
     std::string line, section;
     bool is_whole = false;
@@ -67,8 +69,8 @@ CandidateSet smallSet() {
     CellSet left(5), right(5);
     for (const std::size_t i : {0U, 1U, 2U}) left.set(i);
     for (const std::size_t i : {2U, 3U}) right.set(i);
-    set.addSite(Pose3(), left);
-    set.addSite(Pose3(), right);
+    set.addSite(left);
+    set.addSite(right);
     return set;
 }
 

@@ -19,7 +19,7 @@ CandidateSet candidatesOf(std::size_t cells, const std::vector<Cells>& seen) {
     for (const Cells& of : seen) {
         CellSet set(cells);
         for (const std::size_t cell : of) set.set(cell);
-        candidates.addSite(Pose3(), set);
+        candidates.addSite(set);
     }
     return candidates;
 }

@@ -176,8 +176,7 @@ void addSite(const KeptSite& site, const Joined& joined, CandidateSet& to) {
     CellParts parts;
     parts.first = {0};
     for (const auto& part : site.parts) addPart(part, joined, parts);
-    const std::vector<Angle> headings(site.ranges.size());
-    to.addSite(Pose3(), headings, site.ranges, parts);
+    to.addSite(site.ranges, parts);
 }
 
 }  // namespace

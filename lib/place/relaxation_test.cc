@@ -15,7 +15,7 @@ using Counts = std::vector<std::size_t>;
 /// Six candidates that see nothing.
 CandidateSet sixCandidates() {
     CandidateSet candidates(1);
-    for (int i = 0; i < 6; ++i) candidates.addSite(Pose3(), CellSet(1));
+    for (int i = 0; i < 6; ++i) candidates.addSite(CellSet(1));
     return candidates;
 }
 

@@ -147,8 +147,7 @@ std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
 
 std::vector<ArrangedSensor> SceneProblem::sensorsOf(const std::vector<Choice>& chosen) const {
     std::vector<std::vector<Pose3>> places(kinds_.size());
-    for (const Choice& choice : chosen)
-        places[choice.kind].push_back(sets_[choice.kind]->pose(choice.candidate));
+    for (const Choice& choice : chosen) places[choice.kind].push_back(poseOf(choice));
     return arrangedSensors(scene_, groups_, kinds_, places);
 }
 
@@ -174,7 +173,8 @@ void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
     for (const PlacedRanger& ranger : scene_.rangers) standing.push_back(ranger.pose.position);
     for (const PlacedReceiver& receiver : scene_.receivers)
         standing.push_back(receiver.pose.position);
-    ispace::spreadIdle(problem_, standing, chosen);
+    const auto position_of = [this](const Choice& choice) { return poseOf(choice).position; };
+    ispace::spreadIdle(problem_, standing, position_of, chosen);
 }
 
 std::uint64_t SceneProblem::mostFromAnyPlace(const std::vector<int>& most) const {

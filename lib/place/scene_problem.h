@@ -55,6 +55,9 @@ class SceneProblem {
     /// Weights of cells whose demand is not met by what stands; 0 for the others.
     [[nodiscard]] std::vector<std::uint32_t> weightsLeft() const;
 
+    [[nodiscard]] Pose3 poseOf(const Choice& choice) const {
+        return sets_[choice.kind]->pose(choice.candidate);
+    }
     /// The sensors at the places that were chosen.
     [[nodiscard]] std::vector<ArrangedSensor> sensorsOf(const std::vector<Choice>& chosen) const;
     /// On the grid of the search.
@@ -84,7 +87,7 @@ class SceneProblem {
     Problem problem_;
     std::uint64_t total_ = 0;
     std::unique_ptr<CandidatePool> pool_;
-    std::vector<std::unique_ptr<CandidateSet>> sets_;
+    std::vector<std::unique_ptr<PosedCandidates>> sets_;
     bool is_complete_ = true;
 };
 

@@ -103,9 +103,9 @@ TEST(SwapSearch, BuysTwoForOneAndOneForTwo) {
         return set;
     };
     CandidateSet cheap(cells), dear(cells);
-    cheap.addSite(Pose3(), set_of(0, 2));
-    cheap.addSite(Pose3(), set_of(2, 4));
-    dear.addSite(Pose3(), set_of(0, 3));
+    cheap.addSite(set_of(0, 2));
+    cheap.addSite(set_of(2, 4));
+    dear.addSite(set_of(0, 3));
     Problem problem;
     problem.weights.assign(cells, 1);
     problem.kinds = {{&cheap, 2, 1, 1}, {&dear, 1, 2, 1}};
@@ -113,7 +113,7 @@ TEST(SwapSearch, BuysTwoForOneAndOneForTwo) {
     SilentProgress progress;
     const Solution two = improveBySwaps(problem, {{{1, 0}}, 3}, {0, 0}, progress);
     EXPECT_EQ(two.value, 4U);
-    dear.addSite(Pose3(), set_of(3, 8));
+    dear.addSite(set_of(3, 8));
     const Solution one = improveBySwaps(problem, two, {0, 0}, progress);
     EXPECT_EQ(one.chosen, (std::vector<Choice>{{1, 1}}));
 }
@@ -193,7 +193,7 @@ TEST(SwapSearch, MoreStartsAreNeverWorseThanGreedyAlone) {
 TEST(SwapSearch, TrivialProblems) {
     const CandidateSet none(2);
     CandidateSet one(2);
-    one.addSite(Pose3(), CellSet(2));
+    one.addSite(CellSet(2));
     Problem problem;
     problem.weights = {1, 1};
     EXPECT_TRUE(improved(problem).chosen.empty());

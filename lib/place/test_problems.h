@@ -82,11 +82,6 @@ class Star {
             for (std::uint32_t cell = run.first; cell < run.end; ++cell) set.set(cell);
         return set;
     }
-    [[nodiscard]] Pose3 pose() const {
-        Pose3 pose;
-        pose.position = {static_cast<double>(column_), static_cast<double>(row_), 0.15};
-        return pose;
-    }
 
   private:
     [[nodiscard]] std::size_t cells() const {
@@ -119,17 +114,14 @@ inline std::unique_ptr<CandidateSet> randomCandidates(Random& random,
         const int directions = 2 * options.headings;
         const Star star(random, options, directions);
         if (site % 3 == 2) {
-            candidates->addSite(star.pose(), star.whole());
+            candidates->addSite(star.whole());
             continue;
         }
-        std::vector<Angle> headings;
         std::vector<CandidateSet::PartRange> ranges;
         const auto wide = static_cast<std::uint32_t>(anyOf(random, 1, directions));
-        for (int k = 0; k < options.headings; ++k) {
-            headings.push_back(Angle::degrees(360.0 * k / options.headings));
+        for (int k = 0; k < options.headings; ++k)
             ranges.push_back({static_cast<std::uint32_t>(2 * k), wide});
-        }
-        candidates->addSite(star.pose(), headings, ranges, star.parts());
+        candidates->addSite(ranges, star.parts());
     }
     return candidates;
 }

@@ -35,7 +35,7 @@ std::vector<TriedPose> triedPoses(SceneProblem& model, const std::vector<Choice>
         const double part = static_cast<double>(problem.kinds[k].share) / problem.demand;
         const std::size_t first = all.size();
         for (std::size_t i = 0; i < set.size(); ++i)
-            all.push_back({kind.id, set.pose(i), part * model.share(values[i]), false});
+            all.push_back({kind.id, model.poseOf({k, i}), part * model.share(values[i]), false});
         for (const Choice& choice : chosen)
             if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
         if (const auto* laser = std::get_if<Laser>(&kind.device))
