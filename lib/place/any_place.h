@@ -5,8 +5,8 @@
 #include <span>
 
 #include "layout/scene.h"
-#include "place/problem.h"
 #include "raster/grid.h"
+#include "solve/problem.h"
 
 namespace ispace {
 

@@ -4,7 +4,7 @@
 
 #include "base/number.h"
 #include "place/test_arrange.h"
-#include "place/test_progress.h"
+#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cover/worth.h"
-#include "place/search.h"
 #include "place/sites.h"
+#include "solve/search.h"
 
 namespace ispace {
 

@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/coverage.h"
-#include "place/coverage_state.h"
-#include "place/model_file.h"
 #include "place/refine_arranged.h"
 #include "place/scene_problem.h"
 #include "place/tried_poses.h"
+#include "solve/coverage_state.h"
+#include "solve/model_file.h"
 
 namespace ispace {
 

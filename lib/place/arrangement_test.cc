@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "place/test_arrange.h"
-#include "place/test_progress.h"
+#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

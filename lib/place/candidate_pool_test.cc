@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "place/candidate_views.h"
 #include "place/test_arrange.h"
-#include "place/test_progress.h"
+#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

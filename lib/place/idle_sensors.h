@@ -10,7 +10,7 @@
 
 #include "cover/coverage.h"
 #include "geom/point.h"
-#include "place/problem.h"
+#include "solve/problem.h"
 
 namespace ispace {
 

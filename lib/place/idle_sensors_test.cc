@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "place/test_arrange.h"
-#include "place/test_problems.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geom/pose.h"
-#include "place/candidate_set.h"
+#include "solve/candidate_set.h"
 
 namespace ispace {
 

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "cover/test_scenes.h"
 #include "place/exact_worth.h"
-#include "place/test_progress.h"
+#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

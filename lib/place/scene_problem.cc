@@ -11,8 +11,8 @@
 #include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "place/scene_value.h"
-#include "place/whole_units.h"
 #include "sense/ultrasound.h"
+#include "solve/whole_units.h"
 
 namespace ispace {
 

@@ -13,7 +13,7 @@
 #include "place/arrange_options.h"
 #include "place/arranged_sensor.h"
 #include "place/candidate_pool.h"
-#include "place/problem.h"
+#include "solve/problem.h"
 #include "trace/worlds.h"
 
 namespace ispace {

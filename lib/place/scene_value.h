@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "cover/coverage.h"
-#include "place/problem.h"
+#include "solve/problem.h"
 
 namespace ispace {
 

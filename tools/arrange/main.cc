@@ -18,9 +18,9 @@
 #include "layout/left_out.h"
 #include "layout/schemas.h"
 #include "place/layout_document.h"
-#include "place/problem.h"
 #include "record/text.h"
 #include "sense/ultrasound.h"
+#include "solve/problem.h"
 
 namespace {
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/exact.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "solve/branch_node.h"
+#include "solve/open_nodes.h"
+#include "solve/root_relaxation.h"
+#include "solve/search_notes.h"
+
+namespace ispace {
+namespace {
+
+// Nodes at once, whatever the number of threads, so that the tree does not depend on it.
+constexpr std::size_t kBatch = 8;
+
+/// The highest bound that is within `gap` of a value.
+std::uint64_t goodBound(std::uint64_t value, double gap) {
+    if (!(gap > 0)) return value;
+    const double most = std::floor(static_cast<double>(value) / std::max(1 - gap, 1e-9));
+    return std::max(value, static_cast<std::uint64_t>(std::min(most, 4294967295.0)));
+}
+
+/// What is left of all candidates, cut down.
+struct Root {
+    std::vector<std::vector<std::size_t>> ways;  ///< counts per kind
+    std::vector<std::size_t> most;               ///< of them, per kind
+    std::shared_ptr<const ReducedProblem> problem;
+    std::shared_ptr<const std::vector<std::uint32_t>> multipliers;
+    std::uint64_t closed = 0;  ///< nothing with another candidate is worth more, fine
+};
+
+RootRelaxation ruledOut(const Problem& problem, const Bound& bound, std::uint64_t value,
+                        std::uint64_t& closed) {
+    RootRelaxation root(problem);
+    if (!bound.survivors.empty() && value >= bound.cut) {
+        root.keepOnly(bound.survivors);
+        closed = root.cells().most(bound.cut);
+    }
+    root.evaluate(bound.multipliers, true);
+    closed = std::max(closed, root.ruleOut(root.cells().most(value)));
+    return root;
+}
+
+Root rootOf(const Problem& problem, const Bound& bound, std::uint64_t value) {
+    Root made;
+    std::vector<std::vector<std::uint32_t>> kept;
+    {
+        const RootRelaxation root = ruledOut(problem, bound, value, made.closed);
+        kept = root.survivors();
+        made.ways = root.counts().ways();
+        for (std::size_t k = 0; k < problem.kinds.size(); ++k)
+            made.most.push_back(root.counts().most(k));
+    }
+    std::vector<std::uint32_t> multipliers = bound.multipliers;
+    made.problem = std::make_shared<const ReducedProblem>(
+        reduce(wholeProblem(problem, RelaxedCells(problem)), kept, multipliers));
+    made.multipliers = std::make_shared<const std::vector<std::uint32_t>>(std::move(multipliers));
+    return made;
+}
+
+/// [n]: the bound gains at most so much by n candidates of a kind.
+std::vector<std::uint64_t> gainsOf(const Root& root, std::size_t kind) {
+    const ReducedProblem::OfKind& own = root.problem->kinds[kind];
+    std::vector<std::uint32_t> cells(root.problem->cells());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        cells[i] = priceOf((*root.multipliers)[i], own.share, root.problem->needs[i]);
+    std::vector<std::uint32_t> prices(own.original.size());
+    own.candidates->priceAll(CellPrices(cells), prices);
+    const std::size_t most = std::min(root.most[kind], prices.size());
+    std::partial_sort(prices.begin(), prices.begin() + static_cast<std::ptrdiff_t>(most),
+                      prices.end(), std::greater<>());
+    std::vector<std::uint64_t> gains = {0};
+    gains.reserve(most + 1);
+    for (std::size_t n = 0; n < most; ++n) gains.push_back(gains.back() + prices[n]);
+    return gains;
+}
+
+class Tree {
+  public:
+    Tree(const Problem& problem, const Bound& bound, SearchResult known, double gap,
+         std::uint64_t enough, std::size_t most_bytes)
+        : problem_(problem),
+          relaxed_(problem),
+          result_(std::move(known)),
+          gap_(gap),
+          enough_(enough),
+          open_(most_bytes) {
+        result_.bound = std::min(result_.bound, bound.value);
+        if (relaxed_.most(result_.bound) > cut())
+            addRoots(rootOf(problem, bound, goodBound(result_.best.value, gap_)));
+        else
+            closed_ = relaxed_.most(result_.bound);
+    }
+
+    SearchResult search(Progress& progress) {
+        progress.begin("proving", 0);
+        lowerBound();
+        while (!open_.empty() && result_.best.value < enough_) {
+            if (progress.stopped()) {
+                result_.is_complete = false;
+                break;
+            }
+            std::vector<BranchNode> batch = open_.take(kBatch);
+            std::vector<BranchResult> results(batch.size());
+            const std::uint64_t cut = this->cut();
+            tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
+                results[i] = branch(problem_, batch[i], cut, progress);
+                batch[i] = BranchNode();
+            });
+            for (BranchResult& result : results) add(result);
+            progress.advance(static_cast<std::int64_t>(batch.size()));
+            lowerBound();
+            noteProgress(problem_, result_, progress);
+        }
+        progress.end();
+        return std::move(result_);
+    }
+
+  private:
+    /// What is worth no more is of no interest, fine.
+    [[nodiscard]] std::uint64_t cut() const {
+        return relaxed_.most(goodBound(result_.best.value, gap_));
+    }
+    void addRoots(const Root& root);
+    void add(BranchResult& result) {
+        closed_ = std::max(closed_, result.closed);
+        if (!result.found.empty()) {
+            const std::uint64_t value = valueOf(problem_, result.found);
+            if (value > result_.best.value) result_.best = {std::move(result.found), value};
+        }
+        for (BranchNode& child : result.children) open_.add(std::move(child));
+        result.children.clear();
+    }
+    void lowerBound() {
+        closed_ = std::max(closed_, open_.dropUpTo(cut()));
+        const std::uint64_t most = open_.empty() ? closed_ : std::max(closed_, open_.bound());
+        result_.bound = std::min(result_.bound, relaxed_.whole(most));
+        result_.bound = std::max(result_.bound, result_.best.value);
+    }
+
+    const Problem& problem_;
+    RelaxedCells relaxed_;
+    SearchResult result_;
+    double gap_;
+    std::uint64_t enough_;
+    std::uint64_t closed_ = 0;  // nothing that is neither open nor known is worth more, fine
+    OpenNodes open_;
+};
+
+void Tree::addRoots(const Root& root) {
+    closed_ = root.closed;
+    std::vector<std::vector<std::uint64_t>> gains;
+    std::vector<std::shared_ptr<const std::vector<std::uint32_t>>> lists;
+    for (std::size_t k = 0; k < root.most.size(); ++k) {
+        gains.push_back(gainsOf(root, k));
+        std::vector<std::uint32_t> list(root.problem->kinds[k].original.size());
+        std::iota(list.begin(), list.end(), 0U);
+        lists.push_back(std::make_shared<const std::vector<std::uint32_t>>(std::move(list)));
+    }
+    std::uint64_t free = root.problem->settled;
+    for (std::size_t i = 0; i < root.problem->cells(); ++i)
+        free += root.problem->weights[i] - (*root.multipliers)[i];
+    for (const auto& way : root.ways) {
+        BranchNode node;
+        node.problem = root.problem;
+        node.multipliers = root.multipliers;
+        node.bound = free;
+        for (std::size_t k = 0; k < way.size(); ++k) {
+            const std::size_t count = std::min(way[k], lists[k]->size());
+            if (count == 0) continue;
+            node.groups.push_back({k, count, lists[k]});
+            node.bound += gains[k][count];
+        }
+        node.bound = std::min(node.bound, relaxed_.most(result_.bound));
+        open_.add(std::move(node));
+    }
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
+                                                  std::uint64_t value) {
+    std::uint64_t closed = 0;
+    return ruledOut(problem, bound, value, closed).survivors();
+}
+
+SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
+                            double gap, Progress& progress, std::uint64_t enough,
+                            std::size_t most_bytes) {
+    if (progress.stopped()) {
+        known.is_complete = false;
+        return known;
+    }
+    if (!CountChoice(problem).isListed()) return known;
+    return Tree(problem, bound, std::move(known), gap, enough, most_bytes).search(progress);
+}
+
+}  // namespace ispace

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/lagrange.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "solve/exact.h"
+#include "solve/test_variety.h"
+
+namespace ispace {
+namespace {
+
+TEST(Lagrange, IsTheSumWhereNothingOverlaps) {
+    CandidateSet set(30);
+    CellSet first(30), second(30), third(30);
+    for (std::size_t i = 0; i < 10; ++i) first.set(i);
+    for (std::size_t i = 10; i < 17; ++i) second.set(i);
+    for (std::size_t i = 17; i < 20; ++i) third.set(i);
+    for (const CellSet& seen : {first, second, third}) set.addSite(seen);
+    Problem problem;
+    problem.weights.assign(30, 1);
+    problem.kinds = {{&set, 2, 1, 1}};
+    SilentProgress progress;
+    const Solution best{{{0, 0}, {0, 1}}, 17};
+    const Bound bound = boundByLagrange(problem, best, 0, progress);
+    EXPECT_EQ(bound.value, 17U);
+}
+
+TEST(Lagrange, MultipliersFindThatTwoOverlap) {
+    // Any two of three see 2 of 3 cells each: all cells, but the sums of two are 4.
+    CandidateSet set(3);
+    for (std::size_t out = 0; out < 3; ++out) {
+        CellSet seen(3);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (i != out) seen.set(i);
+        set.addSite(seen);
+    }
+    Problem problem;
+    problem.weights = {5, 5, 5};
+    problem.kinds = {{&set, 2, 1, 1}};
+    SilentProgress progress;
+    const Bound bound = boundByLagrange(problem, {{{0, 0}, {0, 1}}, 15}, 0, progress);
+    EXPECT_EQ(bound.value, 15U);
+}
+
+TEST(Lagrange, NothingToPlaceIsWhatIsMet) {
+    CandidateSet set(4);
+    Problem problem;
+    problem.weights = {1, 2, 3, 4};
+    problem.met = {0, 1, 0, 1};
+    problem.kinds = {{&set, 3, 1, 1}};
+    SilentProgress progress;
+    EXPECT_EQ(boundByLagrange(problem, {{}, 6}, 0, progress).value, 6U);
+    problem.kinds.clear();
+    EXPECT_EQ(boundByLagrange(problem, {{}, 6}, 0, progress).value, 6U);
+}
+
+TEST(Lagrange, HoldsAndSurvivorsHoldTheBest) {
+    SilentProgress progress;
+    for (std::uint64_t round = 0; round < 120; ++round) {
+        const RandomProblem random = variedProblem(round);
+        const Problem& problem = random.problem;
+        const Solution best = bestByBruteForce(problem);
+        const Solution poor{{}, valueOf(problem, {})};
+        for (const Solution& known : {best, poor}) {
+            const Bound bound = boundByLagrange(problem, known, 0, progress);
+            ASSERT_GE(bound.value, best.value) << round;
+            ASSERT_EQ(bound.multipliers.size(), problem.cells());
+            for (std::size_t i = 0; i < problem.cells(); ++i)
+                ASSERT_LE(bound.multipliers[i], std::uint64_t{problem.weights[i]} * bound.scale);
+            if (known.value == best.value) continue;
+            const auto kept = survivors(problem, bound, known.value);
+            for (const Choice& choice : best.chosen)
+                ASSERT_TRUE(std::binary_search(kept[choice.kind].begin(), kept[choice.kind].end(),
+                                               choice.candidate))
+                    << round;
+        }
+    }
+}
+
+TEST(Lagrange, IsNearOnAverage) {
+    SilentProgress progress;
+    double sum = 0;
+    for (std::uint64_t round = 0; round < 60; ++round) {
+        const RandomProblem random = randomProblem(round);
+        const Solution best = bestByBruteForce(random.problem);
+        const Bound bound = boundByLagrange(random.problem, best, 0, progress);
+        sum += static_cast<double>(bound.value - best.value) / static_cast<double>(bound.value);
+    }
+    EXPECT_LT(sum / 60, 0.02);
+}
+
+TEST(Lagrange, HoldsWithOddCosts) {
+    RandomProblemOptions options;
+    options.kinds = 2;
+    options.sites = 3;
+    options.headings = 3;
+    options.most = 2;
+    SilentProgress progress;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        RandomProblem random = randomProblem(seed, options);
+        random.problem.kinds[1].cost = 0.7;
+        random.problem.budget = 2.5;
+        const Solution best = bestByBruteForce(random.problem);
+        EXPECT_GE(boundByLagrange(random.problem, best, 0, progress).value, best.value);
+        for (Kind& kind : random.problem.kinds) kind.cost *= 1e-5;
+        *random.problem.budget *= 1e-5;
+        EXPECT_GE(boundByLagrange(random.problem, best, 0, progress).value, best.value);
+    }
+}
+
+TEST(Lagrange, IsTheSameForAnyNumberOfThreads) {
+    RandomProblemOptions options;
+    options.columns = 40;
+    options.rows = 30;
+    options.sites = 200;
+    options.headings = 8;
+    options.most = 4;
+    options.max_range = 9;
+    const RandomProblem random = randomProblem(3, options);
+    SilentProgress progress;
+    const Solution best = placeGreedily(random.problem, progress);
+    const auto bounded = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return boundByLagrange(random.problem, best, 0, progress);
+    };
+    const Bound one = bounded(1), two = bounded(2);
+    EXPECT_EQ(one.value, two.value);
+    EXPECT_EQ(one.multipliers, two.multipliers);
+    EXPECT_EQ(one.survivors, two.survivors);
+    EXPECT_LT(one.value, random.problem.totalWeight());
+}
+
+}  // namespace
+}  // namespace ispace

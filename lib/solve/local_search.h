@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/solve only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "base/progress.h"
+#include "solve/best_place.h"
+#include "solve/search_basis.h"
+
+namespace ispace {
+
+/// The best sensor to add to others.
+struct Response {
+    Choice choice;
+    Score score = 0;
+    bool is_found = false;
+};
+
+/// Best responses by what they answer to, shared by searches that run at the same time: those from
+/// different starts meet. A response depends on its key alone, so who found it does not matter.
+/// Keeps the first 100'000.
+class ResponseCache {
+  public:
+    /// Of choices in any order: two hashes of 64 bits, so that no two of some million sets share
+    /// them.
+    struct Key {
+        explicit Key(const std::vector<Choice>& chosen);
+        friend bool operator==(const Key&, const Key&) = default;
+        std::uint64_t first = 0, second = 0;
+    };
+
+    [[nodiscard]] std::optional<Response> find(const Key& others) const;
+    void store(const Key& others, const Response& response);
+
+  private:
+    struct Hash {
+        std::size_t operator()(const Key& key) const { return key.first; }
+    };
+    mutable std::mutex mutex_;
+    std::unordered_map<Key, Response, Hash> responses_;
+};
+
+/// Moves sensors one by one to where they add most to the others, until no move helps: value counts
+/// first, then the parts of demands that are met, then lower cost.
+class LocalSearch {
+  public:
+    /// \param enough ends once the choices are worth so much
+    LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::uint64_t enough,
+                const Progress& progress);
+
+    /// Adds the best sensor, again and again, while one may be added.
+    void fill(CoverageState& state);
+    /// To a local optimum, or until progress says stop. With a budget also buys others for one
+    /// sensor. \pre the choices are feasible
+    void improve(CoverageState& state);
+    /// Also buys others for two sensors, of those that are worth least. Long: for the best only.
+    void improveByPairs(CoverageState& state);
+
+  private:
+    /// What is known of what each site can add: bounds that hold for these prices.
+    struct SiteBounds {
+        std::vector<std::uint32_t> prices;  ///< empty: any
+        std::vector<std::uint32_t> bounds;
+    };
+    using Slot = std::vector<SiteBounds>;  ///< per kind
+
+    Response respond(const CoverageState& others, Slot& slot, const std::optional<Response>& known);
+    BestPlace bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
+                     const BestPlace& known);
+    void renew(SiteBounds& known, std::size_t kind) const;
+    Slot& slotAt(std::size_t position);
+    bool move(CoverageState& state, std::size_t position);
+    bool add(CoverageState& state);
+    void moveAll(CoverageState& state);
+    bool rebuyOne(CoverageState& state);
+    bool rebuyTwo(CoverageState& state, int& tries);
+    [[nodiscard]] std::vector<std::size_t> leastUseful(const CoverageState& state) const;
+    [[nodiscard]] bool isOver(const CoverageState& state) const {
+        return state.value() >= enough_ || progress_.stopped();
+    }
+    bool rebuyWithout(CoverageState& state, const std::vector<std::size_t>& positions);
+
+    const SearchBasis& basis_;
+    ResponseCache& cache_;
+    std::uint64_t enough_;
+    const Progress& progress_;
+    bool is_by_cost_ = false;  // there is a budget, and costs differ
+    std::size_t most_slots_;
+    PlaceFinder finder_;
+    std::vector<Slot> slots_;                          // by position, the last for all beyond
+    std::vector<std::uint32_t> prices_, more_prices_;  // of the search under way
+    CellPrices sums_, more_sums_;
+};
+
+}  // namespace ispace

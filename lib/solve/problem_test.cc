@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/problem.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "solve/test_problems.h"
+
+namespace ispace {
+namespace {
+
+using Cells = std::vector<std::size_t>;
+
+/// Candidates that see these cells.
+CandidateSet candidatesOf(std::size_t cells, const std::vector<Cells>& seen) {
+    CandidateSet candidates(cells);
+    for (const Cells& of : seen) {
+        CellSet set(cells);
+        for (const std::size_t cell : of) set.set(cell);
+        candidates.addSite(set);
+    }
+    return candidates;
+}
+
+/// The definition, cell by cell.
+std::uint64_t slowValueOf(const Problem& problem, const std::vector<Choice>& chosen) {
+    std::uint64_t value = 0;
+    for (std::size_t cell = 0; cell < problem.cells(); ++cell) {
+        int shares = problem.met.empty() ? 0 : problem.met[cell];
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const Kind& kind = problem.kinds[chosen[i].kind];
+            const bool is_repeated =
+                std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(i),
+                          chosen[i]) != chosen.begin() + static_cast<std::ptrdiff_t>(i);
+            if (!is_repeated && kind.candidates->cellsOf(chosen[i].candidate).test(cell))
+                shares += kind.share;
+        }
+        if (shares >= problem.demand) value += problem.weights[cell];
+    }
+    return value;
+}
+
+std::vector<Choice> randomChoices(test_problems::Random& random, const Problem& problem) {
+    std::vector<Choice> chosen;
+    for (std::size_t kind = 0; kind < problem.kinds.size(); ++kind)
+        for (int i = 0; i < problem.kinds[kind].most; ++i)
+            if (random() % 3 != 0)
+                chosen.push_back({kind, random() % problem.kinds[kind].candidates->size()});
+    return chosen;
+}
+
+TEST(Problem, ValueIsTheWeightOfTheUnion) {
+    const CandidateSet candidates = candidatesOf(6, {{0, 1, 2}, {2, 3}, {}});
+    Problem problem;
+    problem.weights = {1, 2, 4, 8, 16, 32};
+    problem.kinds = {{&candidates, 2}};
+    EXPECT_EQ(problem.totalWeight(), 63U);
+    EXPECT_EQ(valueOf(problem, {}), 0U);
+    EXPECT_EQ(valueOf(problem, {{0, 0}}), 7U);
+    EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 1}}), 15U);
+    EXPECT_EQ(valueOf(problem, {{0, 2}}), 0U);
+    problem.met = {0, 0, 0, 0, 1, 0};
+    EXPECT_EQ(valueOf(problem, {{0, 1}}), 28U);
+}
+
+TEST(Problem, SharesAddUpToTheDemandAndRepeatedChoicesCountOnce) {
+    const CandidateSet narrow = candidatesOf(4, {{0, 1}, {1, 2}}), wide = candidatesOf(4, {{2, 3}});
+    Problem problem;
+    problem.weights = {1, 1, 1, 1};
+    problem.demand = 2;
+    problem.kinds = {{&narrow, 2, 1, 1}, {&wide, 1, 1, 2}};
+    EXPECT_EQ(valueOf(problem, {{0, 0}}), 0U);
+    EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 0}}), 0U);
+    EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 1}}), 1U);
+    EXPECT_EQ(valueOf(problem, {{0, 0}, {1, 0}}), 2U);
+    problem.met = {1, 0, 0, 0};
+    EXPECT_EQ(valueOf(problem, {{0, 0}}), 1U);
+}
+
+TEST(Problem, ValueIsTheDefinitionOnRandomProblems) {
+    RandomProblemOptions options;
+    options.kinds = 2;
+    options.max_weight = 9;
+    options.demand = 3;
+    options.max_met = 3;
+    options.shares = {1, 2};
+    test_problems::Random random(3);
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        const RandomProblem made = randomProblem(seed, options);
+        const auto chosen = randomChoices(random, made.problem);
+        EXPECT_EQ(valueOf(made.problem, chosen), slowValueOf(made.problem, chosen)) << seed;
+    }
+}
+
+TEST(Problem, RemovingASensorNeverRaisesTheValue) {
+    RandomProblemOptions options;
+    options.kinds = 2;
+    options.demand = 2;
+    options.shares = {1, 2};
+    test_problems::Random random(4);
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        const RandomProblem made = randomProblem(seed, options);
+        auto chosen = randomChoices(random, made.problem);
+        for (std::uint64_t value = valueOf(made.problem, chosen); !chosen.empty();) {
+            chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(random() % chosen.size()));
+            const std::uint64_t less = valueOf(made.problem, chosen);
+            EXPECT_LE(less, value) << seed;
+            value = less;
+        }
+    }
+}
+
+TEST(Problem, FeasibleIsWithinMostAndBudget) {
+    const CandidateSet candidates = candidatesOf(2, {{0}, {1}});
+    Problem problem;
+    problem.weights = {1, 1};
+    problem.kinds = {{&candidates, 2, 0.1, 1}, {&candidates, 1, 0.2, 1}};
+    EXPECT_TRUE(isFeasible(problem, {{0, 0}, {0, 1}, {1, 0}}));
+    EXPECT_FALSE(isFeasible(problem, {{1, 0}, {1, 1}}));
+    problem.budget = 0.3;
+    EXPECT_TRUE(isFeasible(problem, {{0, 0}, {1, 0}}));  // 0.1 + 0.2 is more than 0.3 in doubles
+    EXPECT_FALSE(isFeasible(problem, {{0, 0}, {0, 1}, {1, 0}}));
+    EXPECT_DOUBLE_EQ(costOf(problem, {{0, 0}, {0, 0}, {1, 0}}), 0.4);
+    problem.budget = 0;
+    EXPECT_TRUE(isFeasible(problem, {}));
+    EXPECT_FALSE(isFeasible(problem, {{0, 0}}));
+}
+
+TEST(Problem, SmallCostsCountBesideLargeOnes) {
+    const CandidateSet candidates = candidatesOf(2, {{0}, {1}});
+    Problem problem;
+    problem.weights = {1, 1};
+    problem.kinds = {{&candidates, 1000, 1e6, 1}, {&candidates, 1000, 0.001, 1}};
+    problem.budget = 1e6;
+    EXPECT_TRUE(isFeasible(problem, {{0, 0}}));
+    EXPECT_FALSE(isFeasible(problem, {{0, 0}, {1, 0}}));
+    problem.budget = 1e9;
+    std::vector<Choice> chosen(1000, {0, 0});
+    EXPECT_TRUE(isFeasible(problem, chosen));
+    chosen.push_back({1, 0});
+    EXPECT_FALSE(isFeasible(problem, chosen));
+    EXPECT_EQ(tidyCost(costOf(problem, chosen)), 1e9 + 0.001);
+}
+
+TEST(Problem, CostsOfManyAreTheDecimalSumInAnyOrder) {
+    test_problems::Random random(5);
+    const CandidateSet candidates = candidatesOf(1, {{0}});
+    Problem problem;
+    problem.kinds = {{&candidates, 9, 0.1, 1}, {&candidates, 9, 0.7, 1}, {&candidates, 9, 1e6, 1}};
+    for (int round = 0; round < 100; ++round) {
+        std::vector<Choice> chosen;
+        std::uint64_t tenths = 0;
+        for (std::uint64_t n = random() % 1000; n > 0; --n) {
+            chosen.push_back({random() % 3, 0});
+            tenths += std::vector<std::uint64_t>{1, 7, 10'000'000}[chosen.back().kind];
+        }
+        const double cost = costOf(problem, chosen);
+        EXPECT_EQ(tidyCost(cost), static_cast<double>(tenths) / 10);
+        std::reverse(chosen.begin(), chosen.end());
+        EXPECT_EQ(costOf(problem, chosen), cost);
+        problem.budget = static_cast<double>(tenths) / 10;
+        EXPECT_TRUE(isAffordable(problem, cost));
+        problem.budget = (static_cast<double>(tenths) - 1) / 10;
+        EXPECT_FALSE(isAffordable(problem, cost));
+    }
+}
+
+TEST(Problem, CheaperIsBelowByMoreThanRounding) {
+    EXPECT_FALSE(isCheaper(0.3, 0.1 + 0.2));
+    EXPECT_FALSE(isCheaper(0.1 + 0.2, 0.3));
+    EXPECT_FALSE(isCheaper(0, 0));
+    EXPECT_TRUE(isCheaper(0, 1e-9));
+    EXPECT_TRUE(isCheaper(1e9, 1e9 + 0.001));
+    EXPECT_FALSE(isCheaper(1e9 + 0.001, 1e9));
+    EXPECT_TRUE(isCheaper(3e-9, 4e-9));
+}
+
+TEST(Problem, ABudgetBuysSoMany) {
+    EXPECT_EQ(affordableCount(0.3, 0, 0.1, 9), 3U);
+    EXPECT_EQ(affordableCount(0.3, 0.2, 0.1, 9), 1U);
+    EXPECT_EQ(affordableCount(0.3, 0.1 + 0.2, 0.1, 9), 0U);
+    EXPECT_EQ(affordableCount(0.3, 0.4, 0.1, 9), 0U);
+    EXPECT_EQ(affordableCount(0.3, 0, 0.1, 2), 2U);
+    EXPECT_EQ(affordableCount(1e6, 1e6, 0.001, 9), 0U);
+    EXPECT_EQ(affordableCount(1e6 + 0.002, 1e6, 0.001, 9), 2U);
+    EXPECT_EQ(affordableCount(std::numeric_limits<double>::infinity(), 5, 0.1, 7), 7U);
+    EXPECT_EQ(affordableCount(0, 0, 1, 7), 0U);
+}
+
+TEST(Problem, TidyIsTheDecimalNumberMeant) {
+    EXPECT_EQ(tidyCost(0.1 + 0.2), 0.3);
+    EXPECT_EQ(tidyCost(327.8252249999999), 327.825225);
+    EXPECT_EQ(tidyCost(4 * 1e-9), 4e-9);
+    EXPECT_EQ(tidyCost(1e9 + 0.001), 1e9 + 0.001);
+    EXPECT_EQ(tidyCost(0), 0);
+    // What is no short decimal number stays the same cost.
+    for (const double cost : {1.0 / 3, 2.0 / 3, 1e6 / 7, 1 + 1.0 / 3}) {
+        EXPECT_FALSE(isCheaper(tidyCost(cost), cost));
+        EXPECT_FALSE(isCheaper(cost, tidyCost(cost)));
+    }
+}
+
+TEST(Problem, ViewsHangTogetherOverCellsThatCount) {
+    const CandidateSet candidates = candidatesOf(8, {{0, 1}, {1, 2}, {2, 3}, {4, 5}, {3, 4}, {}});
+    Problem problem;
+    problem.weights = {1, 1, 1, 0, 1, 1, 1, 1};
+    problem.kinds = {{&candidates, 6}};
+    EXPECT_TRUE(isConnected(problem, {}));
+    EXPECT_TRUE(isConnected(problem, {{0, 5}}));
+    EXPECT_TRUE(isConnected(problem, {{0, 0}, {0, 2}, {0, 1}}));  // over one that comes later
+    EXPECT_FALSE(isConnected(problem, {{0, 0}, {0, 2}}));
+    EXPECT_FALSE(isConnected(problem, {{0, 2}, {0, 4}}));  // share a cell without weight
+    EXPECT_TRUE(isConnected(problem, {{0, 3}, {0, 4}}));
+    EXPECT_FALSE(isConnected(problem, {{0, 3}, {0, 5}}));
+    problem.is_connected = true;
+    EXPECT_FALSE(isFeasible(problem, {{0, 0}, {0, 2}}));
+}
+
+TEST(Problem, ThoseThatStandAreOnePart) {
+    const CandidateSet candidates = candidatesOf(6, {{0, 1}, {4, 5}, {2}});
+    Problem problem;
+    problem.weights = {1, 1, 1, 0, 1, 1};
+    problem.kinds = {{&candidates, 3}};
+    problem.standing = CellSet(6);
+    problem.standing.set(3);
+    EXPECT_TRUE(isConnected(problem, {{0, 0}}));  // what stands sees nothing that counts
+    problem.standing.set(0);
+    problem.standing.set(4);
+    EXPECT_TRUE(isConnected(problem, {}));
+    EXPECT_TRUE(isConnected(problem, {{0, 0}, {0, 1}}));
+    EXPECT_FALSE(isConnected(problem, {{0, 2}}));
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ispace {
+namespace {
+
+constexpr std::size_t kMostWays = 20'000;
+
+/// No cell gets more than these shares from all sensors that may be placed.
+std::uint64_t mostSharesOf(const Problem& problem) {
+    std::uint64_t shares = 0;
+    for (const Kind& kind : problem.kinds) {
+        auto most =
+            std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
+        if (problem.budget) most = affordableCount(*problem.budget, 0, kind.cost, most);
+        shares += most * static_cast<std::uint64_t>(kind.share);
+    }
+    return shares;
+}
+
+}  // namespace
+
+RelaxedCells::RelaxedCells(const Problem& problem)
+    : weights(problem.cells()), needs(problem.cells(), 1) {
+    const std::uint64_t total = std::max<std::uint64_t>(problem.totalWeight(), 1);
+    scale = static_cast<std::uint32_t>(
+        std::max<std::uint64_t>(std::numeric_limits<std::uint32_t>::max() / total, 1));
+    int common = 0;
+    for (const Kind& kind : problem.kinds) common = std::gcd(common, kind.share);
+    common = std::max(common, 1);
+    shares.reserve(problem.kinds.size());
+    for (const Kind& kind : problem.kinds)
+        shares.push_back(static_cast<std::uint16_t>(kind.share / common));
+    const std::uint64_t most_shares = mostSharesOf(problem);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const int met = problem.met.empty() ? 0 : problem.met[i];
+        const std::uint32_t weight = problem.weights[i] * scale;
+        if (met >= problem.demand) {
+            settled += weight;
+            continue;
+        }
+        if (static_cast<std::uint64_t>(problem.demand - met) > most_shares) continue;
+        weights[i] = weight;
+        needs[i] = static_cast<std::uint16_t>((problem.demand - met + common - 1) / common);
+    }
+}
+
+CountChoice::CountChoice(const Problem& problem) {
+    if (problem.budget) budget_ = *problem.budget;
+    const std::size_t kinds = problem.kinds.size();
+    costs_.reserve(kinds);
+    most_.reserve(kinds);
+    for (std::size_t k = 0; k < kinds; ++k) {
+        costs_.push_back(problem.kinds[k].cost);
+        most_.push_back(std::min(static_cast<std::size_t>(std::max(problem.kinds[k].most, 0)),
+                                 problem.kinds[k].candidates->size()));
+        most_[k] = fitting(k, 0);
+    }
+    double cost = 0;
+    for (std::size_t k = 0; k < kinds; ++k) cost += costs_[k] * static_cast<double>(most_[k]);
+    if (!isCheaper(budget_, cost)) {
+        ways_ = {most_};
+        total_ = std::accumulate(most_.begin(), most_.end(), std::size_t{0});
+        return;
+    }
+    std::vector<std::size_t> counts(kinds, 0);
+    list(counts, 0, 0);
+    // The cheapest first gives the most sensors.
+    std::vector<std::size_t> order(kinds);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return costs_[a] < costs_[b]; });
+    double spent = 0;
+    for (const std::size_t kind : order) {
+        const std::size_t count = fitting(kind, spent);
+        spent += static_cast<double>(count) * costs_[kind];
+        total_ += count;
+    }
+    if (!is_listed_) ways_.clear();
+}
+
+std::size_t CountChoice::fitting(std::size_t kind, double spent) const {
+    return affordableCount(budget_, spent, costs_[kind], most_[kind]);
+}
+
+void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, double spent) {
+    if (!is_listed_) return;
+    // Sums kind by kind, as costOf has them: what is feasible is among the ways.
+    const std::size_t most = fitting(kind, spent);
+    if (kind + 1 == counts.size()) {
+        counts[kind] = most;
+        ways_.push_back(counts);
+        is_listed_ = ways_.size() <= kMostWays;
+        return;
+    }
+    for (std::size_t n = most + 1; n-- > 0;) {
+        counts[kind] = n;
+        list(counts, kind + 1, spent + static_cast<double>(n) * costs_[kind]);
+    }
+}
+
+CountChoice::Best CountChoice::best(std::span<const std::vector<std::uint64_t>> sums) const {
+    const std::size_t kinds = sums.size();
+    Best best;
+    best.with.assign(kinds, 0);
+    best.may.assign(kinds, 0);
+    const auto up_to = [&sums](std::size_t kind, std::size_t count) {
+        return sums[kind][std::min(count, sums[kind].size() - 1)];
+    };
+    if (!is_listed_) {
+        best.value = knapsack(sums, best.counts);
+        for (std::size_t k = 0; k < kinds; ++k) best.may[k] = most_[k] > 0 ? 1 : 0;
+        best.with.assign(kinds, best.value);
+        return best;
+    }
+    for (const auto& way : ways_) {
+        std::uint64_t value = 0;
+        for (std::size_t k = 0; k < kinds; ++k) value += up_to(k, way[k]);
+        if (best.counts.empty() || value > best.value) {
+            best.value = value;
+            best.counts = way;
+        }
+        for (std::size_t k = 0; k < kinds; ++k) {
+            if (way[k] == 0) continue;
+            best.may[k] = 1;
+            best.with[k] = std::max(best.with[k], value - up_to(k, way[k]) + up_to(k, way[k] - 1));
+        }
+    }
+    for (std::size_t k = 0; k < kinds; ++k)
+        best.counts[k] = std::min(best.counts[k], sums[k].size() - 1);
+    return best;
+}
+
+std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> sums,
+                                    std::vector<std::size_t>& counts) const {
+    struct Item {
+        double per_cost, price;
+        std::size_t kind;
+    };
+    std::vector<Item> items;
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        for (std::size_t n = 1; n < sums[k].size(); ++n) {
+            const auto price = static_cast<double>(sums[k][n] - sums[k][n - 1]);
+            items.push_back({price / costs_[k], price, k});
+        }
+    std::stable_sort(items.begin(), items.end(),
+                     [](const Item& a, const Item& b) { return a.per_cost > b.per_cost; });
+    counts.assign(sums.size(), 0);
+    double spent = 0, value = 0;
+    for (const Item& item : items) {
+        const double cost = costs_[item.kind];
+        if (isCheaper(budget_, spent + cost)) {
+            value += item.price * std::max(0.0, budget_ - spent) / cost;
+            break;
+        }
+        value += item.price;
+        spent += cost;
+        ++counts[item.kind];
+    }
+    // Rounding errors, of costs and of values, are far below 1e-9 of the sum.
+    return static_cast<std::uint64_t>(std::ceil(value * (1 + 1e-9))) + 1;
+}
+
+}  // namespace ispace

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "solve/exact.h"
+#include "solve/lagrange.h"
+#include "solve/search_notes.h"
+
+namespace ispace {
+namespace {
+
+// A bound that is to be quick, and one that is to be good.
+constexpr LagrangeLimits kQuick = {.gap = 0.01, .rounds = 8};
+constexpr double kSmallGap = 0.001;
+
+LagrangeLimits limitsOf(const SearchOptions& options) {
+    LagrangeLimits limits;
+    switch (options.optimizer) {
+        case Optimizer::Greedy:
+            limits = kQuick;
+            limits.gap = std::max(limits.gap, options.gap);
+            break;
+        case Optimizer::Swap:
+            limits.gap = std::max(kSmallGap, options.gap);
+            break;
+        case Optimizer::Exact:
+            limits.gap = options.gap;
+            break;
+    }
+    return limits;
+}
+
+/// What need not be made better.
+std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) {
+    // Swaps also look for what costs less and is worth the same.
+    if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
+    return bound -
+           static_cast<std::uint64_t>(std::clamp(gap, 0.0, 1.0) * static_cast<double>(bound));
+}
+
+}  // namespace
+
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
+    SearchResult result;
+    result.bound = problem.totalWeight();
+    result.best = placeGreedily(problem, progress);
+    if (!isFeasible(problem, result.best.chosen)) result.best = {{}, valueOf(problem, {})};
+    noteProgress(problem, result, progress);
+    if (options.optimizer != Optimizer::Greedy && !progress.stopped()) {
+        // Swaps may take long: if there is no time for more, this is the bound.
+        LagrangeLimits quick = kQuick;
+        quick.cut = result.best.value;
+        quick.gap = std::min(quick.gap, limitsOf(options).gap);
+        result.bound = boundWithin(problem, result.best.chosen, quick, progress).value;
+        noteProgress(problem, result, progress);
+        SwapOptions swap = options.swap;
+        swap.enough = std::min(swap.enough, enoughOf(problem, result.bound, options.gap));
+        result.best = improveBySwaps(problem, result.best, swap, progress);
+    }
+    if (!progress.stopped()) {
+        LagrangeLimits limits = limitsOf(options);
+        limits.cut = result.best.value;
+        const Bound bound = boundWithin(problem, result.best.chosen, limits, progress);
+        result.bound = std::min(result.bound, bound.value);
+        noteProgress(problem, result, progress);
+        if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
+            result.best.value < result.bound)
+            result = branchAndBound(problem, bound, std::move(result), options.gap, progress,
+                                    std::numeric_limits<std::uint64_t>::max(), options.most_bytes);
+    }
+    if (result.bound == problem.totalWeight() && progress.stopped()) {
+        SilentProgress silent;  // there shall be some bound
+        const LagrangeLimits soon = {.cut = result.best.value, .gap = kQuick.gap, .rounds = 2};
+        result.bound = boundWithin(problem, result.best.chosen, soon, silent).value;
+    }
+    if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
+    return result;
+}
+
+}  // namespace ispace
