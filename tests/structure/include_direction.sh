@@ -22,8 +22,9 @@ violations() {
     BEGIN {
         layer("base", ""); layer("solve", "base"); layer("geom", "base"); layer("draw", "geom")
         layer("raster", "geom"); layer("record", "geom"); layer("env", "draw raster record")
-        layer("sensor", "env"); layer("layout", "sensor"); layer("io", "layout")
-        layer("trace", "layout"); layer("sense", "trace"); layer("cover", "sense")
+        layer("sensor", "env"); layer("layout", "sensor"); layer("plan", "layout")
+        layer("io", "plan"); layer("trace", "layout"); layer("sense", "trace")
+        layer("cover", "sense plan")
         layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
         layer("cli", "place net io")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
@@ -85,6 +86,8 @@ expect() {
 expect lib/geom/a.h '#include "env/slice.h"' yes
 expect lib/io/a.cc '#include "trace/ray_world.h"' yes
 expect lib/cover/a.cc '#include "io/glb.h"' yes
+expect lib/cover/a.cc '#include "plan/plan.h"' no
+expect lib/sense/a.cc '#include "plan/plan.h"' yes
 expect lib/draw/a_test.cc '#include "record/value.h"' yes
 expect lib/base/a.cc '#include <geom/pose.h>' yes
 expect lib/place/a.cc '#include "net/server.h"' yes

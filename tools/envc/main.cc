@@ -17,7 +17,7 @@
 #include "io/glb.h"
 #include "io/mesh_file.h"
 #include "io/obj.h"
-#include "io/plan.h"
+#include "plan/plan.h"
 #include "io/ros_export.h"
 #include "io/stl.h"
 #include "layout/check_scene.h"

@@ -5,9 +5,9 @@
 #include <cstddef>
 
 #include "base/number.h"
-#include "io/display_color.h"
-#include "io/element_lines.h"
-#include "io/plan_drawing.h"
+#include "plan/display_color.h"
+#include "plan/element_lines.h"
+#include "plan/drawing.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/element_lines.h"
+#include "plan/element_lines.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/number.h"
-#include "io/plan_drawing.h"
+#include "plan/drawing.h"
 
 namespace ispace {
 

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "base/number.h"
-#include "io/element_lines.h"
-#include "io/plan_drawing.h"
-#include "io/slice_owners.h"
+#include "plan/element_lines.h"
+#include "plan/drawing.h"
+#include "plan/slice_owners.h"
 
 namespace ispace {
 

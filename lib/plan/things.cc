@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "base/number.h"
-#include "io/display_color.h"
-#include "io/footprint.h"
-#include "io/plan_drawing.h"
+#include "plan/display_color.h"
+#include "plan/footprint.h"
+#include "plan/drawing.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/footprint.h"
+#include "plan/footprint.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/slice_owners.h"
+#include "plan/slice_owners.h"
 
 #include <algorithm>
 #include <utility>

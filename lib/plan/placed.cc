@@ -8,8 +8,8 @@
 
 #include "base/number.h"
 #include "env/body.h"
-#include "io/display_color.h"
-#include "io/plan_drawing.h"
+#include "plan/display_color.h"
+#include "plan/drawing.h"
 #include "layout/schemas.h"
 
 namespace ispace {

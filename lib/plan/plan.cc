@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan.h"
+#include "plan/plan.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "io/plan_drawing.h"
+#include "plan/drawing.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan.h"
+#include "plan/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "draw/image.h"
-#include "io/display_color.h"
-#include "io/plan_drawing.h"
+#include "plan/display_color.h"
+#include "plan/drawing.h"
 #include "layout/test_layout.h"
 
 namespace ispace {

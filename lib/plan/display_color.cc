@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/display_color.h"
+#include "plan/display_color.h"
 
 #include <cmath>
 
