@@ -10,6 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <vector>
+
+#include "trace/triangle_set.h"
 
 namespace ispace {
 
@@ -101,5 +104,50 @@ inline void tracePacket(EmbreeQuery& query, RTCScene scene, std::size_t width, c
                 valid, packet, [&](const int*, RTCRayHit* ray) { query.trace(scene, ray); });
     }
 }
+
+/// The surfaces that stop no ray of an origin: those within `ray_epsilon` of it, those that
+/// continue the plane of one of these within it, and those seen exactly from their edge.
+class IgnoredSurfaces {
+  public:
+    /// A surface whose plane is this near to the origin is seen from its edge: what float32 moves a
+    /// corner by in a building, in metres.
+    static constexpr double kEdgeOn = 5e-6;
+
+    /// Of an origin that no surface is near to.
+    IgnoredSurfaces(const TriangleSet& set, double ray_epsilon)
+        : set_(set), ray_epsilon_(ray_epsilon) {}
+    IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double ray_epsilon, Point3 origin);
+
+    [[nodiscard]] bool touches() const { return !normals_.empty(); }
+    /// Surfaces whose planes are farther from the origin than this stop rays.
+    [[nodiscard]] double reach() const { return touches() ? ray_epsilon_ : kEdgeOn; }
+    [[nodiscard]] bool contains(std::size_t triangle, Point3 origin) const;
+    /// Where a ray meets a triangle that Embree has found on its way, if that stops it.
+    [[nodiscard]] RayHit meet(std::size_t triangle, const Ray& ray) const {
+        if (!set_.isRound(triangle) && contains(triangle, ray.origin)) return {};
+        return set_.meet(triangle, ray, ray_epsilon_);
+    }
+
+  private:
+    const TriangleSet& set_;
+    double ray_epsilon_;
+    std::vector<Vec3> normals_;  // of the surfaces within ray_epsilon_
+};
+
+/// A query for rays from one origin that passes the surfaces they ignore.
+struct PassingQuery : EmbreeQuery {
+    const IgnoredSurfaces& ignored;
+    Point3 origin;
+
+    PassingQuery(const IgnoredSurfaces& surfaces, Point3 from);
+};
+
+/// A query for one ray that passes all that does not stop it.
+struct SingleQuery : EmbreeQuery {
+    const IgnoredSurfaces& ignored;
+    const Ray& ray;
+
+    SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked);
+};
 
 }  // namespace ispace

@@ -15,7 +15,6 @@
 #include <string_view>
 #include <utility>
 
-#include "trace/careful_ray.h"
 #include "trace/embree_query.h"
 #include "trace/ray_limits.h"
 #include "trace/ray_packet.h"
@@ -90,38 +89,29 @@ void copyLanes(const Directions& directions, std::size_t first, std::size_t lane
     copy(directions.z, packet.z);
 }
 
-/// About places that come one after the other.
-Ball ballAbout(std::span<const Point3> places) {
-    Ball ball{places[places.size() / 2]};
-    for (const Point3& place : places)
-        ball.radius = std::max(ball.radius, length(place - ball.middle));
-    return ball;
-}
-
 }  // namespace
 
 /// Traces packet after packet of one thread.
 struct EmbreeScene::Caster {
     const EmbreeScene& scene;
-    const Passed& passed;
+    const IgnoredSurfaces& ignored;
     PassingQuery query;
     double tail;  ///< see roundRays()
     float most;
-    bool is_far;  ///< rays may begin outside the scene's ball
     alignas(64) RTCRayHit16 hits{};
     alignas(64) std::array<int, kLanes> valid{};
     RayPacket packet;
 
-    Caster(const EmbreeScene& traced, const Passed& surfaces, const Ball& origins, double farthest)
+    Caster(const EmbreeScene& traced, const IgnoredSurfaces& surfaces, Point3 origin,
+           double farthest)
         : scene(traced),
-          passed(surfaces),
-          query(traced.set_, surfaces, origins.middle),
-          tail(8 * traced.set_.slack()),
-          most(static_cast<float>(farthest)),
-          is_far(!traced.set_.ball().contains(origins)) {
+          ignored(surfaces),
+          query(surfaces, origin),
+          tail(8 * traced.set_.tolerance()),
+          most(static_cast<float>(farthest)) {
         // A limit that is no number, like a negative one, is never reached.
         packet.reach.fill(farthest >= 0 ? farthest * (1 + kFarSlack) : -1);
-        setOrigins({&origins.middle, 1});
+        setOrigins({&origin, 1});
         valid.fill(-1);
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             hits.ray.mask[lane] = ~0U;
@@ -137,7 +127,7 @@ struct EmbreeScene::Caster {
             packet.origin_y[lane] = origin.y;
             packet.origin_z[lane] = origin.z;
         }
-        if (!is_far) roundOrigins(packet, hits);
+        roundOrigins(packet, hits);
     }
 
     /// Only the first lanes count.
@@ -148,23 +138,42 @@ struct EmbreeScene::Caster {
     void trace() {
         const TriangleSet& set = scene.set_;
         roundRays(packet, tail, hits);
-        if (is_far) moveAhead(packet, set.ball(), tail, hits);
         tracePacket(query, scene.scene_.get(), scene.width_, valid.data(), hits);
-        const double clear = std::max(passed.clear(), set.slack());
+        const double clear = std::max(ignored.reach(), set.tolerance());
         std::uint32_t care =
             meetPlanes(hits, set.planes().data(), set.margins().data(), clear, most, packet);
-        if (passed.is_crowded) care = (1U << kLanes) - 1;
         for (; care != 0; care &= care - 1)
             lookCloser(static_cast<std::size_t>(std::countr_zero(care)));
     }
 
+    /// A hit near a triangle's rim, on a round body, or on what may be ignored.
     void lookCloser(std::size_t lane) {
         const Ray ray = packet.ray(lane);
-        const Meeting met = meetCarefully(scene.scene_.get(), scene.set_, passed, ray, hits, lane);
+        RayHit hit = ignored.meet(hits.hit.primID[lane], ray);
+        if (hit.isNone()) hit = traceAlone(lane, ray);
         packet.multiples[lane] = packet.slopes[lane] = kNoReturn;
-        if (met.multiple == std::numeric_limits<double>::infinity()) return;
-        packet.multiples[lane] = std::min(static_cast<float>(met.multiple), most);
-        packet.slopes[lane] = static_cast<float>(met.slope);
+        if (hit.isNone()) return;
+        packet.multiples[lane] = std::min(static_cast<float>(hit.multiple), most);
+        packet.slopes[lane] = static_cast<float>(hit.slope);
+    }
+
+    /// Traces a ray of the packet again, past all that does not stop it.
+    [[nodiscard]] RayHit traceAlone(std::size_t lane, const Ray& ray) const {
+        RTCRayHit one{};
+        one.ray.org_x = hits.ray.org_x[lane];
+        one.ray.org_y = hits.ray.org_y[lane];
+        one.ray.org_z = hits.ray.org_z[lane];
+        one.ray.dir_x = hits.ray.dir_x[lane];
+        one.ray.dir_y = hits.ray.dir_y[lane];
+        one.ray.dir_z = hits.ray.dir_z[lane];
+        const double reach = ray.reach * (1 + kFarSlack) + tail;
+        one.ray.tfar = static_cast<float>(std::min(reach, kFarthest));
+        one.ray.mask = ~0U;
+        one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        SingleQuery(ignored, ray).trace(scene.scene_.get(), &one);
+        if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+        return ignored.meet(one.hit.primID, ray);
     }
 
     void writeLanes(std::size_t first, std::size_t lanes, const Results& results) const {
@@ -199,8 +208,8 @@ struct EmbreeScene::Caster {
 void EmbreeScene::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
 void EmbreeScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 
-EmbreeScene::EmbreeScene(TriangleSoup soup, double contact, int packet_width)
-    : set_(std::move(soup)), contact_(contact) {
+EmbreeScene::EmbreeScene(const TriangleSoup& soup, double ray_epsilon, int packet_width)
+    : set_(soup), ray_epsilon_(ray_epsilon) {
     // Nothing but this line decides how Embree works: no file in the user's home does.
     device_.reset(rtcNewDevice("ignore_config_files=1"));
     const EmbreeErrors errors(device_.get());
@@ -231,11 +240,6 @@ EmbreeScene::EmbreeScene(TriangleSoup soup, double contact, int packet_width)
     width_ = packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidth(device_.get());
 }
 
-bool EmbreeScene::mayTouch(const Ball& origins) const {
-    const double near = std::max(2 * contact_, set_.slack());
-    return isNear(scene_.get(), set_, origins.middle, origins.radius + near);
-}
-
 void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
                        const Results& results) const {
     if (set_.size() == 0) {
@@ -243,8 +247,8 @@ void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
         std::fill(results.cosines.begin(), results.cosines.end(), 1.0F);
         return;
     }
-    const Passed passed = passedFrom(scene_.get(), set_, origin, contact_);
-    Caster caster(*this, passed, {origin}, most);
+    const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
+    Caster caster(*this, ignored, origin, most);
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
         if (lanes < kLanes) caster.keep(lanes);
@@ -257,16 +261,12 @@ void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,
 void EmbreeScene::cast(std::span<const Point3> origins, const Directions& directions, double most,
                        const Results& results) const {
     if (set_.size() == 0 || origins.empty()) return cast(Point3{}, directions, most, results);
-    const Passed nothing{contact_, {}};
-    const Ball swept = ballAbout(origins);
-    const bool may_touch = mayTouch(swept);
-    Caster caster(*this, nothing, swept, most);
+    const IgnoredSurfaces nothing(set_, ray_epsilon_);
+    const bool may_touch = mayTouch(origins);
+    Caster caster(*this, nothing, origins.front(), most);
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
-        caster.keep(lanes);
-        copyLanes(directions, first, lanes, caster.packet);
-        caster.setOrigins(origins.subspan(first, lanes));
-        if (may_touch && mayTouch(ballAbout(origins.subspan(first, lanes)))) {
+        if (may_touch && mayTouch(origins.subspan(first, lanes))) {
             // Each ray has its own surfaces in contact.
             for (std::size_t i = first; i < first + lanes; ++i) {
                 const Directions one{{directions.x[i]}, {directions.y[i]}, {directions.z[i]}};
@@ -275,16 +275,26 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
                       results.cosines.empty() ? results.cosines : results.cosines.subspan(i, 1)});
             }
         } else {
+            caster.keep(lanes);
+            copyLanes(directions, first, lanes, caster.packet);
+            caster.setOrigins(origins.subspan(first, lanes));
             caster.trace();
             caster.writeLanes(first, lanes, results);
         }
     }
 }
 
+bool EmbreeScene::mayTouch(std::span<const Point3> origins) const {
+    const Point3 middle = origins[origins.size() / 2];
+    double reach = 0;
+    for (const Point3& origin : origins) reach = std::max(reach, length(origin - middle));
+    return IgnoredSurfaces(scene_.get(), set_, reach + ray_epsilon_, middle).touches();
+}
+
 void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
                        const Results& results) const {
     if (set_.size() == 0) return cast(origin, Directions(), most, results);
-    const Passed passed = passedFrom(scene_.get(), set_, origin, contact_);
+    const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     const auto columns = static_cast<std::size_t>(grid.columns);
     const double shortest = shortestRay(grid);
     const auto cast_row = [&](Caster& caster, int row) {
@@ -303,7 +313,7 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
     const int tile_rows = (grid.rows + kTile - 1) / kTile;
     tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 8),
                       [&](const tbb::blocked_range<int>& rows) {
-                          Caster caster(*this, passed, {origin}, most);
+                          Caster caster(*this, ignored, origin, most);
                           caster.tail = shortest > 0 ? caster.tail / shortest : 1e30;
                           for (int i = rows.begin(); i != rows.end(); ++i)
                               cast_row(caster, i * kTile);
@@ -313,8 +323,8 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
 void EmbreeScene::look(Point3 origin, const Directions& directions, std::span<const double> reach,
                        std::span<std::uint8_t> seen) const {
     if (set_.size() == 0) return std::fill(seen.begin(), seen.end(), std::uint8_t{1});
-    const Passed passed = passedFrom(scene_.get(), set_, origin, contact_);
-    Caster caster(*this, passed, {origin}, 0);
+    const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
+    Caster caster(*this, ignored, origin, 0);
     caster.most = kNoReturn;
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);

@@ -15,25 +15,25 @@ struct RTCSceneTy;
 
 namespace ispace {
 
-/// A built Embree scene: ROBUST, so that no ray slips between triangles with a common edge (corners
-/// in the same places, whether or not they are the same vertices); high quality.
+/// A built Embree scene: ROBUST and of high quality.
 ///
-/// Embree finds the triangle that a ray meets, in float32. Near an edge, where rounding may choose
-/// another, the choice is made again in doubles, and the range is computed in doubles from the
-/// triangle's plane: results do not depend on which rays are traced together. (Where surfaces
-/// without a common edge cross or touch, float32 alone decides which of them is met by a ray that
-/// passes that line within the rounding of the scene, one in some ten millions. Other packets, or
-/// another processor, then may give the cosine of the other surface, and a range that differs by
-/// some millionths of the scene's extent: 10 micrometres in a room.)
+/// What a range is good to: Embree decides in float32 which triangle a ray meets; how far that is,
+/// is computed in doubles. So the answer is that of some ray within a few TriangleSet::tolerance()s
+/// of the one asked for, each 2^-21 of the scene's diagonal: 5 micrometres in a room of 10 m, 50 in
+/// a building of 100 m. From an origin outside the scene it is the same share of its distance.
+/// Well inside a surface the range is exact to the last bit of float32. A ray that touches a rim
+/// meets it, and none slips between surfaces that touch; one that passes an edge within the
+/// tolerance may get the range and cosine of either side, and another packet width or company may
+/// choose otherwise. Surfaces narrower than some tolerances may be missed.
 ///
-/// Surfaces within `contact` of a ray's origin do not stop it, nor do those that continue them, nor
-/// those seen exactly from their edge. Each scene has a device of its own: one costs some 50
-/// microseconds, and scenes share nothing.
+/// Surfaces within `ray_epsilon` of a ray's origin do not stop it, nor do those that continue their
+/// plane, nor those seen exactly from their edge. Each scene has a device of its own: one costs
+/// some 50 microseconds, and scenes share nothing.
 class EmbreeScene {
   public:
     /// `packet_width`: 1, 4, 8 or 16 rays together, 0 for what the processor traces natively.
     /// \throws std::runtime_error if Embree fails, std::bad_alloc if it has no memory
-    EmbreeScene(TriangleSoup soup, double contact, int packet_width);
+    EmbreeScene(const TriangleSoup& soup, double ray_epsilon, int packet_width);
 
     /// Where results go: ranges, +infinity without return, and |cosines| of ray and normal if they
     /// are wanted, 1 without return.
@@ -59,12 +59,11 @@ class EmbreeScene {
         void operator()(RTCDeviceTy* device) const;
         void operator()(RTCSceneTy* scene) const;
     };
-    /// If not, no ray from the ball starts in contact with a surface, or so near to one that it
-    /// crowds the origin; otherwise one may.
-    [[nodiscard]] bool mayTouch(const Ball& origins) const;
+    /// True if a ray from one of these may start in contact with a surface.
+    [[nodiscard]] bool mayTouch(std::span<const Point3> origins) const;
 
     TriangleSet set_;
-    double contact_;
+    double ray_epsilon_;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> scene_;
     std::size_t width_ = 4;

@@ -99,20 +99,6 @@ ISPACE_SIMD_CLONES void roundRays(const RayPacket& packet, double tail, RTCRayHi
         rays.ray.tfar[lane] = static_cast<float>(far[lane]);
 }
 
-ISPACE_SIMD_CLONES void moveAhead(const RayPacket& packet, const Ball& ball, double tail,
-                                  RTCRayHit16& rays) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const Ray ray = packet.ray(lane);
-        const double ahead = ball.ahead(ray.origin, ray.direction);
-        const Point3 begin = ray.origin + ahead * ray.direction;
-        rays.ray.org_x[lane] = static_cast<float>(begin.x);
-        rays.ray.org_y[lane] = static_cast<float>(begin.y);
-        rays.ray.org_z[lane] = static_cast<float>(begin.z);
-        const double reach = (ray.reach - ahead) * kFar + tail;
-        rays.ray.tfar[lane] = static_cast<float>(reach < kFarthest ? reach : kFarthest);
-    }
-}
-
 ISPACE_SIMD_CLONES std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes,
                                             const double* margins, double clear, float most,
                                             RayPacket& packet) {

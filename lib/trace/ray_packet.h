@@ -36,8 +36,6 @@ void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet);
 void roundOrigins(const RayPacket& packet, RTCRayHit16& rays);
 /// The rest of the rays. `tail` is added to the reach, which decides once the hits are known.
 void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays);
-/// Has rounded rays that come from outside the ball begin by it.
-void moveAhead(const RayPacket& packet, const Ball& ball, double tail, RTCRayHit16& rays);
 
 /// Where the rays meet the planes of the triangles hit; multiples are at most `most`.
 /// Planes nearer than `clear` to the origin need a closer look, as do hits near an edge.

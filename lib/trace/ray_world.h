@@ -48,9 +48,8 @@ class RayWorld {
     /// Distance to the first surface along each direction, up to max_range inclusive; +infinity if
     /// there is none. Fastest for neighbouring directions (coherent packets), and in a slice for
     /// directions with an arc. The same for any packet width and however rays are put together, but
-    /// for rays of the mesh that pass the line where surfaces without a common edge meet within the
-    /// rounding of float32 (1e-7 m in a room, more in a larger scene): either surface may decide
-    /// the cosine, and the range, which differs by some millionths of the scene's extent.
+    /// for rays of the mesh that pass an edge within what float32 tells: see EmbreeScene, which
+    /// says what a range is good to. In a slice it is exact to rounding of doubles.
     /// `cosines`, if not empty: |cosine| of the angle between ray and surface normal, 1 without
     /// return. \pre ranges.size() == directions.size(), cosines.size() as well or 0
     void cast(Point3 origin, const Directions& directions, double max_range,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -65,11 +66,54 @@ struct Beams {
     }
 };
 
+/// Where the ray meets the closed triangle, within a nanometre aside, all in doubles; +infinity if
+/// it does not within its reach.
+inline double exactMeet(const TriangleSet& set, std::size_t triangle, const Ray& ray) {
+    constexpr double kTouch = 1e-9;
+    const double size = length(ray.direction);
+    bool left = true, right = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 a = set.corners(triangle)[i] - ray.origin;
+        const Vec3 b = set.corners(triangle)[(i + 1) % 3] - ray.origin;
+        const double aside = dot(ray.direction, cross(a, b));
+        const double touch = kTouch * size * length(Vec3{b.x - a.x, b.y - a.y, b.z - a.z});
+        if (aside < -touch) left = false;
+        if (aside > touch) right = false;
+    }
+    return left || right ? set.meet(triangle, ray, kTouching).multiple : kInfinity;
+}
+
 /// Over all triangles, in doubles.
 inline double bruteForce(const TriangleSet& set, const Ray& ray) {
     double nearest = kInfinity;
-    for (std::size_t i = 0; i < set.size(); ++i) nearest = std::min(nearest, set.meet(i, ray));
+    for (std::size_t i = 0; i < set.size(); ++i)
+        nearest = std::min(nearest, exactMeet(set, i, ray));
     return nearest;
+}
+
+/// True if the range lies between those of rays within some tolerances of this one, aside in any
+/// direction.
+inline bool isWithinTolerance(const TriangleSet& set, const Ray& ray, double range,
+                              double tolerance) {
+    // Small rings for surfaces that the ray grazes.
+    constexpr double kRings[] = {1.0 / 256, 1.0 / 16, 1, 4};
+    constexpr int kTurns = 16;
+    const Vec3 d = (1 / length(ray.direction)) * ray.direction;
+    const Vec3 aside = std::fabs(d.z) < 0.9 ? cross(d, {0, 0, 1}) : cross(d, {1, 0, 0});
+    const Vec3 right = (1 / length(aside)) * aside, up = cross(right, d);
+    const double slack = 4 * tolerance / length(ray.direction) + 2e-7 * range;
+    double least = bruteForce(set, ray), most = least;
+    for (const double ring : kRings) {
+        for (int i = 0; i < kTurns; ++i) {
+            const double turn = 2 * std::numbers::pi * i / kTurns, size = ring * tolerance;
+            const Point3 origin =
+                (ray.origin + size * std::cos(turn) * right) + size * std::sin(turn) * up;
+            const double exact = bruteForce(set, {origin, ray.direction, ray.reach});
+            least = std::min(least, exact);
+            most = std::max(most, exact);
+        }
+    }
+    return range >= least - slack && range <= most + slack;
 }
 
 }  // namespace ispace::testing
