@@ -12,7 +12,7 @@
 #include "place/refine.h"
 #include "place/scene_value.h"
 #include "sense/ultrasound.h"
-#include "solve/whole_units.h"
+#include "solve/problem.h"
 
 namespace ispace {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "solve/connection.h"
+#include "solve/problem.h"
 #include "solve/test_problems.h"
 
 namespace ispace {

@@ -5,7 +5,7 @@
 
 #include "solve/exact.h"
 #include "solve/lagrange.h"
-#include "solve/test_variety.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "base/number.h"
 #include "solve/search.h"
+#include "solve/test_problems.h"
 #include "solve/test_progress.h"
-#include "solve/test_variety.h"
 
 namespace ispace {
 namespace {

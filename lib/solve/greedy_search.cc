@@ -7,8 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "solve/best_place.h"
-#include "solve/connection.h"
+#include "solve/problem.h"
 #include "solve/search.h"
 #include "solve/search_basis.h"
 

@@ -1,13 +1,201 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/lagrange.h"
 
-#include <algorithm>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
-#include "solve/multiplier_search.h"
-#include "solve/root_relaxation.h"
-#include "solve/search_notes.h"
+#include <algorithm>
+#include <numeric>
+
+#include "solve/relaxation.h"
+#include "solve/search.h"
 
 namespace ispace {
+
+RootRelaxation::RootRelaxation(const Problem& problem)
+    : problem_(problem), cells_(problem), counts_(problem) {
+    const std::size_t kinds = problem.kinds.size();
+    kinds_.resize(kinds);
+    sums_.resize(kinds);
+    for (std::size_t k = 0; k < kinds; ++k) {
+        kinds_[k].candidates = problem.kinds[k].candidates;
+        kinds_[k].prices.assign(kinds_[k].candidates->size(), 0);
+        kinds_[k].is_working.assign(kinds_[k].candidates->sites(), 0);
+        kinds_[k].is_out.assign(kinds_[k].candidates->size(), 0);
+        kinds_[k].sites.resize(kinds_[k].candidates->sites());
+        std::iota(kinds_[k].sites.begin(), kinds_[k].sites.end(), 0U);
+        const auto same = std::find(cells_.shares.begin(), cells_.shares.end(), cells_.shares[k]);
+        const auto first = static_cast<std::size_t>(same - cells_.shares.begin());
+        prices_of_.push_back(first == k ? prices_.size() : prices_of_[first]);
+        if (first == k) prices_.emplace_back();
+    }
+    cover_.resize(problem.cells());
+}
+
+void RootRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& kept) {
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        OfKind& own = kinds_[k];
+        own.is_out.assign(own.candidates->size(), 1);
+        own.sites.clear();
+        for (const std::uint32_t i : kept[k]) {
+            own.is_out[i] = 0;
+            const auto site = static_cast<std::uint32_t>(own.candidates->siteOf(i));
+            if (own.sites.empty() || own.sites.back() != site) own.sites.push_back(site);
+        }
+    }
+}
+
+std::vector<std::uint32_t> RootRelaxation::startFrom(const std::vector<Choice>& chosen) const {
+    std::vector<std::uint16_t> shares(problem_.cells(), 0);
+    for (const Choice& choice : chosen) {
+        const std::uint16_t share = cells_.shares[choice.kind];
+        kinds_[choice.kind].candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
+            for (std::uint32_t i = run.first; i < run.end; ++i)
+                shares[i] = static_cast<std::uint16_t>(shares[i] + share);
+        });
+    }
+    std::vector<std::uint32_t> multipliers = cells_.weights;
+    for (std::size_t i = 0; i < multipliers.size(); ++i)
+        if (shares[i] > cells_.needs[i]) multipliers[i] = 0;
+    return multipliers;
+}
+
+std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipliers, bool is_all) {
+    setPrices(multipliers);
+    free_ = cells_.settled;
+    for (std::size_t i = 0; i < multipliers.size(); ++i)
+        free_ += cells_.weights[i] - multipliers[i];
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        const auto& sites = is_all ? kinds_[k].sites : kinds_[k].working;
+        priceSites(k, sites);
+        findTop(k, sites, counts_.most(k));
+        sums_[k].assign(1, 0);
+        for (const std::uint32_t i : kinds_[k].top)
+            sums_[k].push_back(sums_[k].back() + kinds_[k].prices[i]);
+    }
+    best_ = counts_.best(sums_);
+    chosen_.clear();
+    for (std::size_t k = 0; k < kinds_.size(); ++k)
+        for (std::size_t n = 0; n < best_.counts[k]; ++n) chosen_.push_back({k, kinds_[k].top[n]});
+    setCover();
+    return free_ + best_.value;
+}
+
+void RootRelaxation::setPrices(const std::vector<std::uint32_t>& multipliers) {
+    for (std::size_t k = 0, next = 0; k < kinds_.size(); ++k) {
+        if (prices_of_[k] != next) continue;
+        const std::uint16_t share = cells_.shares[k];
+        shared_.resize(multipliers.size());
+        for (std::size_t i = 0; i < multipliers.size(); ++i)
+            shared_[i] = priceOf(multipliers[i], share, cells_.needs[i]);
+        prices_[next++].assign(shared_);
+    }
+}
+
+void RootRelaxation::priceSites(std::size_t kind, const std::vector<std::uint32_t>& sites) {
+    OfKind& own = kinds_[kind];
+    const CellPrices& prices = prices_[prices_of_[kind]];
+    constexpr std::size_t kGrain = 32;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites.size(), kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& some) {
+                          for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                              const std::size_t first = own.candidates->firstOf(sites[i]);
+                              const std::size_t end = own.candidates->firstOf(sites[i] + 1);
+                              own.candidates->priceSite(
+                                  sites[i], prices,
+                                  std::span(own.prices).subspan(first, end - first));
+                          }
+                      });
+}
+
+void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>& sites,
+                             std::size_t count) {
+    OfKind& own = kinds_[kind];
+    const auto is_better = [&own](std::uint32_t a, std::uint32_t b) {
+        return own.prices[a] != own.prices[b] ? own.prices[a] > own.prices[b] : a < b;
+    };
+    // The best are gathered in a list that is cut when it is twice as long as wanted.
+    std::vector<std::uint32_t>& top = own.top;
+    top.clear();
+    if (count == 0) return;
+    const std::size_t room = 2 * count + 64;
+    std::uint32_t least = 0;
+    const auto cut = [&] {
+        if (top.size() <= count) return;
+        std::nth_element(top.begin(), top.begin() + static_cast<std::ptrdiff_t>(count - 1),
+                         top.end(), is_better);
+        top.resize(count);
+        least = own.prices[top[count - 1]];
+    };
+    for (const std::uint32_t site : sites)
+        for (std::size_t i = own.candidates->firstOf(site), end = own.candidates->firstOf(site + 1);
+             i < end; ++i) {
+            if (own.prices[i] < least || own.is_out[i] != 0) continue;
+            top.push_back(static_cast<std::uint32_t>(i));
+            if (top.size() >= room) cut();
+        }
+    cut();
+    std::sort(top.begin(), top.end(), is_better);
+}
+
+void RootRelaxation::setCover() {
+    std::fill(cover_.begin(), cover_.end(), 0.0F);
+    for (const Choice& choice : chosen_) {
+        const std::uint16_t share = cells_.shares[choice.kind];
+        kinds_[choice.kind].candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
+            for (std::uint32_t i = run.first; i < run.end; ++i)
+                cover_[i] += partOf(share, cells_.needs[i]);
+        });
+    }
+}
+
+std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
+    std::uint64_t ruled_out = 0;
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        OfKind& own = kinds_[k];
+        // With a price of at most this it is in nothing that is worth more.
+        const std::uint64_t with = free_ + best_.with[k];
+        const std::uint64_t most = cut >= with ? cut - with : 0;
+        const bool is_any = best_.may[k] == 0 || cut >= with;
+        if (!is_any) continue;
+        std::erase_if(own.sites, [&](std::uint32_t site) {
+            bool is_empty = true;
+            for (std::size_t i = own.candidates->firstOf(site),
+                             end = own.candidates->firstOf(site + 1);
+                 i < end; ++i) {
+                if (own.is_out[i] == 0 && (best_.may[k] == 0 || own.prices[i] <= most)) {
+                    own.is_out[i] = 1;
+                    if (best_.may[k] != 0) ruled_out = std::max(ruled_out, with + own.prices[i]);
+                }
+                is_empty = is_empty && own.is_out[i] != 0;
+            }
+            return is_empty;
+        });
+    }
+    return ruled_out;
+}
+
+void RootRelaxation::widen(std::size_t count) {
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        OfKind& own = kinds_[k];
+        const std::vector<std::uint32_t> best = own.top;
+        findTop(k, own.sites, count);
+        for (const std::uint32_t i : own.top) own.is_working[own.candidates->siteOf(i)] = 1;
+        own.top = best;
+        own.working.clear();
+        for (const std::uint32_t site : own.sites)
+            if (own.is_working[site] != 0) own.working.push_back(site);
+    }
+}
+
+std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
+    std::vector<std::vector<std::uint32_t>> left(kinds_.size());
+    for (std::size_t k = 0; k < kinds_.size(); ++k)
+        for (std::size_t i = 0; i < kinds_[k].is_out.size(); ++i)
+            if (kinds_[k].is_out[i] == 0) left[k].push_back(static_cast<std::uint32_t>(i));
+    return left;
+}
+
 namespace {
 
 constexpr int kTrials = 20;        // between two looks at all candidates

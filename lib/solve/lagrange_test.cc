@@ -7,9 +7,10 @@
 #include <algorithm>
 
 #include "solve/exact.h"
-#include "solve/test_variety.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
+
 namespace {
 
 TEST(Lagrange, IsTheSumWhereNothingOverlaps) {
@@ -134,4 +135,5 @@ TEST(Lagrange, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
+
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/random.h"
-#include "solve/connection.h"
+#include "solve/problem.h"
 
 namespace ispace {
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "solve/best_place.h"
 #include "solve/search_basis.h"
 
 namespace ispace {

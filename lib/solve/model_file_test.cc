@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "solve/test_variety.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <numeric>
-
-#include "solve/connection.h"
+#include <utility>
 
 namespace ispace {
 
@@ -101,6 +101,119 @@ double tidyCost(double cost) {
 
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen) {
     return Connection(problem, chosen).parts() <= 1;
+}
+
+namespace {
+
+/// Joins sets; the root of a set is its least member.
+class UnionFind {
+  public:
+    explicit UnionFind(std::size_t count) : parents_(count) {
+        std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    }
+    std::size_t rootOf(std::size_t i) {
+        while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+        return i;
+    }
+    void join(std::size_t a, std::size_t b) {
+        const auto [low, high] = std::minmax({rootOf(a), rootOf(b)});
+        parents_[high] = low;
+    }
+
+  private:
+    std::vector<std::size_t> parents_;
+};
+
+constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+}  // namespace
+
+Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen)
+    : problem_(&problem), part_of_cell_(problem.cells(), kNobody) {
+    // Member 0 are those that stand, member 1 + i is choice i; at first a cell's is who sees it.
+    UnionFind members(chosen.size() + 1);
+    bool has_standing = false;
+    problem.standing.forEach([&](std::size_t cell) {
+        if (problem.weights[cell] == 0) return;
+        part_of_cell_[cell] = 0;
+        has_standing = true;
+    });
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const auto see = [&](const CellRun& run) {
+            for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
+                if (problem.weights[cell] == 0) continue;
+                if (part_of_cell_[cell] == kNobody)
+                    part_of_cell_[cell] = i + 1;
+                else
+                    members.join(part_of_cell_[cell], i + 1);
+            }
+        };
+        problem.kinds[chosen[i].kind].candidates->forEachRun(chosen[i].candidate, see);
+    }
+    std::vector<std::size_t> part_of_member(chosen.size() + 1, kNobody);
+    for (std::size_t i = has_standing ? 0 : 1; i <= chosen.size(); ++i) {
+        std::size_t& part = part_of_member[members.rootOf(i)];
+        if (part == kNobody) part = parts_++;
+    }
+    for (std::size_t& member : part_of_cell_)
+        if (member != kNobody) member = part_of_member[members.rootOf(member)];
+}
+
+bool Connection::isJoinedBy(const Choice& choice) const {
+    if (parts_ > 0 && cells_of_part_.empty()) {
+        std::vector<std::uint32_t> is_of(part_of_cell_.size());
+        cells_of_part_.reserve(parts_);
+        for (std::size_t part = 0; part < parts_; ++part) {
+            for (std::size_t i = 0; i < is_of.size(); ++i) is_of[i] = part_of_cell_[i] == part;
+            cells_of_part_.emplace_back(is_of);
+        }
+    }
+    const CandidateSet& candidates = *problem_->kinds[choice.kind].candidates;
+    for (const CellPrices& cells : cells_of_part_)
+        if (candidates.price(choice.candidate, cells) == 0) return false;
+    return true;
+}
+
+namespace {
+
+constexpr double kMostUnits = 4e9;
+
+/// Each is a whole number of units, and more than none if it is more than 0.
+bool areWhole(const std::vector<double>& worth, double scale, double slack) {
+    return std::all_of(worth.begin(), worth.end(), [scale, slack](double w) {
+        const double units = std::round(w * scale);
+        return std::abs(w * scale - units) < slack * scale && (units > 0 || w == 0);
+    });
+}
+
+double scaleOf(const std::vector<double>& worth) {
+    constexpr double kDecimals = 1e6, kDigits = 1e5;
+    constexpr double kMostScale = 1e300;  // of weights that are hardly numbers
+    double sum = 0, largest = 0;
+    for (const double w : worth) {
+        sum += w;
+        largest = std::max(largest, w);
+    }
+    if (largest == 0) return 1;
+    if (sum > kMostUnits) return kMostUnits / sum;
+    const double slack = 1e-9 * std::min(1.0, largest);
+    double scale = 1;
+    while ((scale < kDecimals || largest * scale < kDigits) && scale < kMostScale &&
+           sum * scale * 10 < kMostUnits && !areWhole(worth, scale, slack))
+        scale *= 10;
+    return scale;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> wholeUnits(const std::vector<double>& worth) {
+    const double scale = scaleOf(worth);
+    std::vector<std::uint32_t> units;
+    units.reserve(worth.size());
+    for (const double w : worth)
+        units.push_back(
+            w == 0 ? 0U : static_cast<std::uint32_t>(std::max(1LL, std::llround(w * scale))));
+    return units;
 }
 
 }  // namespace ispace

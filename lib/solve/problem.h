@@ -85,4 +85,31 @@ bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
 /// True if the views hang together, see Problem::is_connected.
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen);
 
+/// How the views of sensors hang together, see Problem::is_connected.
+class Connection {
+  public:
+    /// O(cells + cells that the chosen see)
+    Connection(const Problem& problem, const std::vector<Choice>& chosen);
+
+    /// Sets of views that see no common cell of weight above 0.
+    [[nodiscard]] std::size_t parts() const { return parts_; }
+    /// True if with this one all hangs together. O(parts * runs); the first call: O(parts * cells)
+    [[nodiscard]] bool isJoinedBy(const Choice& choice) const;
+
+  private:
+    const Problem* problem_;
+    std::size_t parts_ = 0;
+    std::vector<std::size_t> part_of_cell_;          // kNobody: of none
+    mutable std::vector<CellPrices> cells_of_part_;  // 1 for its cells; made when first asked for
+};
+
+/// Weights in whole units, as a Problem has them, with a sum below 2^32: times the least power of
+/// ten that makes all of them whole, to within a billionth of the largest weight (or of 1, if that
+/// is larger: decimals are as written, not as stored). Where none does, times as large a power as
+/// the sum allows, up to six decimals and six digits of the largest weight; where the sum is too
+/// large as it is, all are made smaller in proportion. Rounded then, but what is above 0 is at
+/// least one unit. O(n) for each power tried
+/// \pre none is below 0, all are finite, and there are at most 2^28
+std::vector<std::uint32_t> wholeUnits(const std::vector<double>& worth);
+
 }  // namespace ispace

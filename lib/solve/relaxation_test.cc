@@ -8,6 +8,7 @@
 #include <vector>
 
 namespace ispace {
+
 namespace {
 
 using Counts = std::vector<std::size_t>;
@@ -76,4 +77,5 @@ TEST(CountChoice, WaysAreFeasibleAndHoldAllThatIs) {
 }
 
 }  // namespace
+
 }  // namespace ispace

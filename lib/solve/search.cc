@@ -2,13 +2,14 @@
 #include "solve/search.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "solve/exact.h"
 #include "solve/lagrange.h"
-#include "solve/search_notes.h"
 
 namespace ispace {
+
 namespace {
 
 // A bound that is to be quick, and one that is to be good.
@@ -77,6 +78,16 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
     }
     if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
     return result;
+}
+
+void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
+                  Progress& progress) {
+    const double total = static_cast<double>(std::max<std::uint64_t>(problem.totalWeight(), 1));
+    char text[80];
+    const int length = std::snprintf(text, sizeof text, "best %.1f %%, at most %.1f %%",
+                                     100 * static_cast<double>(value) / total,
+                                     100 * static_cast<double>(bound) / total);
+    progress.note({text, static_cast<std::size_t>(length)});
 }
 
 }  // namespace ispace

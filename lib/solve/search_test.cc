@@ -7,9 +7,10 @@
 #include <atomic>
 #include <string>
 
-#include "solve/test_variety.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
+
 namespace {
 
 /// Ends after so many steps, and keeps what was said.
@@ -140,4 +141,5 @@ TEST(Search, NothingToPlace) {
 }
 
 }  // namespace
+
 }  // namespace ispace

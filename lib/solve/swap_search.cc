@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "base/random.h"
-#include "solve/connection.h"
 #include "solve/local_search.h"
+#include "solve/problem.h"
 #include "solve/search.h"
 
 namespace ispace {

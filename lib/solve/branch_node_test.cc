@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/branch_split.h"
+#include "solve/branch_node.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,12 @@
 
 #include "solve/exact.h"
 #include "solve/lagrange.h"
-#include "solve/multiplier_search.h"
+#include "solve/node_relaxation.h"
+#include "solve/relaxation.h"
 #include "solve/test_problems.h"
 
 namespace ispace {
+
 namespace {
 
 /// A node with all candidates of a problem of one kind.
@@ -103,4 +105,5 @@ TEST(SplitNode, ChildrenShareOutTheGroup) {
 }
 
 }  // namespace
+
 }  // namespace ispace
