@@ -1,264 +1,200 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/arrangement.h"
 
-#include <CGAL/Arr_consolidated_curve_data_traits_2.h>
-#include <CGAL/Arr_extended_dcel.h>
-#include <CGAL/Arr_segment_traits_2.h>
-#include <CGAL/Arrangement_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-
 #include <algorithm>
-#include <cstdint>
+#include <numeric>
 #include <utility>
 
-#include "geom/noding.h"
+#include "geom/plane_graph.h"
+#include "geom/predicates.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr int kDropped = -1;
+using plane::Index;
+using plane::kNone;
+using plane::twin;
 
-struct HalfedgeMark {
-    bool walked = false;
+/// Lines that meet at common ends only, and the faces into which they divide the plane.
+class Arrangement {
+  public:
+    explicit Arrangement(const std::vector<LinePiece>& pieces)
+        : points_(distinctEnds(pieces)), lines_(linesOf(pieces)), faces_(points_, lines_) {
+        parent_.resize(faces_.count());
+        std::iota(parent_.begin(), parent_.end(), Index{0});
+    }
+
+    [[nodiscard]] Index faces() const { return faces_.count(); }
+
+    /// Makes one of the faces on both sides of each line of which this is true, where both are kept
+    /// and bounded. \param kept for each face
+    template <typename Open>
+    void join(const std::vector<bool>& kept, Open is_open) {
+        for (Index i = 0; i < lines_.size(); ++i) {
+            const Index left = faces_.of(2 * i), right = faces_.of(2 * i + 1);
+            if (left == kNone || right == kNone || !kept[left] || !kept[right] || !is_open(i))
+                continue;
+            const Index a = root(left), b = root(right);
+            parent_[std::max(a, b)] = std::min(a, b);
+        }
+        for (Index& parent : parent_) parent = root(parent);
+    }
+
+    /// For each face what the pieces' winding numbers add up to on the way from the outside.
+    [[nodiscard]] std::vector<std::pair<int, int>> windings(
+        const std::vector<LinePiece>& pieces) const {
+        const Index outside = faces_.count();
+        const auto face = [&](Index half) { return std::min(faces_.of(half), outside); };
+        std::vector<std::size_t> first(outside + 2, 0);
+        const auto halves = static_cast<Index>(2 * lines_.size());
+        for (Index half = 0; half < halves; ++half) ++first[face(half) + 1];
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        std::vector<Index> around(halves);
+        std::vector<std::size_t> next(first.begin(), first.end() - 1);
+        for (Index half = 0; half < halves; ++half) around[next[face(half)]++] = half;
+
+        std::vector<std::pair<int, int>> winding(outside + 1);
+        std::vector<bool> reached(outside + 1);
+        std::vector<Index> open{outside};
+        reached[outside] = true;
+        while (!open.empty()) {
+            const Index from = open.back();
+            open.pop_back();
+            for (std::size_t i = first[from]; i < first[from + 1]; ++i) {
+                const Index half = around[i], to = face(twin(half));
+                if (reached[to]) continue;
+                // From the left of a line to its right, as its piece runs.
+                const LinePiece& piece = pieces[half / 2];
+                const bool is_forward = !lexLess(piece.segment.b, piece.segment.a);
+                const int step = (half % 2 == 0) == is_forward ? -1 : 1;
+                winding[to] = {winding[from].first + step * piece.added,
+                               winding[from].second + step * piece.removed};
+                reached[to] = true;
+                open.push_back(to);
+            }
+        }
+        return winding;
+    }
+
+    /// The pieces that kept faces make up.
+    [[nodiscard]] std::vector<Region> regions(const std::vector<bool>& kept) const {
+        const auto piece_of = [&](Index half) {
+            const Index face = faces_.of(half);
+            return face == kNone || !kept[face] ? kNone : parent_[face];
+        };
+        std::vector<Index> boundaries(points_.size(), 0);  // at each point
+        for (Index i = 0; i < lines_.size(); ++i) {
+            if (piece_of(2 * i) == piece_of(2 * i + 1)) continue;
+            ++boundaries[lines_[i].from];
+            ++boundaries[lines_[i].to];
+        }
+        std::vector<Region> regions(faces_.count());
+        faces_.forEachBoundary(piece_of,
+                               [&](Index piece, const plane::Loop& loop, bool is_outline) {
+                                   Polygon curve = curveOf(loop, boundaries);
+                                   // What doubles cannot tell from a line has no area either.
+                                   if (is_outline && signedArea(curve) > 0)
+                                       regions[piece].outline = std::move(curve);
+                                   else if (!is_outline && signedArea(curve) < 0)
+                                       regions[piece].holes.push_back(std::move(curve));
+                               });
+        putInOrder(regions);
+        return regions;
+    }
+
+  private:
+    static std::vector<Point2> distinctEnds(const std::vector<LinePiece>& pieces) {
+        std::vector<Point2> points;
+        points.reserve(2 * pieces.size());
+        for (const LinePiece& piece : pieces)
+            points.insert(points.end(), {piece.segment.a, piece.segment.b});
+        std::sort(points.begin(), points.end(), [](Point2 p, Point2 q) { return lexLess(p, q); });
+        points.erase(std::unique(points.begin(), points.end()), points.end());
+        return points;
+    }
+
+    [[nodiscard]] std::vector<plane::Line> linesOf(const std::vector<LinePiece>& pieces) const {
+        const auto index_of = [&](Point2 p) {
+            const auto it = std::lower_bound(points_.begin(), points_.end(), p,
+                                             [](Point2 q, Point2 r) { return lexLess(q, r); });
+            return static_cast<Index>(it - points_.begin());
+        };
+        std::vector<plane::Line> lines;
+        lines.reserve(pieces.size());
+        for (const LinePiece& piece : pieces) {
+            const auto [from, to] =
+                std::minmax({index_of(piece.segment.a), index_of(piece.segment.b)});
+            lines.push_back({from, to});
+        }
+        return lines;
+    }
+
+    [[nodiscard]] Index root(Index face) {
+        while (parent_[face] != face) {
+            parent_[face] = parent_[parent_[face]];
+            face = parent_[face];
+        }
+        return face;
+    }
+
+    /// The loop's vertices without those that only lines of no account made, from the lowest.
+    [[nodiscard]] Polygon curveOf(const plane::Loop& loop,
+                                  const std::vector<Index>& boundaries) const {
+        const plane::Graph<Point2>& graph = faces_.graph();
+        Polygon curve;
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const Index before = graph.source(loop[i == 0 ? loop.size() - 1 : i - 1]);
+            const Index vertex = graph.source(loop[i]), after = graph.target(loop[i]);
+            const bool is_own = graph.leaving(vertex).size() == 2;  // the input's
+            if (is_own || boundaries[vertex] != 2 ||
+                orientation(points_[before], points_[vertex], points_[after]) != Turn::Straight)
+                curve.push_back(points_[vertex]);
+        }
+        if (curve.size() < 3) return {};
+        rotateToLowest(curve);
+        return curve;
+    }
+
+    std::vector<Point2> points_;
+    std::vector<plane::Line> lines_;
+    plane::Faces<Point2> faces_;
+    std::vector<Index> parent_;  // of each face: joined ones have the same
 };
-
-struct FaceMark {
-    bool reached = false;
-    int added = 0, removed = 0;  // winding numbers
-    int piece = kDropped;        // faces of one piece are one region
-};
-
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-// Each edge carries the indices of the lines it is part of.
-using Traits =
-    CGAL::Arr_consolidated_curve_data_traits_2<CGAL::Arr_segment_traits_2<Kernel>, std::uint32_t>;
-using Dcel = CGAL::Arr_extended_dcel<Traits, char, HalfedgeMark, FaceMark>;
-using Arrangement = CGAL::Arrangement_2<Traits, Dcel>;
-using Halfedge = Arrangement::Halfedge_handle;
-using Face = Arrangement::Face_handle;
-using Vertex = Arrangement::Vertex_handle;
-using ExactPoint = Arrangement::Point_2;
 
 bool lexLess(const Polygon& a, const Polygon& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
                                         [](Point2 p, Point2 q) { return lexLess(p, q); });
 }
 
-/// A line from its lower end to its upper, with what it adds to the winding numbers on its left.
-struct Line {
-    Point2 a, b;
-    int added = 0, removed = 0;
-    bool passage = false;  ///< does not keep faces apart
-};
-
-Line turned(const Segment2& s, int added, int removed, bool passage = false) {
-    if (lexLess(s.a, s.b)) return {s.a, s.b, added, removed, passage};
-    return {s.b, s.a, -added, -removed, passage};
-}
-
-/// Equal lines as one, those without length left out: thousands on one place would make the lists
-/// of indices long.
-std::vector<Line> joined(std::vector<Line> lines) {
-    std::erase_if(lines, [](const Line& line) { return line.a == line.b; });
-    std::sort(lines.begin(), lines.end(), [](const Line& l, const Line& m) {
-        return l.a == m.a ? lexLess(l.b, m.b) : lexLess(l.a, m.a);
-    });
-    std::vector<Line> all;
-    for (const Line& line : lines) {
-        if (all.empty() || all.back().a != line.a || all.back().b != line.b) {
-            all.push_back(line);
-        } else {
-            all.back().added += line.added;
-            all.back().removed += line.removed;
-            all.back().passage = all.back().passage && line.passage;
-        }
-    }
-    return all;
-}
-
-Arrangement arrange(const std::vector<Line>& lines) {
-    std::vector<Traits::Curve_2> curves;
-    curves.reserve(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const auto& [a, b, added, removed, passage] = lines[i];
-        curves.emplace_back(
-            Traits::Base_curve_2(Kernel::Point_2(a.x, a.y), Kernel::Point_2(b.x, b.y)),
-            static_cast<std::uint32_t>(i));
-    }
-    Arrangement arrangement;
-    CGAL::insert(arrangement, curves.begin(), curves.end());
-    return arrangement;
-}
-
-template <typename Visit>
-void forEachHalfedge(Face face, Visit visit) {
-    const auto around = [&](Arrangement::Ccb_halfedge_circulator start) {
-        auto edge = start;
-        do visit(Halfedge(edge));
-        while (++edge != start);
-    };
-    for (auto c = face->outer_ccbs_begin(); c != face->outer_ccbs_end(); ++c) around(*c);
-    for (auto c = face->inner_ccbs_begin(); c != face->inner_ccbs_end(); ++c) around(*c);
-}
-
-/// True where the piece on the left of the edge ends.
-bool isBoundary(Halfedge edge) {
-    const int left = edge->face()->data().piece;
-    return left != kDropped && left != edge->twin()->face()->data().piece;
-}
-
-/// How the winding numbers grow from the right of an edge to its left.
-void addLines(Halfedge edge, const std::vector<Line>& lines, FaceMark& mark) {
-    const int step = edge->direction() == CGAL::ARR_LEFT_TO_RIGHT ? 1 : -1;
-    const auto& sources = edge->curve().data();
-    for (auto i = sources.begin(); i != sources.end(); ++i) {
-        mark.added += step * lines[*i].added;
-        mark.removed += step * lines[*i].removed;
-    }
-}
-
-void windFaces(Arrangement& arrangement, const std::vector<Line>& lines) {
-    std::vector<Face> reached{arrangement.unbounded_face()};
-    reached[0]->data().reached = true;
-    while (!reached.empty()) {
-        const Face face = reached.back();
-        reached.pop_back();
-        forEachHalfedge(face, [&](Halfedge edge) {
-            const Face next = edge->twin()->face();
-            if (next->data().reached) return;
-            FaceMark mark = face->data();
-            addLines(edge->twin(), lines, mark);
-            next->set_data(mark);
-            reached.push_back(next);
-        });
-    }
-}
-
-/// Numbers the pieces: faces that are kept(face) and share an edge that is open(edge) are one.
-template <typename Kept, typename Open>
-int joinFaces(Arrangement& arrangement, Kept kept, Open is_open) {
-    int pieces = 0;
-    std::vector<Face> open;
-    for (auto f = arrangement.faces_begin(); f != arrangement.faces_end(); ++f) {
-        if (!kept(f) || f->data().piece != kDropped) continue;
-        f->data().piece = pieces;
-        open.assign(1, f);
-        while (!open.empty()) {
-            const Face face = open.back();
-            open.pop_back();
-            forEachHalfedge(face, [&](Halfedge edge) {
-                const Face next = edge->twin()->face();
-                if (next->data().piece != kDropped || !kept(next) || !is_open(edge)) return;
-                next->data().piece = pieces;
-                open.push_back(next);
-            });
-        }
-        ++pieces;
-    }
-    return pieces;
-}
-
-/// A closed walk along the boundary of a piece, the piece on the left.
-using Loop = std::vector<Halfedge>;
-
-Loop walk(Halfedge start) {
-    Loop loop;
-    Halfedge edge = start;
-    do {
-        edge->data().walked = true;
-        loop.push_back(edge);
-        edge = edge->next();
-        // Lines with the same piece on both sides are no boundary: turn past them.
-        while (!isBoundary(edge)) edge = edge->twin()->next();
-    } while (edge != start);
-    return loop;
-}
-
-/// Whether the piece lies outside the loop, decided at its leftmost vertex: at one of the loop's
-/// visits there the direction to the left is within the piece.
-bool isHole(const Loop& loop) {
-    const Kernel kernel;
-    const auto less = kernel.less_xy_2_object();
-    const auto turn = kernel.orientation_2_object();
-    std::size_t leftmost = 0;
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-        if (less(loop[i]->source()->point(), loop[leftmost]->source()->point())) leftmost = i;
-    }
-    const Vertex vertex = loop[leftmost]->source();
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        if (loop[i]->source() != vertex) continue;
-        const Halfedge before = loop[i == 0 ? loop.size() - 1 : i - 1];
-        if (turn(vertex->point(), before->source()->point(), loop[i]->target()->point()) ==
-            CGAL::LEFT_TURN)
-            return true;
-    }
-    return false;
-}
-
-/// The nearest double of a coordinate, also where its interval is wide.
-double rounded(const Kernel::FT& value) {
-    if (!value.approx().is_point()) value.exact();
-    return CGAL::to_double(value);
-}
-
-/// A vertex that only lines of no account made, on a straight line of the boundary.
-bool isIdle(const ExactPoint& before, Vertex vertex, const ExactPoint& after) {
-    if (vertex->degree() == 2) return false;  // the input's own
-    std::size_t boundaries = 0;
-    auto edge = vertex->incident_halfedges();
-    const auto start = edge;
-    do {
-        if (isBoundary(edge) || isBoundary(edge->twin())) ++boundaries;
-    } while (++edge != start);
-    return boundaries == 2 && CGAL::orientation(before, vertex->point(), after) == CGAL::COLLINEAR;
-}
-
-/// Vertices in doubles, without the repetitions and spikes that rounding makes, from the lowest.
-Polygon roundedCurve(const Loop& loop) {
-    Polygon curve;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Halfedge before = loop[i == 0 ? loop.size() - 1 : i - 1];
-        const Vertex vertex = loop[i]->source();
-        if (isIdle(before->source()->point(), vertex, loop[i]->target()->point())) continue;
-        const Point2 p{rounded(vertex->point().x()) + 0.0, rounded(vertex->point().y()) + 0.0};
-        if (!curve.empty() && curve.back() == p) continue;
-        curve.push_back(p);
-        while (curve.size() >= 3 && curve.end()[-3] == p) curve.resize(curve.size() - 2);
-    }
-    const auto is_spike = [&] {
-        const std::size_t n = curve.size();
-        return n >= 2 && (curve[0] == curve[n - 1] || curve[0] == curve[n - 2] ||
-                          (n >= 3 && curve[1] == curve[n - 1]));
-    };
-    while (is_spike()) {
-        if (curve.size() >= 3 && curve[1] == curve.back()) curve.erase(curve.begin());
-        curve.pop_back();
-    }
-    if (curve.size() < 3) return {};
-    rotateToLowest(curve);
-    return curve;
-}
-
-std::vector<Region> collect(Arrangement& arrangement, int pieces) {
-    std::vector<Region> regions(static_cast<std::size_t>(pieces));
-    for (auto e = arrangement.halfedges_begin(); e != arrangement.halfedges_end(); ++e) {
-        if (e->data().walked || !isBoundary(e)) continue;
-        const Loop loop = walk(e);
-        Polygon curve = roundedCurve(loop);
-        Region& region = regions[static_cast<std::size_t>(e->face()->data().piece)];
-        // What rounding has turned inside out is thinner than a double can tell.
-        if (isHole(loop)) {
-            if (signedArea(curve) < 0) region.holes.push_back(std::move(curve));
-        } else if (signedArea(curve) > 0) {
-            region.outline = std::move(curve);
-        }
-    }
-    putInOrder(regions);
-    return regions;
+/// The same doubles for the same places.
+void dropNegativeZeros(std::vector<LinePiece>& lines) {
+    for (LinePiece& line : lines)
+        for (Point2* p : {&line.segment.a, &line.segment.b}) *p = {p->x + 0.0, p->y + 0.0};
 }
 
 }  // namespace
+
+std::vector<Region> facesOf(std::vector<LinePiece> lines, const CrossingMessage& message) {
+    dropNegativeZeros(lines);
+    const std::vector<LinePiece> pieces = noded(std::move(lines), message);
+    Arrangement arrangement(pieces);
+    const std::vector<bool> all(arrangement.faces(), true);
+    arrangement.join(all, [&](Index i) { return pieces[i].is_passage; });
+    return arrangement.regions(all);
+}
+
+std::vector<Region> differenceOf(std::vector<LinePiece> lines, const CrossingMessage& message) {
+    dropNegativeZeros(lines);
+    const std::vector<LinePiece> pieces = noded(std::move(lines), message);
+    Arrangement arrangement(pieces);
+    const auto windings = arrangement.windings(pieces);
+    std::vector<bool> kept(arrangement.faces());
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        kept[i] = windings[i].first > 0 && windings[i].second == 0;
+    arrangement.join(kept, [](Index) { return true; });
+    return arrangement.regions(kept);
+}
 
 void rotateToLowest(Polygon& curve) {
     const auto from = [&](std::size_t i) {
@@ -281,39 +217,6 @@ void putInOrder(std::vector<Region>& regions) {
     }
     std::sort(regions.begin(), regions.end(),
               [](const Region& a, const Region& b) { return lexLess(a.outline, b.outline); });
-}
-
-std::vector<Region> overlayFaces(std::span<const Segment2> lines,
-                                 std::span<const Segment2> passages) {
-    std::vector<Line> all;
-    all.reserve(lines.size() + passages.size());
-    for (const Segment2& s : lines) all.push_back(turned(s, 0, 0));
-    for (const Segment2& s : passages) all.push_back(turned(s, 0, 0, true));
-    all = joined(std::move(all));
-    Arrangement arrangement = arrange(all);
-    const auto bounded = [](Face face) { return !face->is_unbounded(); };
-    const auto open = [&all](Halfedge edge) {
-        const auto& sources = edge->curve().data();
-        return std::all_of(sources.begin(), sources.end(),
-                           [&all](std::uint32_t i) { return all[i].passage; });
-    };
-    return collect(arrangement, joinFaces(arrangement, bounded, open));
-}
-
-std::vector<Region> overlayDifference(std::span<const Segment2> added,
-                                      std::span<const Segment2> removed) {
-    std::vector<Line> lines;
-    for (const Segment2& s : added) lines.push_back(turned(s, 1, 0));
-    for (const Segment2& s : removed) lines.push_back(turned(s, 0, 1));
-    lines = joined(std::move(lines));
-    std::vector<Segment2> segments;
-    segments.reserve(lines.size());
-    for (const Line& line : lines) segments.push_back({line.a, line.b});
-    mustCrossRarely(segments, "outlines", "leave out some of what lies upon each other");
-    Arrangement arrangement = arrange(lines);
-    windFaces(arrangement, lines);
-    const auto kept = [](Face face) { return face->data().added > 0 && face->data().removed == 0; };
-    return collect(arrangement, joinFaces(arrangement, kept, [](Halfedge) { return true; }));
 }
 
 }  // namespace ispace

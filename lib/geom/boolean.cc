@@ -2,6 +2,7 @@
 #include "geom/boolean.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -16,14 +17,17 @@ namespace ispace {
 
 namespace {
 
-bool apart(const Box2& a, const Box2& b) {
-    return a.high.x < b.low.x || b.high.x < a.low.x || a.high.y < b.low.y || b.high.y < a.low.y;
-}
+constexpr auto kHint = "leave out some of what lies upon each other";
 
-/// Appends the edges, turned so that the curve has this orientation.
-void addCurve(const Polygon& curve, bool counter_clockwise, std::vector<Segment2>& lines) {
-    const bool turn = (signedArea(curve) > 0) != counter_clockwise;
-    forEachEdge(curve, [&](const Segment2& e) { lines.push_back(turn ? Segment2{e.b, e.a} : e); });
+/// Appends the edges, turned so that the curve has this orientation: what it encloses has a winding
+/// number of `added` or `removed` more.
+void addCurve(const Polygon& curve, bool counter_clockwise, int added, int removed,
+              std::vector<LinePiece>& lines) {
+    const int turn = (signedArea(curve) > 0) != counter_clockwise ? -1 : 1;
+    forEachEdge(curve, [&](const Segment2& edge) {
+        lines.push_back(
+            {edge, static_cast<std::uint32_t>(lines.size()), turn * added, turn * removed, false});
+    });
 }
 
 /// Boxes of segments of some region, or of several.
@@ -83,9 +87,9 @@ std::vector<bool> alone(const std::vector<Box2>& boxes) {
 }  // namespace
 
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids) {
-    std::vector<Segment2> added, removed;
-    addCurve(region.outline, true, added);
-    for (const Polygon& hole : region.holes) addCurve(hole, false, added);
+    std::vector<LinePiece> lines;
+    addCurve(region.outline, true, 1, 0, lines);
+    for (const Polygon& hole : region.holes) addCurve(hole, false, 1, 0, lines);
     const Box2 box = bounds(region.outline);
     std::vector<Box2> boxes;
     boxes.reserve(solids.size());
@@ -95,13 +99,13 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     const EdgeTree walls({&region, 1});
     std::vector<std::size_t> clear;
     for (std::size_t i = 0; i < solids.size(); ++i) {
-        if (apart(box, boxes[i])) continue;
+        if (!meets(box, boxes[i])) continue;
         if (is_alone[i] && !walls.meets(boxes[i]))
             clear.push_back(i);
         else
-            addCurve(solids[i], true, removed);
+            addCurve(solids[i], true, 0, 1, lines);
     }
-    std::vector<Region> pieces = overlayDifference(added, removed);
+    std::vector<Region> pieces = differenceOf(std::move(lines), {"outlines", kHint});
     const EdgeTree edges(pieces);
     for (const std::size_t i : clear) {
         const auto piece = edges.regionAt(solids[i].front());
@@ -121,9 +125,9 @@ std::vector<Region> difference(const Regions& regions, std::span<const Polygon> 
 }
 
 std::vector<Region> unite(std::span<const Polygon> solids) {
-    std::vector<Segment2> lines;
-    for (const Polygon& solid : solids) addCurve(solid, true, lines);
-    return overlayDifference(lines, {});
+    std::vector<LinePiece> lines;
+    for (const Polygon& solid : solids) addCurve(solid, true, 1, 0, lines);
+    return differenceOf(std::move(lines), {"outlines", kHint});
 }
 
 double totalArea(std::span<const Region> regions) {

@@ -10,7 +10,7 @@
 namespace ispace {
 
 /// The pieces of `region` outside all closed `solids` (simple polygons, any orientation, which may
-/// overlap and touch). Exact constructions inside (CGAL), rounded to doubles at the end.
+/// overlap and touch). Where outlines cross, to the nearest doubles.
 /// \throws FormatError (without a place) for outlines that cross each other by the million
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
 

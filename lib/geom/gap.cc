@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geom/noding.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
@@ -173,29 +174,24 @@ class GapFinder {
     double extent_ = 0;       // no two points of lines are farther apart
 };
 
-/// Comparisons of closings with other lines; beyond that they stay whole, which only takes longer.
-constexpr std::size_t kMaxComparisons = 20'000'000;
-
 /// The lines together with all closings, cut and welded once for all.
 class Closed {
   public:
     Closed(std::span<const Segment2> lines, std::span<const Closing> closings) {
         std::vector<Segment2> all(lines.begin(), lines.end());
         for (const Closing& closing : closings) all.push_back(closing.line);
-        // Where a closing runs across a line, both get a common end: the weld sees to the line's.
-        const SegmentTree tree(all);
-        std::vector<std::size_t> closing_of(lines.size(), 0);
-        std::vector<Segment2> cut(lines.begin(), lines.end());
-        for (std::size_t i = 0; i < closings.size(); ++i) {
-            for (const Segment2& part : partsOf(closings[i].line, all, tree)) {
-                cut.push_back(part);
-                closing_of.push_back(i + 1);
-            }
-        }
-        WeldedLines welded = weld(cut);
+        const std::vector<LinePiece> cut =
+            noded(linePieces(all), {"wall lines", "end them where they meet"});
+        std::vector<Segment2> segments;
+        segments.reserve(cut.size());
+        for (const LinePiece& piece : cut) segments.push_back(piece.segment);
+        WeldedLines welded = weld(segments);
         pieces_ = std::move(welded.pieces);
         needs_.reserve(pieces_.size());
-        for (const std::size_t source : welded.source) needs_.push_back(closing_of[source]);
+        for (const std::size_t source : welded.source) {
+            const std::size_t line = cut[source].line;
+            needs_.push_back(line < lines.size() ? 0 : line - lines.size() + 1);
+        }
     }
 
     /// Whether the point, or anything, is enclosed when the first `count` gaps are closed.
@@ -211,36 +207,8 @@ class Closed {
     }
 
   private:
-    /// A closing, cut where it runs across lines and other closings.
-    std::vector<Segment2> partsOf(const Segment2& closing, std::span<const Segment2> all,
-                                  const SegmentTree& tree) {
-        const Vec2 along = closing.b - closing.a;
-        std::vector<double> shares;
-        tree.search(closing, 0, [&](std::size_t i) {
-            if (++comparisons_ > kMaxComparisons) return;
-            const Vec2 other = all[i].b - all[i].a;
-            const double denominator = cross(along, other);
-            if (denominator == 0 || !intersects(closing, all[i])) return;
-            shares.push_back(cross(all[i].a - closing.a, other) / denominator);
-        });
-        std::sort(shares.begin(), shares.end());
-        std::vector<Segment2> parts;
-        Point2 from = closing.a;
-        for (const double share : shares) {
-            const Point2 to = closing.a + share * along;
-            if (!(share > 0 && share < 1) || distance(from, to) <= 2 * kWeldDistance ||
-                distance(to, closing.b) <= 2 * kWeldDistance)
-                continue;
-            parts.push_back({from, to});
-            from = to;
-        }
-        parts.push_back({from, closing.b});
-        return parts;
-    }
-
     std::vector<Segment2> pieces_;
     std::vector<std::size_t> needs_;  // how many gaps have to be closed for each piece to be there
-    std::size_t comparisons_ = 0;
 };
 
 }  // namespace

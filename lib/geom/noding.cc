@@ -2,16 +2,12 @@
 #include "geom/noding.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
+#include <limits>
 #include <random>
-#include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "base/error.h"
-#include "base/number.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
@@ -21,50 +17,104 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// Pairs of lines looked at, per line and besides.
-constexpr std::size_t kLooksPerLine = 4096, kLooksAnyway = 1U << 26;
-constexpr int kMaxRounds = 12;
+/// Pairs of lines looked at in a grid, which is quickest for what is evenly spread, per line and
+/// besides: beyond that in a tree.
+constexpr std::size_t kGridPairsPerLine = 64, kGridPairsAnyway = 1U << 20;
+/// The same in the tree: more crowd only where very many lines cross.
+constexpr std::size_t kPairsPerLine = 4096, kPairsAnyway = 1U << 26;
+/// Of cutting, and how often points are moved together from farther away if that does not end it.
+constexpr int kMaxRounds = 12, kMaxWidenings = 4;
 
-[[noreturn]] void refuse() {
-    throw FormatError(
-        Diagnostic{"", 0, 0, "too many lines cross each other; end them where they meet"});
+/// Pairs of lines by which crossings are counted.
+constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMaxSampled = 1U << 22;
+constexpr std::size_t kSureHits = 16;
+
+/// Two digits: it is an estimate.
+std::string roundNumber(double value) {
+    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(value)) - 1));
+    return std::to_string(static_cast<std::uint64_t>(std::round(value / unit) * unit));
+}
+
+/// Thrown inside, where the lines are not at hand.
+struct TooMany {};
+
+[[noreturn]] void refuse(std::span<const LinePiece> lines, const CrossingMessage& message) {
+    std::vector<Segment2> segments;
+    segments.reserve(lines.size());
+    for (const LinePiece& line : lines) segments.push_back(line.segment);
+    const double crossings = sampledCrossings(segments);
+    const std::string text = crossings > kMaxCrossings
+                                 ? message.what + " cross each other about " +
+                                       roundNumber(crossings) + " times, at most " +
+                                       roundNumber(kMaxCrossings) + " can be; " + message.hint
+                                 : "too many " + message.what +
+                                       " cross each other or lie upon each other; " + message.hint;
+    throw FormatError(Diagnostic{"", 0, 0, text});
 }
 
 /// Points of which none are nearer to each other than `reach`.
 class DistinctPoints {
   public:
-    explicit DistinctPoints(double reach) : reach_(reach) {}
+    /// \param count as many will come, about
+    DistinctPoints(double reach, std::size_t count) : reach_(reach) {
+        points_.reserve(count);
+        grow(std::bit_ceil(2 * count + 16));
+    }
 
     /// The point that stands for p: one that came before, or p itself.
     Point2 standing(Point2 p) {
         if (!(reach_ > 0)) return p;
-        // Cells twice as wide as the reach: four at most come into it.
-        const double size = 2 * reach_;
-        const double left = std::floor((p.x - reach_) / size);
-        const double right = std::floor((p.x + reach_) / size);
-        const double bottom = std::floor((p.y - reach_) / size);
-        const double top = std::floor((p.y + reach_) / size);
-        for (double x = left; x <= right; ++x) {
-            for (double y = bottom; y <= top; ++y) {
-                const auto [first, last] = points_.equal_range({x, y});
-                for (auto it = first; it != last; ++it)
-                    if (distance(it->second, p) <= reach_) return it->second;
+        const Point2 low = cellOf(p - Vec2{reach_, reach_}),
+                     high = cellOf(p + Vec2{reach_, reach_});
+        for (double x = low.x; x <= high.x; ++x) {
+            for (double y = low.y; y <= high.y; ++y) {
+                for (std::size_t i = slotOf({x, y}); slots_[i] != kFree; i = next(i)) {
+                    const Point2 other = points_[slots_[i]];
+                    if (distance(other, p) <= reach_) return other;
+                }
             }
         }
-        points_.emplace(Point2{std::floor(p.x / size), std::floor(p.y / size)}, p);
+        if (2 * points_.size() + 2 > slots_.size()) grow(2 * slots_.size());
+        points_.push_back(p);
+        enter(static_cast<Index>(points_.size() - 1));
         return p;
     }
 
   private:
-    struct Hash {
-        std::size_t operator()(Point2 cell) const {
-            const std::hash<double> hash;
-            return hash(cell.x) * 0x9E3779B97F4A7C15U ^ hash(cell.y);
-        }
-    };
+    static constexpr Index kFree = std::numeric_limits<Index>::max();
+    /// Wide enough that most points have one cell only in reach.
+    static constexpr double kReachesPerCell = 64;
+
+    [[nodiscard]] Point2 cellOf(Point2 p) const {
+        const double size = kReachesPerCell * reach_;
+        return {std::floor(p.x / size), std::floor(p.y / size)};
+    }
+    [[nodiscard]] std::size_t slotOf(Point2 cell) const {
+        const auto x = std::bit_cast<std::uint64_t>(cell.x + 0.0);
+        const auto y = std::bit_cast<std::uint64_t>(cell.y + 0.0);
+        const std::uint64_t mixed = (x * 0x9E3779B97F4A7C15U ^ y) * 0xBF58476D1CE4E5B9U;
+        return (mixed ^ mixed >> 32) & (slots_.size() - 1);
+    }
+    [[nodiscard]] std::size_t next(std::size_t slot) const {
+        return (slot + 1) & (slots_.size() - 1);
+    }
+    void enter(Index point) {
+        std::size_t i = slotOf(cellOf(points_[point]));
+        while (slots_[i] != kFree) i = next(i);
+        slots_[i] = point;
+    }
+    void grow(std::size_t slots) {
+        slots_.assign(slots, kFree);
+        for (Index i = 0; i < points_.size(); ++i) enter(i);
+    }
+
     double reach_;
-    std::unordered_multimap<Point2, Point2, Hash> points_;  // by cell
+    std::vector<Point2> points_;
+    std::vector<Index> slots_;  // open addressing; a power of two, at most half full
 };
+
+/// From its lower end to its upper.
+Segment2 ordered(const Segment2& s) { return lexLess(s.b, s.a) ? Segment2{s.b, s.a} : s; }
 
 /// One round of cutting; what it moves by rounding may have to be cut again.
 class Cutter {
@@ -77,16 +127,7 @@ class Cutter {
 
     /// \return whether there was anything to cut
     bool cut() {
-        const SegmentGrid grid(segments_, reach_);
-        grid.forEachCell([this](std::span<const Index> cell) {
-            looks_ += cell.size() * cell.size() / 2;
-            if (looks_ > kLooksAnyway + kLooksPerLine * segments_.size()) refuse();
-            for (std::size_t i = 0; i < cell.size(); ++i)
-                for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
-            if (static_cast<double>(cuts_.size()) >
-                2 * kMaxCrossings + 8.0 * static_cast<double>(segments_.size()))
-                refuse();
-        });
+        if (!meetInGrid()) meetInTree();
         if (cuts_.empty()) return false;
         apply();
         return true;
@@ -102,6 +143,40 @@ class Cutter {
             return a.along < b.along || (a.along == b.along && lexLess(a.at, b.at));
         }
     };
+
+    /// \return false if the grid is crowded
+    bool meetInGrid() {
+        const SegmentGrid grid(segments_, reach_);
+        std::size_t pairs = 0;
+        grid.forEachCell(
+            [&](std::span<const Index> cell) { pairs += cell.size() * cell.size() / 2; });
+        if (pairs > kGridPairsAnyway + kGridPairsPerLine * segments_.size()) return false;
+        grid.forEachCell([this](std::span<const Index> cell) {
+            for (std::size_t i = 0; i < cell.size(); ++i)
+                for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
+            checkCuts();
+        });
+        return true;
+    }
+
+    void meetInTree() {
+        const SegmentTree tree(segments_);
+        std::size_t pairs = 0;
+        for (Index i = 0; i < segments_.size(); ++i) {
+            tree.search(segments_[i], reach_, [&](std::size_t k) {
+                ++pairs;
+                if (k > i) meet(i, static_cast<Index>(k));
+            });
+            if (pairs > kPairsAnyway + kPairsPerLine * segments_.size()) throw TooMany();
+            checkCuts();
+        }
+    }
+
+    void checkCuts() const {
+        if (static_cast<double>(cuts_.size()) >
+            2 * kMaxCrossings + 8 * static_cast<double>(segments_.size()))
+            throw TooMany();
+    }
 
     [[nodiscard]] static bool isNear(const Segment2& s, const Segment2& t, double reach) {
         const auto apart = [reach](double a, double b, double c, double d) {
@@ -119,9 +194,12 @@ class Cutter {
         for (const Point2 end : {s.a, s.b}) touches |= cutAtEnd(k, end);
         // Else they cross, or not at all.
         if (touches || !intersects(s, t)) return;
-        const double right = std::abs(cross(s.b - s.a, t.a - s.a));
-        const double left = std::abs(cross(s.b - s.a, t.b - s.a));
-        const Point2 at = points_.standing(t.a + right / (right + left) * (t.b - t.a));
+        // The same whichever way they run.
+        const auto [a, b] = ordered(s);
+        const auto [from, to] = ordered(t);
+        const double right = std::abs(cross(b - a, from - a)),
+                     left = std::abs(cross(b - a, to - a));
+        const Point2 at = points_.standing(from + right / (right + left) * (to - from));
         add(i, at);
         add(k, at);
     }
@@ -147,7 +225,8 @@ class Cutter {
             LinePiece rest = pieces_[i];
             for (; cut != cuts_.end() && cut->piece == i; ++cut) {
                 if (cut->at == rest.segment.a) continue;
-                parts.push_back({{rest.segment.a, cut->at}, rest.line});
+                parts.push_back(rest);
+                parts.back().segment.b = cut->at;
                 rest.segment.a = cut->at;
             }
             parts.push_back(rest);
@@ -160,128 +239,71 @@ class Cutter {
     double reach_;
     std::vector<Segment2> segments_;
     std::vector<Cut> cuts_;
-    std::size_t looks_ = 0;
 };
 
-/// Each piece once, whichever way it runs, in the order of their lines.
-void dropDoubles(std::vector<LinePiece>& pieces) {
+/// Each piece once, whichever way it runs, in the order of their places.
+void mergeDoubles(std::vector<LinePiece>& pieces) {
     std::erase_if(pieces, [](const LinePiece& p) { return p.segment.a == p.segment.b; });
-    const auto ordered = [](const LinePiece& p) {
-        const auto& [a, b] = p.segment;
-        return lexLess(b, a) ? Segment2{b, a} : Segment2{a, b};
-    };
-    const auto less = [&](const LinePiece& p, const LinePiece& q) {
-        const Segment2 s = ordered(p), t = ordered(q);
+    std::sort(pieces.begin(), pieces.end(), [](const LinePiece& p, const LinePiece& q) {
+        const Segment2 s = ordered(p.segment), t = ordered(q.segment);
         if (s.a != t.a) return lexLess(s.a, t.a);
         if (s.b != t.b) return lexLess(s.b, t.b);
         return p.line < q.line;
-    };
-    std::sort(pieces.begin(), pieces.end(), less);
-    const auto same = [&](const LinePiece& p, const LinePiece& q) {
-        return ordered(p) == ordered(q);
-    };
-    pieces.erase(std::unique(pieces.begin(), pieces.end(), same), pieces.end());
+    });
+    std::size_t count = 0;
+    for (const LinePiece& piece : pieces) {
+        if (count == 0 || ordered(pieces[count - 1].segment) != ordered(piece.segment)) {
+            pieces[count++] = piece;
+            continue;
+        }
+        LinePiece& all = pieces[count - 1];
+        const int turn = all.segment == piece.segment ? 1 : -1;
+        all.added += turn * piece.added;
+        all.removed += turn * piece.removed;
+        all.is_passage = all.is_passage && piece.is_passage;
+    }
+    pieces.resize(count);
 }
 
-}  // namespace
-
-std::vector<LinePiece> piecesOf(std::span<const Segment2> lines) {
-    double farthest = 0;
-    for (const auto& [a, b] : lines)
-        for (const double x : {a.x, a.y, b.x, b.y}) farthest = std::max(farthest, std::abs(x));
-    const double reach = std::ldexp(farthest, -46);
-    DistinctPoints points(reach);
-    std::vector<LinePiece> pieces;
-    pieces.reserve(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i)
-        pieces.push_back(
-            {{points.standing(lines[i].a), points.standing(lines[i].b)}, static_cast<Index>(i)});
-    dropDoubles(pieces);
+/// \return whether the pieces meet in common ends alone
+bool cutAll(std::vector<LinePiece>& pieces, double reach) {
+    DistinctPoints points(reach, 2 * pieces.size());
+    for (LinePiece& piece : pieces)
+        piece.segment = {points.standing(piece.segment.a), points.standing(piece.segment.b)};
+    mergeDoubles(pieces);
     const double most = static_cast<double>(pieces.size()) + 2 * kMaxCrossings;
     for (int round = 0; round < kMaxRounds; ++round) {
-        if (!Cutter(pieces, points, reach).cut()) break;
-        dropDoubles(pieces);
-        if (static_cast<double>(pieces.size()) > most) refuse();
+        if (!Cutter(pieces, points, reach).cut()) return true;
+        mergeDoubles(pieces);
+        if (static_cast<double>(pieces.size()) > most) throw TooMany();
     }
-    return pieces;
-}
-
-namespace {
-
-constexpr std::size_t kCrossingsPerLine = 20, kCrossingsAnyway = 1000;
-
-/// The lines as they are.
-WeldedLines whole(std::span<const Segment2> lines) {
-    WeldedLines all;
-    all.pieces.assign(lines.begin(), lines.end());
-    all.source.resize(lines.size());
-    std::iota(all.source.begin(), all.source.end(), std::size_t{0});
-    return all;
+    return false;
 }
 
 }  // namespace
 
-WeldedLines cutAtCrossings(std::span<const Segment2> lines) {
-    struct Cut {
-        std::size_t line;
-        double share;
-        Point2 at;
-    };
-    const SegmentTree tree(lines);
-    std::vector<Cut> cuts;
-    const std::size_t most = kCrossingsAnyway + 2 * kCrossingsPerLine * lines.size();
-    for (std::size_t i = 0; i < lines.size() && cuts.size() <= most; ++i) {
-        const Vec2 along = lines[i].b - lines[i].a;
-        tree.search(lines[i], 0, [&](std::size_t k) {
-            // Each pair once, so that both get the same point.
-            if (k <= i || cuts.size() > most || !intersects(lines[i], lines[k])) return;
-            const Vec2 other = lines[k].b - lines[k].a;
-            const double turn = cross(along, other);
-            if (turn == 0) return;
-            const Vec2 between = lines[k].a - lines[i].a;
-            const double share = cross(between, other) / turn,
-                         on_other = cross(between, along) / turn;
-            const Point2 at = lines[i].a + share * along;
-            const auto is_inside = [&](const Segment2& line) {
-                return distance(at, line.a) > kWeldDistance && distance(at, line.b) > kWeldDistance;
-            };
-            if (is_inside(lines[i])) cuts.push_back({i, share, at});
-            if (is_inside(lines[k])) cuts.push_back({k, on_other, at});
-        });
-    }
-    if (cuts.size() > most) return whole(lines);
-    std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
-        return std::pair(a.line, a.share) < std::pair(b.line, b.share);
-    });
-    WeldedLines pieces;
-    auto cut = cuts.begin();
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        Point2 from = lines[i].a;
-        for (; cut != cuts.end() && cut->line == i; ++cut) {
-            if (cut->at == from) continue;
-            pieces.pieces.push_back({from, cut->at});
-            pieces.source.push_back(i);
-            from = cut->at;
-        }
-        pieces.pieces.push_back({from, lines[i].b});
-        pieces.source.push_back(i);
-    }
+std::vector<LinePiece> linePieces(std::span<const Segment2> lines) {
+    std::vector<LinePiece> pieces;
+    pieces.reserve(lines.size());
+    for (const Segment2& line : lines)
+        pieces.push_back({line, static_cast<Index>(pieces.size()), 0, 0, false});
     return pieces;
 }
 
-namespace {
-
-/// Pairs of lines by which crossings are counted.
-constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMaxSampled = 1U << 22;
-constexpr std::size_t kSureHits = 16;
-
-/// Two digits: it is an estimate.
-std::string roundNumber(double value) {
-    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(value)) - 1));
-    return std::to_string(static_cast<std::uint64_t>(std::round(value / unit) * unit));
+std::vector<LinePiece> noded(std::vector<LinePiece> lines, const CrossingMessage& message) {
+    double farthest = 0;
+    for (const LinePiece& line : lines)
+        for (const Point2 p : {line.segment.a, line.segment.b})
+            farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
+    try {
+        std::vector<LinePiece> pieces = lines;
+        double reach = std::ldexp(farthest, -46);
+        for (int i = 0; i < kMaxWidenings; ++i, reach *= 64)
+            if (cutAll(pieces, reach)) return pieces;
+    } catch (const TooMany&) {
+    }
+    refuse(lines, message);
 }
-
-}  // namespace
 
 double sampledCrossings(std::span<const Segment2> lines) {
     const std::size_t n = lines.size();
@@ -298,18 +320,6 @@ double sampledCrossings(std::span<const Segment2> lines) {
     if (hits < kSureHits) return 0;
     return static_cast<double>(hits) / static_cast<double>(pairs) * static_cast<double>(n) *
            static_cast<double>(n) / 2;
-}
-
-void mustCrossRarely(std::span<const Segment2> lines, const std::string& what,
-                     const std::string& hint) {
-    // Of fewer lines not even all pairs are too many.
-    if (static_cast<double>(lines.size()) <= std::sqrt(2 * kMaxCrossings)) return;
-    const double crossings = sampledCrossings(lines);
-    if (crossings <= kMaxCrossings) return;
-    throw FormatError(Diagnostic{"", 0, 0,
-                                 what + " cross each other about " + roundNumber(crossings) +
-                                     " times, at most " + roundNumber(kMaxCrossings) + " can be; " +
-                                     hint});
 }
 
 }  // namespace ispace

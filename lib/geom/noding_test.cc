@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <utility>
 
 #include "geom/pose.h"
 #include "geom/predicates.h"
@@ -14,7 +16,8 @@ namespace {
 
 /// Pieces lie on their lines, cover them, and meet in common ends alone.
 void expectCut(const std::vector<Segment2>& lines, const std::vector<LinePiece>& pieces) {
-    for (const auto& [segment, line] : pieces) {
+    for (const LinePiece& piece : pieces) {
+        const auto& [segment, line] = std::pair(piece.segment, piece.line);
         EXPECT_LT(distance(segment.a, lines[line]), 1e-11);
         EXPECT_LT(distance(segment.b, lines[line]), 1e-11);
     }
@@ -42,16 +45,16 @@ void expectCut(const std::vector<Segment2>& lines, const std::vector<LinePiece>&
     }
 }
 
-TEST(VisibilityPieces, CrossTouchAndOverlap) {
+TEST(Noding, CrossTouchAndOverlap) {
     const std::vector<Segment2> lines{{{0, 0}, {4, 0}}, {{2, -1}, {2, 1}}, {{3, 0}, {3, 2}},
                                       {{1, 0}, {6, 0}}, {{4, 0}, {0, 0}},  {{5, 5}, {5, 5}}};
-    const std::vector<LinePiece> pieces = piecesOf(lines);
+    const std::vector<LinePiece> pieces = noded(linePieces(lines));
     expectCut(lines, pieces);
     EXPECT_EQ(pieces.size(), 8U);
-    EXPECT_TRUE(piecesOf({}).empty());
+    EXPECT_TRUE(noded({}).empty());
 }
 
-TEST(VisibilityPieces, HeapsOfLinesOnAGridTurned) {
+TEST(Noding, ManyLinesOnAGridTurned) {
     // Many cross in one point, but for rounding.
     std::mt19937_64 random(1);
     for (int round = 0; round < 60; ++round) {
@@ -65,55 +68,38 @@ TEST(VisibilityPieces, HeapsOfLinesOnAGridTurned) {
             const Point2 from = any();
             lines.push_back({from, any()});
         }
-        expectCut(lines, piecesOf(lines));
+        expectCut(lines, noded(linePieces(lines)));
     }
 }
 
-}  // namespace
-
-namespace {
-
-double areaOf(const std::vector<Region>& faces) {
-    double area = 0;
-    for (const Region& face : faces) area += face.area();
-    return area;
+TEST(Noding, KeepsWindingNumbersAndPassages) {
+    // Upon each other: two of one way, one of the other, a passage on a line.
+    const std::vector<LinePiece> lines{{{{0, 0}, {4, 0}}, 0, 1, 0, false},
+                                       {{{3, 0}, {1, 0}}, 1, 1, 2, false},
+                                       {{{0, 0}, {1, 0}}, 2, 0, 0, true},
+                                       {{{4, 0}, {5, 0}}, 3, 0, 0, true}};
+    const std::vector<LinePiece> pieces = noded(lines);
+    ASSERT_EQ(pieces.size(), 4U);
+    EXPECT_EQ(pieces[0].added, 1);
+    EXPECT_FALSE(pieces[0].is_passage);
+    EXPECT_EQ(pieces[1].segment, (Segment2{{1, 0}, {3, 0}}));
+    EXPECT_EQ(pieces[1].added, 0);
+    EXPECT_EQ(pieces[1].removed, -2);
+    EXPECT_EQ(pieces[2].line, 0U);
+    EXPECT_TRUE(pieces[3].is_passage);
 }
 
-TEST(CutLines, CutsBothWhereTheyCross) {
-    const std::vector<Segment2> cross{{{-1, 0}, {1, 0}}, {{0, -1}, {0, 1}}, {{5, 5}, {6, 6}}};
-    const WeldedLines cut = cutAtCrossings(cross);
-    ASSERT_EQ(cut.pieces.size(), 5U);
-    EXPECT_EQ(cut.pieces[0], (Segment2{{-1, 0}, {0, 0}}));
-    EXPECT_EQ(cut.pieces[1], (Segment2{{0, 0}, {1, 0}}));
-    EXPECT_EQ(cut.pieces[3], (Segment2{{0, 0}, {0, 1}}));
-    EXPECT_EQ(cut.source, (std::vector<std::size_t>{0, 0, 1, 1, 2}));
-    EXPECT_EQ(cutAtCrossings({}).pieces.size(), 0U);
-    // An end on a line cuts it; lines upon each other are left to the weld.
-    const std::vector<Segment2> touch{{{0, 0}, {2, 0}}, {{2, 0}, {2, 2}}, {{1, 0}, {3, 0}}};
-    EXPECT_EQ(cutAtCrossings(touch).pieces.size(), 4U);
-}
-
-TEST(CutLines, FacesAreThoseOfTheLines) {
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> place(-10, 10);
-    for (int run = 0; run < 40; ++run) {
-        std::vector<Segment2> lines;
-        for (int i = 0; i < 5 + run; ++i)
-            lines.push_back({{place(random), place(random)}, {place(random), place(random)}});
-        const auto exact = boundedFaces(weld(lines));
-        const auto cut = boundedFaces(weld(cutAtCrossings(lines).pieces));
-        EXPECT_EQ(exact.size(), cut.size());
-        EXPECT_NEAR(areaOf(exact), areaOf(cut), 1e-6);
-    }
-}
-
-TEST(CutLines, HeapsStayWhole) {
-    std::vector<Segment2> lines;
-    for (int i = 0; i < 300; ++i) {
-        lines.push_back({{i * 0.01, -10}, {i * 0.01, 10}});
-        lines.push_back({{-10, i * 0.01}, {10, i * 0.01}});
-    }
-    EXPECT_EQ(cutAtCrossings(lines).pieces, lines);
+TEST(Noding, EndsKeepTheirDoubles) {
+    const std::vector<Segment2> lines{{{0.1, 0.2}, {0.7, 0.3}}, {{0.4, 0.1}, {0.35, 0.9}}};
+    const std::vector<LinePiece> pieces = noded(linePieces(lines));
+    ASSERT_EQ(pieces.size(), 4U);
+    for (const Segment2& line : lines)
+        for (const Point2 end : {line.a, line.b})
+            EXPECT_EQ(std::count_if(pieces.begin(), pieces.end(),
+                                    [end](const LinePiece& piece) {
+                                        return piece.segment.a == end || piece.segment.b == end;
+                                    }),
+                      1);
 }
 
 }  // namespace

@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "geom/overlay.h"
+#include "geom/plane_graph.h"
 
 namespace ispace::lattice {
 
-using Index = std::uint32_t;
-constexpr Index kNone = std::numeric_limits<Index>::max();
+using plane::Index;
+using plane::kNone;
 
 /// Coordinates are at most 2^kBits from 0, so that all predicates are exact in 64 bits: a cross
 /// product of differences is at most 2^(2 * kBits + 3), twice of that is still less than 2^63.
@@ -104,59 +105,6 @@ struct Edge {
 /// of each layer, or has no length, is left out unless it is a wall. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
-/// From its lower end (lexLess) to its upper.
-struct Line {
-    Index from = 0, to = 0;
-};
-
-/// Half-edge 2i leads along line i from its lower end to its upper, 2i + 1 back.
-inline Index twin(Index half) { return half ^ 1U; }
-
-/// The half-edges about each point.
-class PlaneGraph {
-  public:
-    /// O(n log(n))
-    PlaneGraph(const std::vector<Point>& points, const std::vector<Line>& lines);
-
-    [[nodiscard]] Index source(Index half) const {
-        const Line& line = lines_[half / 2];
-        return half % 2 == 0 ? line.from : line.to;
-    }
-    [[nodiscard]] Index target(Index half) const { return source(twin(half)); }
-    [[nodiscard]] Point pointOf(Index vertex) const { return points_[vertex]; }
-    [[nodiscard]] std::size_t vertices() const { return first_.size() - 1; }
-    [[nodiscard]] std::size_t halves() const { return order_.size(); }
-
-    /// Those that leave a point, counter-clockwise. The first follows on the direction straight
-    /// down: before it, and behind the last, lies the direction to the left.
-    [[nodiscard]] std::span<const Index> leaving(Index vertex) const {
-        return std::span(order_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
-    }
-    /// Its place among those that leave the same point.
-    [[nodiscard]] Index placeOf(Index half) const { return place_[half]; }
-    /// The next on the way around the face to its left.
-    [[nodiscard]] Index next(Index half) const {
-        const Index back = twin(half);
-        const std::span<const Index> about = leaving(source(back));
-        return about[place_[back] == 0 ? about.size() - 1 : place_[back] - 1];
-    }
-
-    /// For each of these points the line right below the place just to the left of it, or kNone.
-    /// \pre no line that ends at such a point comes from the left. O((n + points) log n)
-    [[nodiscard]] std::vector<Index> linesBelow(const std::vector<Index>& vertices) const;
-
-  private:
-    [[nodiscard]] bool isAbove(Index line, Index other) const;
-    [[nodiscard]] bool isAbove(Point p, Index line) const;
-    void sweepBelow(const std::vector<Index>& vertices, std::vector<Index>& below) const;
-
-    const std::vector<Point>& points_;
-    const std::vector<Line>& lines_;
-    std::vector<std::size_t> first_;  // of the half-edges that leave each point
-    std::vector<Index> order_;
-    std::vector<Index> place_;
-};
-
 /// A part of the lattice.
 struct Cell {
     Box box;                        ///< cells do not overlap and cover all points
@@ -190,7 +138,7 @@ struct EdgeLabels {
 
 /// Labels of the edges, which are merged() and meet at common ends only; the outside of everything
 /// is {0, 0, 0}. A walk around all points, along which the set of layers that hold the place is
-/// kept. O(layers + edges and what is in their sets), and PlaneGraph::linesBelow for the
+/// kept. O(layers + edges and what is in their sets), and plane::Graph::linesBelow for the
 /// components.
 std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
                                  const std::vector<Edge>& edges, const SetStore& sets);

@@ -244,7 +244,7 @@ TEST(Cells, coverPointsAndEdges) {
 TEST(PlaneGraph, linesBelowByScanAndBySweep) {
     // Shelves above each other, and points beside them.
     std::vector<Point> points;
-    std::vector<Line> lines;
+    std::vector<plane::Line> lines;
     for (std::int32_t i = 0; i < 40; ++i) {
         points.push_back({-10 - i, 10 * i});
         points.push_back({10 + 3 * i, 10 * i + 3});
@@ -257,7 +257,7 @@ TEST(PlaneGraph, linesBelowByScanAndBySweep) {
         asked.push_back(static_cast<Index>(points.size()));
         points.push_back({200, i});
     }
-    const PlaneGraph graph(points, lines);
+    const plane::Graph<Point> graph(points, lines);
     const std::vector<Index> below = graph.linesBelow(asked);
     for (std::size_t k = 0; k < asked.size(); ++k) {
         EXPECT_EQ(below[k], graph.linesBelow({asked[k]})[0]);
@@ -270,9 +270,9 @@ TEST(PlaneGraph, linesBelowOfRandomDrawings) {
     for (int round = 0; round < 30; ++round) {
         Drawing drawing = randomDrawing(random, 5, 8, 5 << (round % 6));
         drawing.snap();
-        std::vector<Line> lines;
+        std::vector<plane::Line> lines;
         for (const Edge& e : drawing.edges) lines.push_back({e.from, e.to});
-        const PlaneGraph graph(drawing.table.points(), lines);
+        const plane::Graph<Point> graph(drawing.table.points(), lines);
         std::vector<Index> asked;
         for (Index v = 0; v < graph.vertices(); ++v) {
             const auto about = graph.leaving(v);

@@ -189,9 +189,11 @@ std::vector<Region> boundedFaces(const WeldedLines& lines) {
 
 std::vector<Region> boundedFaces(std::span<const Segment2> lines,
                                  std::span<const Segment2> passages) {
-    if (auto faces = tracedFaces(lines, passages)) return std::move(*faces);
-    mustCrossRarely(lines, "wall lines", "end them where they meet");
-    return overlayFaces(lines, passages);
+    std::vector<LinePiece> all = linePieces(lines);
+    all.reserve(lines.size() + passages.size());
+    for (const Segment2& passage : passages)
+        all.push_back({passage, static_cast<std::uint32_t>(all.size()), 0, 0, true});
+    return facesOf(std::move(all), {"wall lines", "end them where they meet"});
 }
 
 }  // namespace ispace

@@ -27,8 +27,8 @@ struct WeldedLines {
 };
 WeldedLines weld(std::span<const Segment2> lines);
 
-/// The bounded faces into which lines divide the floor, exactly: by a walk along the lines where
-/// they meet at common ends only, else from an arrangement (CGAL). Both give the same.
+/// The bounded faces into which lines divide the floor: exact where lines meet at common ends only,
+/// else with crossings rounded to doubles.
 ///
 /// Lines may cross, overlap and dangle. A face's outline is the outer boundary of an open
 /// connected piece of the floor; its holes enclose whatever lies within. Dangling and isolated

@@ -150,7 +150,7 @@ class LineFinder {
 SightMesh::SightMesh(std::span<const Segment2> all_lines) : in() {
     std::vector<Segment2> lines(all_lines.begin(), all_lines.end());
     for (auto& [a, b] : lines) a = withinSight(a), b = withinSight(b);
-    const std::vector<LinePiece> pieces = piecesOf(lines);
+    const std::vector<LinePiece> pieces = noded(linePieces(lines));
     std::vector<Index> names;
     lines.clear();
     names.reserve(pieces.size());

@@ -207,14 +207,16 @@ class RoomChooser {
         Trials(const RoomChooser& chooser, const Ways& ways) : chooser_(chooser), ways_(ways) {
             std::vector<Segment2> all = chooser.lines_;
             all.insert(all.end(), ways.lines.begin(), ways.lines.end());
-            const WeldedLines cut = cutAtCrossings(all);
+            std::vector<LinePiece> cut = noded(linePieces(all));
+            std::stable_sort(cut.begin(), cut.end(), [](const LinePiece& p, const LinePiece& q) {
+                return p.line < q.line;
+            });
             const std::size_t walls = chooser.lines_.size();
             std::vector<Segment2> lines, closings;
             std::vector<std::size_t> needs;
-            for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
-                const std::size_t source = cut.source[i];
-                (source < walls ? lines : closings).push_back(cut.pieces[i]);
-                if (source >= walls) needs.push_back(source - walls + 1);
+            for (const LinePiece& piece : cut) {
+                (piece.line < walls ? lines : closings).push_back(piece.segment);
+                if (piece.line >= walls) needs.push_back(piece.line - walls + 1);
             }
             pieces_ = PlanFaces::weldedPieces(lines, closings);
             for (const std::size_t closing : pieces_.closing_of) needs_.push_back(needs[closing]);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "geom/arrangement.h"
 #include "geom/boolean.h"
 #include "geom/planar_map.h"
 #include "geom/pose.h"
+#include "geom/test_arrangement.h"
 #include "geom/test_curves.h"
 
 namespace ispace {
@@ -18,41 +18,56 @@ void append(Lines& lines, const Polygon& curve) {
     forEachEdge(curve, [&](const Segment2& e) { lines.push_back(e); });
 }
 
-/// Both routes, the same to the last bit; returns the faces.
+/// The faces, the same to the last bit as those of an exact arrangement.
 std::vector<Region> facesByBoth(const Lines& lines, const Lines& passages = {}) {
-    const auto traced = tracedFaces(lines, passages);
-    auto arranged = overlayFaces(lines, passages);
-    if (!traced) {
-        ADD_FAILURE() << "not traced";
-        return arranged;
+    const auto faces = boundedFaces(lines, passages);
+    const auto exact = test::exactFaces(lines, passages);
+    EXPECT_EQ(faces.size(), exact.size());
+    for (std::size_t i = 0; i < std::min(faces.size(), exact.size()); ++i) {
+        EXPECT_EQ(faces[i].outline, exact[i].outline);
+        EXPECT_EQ(faces[i].holes, exact[i].holes);
     }
-    EXPECT_EQ(traced->size(), arranged.size());
-    for (std::size_t i = 0; i < std::min(traced->size(), arranged.size()); ++i) {
-        EXPECT_EQ((*traced)[i].outline, arranged[i].outline);
-        EXPECT_EQ((*traced)[i].holes, arranged[i].holes);
-    }
-    return arranged;
+    return faces;
 }
 
-TEST(TracedFaces, NothingFromNothing) {
+TEST(Faces, NothingFromNothing) {
     EXPECT_TRUE(facesByBoth({}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {0, 0}}}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}}).empty());
     EXPECT_TRUE(facesByBoth({{{0, 0}, {1, 0}}, {{1, 0}, {0, 0}}, {{1, 0}, {2, 1}}}).empty());
 }
 
-TEST(TracedFaces, LeavesLinesThatMeetElsewhereToTheArrangement) {
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 2}}, {{0, 2}, {2, 0}}}));   // cross
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {1, 1}}}));   // touch
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{1, 0}, {3, 0}}}));   // overlap
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{0, 0}, {3, 0}}}));   // from a common end
-    EXPECT_FALSE(tracedFaces(Lines{{{-1, 0}, {2, 0}}, {{2, 0}, {0, 0}}}));  // to a common end
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {0, 2}}, {{0, 1}, {0, 3}}}));   // upright
-    EXPECT_FALSE(tracedFaces(Lines{{{0, 0}, {9, 0}}}, Lines{{{3, 0}, {6, 0}}}));  // a passage
-    EXPECT_TRUE(tracedFaces(Lines{{{0, 0}, {2, 0}}, {{2, 0}, {3, 0}}, {{0, 0}, {-1, 0}}}));
+TEST(Faces, OfLinesThatMeetElsewhereThanAtEnds) {
+    Lines lines = test::edgesOf(test::box(0, 0, 4, 4));
+    const auto with = [&lines](const Lines& more) {
+        Lines all = lines;
+        all.insert(all.end(), more.begin(), more.end());
+        return facesByBoth(all).size();
+    };
+    EXPECT_EQ(with({{{0, 0}, {4, 4}}, {{0, 4}, {4, 0}}}), 4U) << "cross";
+    EXPECT_EQ(with({{{0, 2}, {4, 2}}, {{1, 2}, {1, 5}}}), 3U) << "touch";
+    EXPECT_EQ(with({{{0, 1}, {3, 1}}, {{2, 1}, {6, 1}}}), 2U) << "overlap";
+    EXPECT_EQ(with({{{0, 1}, {3, 1}}, {{0, 1}, {4, 1}}}), 2U) << "from a common end";
+    EXPECT_EQ(with({{{-1, 1}, {4, 1}}, {{4, 1}, {2, 1}}}), 2U) << "to a common end";
+    EXPECT_EQ(with({{{1, 0}, {1, 3}}, {{1, 2}, {1, 4}}}), 2U) << "upright";
 }
 
-TEST(TracedFaces, IslandsBridgesAndAntennas) {
+TEST(Faces, OfRandomLinesAreThoseOfAnExactArrangementButForRounding) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> place(-10, 10);
+    for (int run = 0; run < 40; ++run) {
+        Lines lines;
+        for (int i = 0; i < 5 + 2 * run; ++i)
+            lines.push_back({{place(random), place(random)}, {place(random), place(random)}});
+        const auto faces = boundedFaces(lines, {});
+        const auto exact = test::exactFaces(lines);
+        ASSERT_EQ(faces.size(), exact.size());
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            EXPECT_NEAR(faces[i].area(), exact[i].area(), 1e-12);
+    }
+}
+
+TEST(Faces, IslandsBridgesAndAntennas) {
     Lines lines = test::edgesOf(test::box(0, 0, 8, 6));
     append(lines, test::box(3, 2, 5, 4));
     lines.push_back({{8, 6}, {9, 7}});  // antenna outside
@@ -67,7 +82,7 @@ TEST(TracedFaces, IslandsBridgesAndAntennas) {
     EXPECT_EQ(totalArea(faces), 49);
 }
 
-TEST(TracedFaces, CurvesThatTouchAtPoints) {
+TEST(Faces, CurvesThatTouchAtPoints) {
     Lines lines = test::edgesOf({{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}});
     append(lines, {{2, 2}, {2.5, 2.2}, {2.5, 1.8}});
     append(lines, {{2, 2}, {3, 2.5}, {3.5, 2}, {3, 1.5}});
@@ -76,7 +91,7 @@ TEST(TracedFaces, CurvesThatTouchAtPoints) {
     EXPECT_EQ(totalArea(faces), 8);
 }
 
-TEST(TracedFaces, IslandsUnderSlopesAndUprightLines) {
+TEST(Faces, IslandsUnderSlopesAndUprightLines) {
     // Islands whose leftmost vertex lies over, under and beside vertices of what is around them.
     Lines lines = test::edgesOf({{0, 0}, {4, -3}, {8, 0}, {8, 6}, {4, 9}, {0, 6}});
     for (const double x : {1.0, 4.0, 6.0}) {
@@ -90,7 +105,7 @@ TEST(TracedFaces, IslandsUnderSlopesAndUprightLines) {
     EXPECT_EQ(faces.front().holes.size(), 9U);
 }
 
-TEST(TracedFaces, PixelMaps) {
+TEST(Faces, PixelMaps) {
     std::mt19937_64 random(21);
     for (int round = 0; round < 40; ++round) {
         const test::PixelMap map(random, 40, 30, 0.3 + 0.01 * round);
@@ -98,7 +113,7 @@ TEST(TracedFaces, PixelMaps) {
     }
 }
 
-TEST(TracedFaces, RandomTrianglesOfALattice) {
+TEST(Faces, RandomTrianglesOfALattice) {
     // Edges of a lattice with diagonals, some left out, turned and scaled: islands, antennas,
     // bridges and vertices of every degree.
     std::mt19937_64 random(22);
@@ -190,16 +205,15 @@ TEST(Passages, JoinFacesWhereLinesCross) {
     EXPECT_EQ(totalArea(faces), 9);
 }
 
-TEST(TracedFaces, CrowdsAreLeftToTheArrangementInTime) {
+TEST(Faces, OfCrowdsInTime) {
     // Ten thousand lines through one cell: not compared pair by pair.
     Lines lines;
     for (int i = 0; i < 10000; ++i) lines.push_back({{0, i * 1e-3}, {1000, i * 1e-3}});
     lines.push_back({{0, 0}, {0, 1000}});
-    EXPECT_FALSE(tracedFaces(lines));
     EXPECT_TRUE(boundedFaces(lines, {}).empty());
 }
 
-TEST(TracedFaces, CombsAreTracedThoughTheyCrowdTheCells) {
+TEST(Faces, OfCombsThatCrowdTheCells) {
     // Teeth an inch apart along a long wall, and a room far away.
     std::vector<Segment2> lines;
     for (int i = 0; i < 20000; ++i) {
@@ -208,10 +222,9 @@ TEST(TracedFaces, CombsAreTracedThoughTheyCrowdTheCells) {
     }
     for (const Segment2& edge : test::edgesOf(test::box(9000, 9000, 9004, 9003)))
         lines.push_back(edge);
-    const auto faces = tracedFaces(lines, {});
-    ASSERT_TRUE(faces.has_value()) << "left to the arrangement";
-    ASSERT_EQ(faces->size(), 1U);
-    EXPECT_NEAR((*faces)[0].area(), 12, 1e-6);
+    const auto faces = boundedFaces(lines, {});
+    ASSERT_EQ(faces.size(), 1U);
+    EXPECT_NEAR(faces[0].area(), 12, 1e-6);
 }
 
 }  // namespace
