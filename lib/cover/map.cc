@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "cover/map_parts.h"
+#include "draw/axis.h"
 
 namespace ispace {
 
@@ -100,6 +101,26 @@ void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     picture.text({page.margin, page.subtitle_base}, fitText(line, width, style), style);
 }
 
+/// The plan with what is seen between its floor and what stands on it.
+void drawPlanSeen(Picture& picture, const MapPicture& map) {
+    PlanDrawing plan(picture, map.scene,
+                     {map.view, map.em, map.limits(), map.coverage.target.height, true});
+    plan.drawFloor();
+    {
+        const std::vector<Polygon> indoor = curvesOf(map.scene.environment.indoor());
+        const PlanLayer layer(plan, "coverage", indoor);
+        drawCoverage(picture, map);
+    }
+    {
+        const PlanLayer layer(plan, "fields of view");
+        drawViews(picture, map);
+    }
+    plan.drawThings();
+    plan.drawWalls();
+    plan.drawOpenings();
+    plan.drawZones();
+}
+
 }  // namespace
 
 std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
@@ -114,15 +135,20 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     const Page page = layOut(map);
     map.view = page.view;
     Picture picture(page.width, std::ceil(page.height));
-    drawHead(picture, map, page);
-    drawPlan(picture, map);
+    picture.describe(options.title.empty() ? "coverage" : options.title, "");
+    drawPlanSeen(picture, map);
     const double rim = page.margin - 0.2 * page.em;
     const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
                      {page.plan.high.x + rim, page.plan.high.y + rim}};
     drawTrace(picture, map, frame);
     drawMarks(picture, map, frame);
+    picture.pushLayer("frame");
+    drawHead(picture, map, page);
     drawScaleBar(picture, page.scale_corner, page.scale_most, page.view.scale, page.em);
+    picture.pop();
+    picture.pushLayer("legend");
     drawLegend(picture, page.legend, page.legend_corner, page.legend_width, page.em);
+    picture.pop();
     return picture.write(options.format);
 }
 

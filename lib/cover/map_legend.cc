@@ -202,7 +202,7 @@ LegendBlock sensorsBlock(const MapPicture& map) {
         const std::string name =
             map.coverage.report.comparison ? map.coverage.report.comparison->name : "";
         LegendItem item{Sign::Sensor, {0, 0, 0, 0}, {}, name.empty() ? "the other" : name, ""};
-        item.mark = {ViewKind::Laser, Angle(), palette::kOtherSensor, true};
+        item.mark = {SensorMark::Body::Disc, Angle(), palette::kOtherSensor, true};
         item.value = countsOf(map.other->sensors);
         block.items.push_back(std::move(item));
     }
@@ -262,6 +262,7 @@ LegendBlock triedBlock(const std::vector<TriedPose>& trace) {
     return block;
 }
 
+/// What the picture shows of a scene, in the order of the legend.
 LegendBlock planBlock(const MapContents& contents, double height) {
     LegendBlock block{"Plan", {}};
     const auto add = [&block](bool shown, Sign sign, Color color, Color edge, std::string text) {
@@ -269,7 +270,9 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     };
     using namespace palette;
     add(contents.walls, Sign::Line, kWall, {}, "wall");
-    add(contents.openings, Sign::Line, kOpening, {}, "wall above, below, or glass");
+    add(contents.openings, Sign::Line, kOpening, {}, "wall above or below");
+    add(contents.doors, Sign::Line, kDoor, {}, "door");
+    add(contents.glass, Sign::Line, kGlass, {}, "window or glass");
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,
         "object at " + formatDouble(height) + " m");
     add(contents.objects, Sign::Patch, kObject, kObjectEdge, "object above or below");
@@ -279,6 +282,30 @@ LegendBlock planBlock(const MapContents& contents, double height) {
 }
 
 }  // namespace
+
+MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
+    const double height = coverage.target.height;
+    MapContents contents;
+    contents.outside = !outsideOf(scene.environment.indoor()).empty();
+    for (const Element& element : scene.environment.elements()) {
+        const std::string& keyword = element.record.keyword();
+        if (keyword == "zone") contents.zones = true;
+        if (keyword == "door") contents.doors = true;
+        for (const Sheet& sheet : element.body.sheets)
+            (!standsAt(sheet.bottom, sheet.top, height) ? contents.openings
+             : sheet.clear                              ? contents.glass
+                                                        : contents.walls) = true;
+        for (const Prism& prism : element.body.prisms) {
+            const bool stands = standsAt(prism.bottom, prism.top, height);
+            if (isWall(element))
+                (stands ? contents.walls : contents.openings) = true;
+            else
+                (stands ? contents.solids : contents.objects) = true;
+        }
+        if (!isWall(element) && !element.body.meshes.empty()) contents.objects = true;
+    }
+    return contents;
+}
 
 std::vector<std::string> mainFigures(const MapPicture& map) {
     const CoverageReport& report = map.coverage.report;

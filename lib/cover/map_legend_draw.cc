@@ -181,25 +181,4 @@ void drawLegend(Picture& picture, const LegendLayout& layout, Point2 corner, dou
     }
 }
 
-void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em) {
-    const double limit = most / page_per_metre;
-    double metres = std::pow(10, std::floor(std::log10(limit)));
-    for (const double factor : {5, 2}) {
-        if (factor * metres <= limit) {
-            metres *= factor;
-            break;
-        }
-    }
-    const double right = corner.x + metres * page_per_metre;
-    const Stroke stroke{palette::kInk, em / 8};
-    const std::vector<Point2> bar = {
-        {corner.x, corner.y - 0.4 * em}, corner, {right, corner.y}, {right, corner.y - 0.4 * em}};
-    picture.lines(std::span(&bar, 1), {stroke});
-    picture.line({corner.x + (right - corner.x) / 2, corner.y},
-                 {corner.x + (right - corner.x) / 2, corner.y - 0.25 * em},
-                 {palette::kInk, em / 12});
-    const TextStyle style{em, false, Align::Left, palette::kInk, {}};
-    picture.text({right + 0.6 * em, corner.y}, formatDouble(metres) + " m", style);
-}
-
 }  // namespace ispace

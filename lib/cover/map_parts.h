@@ -12,6 +12,7 @@
 #include "cover/map.h"
 #include "draw/palette.h"
 #include "draw/picture.h"
+#include "plan/drawing.h"
 
 namespace ispace {
 
@@ -28,7 +29,7 @@ struct MapPicture {
     [[nodiscard]] const Box2& limits() const { return coverage.target.grid.limits; }
 };
 
-// Curves for the page (map_curves.cc).
+// Curves for the page (map_floor.cc).
 
 /// The line through points that lies within `tolerance` of all of them (Douglas and Peucker).
 std::vector<Point2> thinned(const std::vector<Point2>& points, double tolerance);
@@ -70,12 +71,10 @@ Color stripeColor(const MapPicture& map, std::size_t set);
 /// Sets more than these share stripes without colours.
 constexpr std::size_t kMostStriped = 6;
 
-/// What lies in holes of the indoor region and is no room, as curves by the even-odd rule.
-std::vector<Polygon> outsideOf(const Regions& indoor);
-/// Indoor floor in the colours of coverage.
-void drawFloor(Picture& picture, const MapPicture& map);
+/// Indoor floor in the colours of coverage. In metres: a view is open.
+void drawCoverage(Picture& picture, const MapPicture& map);
 
-// Sensors (map_views.cc, map_sensors.cc).
+// Sensors (map_sensors.cc).
 
 /// The set (of Coverage::sets) to which a sensor belongs: all receivers make one.
 std::size_t setOf(const Coverage& coverage, std::size_t sensor);
@@ -87,15 +86,7 @@ Color sensorColor(const MapPicture& map, std::size_t sensor);
 /// Contours or beams. In metres: a view is open.
 void drawViews(Picture& picture, const MapPicture& map);
 
-/// Mark of a sensor: a disc for lasers, a square for rangers, a triangle for receivers.
-struct SensorMark {
-    ViewKind kind = ViewKind::Laser;
-    std::optional<Angle> heading = {};  ///< as seen, y up; none: it looks straight up or down
-    Color color = palette::kInk;
-    bool hollow = false;
-};
 SensorMark markOf(const MapPicture& map, std::size_t sensor);
-void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius);
 /// A number in a disc; its radius is kSpotRadius * em.
 constexpr double kSpotRadius = 0.62;
 void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em);
@@ -128,23 +119,20 @@ void drawChosenRing(Picture& picture, Point2 page, double radius, double em);
 /// keep within `frame` (page units).
 void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame);
 
-// Plan (map_plan.cc).
+// Legend (map_legend.cc, map_legend_draw.cc).
 
-/// What the picture shows of a scene, in the order of the legend.
+/// What the plan of a map shows, in the order of the legend.
 struct MapContents {
     bool walls = false;     ///< wall lines or bodies
-    bool openings = false;  ///< what of them lets sight pass at the height of the target
-    bool solids = false;    ///< objects that stand at the height of the target
-    bool objects = false;   ///< other objects
-    bool outside = false;   ///< holes in the indoor region
+    bool openings = false;  ///< what of them lies above or below the height of the target
+    bool doors = false;
+    bool glass = false;
+    bool solids = false;   ///< objects that stand at the height of the target
+    bool objects = false;  ///< other objects
+    bool outside = false;  ///< holes in the indoor region
     bool zones = false;
 };
 MapContents contentsOf(const Scene& scene, const Coverage& coverage);
-
-/// Everything within the plan but marks and what was tried.
-void drawPlan(Picture& picture, const MapPicture& map);
-
-// Legend (map_legend.cc, map_legend_draw.cc).
 
 struct LegendItem {
     enum class Sign {
@@ -184,9 +172,5 @@ struct LegendLayout {
 LegendLayout layOutLegend(std::vector<LegendBlock> blocks, int columns, double em);
 void drawLegend(Picture& picture, const LegendLayout& layout, Point2 corner, double width,
                 double em);
-
-/// A bar of round length (1, 2, 5 times a power of ten), at most `most` page units long, with its
-/// label; `corner` is its lower left end.
-void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em);
 
 }  // namespace ispace

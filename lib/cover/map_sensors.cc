@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors on a map: what each sees, its mark and its id; signs of what none sees.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,118 +7,82 @@
 
 #include "base/utf8.h"
 #include "cover/map_parts.h"
+#include "raster/contour.h"
 
 namespace ispace {
 
 namespace {
 
 constexpr std::size_t kCrowd = 40;  // marks and labels of more sensors are smaller
+/// Receivers make one set: what one of them hears counts for nothing alone.
+bool countsInSet(const SensorView& view) { return view.kind == ViewKind::Receiver; }
 
-bool overlap(const Box2& a, const Box2& b) {
-    return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
+constexpr std::size_t kManySensors = 2 * kSeriesColors;  // lines become finer
+
+/// Contours of what a sensor or a set sees.
+template <typename View>
+std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
+    if (view.region) return drawable(map, *view.region);
+    return drawable(map, contours(map.coverage.target.grid, view.cells));
+}
+
+void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
+                  const Stroke& line) {
+    constexpr std::size_t kMostBands = 12;  // soft rims help to tell few views apart, and hide many
+    const bool plain = map.other == nullptr && map.options.color == MapColor::Redundancy;
+    if (plain && map.coverage.sets.size() <= kMostBands) {
+        const Box2& limits = map.limits();
+        const double rim = std::min(
+            0.9 * map.em, 0.04 * map.view.scale * std::min(limits.width(), limits.depth()));
+        picture.pushClip(std::span(curves));
+        picture.area(curves, {Stroke{line.color.faded(0.16), rim}});
+        picture.pop();
+    }
+    // A pale rim lifts the line off stripes.
+    if (map.other == nullptr && map.options.color == MapColor::Sensor)
+        picture.area(curves, {Stroke{palette::kWhite.faded(0.7), line.width + map.em / 9}});
+    picture.area(curves, {line});
+}
+
+/// The beams on the plan, from above: each to what it meets, or to the maximum range. Where the
+/// ends of neighbours would lie too near each other, every second one is left out, or three of
+/// four, ...
+std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
+    const Laser& laser = map.scene.lasers[view.index].laser;
+    const double least_gap = std::max(2.0, map.em / 6) / map.view.scale;
+    const Point3 origin = view.pose.position;
+    std::vector<Segment2> beams;
+    for (std::size_t k = 0; k < view.beams.size(); ++k) {
+        const double range = std::min<double>(view.beams[k], view.max_range);
+        const Vec3 way = range * view.pose.beam(laser.bearing(static_cast<int>(k)));
+        const double gap = length(Vec2{way.x, way.y}) * std::abs(laser.step.radians());
+        std::size_t stride = 1;
+        while (static_cast<double>(stride) * gap < least_gap && stride < view.beams.size())
+            stride *= 2;
+        if (k % stride != 0) continue;
+        const Segment2 beam{origin.onFloor(), (origin + way).onFloor()};
+        if (const auto part = clipped(beam, map.limits())) beams.push_back(*part);
+    }
+    return beams;
+}
+
+/// A sweep has the beams of many scans: they would hide all.
+bool showsBeams(const MapPicture& map, const SensorView& view) {
+    return map.options.fans == FanStyle::Beams && view.kind == ViewKind::Laser &&
+           !view.beams.empty() && map.scene.lasers[view.index].laser.sweep == SweepAxis::None;
+}
+
+void drawBeams(Picture& picture, const MapPicture& map, std::size_t sensor) {
+    Stroke line = sensorStroke(map, sensor);
+    line.dashes.clear();
+    line.width = map.em / 24;
+    line.color = line.color.faded(0.6);
+    picture.lines(beamsOf(map, map.coverage.sensors[sensor]), {line});
 }
 
 bool contains(const Box2& outer, const Box2& inner) {
     return outer.low.x <= inner.low.x && inner.high.x <= outer.high.x &&
            outer.low.y <= inner.low.y && inner.high.y <= outer.high.y;
-}
-
-Box2 boxAround(Point2 p, double half_width, double half_height) {
-    return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
-}
-
-/// Puts signs and labels where they cover least. All on the page.
-class LabelPlacer {
-  public:
-    LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {}
-
-    /// A mark and its arrow, which nothing should cover.
-    void addMark(Point2 page, std::optional<Angle> heading) {
-        marks_.push_back(boxAround(page, 0.45 * em_, 0.45 * em_));
-        if (!heading) return;
-        const Vec2 forward = em_ * unitVector(*heading);
-        marks_.push_back(boxAround({page.x + forward.x, page.y - forward.y}, 0.4 * em_, 0.4 * em_));
-    }
-
-    /// Place for the sign of a spot: its own, or the next one around it that is free.
-    Point2 placeSign(Point2 page) {
-        const double half = (kSpotRadius + 0.1) * em_;
-        Point2 best = page;
-        double least = costOf(boxAround(page, half, half));
-        for (const double away : {1.2, 2.4}) {
-            for (int turn = 0; turn < 8 && least > 0; ++turn) {
-                const Vec2 off = away * em_ * unitVector(Angle::degrees(45.0 * turn));
-                const Point2 place{page.x + off.x, page.y - off.y};
-                if (const double cost = costOf(boxAround(place, half, half)) + away; cost < least) {
-                    least = cost;
-                    best = place;
-                }
-            }
-        }
-        labels_.push_back(boxAround(best, half, half));
-        return best;
-    }
-
-    /// Middle of the label of a mark, or nothing where it would cover another label, or another
-    /// mark in a crowd. Of the places around the mark, those behind the heading come first.
-    std::optional<Point2> placeLabel(Point2 page, Angle heading, double text_width,
-                                     double text_size, bool crowd) {
-        constexpr std::array<double, 8> kTurns = {180, 135, -135, 90, -90, 45, -45, 0};
-        const double half_width = text_width / 2 + 0.15 * em_, half_height = 0.55 * text_size;
-        std::optional<Point2> best;
-        double least = crowd ? 1 : 100;  // of places that are worse than no label
-        for (std::size_t i = 0; i < kTurns.size(); ++i) {
-            const Vec2 away = unitVector(heading + Angle::degrees(kTurns[i]));
-            const Point2 middle{page.x + away.x * (0.6 * em_ + half_width),
-                                page.y - away.y * (0.6 * em_ + half_height)};
-            const Box2 box = boxAround(middle, half_width, half_height);
-            if (const double cost = costOf(box) + static_cast<double>(i) / 10; cost < least) {
-                least = cost;
-                best = middle;
-            }
-        }
-        if (best) labels_.push_back(boxAround(*best, half_width, half_height));
-        return best;
-    }
-
-    /// True if nothing else lies in the box, which is then taken.
-    bool take(const Box2& box) {
-        if (costOf(box) > 0) return false;
-        labels_.push_back(box);
-        return true;
-    }
-
-  private:
-    [[nodiscard]] double costOf(const Box2& box) const {
-        double cost = contains(frame_, box) ? 0 : 100;
-        for (const Box2& label : labels_) cost += overlap(label, box) ? 100 : 0;
-        for (const Box2& mark : marks_) cost += overlap(mark, box) ? 5 : 0;
-        return cost;
-    }
-
-    Box2 frame_;
-    double em_;
-    std::vector<Box2> marks_, labels_;
-};
-
-/// The mark's body about the origin, y up.
-Polygon bodyOf(ViewKind kind, double radius) {
-    if (kind == ViewKind::Ranger) {
-        const double half = 0.9 * radius;
-        return {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
-    }
-    const double tip = 1.35 * radius, side = std::sqrt(0.75) * tip;
-    return {{0, tip}, {-side, -tip / 2}, {side, -tip / 2}};
-}
-
-void fillBody(Picture& picture, ViewKind kind, double radius, Color color, double rim = 0) {
-    if (kind == ViewKind::Laser) {
-        picture.circle({}, radius + rim, {color});
-        return;
-    }
-    const Polygon body = bodyOf(kind, radius);
-    if (rim > 0) picture.area(body, {Stroke{color, 2 * rim}});
-    picture.area(body, {color});
 }
 
 Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
@@ -143,7 +108,10 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
         };
         const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
         const bool on_top = std::any_of(sensors.begin(), end, is_here);
+        picture.pushGroup(hollow ? "" : sensors[i].id,
+                          sensors[i].id + ": " + std::string(nameOf(sensors[i].kind)));
         drawSensorMark(picture, page, mark, on_top ? 0.5 * radius : radius);
+        picture.pop();
         places.addMark(page, mark.heading);
     }
 }
@@ -189,33 +157,57 @@ void drawZoneNames(Picture& picture, const MapPicture& map, LabelPlacer& places)
 
 }  // namespace
 
-SensorMark markOf(const MapPicture& map, std::size_t sensor) {
-    constexpr double kSteep = 0.02;  // of a direction's level part: no more than a degree
-    const SensorView& view = map.coverage.sensors[sensor];
-    const Vec3 forward = view.pose.beam(Angle());
-    SensorMark mark{view.kind, {}, sensorColor(map, sensor)};
-    if (length(Vec2{forward.x, forward.y}) > kSteep)
-        mark.heading = directionOf(forward.x, forward.y);
-    return mark;
+std::size_t setOf(const Coverage& coverage, std::size_t sensor) {
+    if (!countsInSet(coverage.sensors[sensor])) return sensor;
+    const auto first = std::find_if(coverage.sensors.begin(), coverage.sensors.end(), countsInSet);
+    return static_cast<std::size_t>(first - coverage.sensors.begin());
 }
 
-void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius) {
-    using palette::kWhite;
-    picture.pushView({1, {0, 0}, page});
-    if (mark.heading) {
-        const Vec2 forward = unitVector(*mark.heading), left = perpendicular(forward);
-        const Point2 center, tip = center + 3.4 * radius * forward;
-        const Point2 neck = center + 1.9 * radius * forward;
-        const Polygon head = {tip, neck + 0.85 * radius * left, neck - 0.85 * radius * left};
-        picture.line(center, neck, {kWhite, radius});
-        picture.area(head, {Stroke{kWhite, 0.6 * radius}});
-        picture.line(center, neck, {mark.color, 0.5 * radius});
-        picture.area(head, {mark.color});
+Color sensorColor(const MapPicture& map, std::size_t sensor) {
+    return map.other != nullptr ? palette::kInk : setColor(map, setOf(map.coverage, sensor));
+}
+
+Stroke sensorStroke(const MapPicture& map, std::size_t sensor) {
+    const double em = map.em;
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    const bool many = map.coverage.sets.size() > kManySensors;
+    if (map.other != nullptr) return {palette::kInk.faded(many ? 0.3 : 0.55), em / 16};
+    const Color color = sensorColor(map, sensor);
+    Stroke stroke{color.faded(0.95), em / 9};
+    if (many) stroke = {color.faded(sensors.size() > 3 * kManySensors ? 0.4 : 0.6), em / 18};
+    const std::size_t set = setOf(map.coverage, sensor);
+    std::size_t dashes = set / kSeriesColors % 2;
+    if (map.options.color == MapColor::Sensor) dashes = set % 4;
+    if (dashes == 1) stroke.dashes = {em / 2, em / 4};
+    if (dashes == 2) stroke.dashes = {em / 6, em / 4};
+    if (dashes == 3) stroke.dashes = {0.8 * em, em / 4, em / 6, em / 4};
+    return stroke;
+}
+
+void drawViews(Picture& picture, const MapPicture& map) {
+    const std::vector<SensorView>& sensors = map.coverage.sensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const SensorView& view = sensors[i];
+        const Stroke line = sensorStroke(map, i);
+        picture.pushGroup("", "field of view of " + view.id);
+        if (countsInSet(view)) {
+            const Color faint = line.color.faded(0.5 * line.color.alpha);
+            picture.area(contoursOf(map, view), {Stroke{faint, map.em / 24}});
+        } else if (showsBeams(map, view)) {
+            drawBeams(picture, map, i);
+        } else {
+            drawContours(picture, map, contoursOf(map, view), line);
+        }
+        picture.pop();
     }
-    fillBody(picture, mark.kind, radius, kWhite, 0.3 * radius);
-    fillBody(picture, mark.kind, radius, mark.color);
-    if (mark.hollow) fillBody(picture, mark.kind, 0.5 * radius, kWhite);
-    picture.pop();
+    if (!sensors.empty() && countsInSet(sensors.back()))
+        drawContours(picture, map, contoursOf(map, map.coverage.sets.back()),
+                     sensorStroke(map, sensors.size() - 1));
+}
+
+SensorMark markOf(const MapPicture& map, std::size_t sensor) {
+    const SensorView& view = map.coverage.sensors[sensor];
+    return {bodyOfMark(nameOf(view.kind)), headingOf(view.pose), sensorColor(map, sensor)};
 }
 
 void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em) {
@@ -243,7 +235,8 @@ void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
     drawSensors(picture, map, frame, false, places);
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
         const Point2 page = map.view * map.coverage.report.unseen[i].place;
-        drawSpotSign(picture, places.placeSign(page), std::to_string(i + 1), map.em);
+        drawSpotSign(picture, places.placeSign(page, kSpotRadius * map.em), std::to_string(i + 1),
+                     map.em);
     }
     drawIds(picture, map, frame, places);
     drawZoneNames(picture, map, places);

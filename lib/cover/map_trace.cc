@@ -14,14 +14,6 @@ namespace {
 /// Colours that are told apart when places are drawn: all of one make one path.
 constexpr int kLevels = 32;
 
-/// The level part of where a pose looks, if there is one.
-std::optional<Angle> headingOf(const Pose3& pose) {
-    constexpr double kSteep = 0.02;  // as of the marks of sensors
-    const Vec3 forward = pose.beam(Angle());
-    if (length(Vec2{forward.x, forward.y}) <= kSteep) return std::nullopt;
-    return directionOf(forward.x, forward.y);
-}
-
 /// Dots of less than this radius (page units) have neither tick nor rim: nobody would see them.
 constexpr double kLeastTicked = 2;
 

@@ -13,9 +13,9 @@
 #include "base/number.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
-#include "plan/element_lines.h"
+#include "plan/elements.h"
 #include "plan/footprint.h"
-#include "plan/slice_owners.h"
+#include "plan/elements.h"
 
 namespace ispace {
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "geom/boolean.h"
-#include "plan/slice_owners.h"
+#include "plan/elements.h"
 #include "layout/test_layout.h"
 
 namespace ispace {

@@ -12,7 +12,7 @@
 
 #include "base/number.h"
 #include "env/material.h"
-#include "plan/display_color.h"
+#include "plan/elements.h"
 #include "io/model.h"
 #include "io/model_triangles.h"
 

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/json_writer.h"
 #include "base/number.h"
-#include "plan/slice_owners.h"
+#include "plan/elements.h"
 #include "raster/cell_raster.h"
 
 namespace ispace {

@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "draw/axis.h"
+#include "draw/palette.h"
 #include "draw/picture.h"
 
 namespace ispace {
@@ -15,8 +17,7 @@ namespace {
 
 constexpr int kLeastWidth = 200, kMostWidth = 12000;
 
-constexpr Color kInk = Color::rgb(0x1F2328);
-constexpr Color kFaintInk = Color::rgb(0x57606A);
+using palette::kFaintInk, palette::kInk;
 constexpr Color kGridLine = Color::rgb(0xE1E4E8);
 /// Lets the grid through.
 constexpr Color kGap = Color::rgb(0x0072B2).faded(0.14);
@@ -24,14 +25,6 @@ Color valueColor() { return seriesColor(3); }
 Color boundColor() { return seriesColor(0); }
 
 std::string percent(double share, int decimals) { return formatFixed(100 * share, decimals) + "%"; }
-
-/// The least of 1, 2, 5, 10, 20, 50, ... that is at least `least`.
-double roundStep(double least) {
-    const double power = std::pow(10, std::floor(std::log10(least)));
-    for (const double factor : {1, 2, 5})
-        if (factor * power >= least * (1 - 1e-9)) return factor * power;
-    return 10 * power;
-}
 
 /// A stretch of an axis with its ticks, all whole multiples of `step`.
 struct Axis {

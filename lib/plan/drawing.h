@@ -1,111 +1,110 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/io only: a plan as things to draw, between the scene and its pictures (plan_*.cc).
+// lib/plan: what a scene looks like from above, as shapes of a picture. Uses layout, draw, raster.
 #pragma once
 
-#include <array>
-#include <optional>
+#include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "draw/palette.h"
 #include "draw/picture.h"
 #include "geom/box.h"
 #include "layout/scene.h"
+#include "plan/elements.h"
+#include "plan/marks.h"
 
 namespace ispace {
 
-/// What belongs together, in the order of drawing. Fields of view lie below all that stands.
-enum class PlanLayer {
-    Floor,
-    Grid,
-    Zones,
-    Views,
-    Objects,
-    Walls,
-    Openings,
-    Infra,
-    Robots,
-    Sensors,
-    Labels,
-    Frame
-};
-constexpr std::array<std::string_view, 12> kPlanLayers = {
-    "floor",           "grid",  "zones",  "fields of view", "objects", "walls",
-    "doors & windows", "infra", "robots", "sensors",        "labels",  "frame"};
-
-/// Curves, filled by the even-odd rule and stroked. Places are in metres; widths and dashes of the
-/// line are in sizes of text.
-struct DrawnPath {
-    std::vector<std::vector<Point2>> curves;
-    bool closed = true;
-    std::optional<Color> fill = {};
-    std::optional<Stroke> line = {};
+/// How a plan is drawn, and where on its page.
+struct PlanStyle {
+    PageView view = {};
+    double em = 10;    ///< size of text, page units
+    Box2 box = {};     ///< what is shown, metres: what lies outside is cut off
+    double cut = 1.2;  ///< walls are cut at this height: lower ones are seen from above
+    /// Below an overlay: things in two greys, dark where they stand at the cut, else pale and
+    /// translucent; no coverings, no fills of zones.
+    bool neutral = false;
 };
 
-/// A line of text at a place in metres; sizes are of the plan's text.
-struct DrawnText {
-    Point2 anchor;
-    std::string text;
-    double size = 1;
-    Align align = Align::Left;
-    Color color = {};
-    bool bold = false;
-    bool halo = false;
+/// The plan of a scene, drawn layer by layer in this order; an overlay lies between two of them. A
+/// new thing to draw is one function here, for all pictures.
+class PlanDrawing {
+  public:
+    PlanDrawing(Picture& picture, const Scene& scene, const PlanStyle& style);
+
+    /// Indoor floor with its coverings, holes of it that are no room.
+    void drawFloor();
+    void drawZones();
+    /// A sector about each sensor that looks aside: its bearings, not its range, which is mostly
+    /// longer than the plan can show.
+    void drawFieldsOfView();
+    /// What stands in the room, the higher on top.
+    void drawThings();
+    void drawWalls();
+    void drawOpenings();
+    /// What begins above people's heads, dashed. (A neutral plan shows it among the things.)
+    void drawOverhead();
+    void drawRobots();
+    void drawSensors();
+    /// Names of zones, of things that have room for them, of all that is placed.
+    void drawNames();
+    // Instead of all that the map at a height: free floor, then solids and sheets.
+    void drawFreeFloor(double height);
+    void drawObstacles(double height);
+
+  private:
+    friend class PlanLayer;
+    struct Thing {
+        const Element* element;
+        std::vector<PartAbove> parts;
+        Box2 box;
+        double bottom = 0, top = 0;
+        double height = 0;  ///< of its largest part, by which things are laid over each other
+    };
+    [[nodiscard]] static std::vector<Thing> thingsOf(const Environment& environment);
+    [[nodiscard]] static std::string thingTitle(const Thing& thing);
+    [[nodiscard]] bool isOverhead(const Thing& thing) const;
+    void drawThing(const Thing& thing);
+    void drawNeutralThing(const Thing& thing);
+    void drawZoneName(const Element& element, std::size_t index);
+    void drawWall(const Element& element);
+    void drawOpening(const Element& element, const ElementLines& lines);
+    void drawPlacedNames();
+
+    /// A pen so many sizes of text wide.
+    [[nodiscard]] Stroke pen(Color color, double width, std::vector<double> dashes = {}) const;
+    [[nodiscard]] double metres(double ems) const { return ems * style_.em / style_.view.scale; }
+
+    Picture& picture_;
+    const Scene& scene_;
+    PlanStyle style_;
+    std::vector<Thing> things_;  ///< the lowest first
+    double wall_pen_ = 0;        ///< of walls that are lines, in sizes of text
 };
 
-/// An element, or a part of the frame.
-struct DrawnItem {
-    PlanLayer layer = PlanLayer::Floor;
-    std::string id = {};     ///< "" for what has no name
-    std::string title = {};  ///< what it is, in words
-    std::vector<DrawnPath> paths = {};
-    std::vector<DrawnText> texts = {};
+/// A layer of the plan while it lives: in metres, cut at the plan's box or at these curves.
+class PlanLayer {
+  public:
+    PlanLayer(PlanDrawing& plan, std::string_view name);
+    PlanLayer(PlanDrawing& plan, std::string_view name, std::span<const Polygon> clip);
+    PlanLayer(const PlanLayer&) = delete;
+    PlanLayer& operator=(const PlanLayer&) = delete;
+    ~PlanLayer();
+
+  private:
+    Picture& picture_;
 };
 
-/// Everything on the page, in the order of drawing within each layer.
-struct PlanDrawing {
-    double width = 0, height = 0;  ///< of the page: pixels or millimetres
-    double em = 0;                 ///< size of text on it
-    PageView view;                 ///< metres to the page
-    Box2 box;                      ///< what the plan shows, metres
-    Regions indoor;                ///< fields of view are drawn on it alone
-    std::vector<DrawnItem> items = {};
-
-    /// Size of text in metres of the plan.
-    [[nodiscard]] double metres() const { return em / view.scale; }
-};
-
-/// Colours of what is no material.
-namespace plan_colors {
-constexpr Color kInk = Color::rgb(0x1F2328);
-constexpr Color kFaintInk = Color::rgb(0x656D76);
-constexpr Color kPaper = Color::rgb(0xFFFFFF);
-constexpr Color kIndoor = Color::rgb(0xF8F4EC);
-constexpr Color kGrid = Color::rgb(0x7A8794);
-constexpr Color kWall = Color::rgb(0x2B3036);
-constexpr Color kLowWall = Color::rgb(0xB9BDC1);
-constexpr Color kWallEdge = Color::rgb(0x24292F);
-constexpr Color kGlass = Color::rgb(0x2F7EA8);
-constexpr Color kDoor = Color::rgb(0x7A5230);
-constexpr Color kOutside = Color::rgb(0xD5D7DA);
-constexpr Color kSensor = Color::rgb(0xB3261E);
-}  // namespace plan_colors
-
-/// What the plan shows: the limits with walls' thickness, and what stands near them.
+/// What a plan shows: the limits with walls' thickness, and what stands near them.
 Box2 planBox(const Scene& scene);
 
-/// A circle of chords, counter-clockwise; a part of it from one angle to the next.
-std::vector<Point2> planCircle(Point2 center, double radius);
-std::vector<Point2> planArc(Point2 center, double radius, Angle from, Angle to);
+/// What lies in holes of the indoor region and is no room, as curves by the even-odd rule.
+std::vector<Polygon> outsideOf(const Regions& indoor);
 
-// Each adds the items of its layers; all count on width to box of the drawing.
-void addRoom(PlanDrawing& plan, const Scene& scene);
-void addThings(PlanDrawing& plan, const Scene& scene);
-void addPlaced(PlanDrawing& plan, const Scene& scene);
-void addObstacles(PlanDrawing& plan, const Environment& environment, double height);
-/// Grid, coordinates, title, bar of scale and what is said beside it.
-void addFrame(PlanDrawing& plan, const std::string& title, const std::vector<std::string>& notes);
-
-std::string writePlan(const PlanDrawing& plan, PictureFormat format, const std::string& title);
+/// A room's own walls count as walls, not as things in it.
+bool isWall(const Element& element);
+/// What of a wall stops sight at this height; the rest is an open door's lintel, a sill, glass.
+bool stopsAt(const Sheet& sheet, double height);
+bool standsAt(double bottom, double top, double height);
 
 }  // namespace ispace

@@ -10,10 +10,10 @@
 namespace ispace {
 
 struct PlanOptions {
-    PictureFormat format = PictureFormat::Png;  ///< Png or Svg
-    std::optional<double> slice = {};           ///< only the obstacle map at this height, in metres
-    int width = 1200;                           ///< of a PNG, in pixels
-    std::string title;                          ///< e.g. base name of ENV; "" for none
+    PictureFormat format = PictureFormat::Png;
+    std::optional<double> slice = {};  ///< only the obstacle map at this height, in metres
+    int width = 1200;                  ///< of a PNG, in pixels
+    std::string title;                 ///< e.g. base name of ENV; "" for none
 };
 
 /// The scene from above, as a plan: floor, zones, walls (cut as plans are, with their thickness),
@@ -23,11 +23,10 @@ struct PlanOptions {
 ///
 /// With `slice` the obstacle map at that height in the same frame: free floor, solids, sheets.
 ///
-/// SVG: to scale, on paper of A3 or less at the largest usual scale that fits (or smaller scales
-/// for plans of a town); one unit of the picture is a millimetre of paper; a layer per type, as
-/// Inkscape knows them; every element a group with its id (characters XML forbids there are `_`)
-/// and a title. Equal scenes give equal bytes. O(n log n).
-/// \throws UsageError for Pdf and for a width that cannot be laid out (200 to 12000)
+/// SVG and PDF: to scale, on paper of A3 or less at the largest usual scale that fits (or smaller
+/// scales for plans of a town), in millimetres. SVG has a layer a type, as Inkscape knows them, and
+/// every element is a group with its id and a title. Equal scenes give equal bytes. O(n log n).
+/// \throws UsageError for a width that cannot be laid out (200 to 12000)
 std::string drawPlan(const Scene& scene, const PlanOptions& options);
 
 }  // namespace ispace

@@ -2,124 +2,52 @@
 // The room of a plan: floor, zones, walls, doors and windows.
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <map>
 
 #include "base/number.h"
-#include "plan/display_color.h"
-#include "plan/element_lines.h"
+#include "geom/boolean.h"
+#include "geom/predicates.h"
 #include "plan/drawing.h"
 
 namespace ispace {
 
 namespace {
 
-using namespace plan_colors;
-
-/// Plans show walls cut at this height: what is lower is seen from above, what is higher not.
-constexpr double kCut = 1.2;
-
-bool isRoom(const Element& element) {
-    const RecordType type = element.record.schema().type;
-    return type == RecordType::Wall || type == RecordType::Space;
-}
+using namespace palette;
 
 bool isOpening(const Element& element) {
     const std::string& keyword = element.record.keyword();
     return keyword == "door" || keyword == "window";
 }
 
-std::string metres(double value) { return formatDouble(std::round(value * 1000) / 1000) + " m"; }
-
 std::string titleOf(const Element& element) {
     const double top = topOf(element.body);
     std::string title = element.id;
     if (element.id.rfind(element.record.keyword(), 0) != 0)
         title.append(": ").append(element.record.keyword());
-    if (top > 0) title.append(", up to ").append(metres(top));
+    if (top > 0)
+        title.append(", up to ").append(formatDouble(std::round(top * 1000) / 1000) + " m");
     return title;
 }
 
 /// A covering: its colour, and squares of another in one path.
-DrawnItem coveringItem(const Element& element) {
-    DrawnItem item{PlanLayer::Floor, element.id, titleOf(element)};
-    const Color light = mixed(displayColor(Material::Floor), kPaper, 0.45);
-    const Color dark = mixed(displayColor(Material::FloorDark), kPaper, 0.35);
-    item.paths.push_back({{floorOutline(element.record)}, true, light, Stroke{kFaintInk, 0.05}});
-    DrawnPath squares{{}, true, dark, {}};
+void drawCovering(Picture& picture, const Element& element, const Stroke& edge) {
+    picture.pushGroup(element.id, titleOf(element));
+    picture.area(floorOutline(element.record),
+                 {mixed(displayColor(Material::Floor), kWhite, 0.45), edge});
+    std::vector<Polygon> squares;
     for (const Plate& plate : element.body.plates)
-        if (plate.material == Material::FloorDark) squares.curves.push_back(plate.outline);
-    if (!squares.curves.empty()) item.paths.push_back(std::move(squares));
-    return item;
+        if (plate.material == Material::FloorDark) squares.push_back(plate.outline);
+    picture.area(squares, {mixed(displayColor(Material::FloorDark), kWhite, 0.35)});
+    picture.pop();
 }
 
-DrawnItem zoneItem(const Element& element, std::size_t index) {
-    const Color color = seriesColor(index);
-    const Polygon outline = zoneOutline(element.record);
-    DrawnItem item{PlanLayer::Zones, element.id, titleOf(element)};
-    item.paths.push_back({{outline}, true, color.faded(0.13), Stroke{color, 0.09, {0.5, 0.35}}});
-    return item;
-}
-
-/// Its id in the lower left corner of what the plan shows of it, moved in where it would run over
-/// the edge.
-void addZoneName(PlanDrawing& plan, const Element& element, std::size_t index) {
-    const Box2 zone = bounds(zoneOutline(element.record));
-    const Box2& box = plan.box;
-    const Point2 corner{std::max(zone.low.x, box.low.x), std::max(zone.low.y, box.low.y)};
-    if (corner.x >= std::min(zone.high.x, box.high.x) ||
-        corner.y >= std::min(zone.high.y, box.high.y))
-        return;
-    constexpr double kSize = 0.85;
-    const double em = plan.metres();
-    const TextStyle style{kSize * plan.em, false, Align::Left, kInk, {}};
-    const double width = textWidth(element.id, style) * em / plan.em;
-    const auto within = [em](double begin, double low, double high) {
-        return std::max(low + em / 4, std::min(begin, high - em / 4));
-    };
-    DrawnText name{{within(corner.x + 0.5 * em, box.low.x, box.high.x - width),
-                    within(corner.y + 0.55 * em, box.low.y, box.high.y - em)},
-                   element.id};
-    name.size = kSize;
-    name.color = mixed(seriesColor(index), kInk, 0.35);
-    name.halo = true;
-    DrawnItem item{PlanLayer::Labels, "", ""};
-    item.texts.push_back(std::move(name));
-    plan.items.push_back(std::move(item));
-}
-
-/// A pen finer where walls are made of short pieces, as in maps that robots made.
-double penWidth(const PlanDrawing& plan, const Environment& environment) {
+/// In sizes of text; finer where walls are made of short pieces, as in maps that robots made.
+double wallPen(const Environment& environment, double em_metres) {
     double sum = 0;
     for (const Segment2& wall : environment.wallLines()) sum += distance(wall.a, wall.b);
     const double mean = sum / static_cast<double>(environment.wallLines().size());
-    return std::clamp(0.1 * mean / plan.metres(), 0.06, 0.16);
-}
-
-/// Lines as few curves as may be.
-DrawnPath linesPath(const std::vector<Segment2>& lines, const Stroke& pen) {
-    return {chained(lines), false, {}, pen};
-}
-
-DrawnItem wallItem(const Element& element, double pen) {
-    DrawnItem item{PlanLayer::Walls, element.id, titleOf(element)};
-    std::vector<Segment2> cut, low, high;
-    for (const Sheet& sheet : element.body.sheets)
-        (sheet.bottom > kCut ? high : sheet.top < kCut ? low : cut).push_back(sheet.line);
-    if (!low.empty()) item.paths.push_back(linesPath(low, {kFaintInk, 0.6 * pen}));
-    for (const bool is_low : {true, false}) {
-        for (const Prism& prism : element.body.prisms) {
-            if (prism.bottom > kCut || (prism.top < kCut) != is_low) continue;
-            const bool plain = prism.material == Material::Wall;
-            const Color color = is_low  ? kLowWall
-                                : plain ? kWall
-                                        : mixed(displayColor(prism.material), kInk, 0.45);
-            // The rim hides seams between the pieces of a wall.
-            item.paths.push_back({{prism.footprint}, true, color, Stroke{color, 0.04}});
-        }
-    }
-    if (!cut.empty()) item.paths.push_back(linesPath(cut, {kWallEdge, pen}));
-    if (!high.empty()) item.paths.push_back(linesPath(high, {kFaintInk, 0.05, {0.3, 0.25}}));
-    return item;
+    return std::clamp(0.1 * mean / em_metres, 0.06, 0.16);
 }
 
 /// A line through the opening as wide as its wall, or as the pen of sheets.
@@ -128,44 +56,37 @@ std::vector<Point2> gapOf(const Segment2& line, double width) {
     return {line.a - across, line.b - across, line.b + across, line.a + across};
 }
 
-/// Frame and pane.
-void addWindow(DrawnItem& item, const Segment2& line, double width) {
-    item.paths.push_back({{gapOf(line, width)}, true, kPaper, Stroke{kGlass, 0.06}});
-    item.paths.push_back({{{line.a, line.b}}, false, {}, Stroke{kGlass, 0.06}});
-}
-
-/// The leaf, open or in its frame, and the way it swings: about the beginning of the opening, to
-/// the left of its wall. Which way is ours; records do not say.
-void addDoor(DrawnItem& item, const Segment2& line, double width, bool open) {
-    const double length = distance(line.a, line.b);
-    const Vec2 along = 1 / length * (line.b - line.a);
-    const Angle heading = directionOf(along.x, along.y);
-    const Point2 aside = line.a + length * perpendicular(along);
-    item.paths.push_back({{gapOf(line, width)}, true, kPaper, {}});
-    const std::vector<double> dashes = open ? std::vector<double>{} : std::vector{0.15, 0.2};
-    item.paths.push_back({{planArc(line.a, length, heading, heading + Angle::degrees(90))},
-                          false,
-                          {},
-                          Stroke{kDoor, 0.05, dashes}});
-    item.paths.push_back({{{line.a, open ? aside : line.b}}, false, {}, Stroke{kDoor, 0.2}});
-}
-
-DrawnItem openingItem(const PlanDrawing& plan, const Element& element, const ElementLines& lines,
-                      double pen) {
-    DrawnItem item{PlanLayer::Openings, element.id, titleOf(element)};
-    const double width = std::max(lines.thickness, 2 * pen * plan.metres());
-    for (const std::vector<Point2>& chain : lines.chains) {
-        const Segment2 line{chain.front(), chain.back()};
-        if (line.a == line.b) continue;
-        if (element.record.keyword() == "window")
-            addWindow(item, line, width);
-        else
-            addDoor(item, line, width, element.record.flag("open"));
-    }
-    return item;
-}
-
 }  // namespace
+
+PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name) : PlanLayer(plan, name, {}) {}
+
+PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name, std::span<const Polygon> clip)
+    : picture_(plan.picture_) {
+    picture_.pushView(plan.style_.view);
+    const double rim = plan.metres(0.5);  // pens on the edge are drawn whole
+    const Box2& box = plan.style_.box;
+    const Point2 low = box.low - Vec2{rim, rim}, high = box.high + Vec2{rim, rim};
+    const Polygon frame = {low, {high.x, low.y}, high, {low.x, high.y}};
+    picture_.pushLayer(name, clip.empty() ? std::span(&frame, 1) : clip);
+}
+
+PlanLayer::~PlanLayer() {
+    picture_.pop();
+    picture_.pop();
+}
+
+bool isWall(const Element& element) {
+    const RecordType type = element.record.schema().type;
+    return type == RecordType::Wall || type == RecordType::Space;
+}
+
+bool standsAt(double bottom, double top, double height) {
+    return bottom <= height && height <= top;
+}
+
+bool stopsAt(const Sheet& sheet, double height) {
+    return !sheet.clear && standsAt(sheet.bottom, sheet.top, height);
+}
 
 Box2 planBox(const Scene& scene) {
     const Environment& environment = scene.environment;
@@ -183,26 +104,184 @@ Box2 planBox(const Scene& scene) {
     return box;
 }
 
-void addRoom(PlanDrawing& plan, const Scene& scene) {
-    const Environment& environment = scene.environment;
-    plan.items.push_back({PlanLayer::Floor, "", "indoor"});
-    plan.items.back().paths.push_back({curvesOf(environment.indoor()), true, kIndoor, {}});
-    const double pen = penWidth(plan, environment);
-    const std::vector<Element>& elements = environment.elements();
-    const std::vector<ElementLines> lines = elementLinesOf(environment);
-    std::size_t zones = 0;
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        const Element& element = elements[i];
-        const std::string& keyword = element.record.keyword();
-        if (keyword == "floor")
-            plan.items.push_back(coveringItem(element));
-        else if (keyword == "zone") {
-            plan.items.push_back(zoneItem(element, zones));
-            addZoneName(plan, element, zones++);
-        } else if (isOpening(element))
-            plan.items.push_back(openingItem(plan, element, lines[i], pen));
-        else if (isRoom(element) && keyword != "inside")
-            plan.items.push_back(wallItem(element, pen));
+std::vector<Polygon> outsideOf(const Regions& indoor) {
+    std::vector<Point2> middles;
+    middles.reserve(indoor.parts.size());
+    for (const Region& part : indoor.parts) middles.push_back(interiorPoint(part));
+    std::vector<Polygon> outside;
+    for (const Region& part : indoor.parts)
+        for (const Polygon& hole : part.holes) {
+            // Other rooms in it are no outside; what lies in their holes, those add.
+            std::vector<Polygon> rooms;
+            for (std::size_t i = 0; i < indoor.parts.size(); ++i)
+                if (&indoor.parts[i] != &part && locate(hole, middles[i]) == Side::Inside)
+                    rooms.push_back(indoor.parts[i].outline);
+            if (rooms.empty())
+                outside.push_back(hole);
+            else
+                for (Polygon& curve : curvesOf(difference(Region{hole, {}}, rooms)))
+                    outside.push_back(std::move(curve));
+        }
+    return outside;
+}
+
+PlanDrawing::PlanDrawing(Picture& picture, const Scene& scene, const PlanStyle& style)
+    : picture_(picture),
+      scene_(scene),
+      style_(style),
+      things_(thingsOf(scene.environment)),
+      wall_pen_(wallPen(scene.environment, metres(1))) {}
+
+Stroke PlanDrawing::pen(Color color, double width, std::vector<double> dashes) const {
+    for (double& dash : dashes) dash *= style_.em;
+    return {color, width * style_.em, std::move(dashes)};
+}
+
+void PlanDrawing::drawFloor() {
+    const PlanLayer layer(*this, "floor");
+    picture_.pushGroup("", "indoor");
+    picture_.area(curvesOf(scene_.environment.indoor()), {kFloor});
+    picture_.pop();
+    picture_.pushGroup("", "not indoor");
+    picture_.area(outsideOf(scene_.environment.indoor()),
+                  {kOutside, Hatch{kOutsideHatch, 0.7 * style_.em, 0.07 * style_.em, 0,
+                                   Angle::degrees(-45)}});
+    picture_.pop();
+    if (style_.neutral) return;
+    for (const Element& element : scene_.environment.elements())
+        if (element.record.keyword() == "floor")
+            drawCovering(picture_, element, pen(kFaintInk, 0.05));
+}
+
+void PlanDrawing::drawZones() {
+    const PlanLayer layer(*this, "zones");
+    std::size_t index = 0;
+    for (const Element& element : scene_.environment.elements()) {
+        if (element.record.keyword() != "zone") continue;
+        const Polygon outline = zoneOutline(element.record);
+        const Color color = style_.neutral ? kZone : seriesColor(index++);
+        const Stroke edge = pen(color, 0.09, {0.5, 0.35});
+        picture_.pushGroup(element.id, titleOf(element));
+        if (style_.neutral)
+            picture_.area(outline, {edge});
+        else
+            picture_.area(outline, {color.faded(0.13), edge});
+        picture_.pop();
+    }
+}
+
+void PlanDrawing::drawWalls() {
+    const PlanLayer layer(*this, "walls");
+    for (const Element& element : scene_.environment.elements())
+        if (isWall(element) && !isOpening(element) && element.record.keyword() != "inside")
+            drawWall(element);
+}
+
+/// What is lower than the cut first, then what is cut; what is higher as a dashed line.
+void PlanDrawing::drawWall(const Element& element) {
+    const double cut = style_.cut;
+    const bool neutral = style_.neutral;
+    std::vector<Segment2> low, at_cut, high, glass;
+    for (const Sheet& sheet : element.body.sheets)
+        (sheet.bottom > cut ? high
+         : sheet.top < cut  ? low
+         : sheet.clear      ? glass
+                            : at_cut)
+            .push_back(sheet.line);
+    picture_.pushGroup(element.id, titleOf(element));
+    picture_.lines(low, {neutral ? pen(kOpening, wall_pen_ / 2) : pen(kFaintInk, 0.6 * wall_pen_)});
+    for (const bool is_low : {true, false}) {
+        for (const Prism& prism : element.body.prisms) {
+            if (prism.bottom > cut || (prism.top < cut) != is_low) continue;
+            const bool plain = neutral || prism.material == Material::Wall;
+            const Color color = is_low  ? kLowWall
+                                : plain ? kWall
+                                        : mixed(displayColor(prism.material), kInk, 0.45);
+            // The rim hides seams between the pieces of a wall.
+            picture_.area(prism.footprint, {color, pen(color, 0.04)});
+        }
+    }
+    picture_.lines(glass, {pen(kGlass, wall_pen_)});
+    picture_.lines(at_cut, {pen(kWall, wall_pen_)});
+    picture_.lines(high, {pen(neutral ? kOpening : kFaintInk, 0.05, {0.3, 0.25})});
+    picture_.pop();
+}
+
+void PlanDrawing::drawOpenings() {
+    const PlanLayer layer(*this, "doors & windows");
+    const std::vector<Element>& elements = scene_.environment.elements();
+    if (std::none_of(elements.begin(), elements.end(), isOpening)) return;
+    const std::vector<ElementLines> lines = elementLinesOf(scene_.environment);
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        // Below an overlay what lies above or below the cut is no opening.
+        if (isOpening(elements[i]) &&
+            (!style_.neutral || standsAt(lines[i].bottom, lines[i].top, style_.cut)))
+            drawOpening(elements[i], lines[i]);
+}
+
+/// Of a window frame and pane; of a door the leaf, open or in its frame, and the way it swings:
+/// about the beginning of the opening, to the left of its wall. Which way is ours; records do not
+/// say.
+void PlanDrawing::drawOpening(const Element& element, const ElementLines& lines) {
+    picture_.pushGroup(element.id, titleOf(element));
+    const double width = std::max(lines.thickness, metres(2 * wall_pen_));
+    for (const std::vector<Point2>& chain : lines.chains) {
+        const Segment2 line{chain.front(), chain.back()};
+        if (line.a == line.b) continue;
+        if (element.record.keyword() == "window") {
+            picture_.area(gapOf(line, width), {kWhite, pen(kGlass, 0.06)});
+            picture_.line(line.a, line.b, pen(kGlass, 0.06));
+            continue;
+        }
+        const bool is_open = element.record.flag("open");
+        const double length = distance(line.a, line.b);
+        const Vec2 along = 1 / length * (line.b - line.a);
+        const Angle heading = directionOf(along.x, along.y);
+        std::vector<Point2> swing;
+        for (int turn = 0; turn <= 90; turn += 5)
+            swing.push_back(line.a + length * unitVector(heading + Angle::degrees(turn)));
+        picture_.area(gapOf(line, width), {kWhite});
+        picture_.lines(swing, {is_open ? pen(kDoor, 0.05) : pen(kDoor, 0.05, {0.15, 0.2})});
+        picture_.line(line.a, is_open ? swing.back() : line.b, pen(kDoor, 0.2));
+    }
+    picture_.pop();
+}
+
+void PlanDrawing::drawFreeFloor(double height) {
+    const PlanLayer layer(*this, "floor");
+    const Box2& box = style_.box;
+    picture_.pushGroup("", "not indoor");
+    picture_.area(Polygon{box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}},
+                  {kOutside});
+    picture_.pop();
+    picture_.pushGroup("", "free floor at " + formatDouble(height) + " m");
+    picture_.area(curvesOf(scene_.environment.indoor()), {kWhite});
+    picture_.pop();
+}
+
+void PlanDrawing::drawObstacles(double height) {
+    const std::string at_height = " at " + formatDouble(height) + " m";
+    const Environment& environment = scene_.environment;
+    const Slice slice = environment.slice(height);
+    const SliceOwners owners = ownersOf(environment, slice);
+    struct Parts {
+        std::vector<Segment2> sheets;
+        std::vector<Polygon> solids;
+    };
+    std::map<std::size_t, Parts> parts;  // by element, nobody's last
+    for (std::size_t i = 0; i < slice.sheets.size(); ++i)
+        parts[owners.sheets[i]].sheets.push_back(slice.sheets[i]);
+    for (std::size_t i = 0; i < slice.solids.size(); ++i)
+        parts[owners.solids[i]].solids.push_back(slice.solids[i]);
+    const PlanLayer layer(*this, "walls");
+    for (const auto& [owner, of_one] : parts) {
+        const bool known = owner < environment.elements().size();
+        const std::string id = known ? environment.elements()[owner].id : "";
+        picture_.pushGroup(id, id + at_height);
+        for (const Polygon& solid : of_one.solids)
+            picture_.area(solid, {kSolidEdge, pen(kSolidEdge, 0.03)});
+        picture_.lines(of_one.sheets, {pen(kInk, 0.1)});
+        picture_.pop();
     }
 }
 

@@ -18,14 +18,6 @@ std::string figureTitle(std::string_view id, std::string_view model, std::string
     return text;
 }
 
-double roundStep(double least) {
-    const double power = std::pow(10, std::floor(std::log10(least) + 1e-9));
-    constexpr double kSlack = 1 + 1e-9;
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (factor * power * kSlack >= least) return factor * power;
-    return 10 * power;
-}
-
 std::string metres(double value) { return formatDouble(nineDecimals(value)) + " m"; }
 
 std::string degrees(Angle angle) {

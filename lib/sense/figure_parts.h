@@ -13,9 +13,6 @@ namespace ispace {
 std::string figureTitle(std::string_view id, std::string_view model, std::string_view kind,
                         int frame, const Pose3& pose);
 
-/// 1, 2 or 5 times a power of ten, at least `least`. \pre least > 0
-double roundStep(double least);
-
 /// A round number of metres with its unit: "0.25 m".
 std::string metres(double value);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/figure_parts.h"
 
+#include "draw/axis.h"
+
 #include <gtest/gtest.h>
 
 namespace ispace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "draw/axis.h"
 #include "draw/picture.h"
 #include "sense/figure_parts.h"
 
