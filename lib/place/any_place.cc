@@ -106,12 +106,12 @@ std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
     for (std::size_t k = 0; k < devices.size(); ++k)
         together += most[k] * (isReceiver(devices[k]) ? 1 : unit);
     for (std::size_t i = 0; i < problem.cells(); ++i) {
-        const int met = problem.met.empty() ? 0 : problem.met[i];
-        if (met >= problem.demand)
+        const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
+        if (achieved >= problem.required)
             value += problem.weights[i];
-        else if (problem.weights[i] > 0 && problem.demand - met <= together)
+        else if (problem.weights[i] > 0 && problem.required - achieved <= together)
             missing.push_back(
-                {problem.weights[i], static_cast<std::uint64_t>(problem.demand - met)});
+                {problem.weights[i], static_cast<std::uint64_t>(problem.required - achieved)});
     }
     // Those that give most for a part come first.
     std::sort(missing.begin(), missing.end(), [](const Missing& a, const Missing& b) {

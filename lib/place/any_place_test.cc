@@ -178,8 +178,8 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     problem.weights.assign(100, 1);
     problem.weights[0] = 50;
     problem.weights[1] = 10;
-    problem.met.assign(100, 0);
-    problem.met[1] = 1;
+    problem.achieved.assign(100, 0);
+    problem.achieved[1] = 1;
     const SensorDevice small = receiver(0.1);
     const std::uint64_t cells = mostCellsInView(small, grid);
     ASSERT_GE(cells, 1U);
@@ -194,7 +194,7 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     EXPECT_EQ(most_of(1), 10 + 50 + (cells - 1));
     EXPECT_EQ(most_of(200), problem.totalWeight());
     // Twice as much is asked of each cell.
-    problem.demand = 2;
+    problem.required = 2;
     EXPECT_LE(most_of(1), 10 + 50 + cells);
 }
 
@@ -217,7 +217,7 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     const Grid grid{{{0, 0}, {100, 100}}, 100, 100};
     Problem problem;
     problem.weights.assign(grid.size(), 1);
-    problem.met.assign(grid.size(), 0);
+    problem.achieved.assign(grid.size(), 0);
     const SensorDevice devices[] = {receiver(2), receiver(4)};
     const std::uint64_t few = mostCellsInView(devices[0], grid),
                         many = mostCellsInView(devices[1], grid);

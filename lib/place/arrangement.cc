@@ -11,7 +11,7 @@
 #include "place/scene_problem.h"
 #include "place/tried_poses.h"
 #include "solve/coverage_state.h"
-#include "solve/model_file.h"
+#include "solve/mps_file.h"
 
 namespace ispace {
 
@@ -24,7 +24,7 @@ void mustFitInModel(const Problem& problem) {
     const std::vector<std::uint32_t> ones(problem.cells(), 1);
     for (const Kind& kind : problem.kinds) {
         std::vector<std::uint32_t> counts(kind.candidates->size());
-        kind.candidates->priceAll(CellPrices(ones), counts);
+        kind.candidates->weighAll(WeightSums(ones), counts);
         for (const std::uint32_t count : counts) entries += count;
     }
     if (entries > kMostEntries)
@@ -52,12 +52,12 @@ void writeModel(const SceneProblem& model, std::ostream& mps) {
 SearchResult find(const SceneProblem& model, Arrangement& result, Progress& progress) {
     const ArrangeOptions& options = model.options();
     if (!options.target) return search(model.problem(), model.searchOptions(), progress);
-    Fewest fewest = placeFewest(model.problem(), model.valueFor(*options.target),
-                                model.searchOptions(), progress);
-    result.is_reached = fewest.is_reached;
-    result.is_exhausted = fewest.is_all;
-    if (fewest.is_reached) result.least = fewest.least_cost;
-    return fewest.result;
+    MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
+                                              model.searchOptions(), progress);
+    result.is_reached = cover.is_reached;
+    result.is_exhausted = cover.is_all;
+    if (cover.is_reached) result.least = cover.cost_bound;
+    return cover.result;
 }
 
 /// Where there are fewer candidates than sensors a search chooses some again, which counts for
@@ -112,8 +112,8 @@ void measure(Arrangement& result, SceneProblem& model) {
 /// Worth of the first n of these sensors, each placed where it adds most of them: [n]. Where views
 /// have to hang together part of them need not: then only all are worth something. O(n^2 * runs)
 std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
-    const std::vector<std::uint32_t> part_weights = weightsOfParts(problem);
-    CoverageState state(problem, part_weights);
+    const std::vector<std::uint32_t> partial_weights = partialWeights(problem);
+    CoverageState state(problem, partial_weights);
     std::vector<std::uint64_t> values(chosen.size() + 1, state.value());
     values.back() = valueOf(problem, chosen);
     if (problem.is_connected) return values;
@@ -212,7 +212,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     result.candidates = model.candidates();
     result.bytes = model.bytes();
     result.grid = model.target().grid;
-    result.cost = tidyCost(costOf(problem, chosen));
+    result.cost = normaliseCost(costOf(problem, chosen));
     result.has_costs = std::any_of(problem.kinds.begin(), problem.kinds.end(),
                                    [](const Kind& kind) { return kind.cost != 1; });
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();

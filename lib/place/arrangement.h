@@ -57,9 +57,9 @@ struct Arrangement {
 /// Places the groups' sensors beside those that the scene has placed already.
 ///
 /// Candidates by options.strategy, one table per kind of sensor; the target's cells weigh what
-/// options.worth says; then search() or placeFewest(), then refine(). `mps`: the model is written
-/// there before the search.
-/// \throws UnmetError if a kind has no valid place or nothing may be bought, UsageError if the
+/// options.worth says; then search() or minimumCostCover(), then refine(). `mps`: the model is
+/// written there before the search. \throws UnmetError if a kind has no valid place or nothing may
+/// be bought, UsageError if the
 ///         candidates do not fit in memory
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);

@@ -277,7 +277,7 @@ struct CandidatePool::Data {
         std::vector<std::uint32_t> values;
         const auto best = [&] {
             values.resize(set.size());
-            set.priceAll(CellPrices(worth_left), values);
+            set.weighAll(WeightSums(worth_left), values);
             return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
                                             values.begin());
         };

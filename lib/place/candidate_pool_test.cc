@@ -63,9 +63,9 @@ TEST(CandidatePool, RandomTriesR1AndThenR2ASensor) {
     const Pooled pooled(roomScene(), "laser,range=2:2", options);
     EXPECT_EQ(pooled.set->sites(), 7U + 2 * 3);
     // Those of the first sensor lie about the best of the first seven.
-    const CellPrices ones(std::vector<std::uint32_t>(pooled.target.grid.size(), 1));
+    const WeightSums ones(std::vector<std::uint32_t>(pooled.target.grid.size(), 1));
     std::vector<std::uint32_t> values(pooled.set->size());
-    pooled.set->priceAll(ones, values);
+    pooled.set->weighAll(ones, values);
     const auto first_end = values.begin() + static_cast<std::ptrdiff_t>(pooled.set->firstOf(7));
     const auto best =
         static_cast<std::size_t>(std::max_element(values.begin(), first_end) - values.begin());
@@ -291,12 +291,12 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     const CandidateViews views(room, worlds, target.grid, 0, laser,
                                {{0, 0, kScanHeight}, {}, {}, {}});
     // The thesis counts what lies within the limits, indoor or not.
-    const CellPrices ones(std::vector<std::uint32_t>(target.grid.size(), 1));
+    const WeightSums ones(std::vector<std::uint32_t>(target.grid.size(), 1));
     const auto best_of = [&](const std::vector<Site>& sites) {
         PosedCandidates set(target.grid.size());
         addCandidates(set, views, sites, 1U << 30U, silent);
         std::vector<std::uint32_t> values(set.size());
-        set.priceAll(ones, values);
+        set.weighAll(ones, values);
         const auto best = std::max_element(values.begin(), values.end());
         const Pose3 pose = set.pose(static_cast<std::size_t>(best - values.begin()));
         return std::pair{room.indoor().locate(pose.position.onFloor()), *best};

@@ -16,21 +16,21 @@ namespace {
 /// What one sensor sees, and its share of a cell's demand.
 struct CountedView {
     CellSet cells;
-    int share = 1;
+    int multiplicity = 1;
 };
 
 /// Shares that each cell has of the demand.
-using Met = std::vector<int>;
+using Multiplicities = std::vector<int>;
 
-void count(const CountedView& view, int times, Met& met) {
-    view.cells.forEach([&](std::size_t cell) { met[cell] += times * view.share; });
+void count(const CountedView& view, int times, Multiplicities& achieved) {
+    view.cells.forEach([&](std::size_t cell) { achieved[cell] += times * view.multiplicity; });
 }
 
-bool isNeeded(const Problem& problem, const CountedView& view, const Met& met) {
+bool isNeeded(const Problem& problem, const CountedView& view, const Multiplicities& achieved) {
     bool is_needed = false;
     view.cells.forEach([&](std::size_t cell) {
-        is_needed = is_needed || (problem.weights[cell] > 0 && met[cell] >= problem.demand &&
-                                  met[cell] - view.share < problem.demand);
+        is_needed = is_needed || (problem.weights[cell] > 0 && achieved[cell] >= problem.required &&
+                                  achieved[cell] - view.multiplicity < problem.required);
     });
     return is_needed;
 }
@@ -39,19 +39,19 @@ bool isNeeded(const Problem& problem, const CountedView& view, const Met& met) {
 /// may be left alone; asked of what is not needed.
 std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const CountedView> views,
                                    const std::function<bool(const std::vector<bool>&)>& allows) {
-    Met met(problem.met.begin(), problem.met.end());
-    met.resize(problem.cells());
-    for (const CountedView& view : views) count(view, 1, met);
+    Multiplicities achieved(problem.achieved.begin(), problem.achieved.end());
+    achieved.resize(problem.cells());
+    for (const CountedView& view : views) count(view, 1, achieved);
     std::vector<bool> left(views.size(), true);
     std::vector<std::size_t> idle;
     for (std::size_t i = views.size(); i-- > 0;) {
-        if (isNeeded(problem, views[i], met)) continue;
+        if (isNeeded(problem, views[i], achieved)) continue;
         left[i] = false;
         if (problem.is_connected && !allows(left)) {
             left[i] = true;
             continue;
         }
-        count(views[i], -1, met);
+        count(views[i], -1, achieved);
         idle.push_back(i);
     }
     std::reverse(idle.begin(), idle.end());
@@ -60,7 +60,7 @@ std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const Count
 
 CountedView viewOf(const Problem& problem, const Choice& choice) {
     const Kind& kind = problem.kinds[choice.kind];
-    return {kind.candidates->cellsOf(choice.candidate), kind.share};
+    return {kind.candidates->cellsOf(choice.candidate), kind.multiplicity};
 }
 
 /// The sites of a kind, as places for sensors that add nothing.
@@ -72,7 +72,7 @@ class SpareSites {
           distances_(candidates_.sites(), std::numeric_limits<double>::infinity()),
           sees_(candidates_.sites()) {
         std::vector<std::uint32_t> values(candidates_.size());
-        candidates_.priceAll(CellPrices(problem.weights), values);
+        candidates_.weighAll(WeightSums(problem.weights), values);
         for (std::size_t i = 0; i < values.size(); ++i)
             if (values[i] > 0) sees_[candidates_.siteOf(i)] = true;
         for (std::size_t site = 0; site < candidates_.sites(); ++site)
@@ -94,10 +94,10 @@ class SpareSites {
     }
 
     /// The candidate of a site that sees most at these prices.
-    [[nodiscard]] std::size_t bestAt(std::size_t site, const CellPrices& prices) const {
+    [[nodiscard]] std::size_t bestAt(std::size_t site, const WeightSums& prices) const {
         const std::size_t first = candidates_.firstOf(site);
         std::vector<std::uint32_t> values(candidates_.firstOf(site + 1) - first);
-        candidates_.priceSite(site, prices, values);
+        candidates_.weighSite(site, prices, values);
         return first + static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
                                                 values.begin());
     }
@@ -114,10 +114,10 @@ class SpareSites {
 };
 
 /// Weights of the cells that few see: not even twice as many as they need.
-std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Met& met) {
+std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Multiplicities& achieved) {
     std::vector<std::uint32_t> weights = problem.weights;
     for (std::size_t i = 0; i < weights.size(); ++i)
-        if (met[i] >= 2 * problem.demand) weights[i] = 0;
+        if (achieved[i] >= 2 * problem.required) weights[i] = 0;
     return weights;
 }
 
@@ -128,8 +128,8 @@ class Spread {
            const std::function<Point3(const Choice&)>& position_of, std::span<const Choice> busy)
         : problem_(problem),
           position_of_(position_of),
-          met_(problem.met.begin(), problem.met.end()) {
-        met_.resize(problem.cells());
+          achieved_(problem.achieved.begin(), problem.achieved.end()) {
+        achieved_.resize(problem.cells());
         sites_.reserve(problem.kinds.size());
         for (std::size_t kind = 0; kind < problem.kinds.size(); ++kind)
             sites_.emplace_back(problem, kind, position_of);
@@ -138,7 +138,7 @@ class Spread {
     }
 
     void take(const Choice& choice) {
-        count(viewOf(problem_, choice), 1, met_);
+        count(viewOf(problem_, choice), 1, achieved_);
         occupy(position_of_(choice));
     }
 
@@ -146,7 +146,8 @@ class Spread {
     [[nodiscard]] std::optional<Choice> next(std::size_t kind) const {
         const auto site = sites_[kind].farthest();
         if (!site) return std::nullopt;
-        return Choice{kind, sites_[kind].bestAt(*site, CellPrices(weightsOfFew(problem_, met_)))};
+        return Choice{kind,
+                      sites_[kind].bestAt(*site, WeightSums(weightsOfFew(problem_, achieved_)))};
     }
 
   private:
@@ -156,7 +157,7 @@ class Spread {
 
     const Problem& problem_;
     const std::function<Point3(const Choice&)>& position_of_;
-    Met met_;
+    Multiplicities achieved_;
     std::vector<SpareSites> sites_;  // by kind
 };
 

@@ -55,8 +55,8 @@ TEST(IdleSensors, WhatIsLeftIsWorthAsMuch) {
         options.kinds = 2;
         options.sites = 12;
         options.max_weight = 3;
-        options.max_met = static_cast<int>(seed % 2);
-        options.demand = 1 + static_cast<int>(seed % 3);
+        options.max_achieved = static_cast<int>(seed % 2);
+        options.required = 1 + static_cast<int>(seed % 3);
         const RandomProblem random = randomProblem(seed, options);
         const Problem& problem = random.problem;
         std::vector<Choice> chosen;

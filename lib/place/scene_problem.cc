@@ -53,7 +53,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.worth);
     const Coverage standing = coverageOf({});
     target_ = standing.target;
-    problem_.weights = wholeUnits(worthOfCells(target_, options.worth));
+    problem_.weights = integerWeights(worthOfCells(target_, options.worth));
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.worth));
     setDemand(standing);
@@ -81,14 +81,14 @@ void SceneProblem::setDemand(const Coverage& standing) {
                              return isReceiver(kind.device);
                          });
     unit_ = listens ? static_cast<int>(kLeastReceivers) : 1;
-    problem_.demand = unit_ * options_.redundancy;
-    problem_.met.assign(target_.grid.size(), 0);
+    problem_.required = unit_ * options_.redundancy;
+    problem_.achieved.assign(target_.grid.size(), 0);
     problem_.standing = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) {
         const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
         view.cells.forEach([&](std::size_t cell) {
-            problem_.met[cell] =
-                static_cast<std::uint16_t>(std::min(problem_.met[cell] + part, 0xffff));
+            problem_.achieved[cell] =
+                static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
         });
         problem_.standing |= view.cells;
     }
@@ -141,7 +141,7 @@ std::uint64_t SceneProblem::valueFor(double share) const {
 std::vector<std::uint32_t> SceneProblem::weightsLeft() const {
     std::vector<std::uint32_t> left = problem_.weights;
     for (std::size_t i = 0; i < left.size(); ++i)
-        if (problem_.met[i] >= problem_.demand) left[i] = 0;
+        if (problem_.achieved[i] >= problem_.required) left[i] = 0;
     return left;
 }
 

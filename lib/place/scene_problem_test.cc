@@ -14,7 +14,7 @@ TEST(SceneProblem, TheTreeGetsTheMemoryThatCandidatesLeave) {
     ArrangeOptions options = coarse(Optimizer::Exact);
     SilentProgress silent;
     const SceneProblem usual(scene, groups, options, silent);
-    EXPECT_EQ(usual.searchOptions().most_bytes, kMostTreeBytes);
+    EXPECT_EQ(usual.searchOptions().most_bytes, kMaxTreeBytes);
     options.most_bytes = usual.bytes() + 1000;
     const SceneProblem narrow(scene, groups, options, silent);
     EXPECT_EQ(narrow.searchOptions().most_bytes, 1000U);

@@ -20,7 +20,7 @@ std::uint64_t valueOf(const Problem& problem, const Coverage& coverage, int unit
     }
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < met.size(); ++i)
-        if (met[i] >= problem.demand) value += problem.weights[i];
+        if (met[i] >= problem.required) value += problem.weights[i];
     return value;
 }
 

@@ -24,15 +24,15 @@ void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> pose
 
 std::vector<TriedPose> triedPoses(SceneProblem& model, const std::vector<Choice>& chosen) {
     const Problem& problem = model.problem();
-    const CellPrices prices(model.weightsLeft());
+    const WeightSums prices(model.weightsLeft());
     std::vector<TriedPose> all;
     all.reserve(model.candidates());
     for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
         const CandidateSet& set = *problem.kinds[k].candidates;
         const SensorKind& kind = model.kinds()[k];
         std::vector<std::uint32_t> values(set.size());
-        set.priceAll(prices, values);
-        const double part = static_cast<double>(problem.kinds[k].share) / problem.demand;
+        set.weighAll(prices, values);
+        const double part = static_cast<double>(problem.kinds[k].multiplicity) / problem.required;
         const std::size_t first = all.size();
         for (std::size_t i = 0; i < set.size(); ++i)
             all.push_back({kind.id, model.poseOf({k, i}), part * model.share(values[i]), false});

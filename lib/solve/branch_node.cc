@@ -16,9 +16,9 @@ namespace ispace {
 
 namespace {
 
-constexpr int kMostTrials = 80;
+constexpr int kMaxTrials = 80;
 constexpr int kTrialsBetweenLooks = 40;
-constexpr std::uint64_t kFairPart = 5;  // of what the bound has to fall: less is not worth more
+constexpr std::uint64_t kFairPart = 5;  // of the distance to the cut that trials must gain
 constexpr double kFewSets = 64;         // so many are tried one by one
 
 /// In how many ways the groups can choose, up to about kFewSets.
@@ -48,7 +48,7 @@ class SetSearch {
           cut_(cut),
           shares_(reduced_.cells(), 0),
           chosen_(node.fixed) {}
-    /// The best that is worth more than the cut.
+    /// The best solution above the cut.
     BranchResult search() {
         if (groups_.empty())
             look();
@@ -64,7 +64,7 @@ class SetSearch {
             return;
         }
         const OpenGroup& own = groups_[group];
-        // Fewer than may be are worth less, but what hangs together may be less.
+        // Full groups are never worse, but connected solutions may need fewer.
         const bool is_full = left == 0 || first == own.list.size();
         if (is_full || problem_.is_connected) {
             const std::size_t next = group + 1;
@@ -81,7 +81,8 @@ class SetSearch {
     void add(std::size_t kind, std::uint32_t candidate, int sign) {
         const ReducedProblem::OfKind& own = reduced_.kinds[kind];
         own.candidates->forEachRun(candidate, [&](const CellRun& run) {
-            for (std::uint32_t i = run.first; i < run.end; ++i) shares_[i] += sign * own.share;
+            for (std::uint32_t i = run.first; i < run.end; ++i)
+                shares_[i] += sign * own.multiplicity;
         });
         if (sign > 0)
             chosen_.push_back({kind, own.original[candidate]});
@@ -159,7 +160,7 @@ BranchNode cutDown(const BranchNode& node, const NodeRelaxation& relaxed,
 std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::uint64_t bound,
                       std::uint64_t cut, const Progress& progress) {
     std::uint64_t last = bound;
-    for (int trial = 0; trial < kMostTrials && bound > cut && !progress.stopped(); ++trial) {
+    for (int trial = 0; trial < kMaxTrials && bound > cut && !progress.stopped(); ++trial) {
         const std::uint64_t now = relaxed.evaluate(search.trial());
         if (now <= bound) {
             bound = now;
@@ -175,7 +176,7 @@ std::uint64_t boundOf(NodeRelaxation& relaxed, MultiplierSearch& search, std::ui
     return bound;
 }
 
-/// What the relaxation has chosen, if it is worth more than the cut.
+/// The solution of the relaxation, if it is feasible and above the cut.
 std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
                             const NodeRelaxation& relaxed, std::uint64_t cut) {
     std::uint64_t value = relaxed.problem().settled;
@@ -190,7 +191,7 @@ std::vector<Choice> foundBy(const Problem& problem, const BranchNode& node,
     return found;
 }
 
-/// Nothing of a node that is worth at most this is open any more.
+/// A closed node with this bound.
 BranchResult closedAt(std::uint64_t bound) {
     BranchResult result;
     result.closed = bound;

@@ -12,8 +12,8 @@ namespace ispace {
 
 class NodeRelaxation;
 
-/// Sensors of one kind that are to be chosen from the same list; the lists of two groups of a node
-/// have no candidate in common.
+/// Sensors of one kind to be chosen from one list; lists of different groups of a node are
+/// disjoint.
 struct BranchGroup {
     std::size_t kind = 0;
     std::size_t count = 0;
@@ -21,7 +21,7 @@ struct BranchGroup {
     std::shared_ptr<const std::vector<std::uint32_t>> list;
 };
 
-/// A part of all sets of choices: the fixed ones and from each group so many (or fewer).
+/// A subproblem: fixed choices, and at most `count` candidates from each group.
 struct BranchNode {
     std::shared_ptr<const ReducedProblem> problem;
     /// Good ones for the parent, to begin with.
@@ -32,33 +32,31 @@ struct BranchNode {
     std::uint64_t bound = 0;  ///< fine
 };
 
-/// What came of a node.
+/// The result of processing a node.
 struct BranchResult {
-    std::vector<BranchNode> children;  ///< all of it that may be worth more than the cut
-    std::vector<Choice> found;         ///< feasible choices worth more than the cut, else empty
-    /// What is in no child is worth no more than this (fine, at most the cut) or than what was
-    /// found.
+    std::vector<BranchNode> children;  ///< what may be better than the cut
+    std::vector<Choice> found;         ///< a feasible solution above the cut, else empty
+    /// Upper bound, fine and at most the cut, of solutions that are neither in a child nor `found`.
     std::uint64_t closed = 0;
 };
 
-/// Bounds a node, fixes what it can, and splits what is left. What is worth at most `cut` (fine) is
-/// of no interest. The result depends on the arguments alone, unless progress says stop: then the
-/// node is its own only child.
+/// Processes a node: bounds it, fixes variables, and splits the rest. Only solutions better than
+/// `cut` (fine) matter. Deterministic, unless progress says stop: then the node is its only child.
 BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
                     const Progress& progress);
 
 /// A node in parts.
 struct SplitNode {
-    std::vector<BranchNode> children;  ///< all of it that may be worth more than the cut
-    std::uint64_t closed = 0;          ///< what is in no child is worth no more; at most the cut
+    std::vector<BranchNode> children;  ///< what may be better than the cut
+    std::uint64_t closed = 0;          ///< upper bound of solutions in no child
 };
 
-/// Splits the list of one group of a node in two: candidates that see about the same as one of
-/// them, and the rest. There is a child for each number of sensors that are of the first. Of the
-/// places where a group could be split, that one is taken whose children promise the smallest tree,
-/// by a few steps of the bound of each (strong branching, Applegate, Bixby, Chvatal & Cook 1995).
+/// Branches on a node: splits the list of one group into candidates that see much the same as a
+/// pivot and the rest, with one child for each number of sensors from the first part. Strong
+/// branching (Applegate, Bixby, Chvatal & Cook 1995) picks the split whose children promise the
+/// smallest tree after a few steps of their bounds.
 ///
-/// The result depends on the arguments alone, unless progress says stop: then any split will do.
+/// Deterministic, unless progress says stop: then any split will do.
 /// \param relaxed of the node before it was cut down, the same groups and lists, with the shares of
 ///        a search for its multipliers
 /// \param multipliers the best that were found, of the cells of `relaxed`

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numeric>
 
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
 #include "solve/node_relaxation.h"
 #include "solve/relaxation.h"
@@ -59,7 +59,7 @@ TEST(SplitNode, NothingIsLost) {
         const RandomProblem random = randomProblem(seed, options);
         const Problem& problem = random.problem;
         const Solution nothing{{}, valueOf(problem, {})};
-        const Bound bound = boundWithin(problem, {}, {.cut = 0, .rounds = 2}, progress);
+        const Bound bound = lagrangianBound(problem, {}, {.cut = 0, .rounds = 2}, progress);
         SearchResult known{nothing, bound.value};
         known = branchAndBound(problem, bound, known, 0, progress);
         ASSERT_EQ(known.best.value, known.bound);
@@ -88,8 +88,8 @@ TEST(SplitNode, ChildrenShareOutTheGroup) {
     options.most = 4;
     const RandomProblem random = randomProblem(3, options);
     SilentProgress progress;
-    BranchNode node =
-        nodeOf(random.problem, boundWithin(random.problem, {}, {.cut = 0, .rounds = 1}, progress));
+    BranchNode node = nodeOf(
+        random.problem, lagrangianBound(random.problem, {}, {.cut = 0, .rounds = 1}, progress));
     const SplitNode split = splitOf(node, 0);
     ASSERT_GE(split.children.size(), 2U);
     for (const BranchNode& child : split.children) {

@@ -11,7 +11,7 @@ namespace ispace {
 
 namespace {
 
-/// Sets before[i] to what the runs before run i are worth, for i from 0 to `count`.
+/// Sets before[i] to the weight of all runs before run i, for i from 0 to `count`.
 ///
 /// Gathers do not pay here: a run is two reads from what mostly is in the nearest cache, and plain
 /// reads were half as fast again.
@@ -29,14 +29,14 @@ void sumRuns(const std::uint32_t* runs, std::size_t count, std::uint32_t length_
 
 }  // namespace
 
-void CellPrices::assign(std::span<const std::uint32_t> prices) {
-    sums_.resize(prices.size() + 1);
+void WeightSums::assign(std::span<const std::uint32_t> weights) {
+    sums_.resize(weights.size() + 1);
     std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < prices.size(); ++i) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
         sums_[i] = sum;
-        sum += prices[i];
+        sum += weights[i];
     }
-    sums_[prices.size()] = sum;
+    sums_[weights.size()] = sum;
 }
 
 CandidateSet::CandidateSet(std::size_t cells)
@@ -108,13 +108,13 @@ void CandidateSet::addTo(CellSet& cells, std::size_t candidate) const {
     });
 }
 
-void CandidateSet::priceSite(std::size_t site, const CellPrices& prices,
+void CandidateSet::weighSite(std::size_t site, const WeightSums& weights,
                              std::span<std::uint32_t> values) const {
-    assert(prices.sums().size() == cells_ + 1);
+    assert(weights.sums().size() == cells_ + 1);
     const Site& own = sites_[site];
     thread_local std::vector<std::uint32_t> before;
     if (before.size() <= own.runs) before.resize(own.runs + 1);
-    sumRuns(runsOf(own), own.runs, length_bits_, prices.sums().data(), before.data());
+    sumRuns(runsOf(own), own.runs, length_bits_, weights.sums().data(), before.data());
     const std::uint32_t* parts = partsOf(own);
     const std::uint32_t directed = before[parts[own.directed]];
     const std::uint32_t undirected = before[own.runs] - directed;
@@ -137,20 +137,20 @@ std::vector<CellRun> CandidateSet::runsOf(std::size_t site, std::size_t part) co
     return unpacked_runs;
 }
 
-std::uint32_t CandidateSet::price(std::size_t candidate, const CellPrices& prices) const {
+std::uint32_t CandidateSet::weigh(std::size_t candidate, const WeightSums& weights) const {
     std::uint32_t sum = 0;
-    forEachRun(candidate, [&](const CellRun& run) { sum += prices.of(run); });
+    forEachRun(candidate, [&](const CellRun& run) { sum += weights.of(run); });
     return sum;
 }
 
-void CandidateSet::priceAll(const CellPrices& prices, std::span<std::uint32_t> values) const {
+void CandidateSet::weighAll(const WeightSums& weights, std::span<std::uint32_t> values) const {
     assert(values.size() == size());
     constexpr std::size_t kGrain = 32;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites(), kGrain),
                       [&](const tbb::blocked_range<std::size_t>& some) {
                           for (std::size_t site = some.begin(); site < some.end(); ++site) {
                               const std::size_t first = firstOf(site);
-                              priceSite(site, prices,
+                              weighSite(site, weights,
                                         values.subspan(first, firstOf(site + 1) - first));
                           }
                       });

@@ -12,33 +12,33 @@
 
 namespace ispace {
 
-/// What each cell is worth, summed up so that a run costs two reads. Sums wrap around at 2^32: only
-/// those of runs and candidates have to fit.
-class CellPrices {
+/// Prefix sums of cell weights: the weight of a run takes two reads. Sums wrap around at 2^32; only
+/// the weights of runs and candidates have to fit.
+class WeightSums {
   public:
-    CellPrices() = default;
-    /// Takes one price a cell. O(cells)
-    explicit CellPrices(std::span<const std::uint32_t> prices) { assign(prices); }
-    void assign(std::span<const std::uint32_t> prices);
+    WeightSums() = default;
+    /// One weight per cell. O(cells)
+    explicit WeightSums(std::span<const std::uint32_t> weights) { assign(weights); }
+    void assign(std::span<const std::uint32_t> weights);
     [[nodiscard]] std::uint32_t of(const CellRun& run) const {
         return sums_[run.end] - sums_[run.first];
     }
-    /// [i]: of the cells before i, for i from 0 to the number of cells.
+    /// [i]: the weight of all cells before i; one entry more than there are cells.
     [[nodiscard]] std::span<const std::uint32_t> sums() const { return sums_; }
 
   private:
     std::vector<std::uint32_t> sums_;
 };
 
-/// Candidates of one kind, each with the cells it covers.
+/// Candidates of one kind, each with the cells it sees.
 ///
-/// The candidates of a site share what can be seen from it: its cells in parts by direction, and
-/// each candidate a range of parts. Memory: 4 bytes a run of cells and a part and 12 a candidate, a
-/// fraction of a bitset each.
+/// Candidates of one site share storage: the cells visible from the site are split into parts by
+/// direction, and each candidate is a range of parts. This takes 4 bytes per run and part and 12
+/// per candidate, a fraction of a bit set each.
 class CandidateSet {
   public:
-    /// The parts that a candidate sees: `count` of them from `begin` on, around the end of the
-    /// directed parts; and always the undirected one.
+    /// The parts that a candidate sees: `count` directed parts from `begin` on, wrapping around,
+    /// and always the undirected part.
     struct PartRange {
         std::uint32_t begin = 0, count = 0;
     };
@@ -46,24 +46,24 @@ class CandidateSet {
     /// \param cells of the grid, below 2^31
     explicit CandidateSet(std::size_t cells);
 
-    /// Adds a site: `parts` are the directed ones and then one that every candidate sees (as of
-    /// cellsBySector). Candidate k sees ranges[k]; no cell may be in two of the parts that one
-    /// candidate sees. \pre there are ranges
+    /// Adds a site. `parts` holds the directed parts, then the undirected one that every candidate
+    /// sees. Candidate k sees ranges[k]; no cell may be in two parts of one candidate.
+    /// \pre ranges are not empty
     void addSite(std::span<const PartRange> ranges, const CellParts& parts);
-    /// A site with one candidate that sees this.
+    /// Adds a site with a single candidate.
     void addSite(const CellSet& seen);
 
     [[nodiscard]] std::size_t cells() const { return cells_; }
     [[nodiscard]] std::size_t size() const { return ranges_.size(); }
     [[nodiscard]] std::size_t sites() const { return sites_.size(); }
-    /// The candidates of a site follow each other: [firstOf(site), firstOf(site + 1)).
+    /// The candidates of a site are [firstOf(site), firstOf(site + 1)).
     [[nodiscard]] std::size_t firstOf(std::size_t site) const {
         return site == sites_.size() ? size() : sites_[site].first_candidate;
     }
     [[nodiscard]] std::size_t siteOf(std::size_t candidate) const { return site_of_[candidate]; }
-    /// Memory of what grows with sites.
+    /// Memory that grows with the number of sites.
     [[nodiscard]] std::size_t bytes() const;
-    /// Those kept: what lies in two parts or is very long counts twice or more.
+    /// Stored runs; a run that is split between parts, or for its length, counts several times.
     [[nodiscard]] std::size_t runs() const { return runs_; }
 
     /// Calls visit(const CellRun&) for the disjoint runs of a candidate, in no special order.
@@ -81,13 +81,13 @@ class CandidateSet {
     /// The runs of a part of a site; part directedParts() is the undirected one.
     [[nodiscard]] std::vector<CellRun> runsOf(std::size_t site, std::size_t part) const;
 
-    /// What the candidates of a site see is worth: values[k] of candidate firstOf(site) + k.
+    /// Weight of the cells that each candidate of a site sees: values[k] for firstOf(site) + k.
     /// O(runs and parts of the site + candidates). \pre each sum is below 2^32
-    void priceSite(std::size_t site, const CellPrices& prices,
+    void weighSite(std::size_t site, const WeightSums& weights,
                    std::span<std::uint32_t> values) const;
-    [[nodiscard]] std::uint32_t price(std::size_t candidate, const CellPrices& prices) const;
-    /// The same of all candidates, shared out over all cores.
-    void priceAll(const CellPrices& prices, std::span<std::uint32_t> values) const;
+    [[nodiscard]] std::uint32_t weigh(std::size_t candidate, const WeightSums& weights) const;
+    /// The same for all candidates, in parallel.
+    void weighAll(const WeightSums& weights, std::span<std::uint32_t> values) const;
 
   private:
     /// Runs are kept in 32 bits: the first cell above, the length (at least 1) below. All runs of a

@@ -39,15 +39,15 @@ std::vector<std::size_t> randomParts(Random& random, std::size_t cells, std::siz
     return where;
 }
 
-std::vector<std::uint32_t> randomPrices(Random& random, std::size_t cells) {
-    std::vector<std::uint32_t> prices(cells);
-    for (std::uint32_t& price : prices) price = static_cast<std::uint32_t>(random() % 1000);
-    return prices;
+std::vector<std::uint32_t> randomWeights(Random& random, std::size_t cells) {
+    std::vector<std::uint32_t> weights(cells);
+    for (std::uint32_t& weigh : weights) weigh = static_cast<std::uint32_t>(random() % 1000);
+    return weights;
 }
 
-std::uint32_t priceOf(const CellSet& cells, const std::vector<std::uint32_t>& prices) {
+std::uint32_t weightOf(const CellSet& cells, const std::vector<std::uint32_t>& weights) {
     std::uint32_t sum = 0;
-    cells.forEach([&](std::size_t cell) { sum += prices[cell]; });
+    cells.forEach([&](std::size_t cell) { sum += weights[cell]; });
     return sum;
 }
 
@@ -95,7 +95,7 @@ TEST(CandidateSet, HandMade) {
     EXPECT_EQ(set.siteOf(2), 1U);
     const std::vector<std::uint32_t> powers = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512};
     std::vector<std::uint32_t> values(3);
-    set.priceAll(CellPrices(powers), values);
+    set.weighAll(WeightSums(powers), values);
     EXPECT_EQ(values, (std::vector<std::uint32_t>{7 + 512, 32 + 64 + 128 + 3 + 512, 16}));
     EXPECT_EQ(set.cellsOf(2), only);
     EXPECT_EQ(set.directedParts(0), 3U);
@@ -111,15 +111,15 @@ TEST(CandidateSet, AgreesWithSetsOfCells) {
     for (const std::size_t cells : {1UL, 63UL, 64UL, 300UL, 4096UL}) {
         Model model(cells);
         for (int site = 0; site < 60; ++site) model.addRandomSite(random, random() % 12);
-        const auto prices = randomPrices(random, cells);
-        const CellPrices sums(prices);
+        const auto weights = randomWeights(random, cells);
+        const WeightSums sums(weights);
         std::vector<std::uint32_t> values(model.set.size());
-        model.set.priceAll(sums, values);
+        model.set.weighAll(sums, values);
         ASSERT_EQ(model.seen.size(), model.set.size());
         for (std::size_t i = 0; i < model.seen.size(); ++i) {
             ASSERT_EQ(model.set.cellsOf(i), model.seen[i]) << cells << ' ' << i;
-            ASSERT_EQ(values[i], priceOf(model.seen[i], prices)) << cells << ' ' << i;
-            ASSERT_EQ(model.set.price(i, sums), values[i]);
+            ASSERT_EQ(values[i], weightOf(model.seen[i], weights)) << cells << ' ' << i;
+            ASSERT_EQ(model.set.weigh(i, sums), values[i]);
             std::size_t count = 0;
             model.set.forEachRun(i, [&](const CellRun& run) { count += run.end - run.first; });
             ASSERT_EQ(count, model.seen[i].count());
@@ -137,7 +137,7 @@ TEST(CandidateSet, RangesAroundTheEndWithEmptyParts) {
     set.addSite(ranges, {{{2, 5}}, {0, 0, 0, 0, 0, 1, 1, 1}});
     const std::vector<std::uint32_t> ones(8, 1);
     std::vector<std::uint32_t> values(3);
-    set.priceAll(CellPrices(ones), values);
+    set.weighAll(WeightSums(ones), values);
     EXPECT_EQ(values, (std::vector<std::uint32_t>{3, 3 - 3, 3}));
     EXPECT_EQ(set.cellsOf(0).count(), 3U);
     EXPECT_EQ(set.cellsOf(1).count(), 0U);
@@ -155,20 +155,20 @@ TEST(CandidateSet, LongRunsOnLargeGrids) {
     EXPECT_EQ(set.cellsOf(0).count(), cells);
     EXPECT_EQ(set.cellsOf(1).count(), 998U);
     std::vector<std::uint32_t> values(2);
-    set.priceAll(CellPrices(std::vector<std::uint32_t>(cells, 3)), values);
+    set.weighAll(WeightSums(std::vector<std::uint32_t>(cells, 3)), values);
     EXPECT_EQ(values, (std::vector<std::uint32_t>{30'000'000, 2994}));
 }
 
 TEST(CandidateSet, SumsMayWrapAround) {
     // What is before a run may sum up to more than 2^32, but no run and no candidate does.
-    const std::vector<std::uint32_t> prices = {4'000'000'000, 4'000'000'000, 5, 7};
+    const std::vector<std::uint32_t> weights = {4'000'000'000, 4'000'000'000, 5, 7};
     CandidateSet set(4);
     CellSet cells(4);
     cells.set(1);
     cells.set(3);
     set.addSite(cells);
     std::vector<std::uint32_t> values(1);
-    set.priceAll(CellPrices(prices), values);
+    set.weighAll(WeightSums(weights), values);
     EXPECT_EQ(values[0], 4'000'000'007);
 }
 
@@ -182,14 +182,14 @@ TEST(CandidateSet, ManySitesInManyBlocks) {
         bytes = model.set.bytes();
     }
     EXPECT_GT(model.set.runs(), 300'000U);
-    const auto prices = randomPrices(random, 2000);
+    const auto weights = randomWeights(random, 2000);
     std::vector<std::uint32_t> values(model.set.size());
-    model.set.priceAll(CellPrices(prices), values);
+    model.set.weighAll(WeightSums(weights), values);
     for (std::size_t i = 0; i < model.seen.size(); ++i)
-        ASSERT_EQ(values[i], priceOf(model.seen[i], prices)) << i;
+        ASSERT_EQ(values[i], weightOf(model.seen[i], weights)) << i;
     const CandidateSet copy = model.set;
     std::vector<std::uint32_t> again(copy.size());
-    copy.priceAll(CellPrices(prices), again);
+    copy.weighAll(WeightSums(weights), again);
     EXPECT_EQ(again, values);
 }
 

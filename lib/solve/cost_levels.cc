@@ -9,7 +9,7 @@
 namespace ispace {
 namespace {
 
-constexpr std::size_t kMostLevels = 4'000;
+constexpr std::size_t kMaxLevels = 4'000;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ CostLevels::CostLevels(const std::vector<Kind>& kinds, double most) {
             count = std::min(count, left);
             left -= count;
             mayAdd(count, kind.cost, most);
-            if (levels_.size() > kMostLevels) {
+            if (levels_.size() > kMaxLevels) {
                 setEven(most);
                 return;
             }
@@ -55,10 +55,10 @@ void CostLevels::mayAdd(std::size_t count, double cost, double most) {
 void CostLevels::setEven(double most) {
     is_even_ = true;
     const double unit = std::pow(10, std::floor(std::log10(most)) - 5);
-    levels_.resize(kMostLevels + 1);
+    levels_.resize(kMaxLevels + 1);
     for (std::size_t i = 0; i < levels_.size(); ++i) {
-        const double share = static_cast<double>(i) / static_cast<double>(kMostLevels);
-        const double cost = tidyCost(std::floor(most * share / unit) * unit);
+        const double multiplicity = static_cast<double>(i) / static_cast<double>(kMaxLevels);
+        const double cost = normaliseCost(std::floor(most * multiplicity / unit) * unit);
         levels_[i] = {cost, cost};
     }
 }

@@ -53,14 +53,14 @@ TEST_F(CostLevelsTest, SumsOfDecimalsAreOneLevel) {
     const CostLevels levels(kindsOf({0.1, 0.2}, 3), 0.7);
     ASSERT_EQ(levels.size(), 8U);
     for (std::size_t i = 0; i < 8; ++i)
-        EXPECT_EQ(tidyCost(levels.at(i)), tidyCost(0.1 * static_cast<double>(i)));
+        EXPECT_EQ(normaliseCost(levels.at(i)), normaliseCost(0.1 * static_cast<double>(i)));
     EXPECT_EQ(levels.below(0.3), 2U);
     EXPECT_EQ(levels.below(0.1 + 0.2), 2U);
     EXPECT_EQ(levels.below(0.31), 3U);
     EXPECT_EQ(levels.below(9), 7U);
     EXPECT_EQ(levels.below(0.1), 0U);
     EXPECT_EQ(levels.below(0), 0U);
-    EXPECT_EQ(tidyCost(levels.above(2)), 0.3);
+    EXPECT_EQ(normaliseCost(levels.above(2)), 0.3);
     EXPECT_EQ(levels.above(7), kInfinite);
 }
 

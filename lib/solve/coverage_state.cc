@@ -20,11 +20,11 @@ std::uint32_t stepScaleOf(const Problem& problem) {
 
 }  // namespace
 
-std::vector<std::uint32_t> weightsOfParts(const Problem& problem) {
+std::vector<std::uint32_t> partialWeights(const Problem& problem) {
     std::uint64_t most = 1;
     for (const Kind& kind : problem.kinds)
         most = std::max<std::uint64_t>(
-            most, static_cast<std::uint64_t>(std::min(kind.share, problem.demand)));
+            most, static_cast<std::uint64_t>(std::min(kind.multiplicity, problem.required)));
     std::vector<std::uint32_t> weights = problem.weights;
     const auto sum = [&weights] {
         std::uint64_t all = 0;
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> weightsOfParts(const Problem& problem) {
 
 bool takesSteps(const Problem& problem) {
     return std::any_of(problem.kinds.begin(), problem.kinds.end(),
-                       [&](const Kind& kind) { return kind.share < problem.demand; });
+                       [&](const Kind& kind) { return kind.multiplicity < problem.required; });
 }
 
 std::vector<int> limitsOf(const Problem& problem) {
@@ -58,14 +58,15 @@ std::vector<int> limitsOf(const Problem& problem) {
     return limits;
 }
 
-CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint32_t>& parts)
+CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint32_t>& partial)
     : problem_(&problem),
-      part_weights_(&parts),
-      demand_(static_cast<std::uint32_t>(problem.demand)),
+      partial_weights_(&partial),
+      required_(static_cast<std::uint32_t>(problem.required)),
       step_scale_(stepScaleOf(problem)) {
-    shares_.reserve(problem.kinds.size());
+    multiplicities_.reserve(problem.kinds.size());
     for (const Kind& kind : problem.kinds)
-        shares_.push_back(static_cast<std::uint32_t>(std::min(kind.share, problem.demand)));
+        multiplicities_.push_back(
+            static_cast<std::uint32_t>(std::min(kind.multiplicity, problem.required)));
     clear();
 }
 
@@ -73,28 +74,29 @@ void CoverageState::clear() {
     chosen_.clear();
     counts_.assign(problem_->kinds.size(), 0);
     loads_.assign(problem_->cells(), 0);
-    value_ = parts_ = 0;
+    value_ = partial_value_ = 0;
     for (std::size_t i = 0; i < loads_.size(); ++i) {
-        if (!problem_->met.empty()) loads_[i] = std::min<std::uint32_t>(problem_->met[i], demand_);
-        if (loads_[i] >= demand_) value_ += problem_->weights[i];
-        parts_ += std::uint64_t{(*part_weights_)[i]} * loads_[i];
+        if (!problem_->achieved.empty())
+            loads_[i] = std::min<std::uint32_t>(problem_->achieved[i], required_);
+        if (loads_[i] >= required_) value_ += problem_->weights[i];
+        partial_value_ += std::uint64_t{(*partial_weights_)[i]} * loads_[i];
     }
 }
 
 template <bool kAdds>
 void CoverageState::change(const Choice& choice) {
-    const std::uint32_t share = shares_[choice.kind], demand = demand_;
+    const std::uint32_t multiplicity = multiplicities_[choice.kind], required = required_;
     const auto change_run = [&](const CellRun& run) {
         for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
-            const std::uint32_t less = kAdds ? loads_[cell] : loads_[cell] - share;
-            const std::uint32_t more = less + share;
+            const std::uint32_t less = kAdds ? loads_[cell] : loads_[cell] - multiplicity;
+            const std::uint32_t more = less + multiplicity;
             const std::uint64_t value =
-                less < demand && more >= demand ? problem_->weights[cell] : 0;
-            const std::uint64_t parts = std::uint64_t{(*part_weights_)[cell]} *
-                                        (std::min(more, demand) - std::min(less, demand));
+                less < required && more >= required ? problem_->weights[cell] : 0;
+            const std::uint64_t parts = std::uint64_t{(*partial_weights_)[cell]} *
+                                        (std::min(more, required) - std::min(less, required));
             loads_[cell] = kAdds ? more : less;
             value_ = kAdds ? value_ + value : value_ - value;
-            parts_ = kAdds ? parts_ + parts : parts_ - parts;
+            partial_value_ = kAdds ? partial_value_ + parts : partial_value_ - parts;
         }
     };
     problem_->kinds[choice.kind].candidates->forEachRun(choice.candidate, change_run);
@@ -124,32 +126,33 @@ bool CoverageState::canTake(std::size_t kind, int limit) const {
            (!problem_->budget || isAffordable(*problem_, cost() + problem_->kinds[kind].cost));
 }
 
-void CoverageState::price(std::size_t kind, Measure measure,
-                          std::vector<std::uint32_t>& prices) const {
+void CoverageState::marginalGains(std::size_t kind, Measure measure,
+                                  std::vector<std::uint32_t>& gains) const {
     const std::size_t cells = loads_.size();
-    const std::uint32_t share = shares_[kind], demand = demand_;
-    prices.resize(cells);
-    if (measure == Measure::Met) {
+    const std::uint32_t multiplicity = multiplicities_[kind], required = required_;
+    gains.resize(cells);
+    if (measure == Measure::Full) {
         const std::uint32_t* weights = problem_->weights.data();
         for (std::size_t i = 0; i < cells; ++i)
-            prices[i] = loads_[i] < demand && loads_[i] + share >= demand ? weights[i] : 0;
+            gains[i] =
+                loads_[i] < required && loads_[i] + multiplicity >= required ? weights[i] : 0;
     } else {
-        const std::uint32_t* weights = part_weights_->data();
+        const std::uint32_t* weights = partial_weights_->data();
         for (std::size_t i = 0; i < cells; ++i)
-            prices[i] =
-                weights[i] * (std::min(loads_[i] + share, demand) - std::min(loads_[i], demand));
+            gains[i] = weights[i] * (std::min(loads_[i] + multiplicity, required) -
+                                     std::min(loads_[i], required));
     }
 }
 
-void CoverageState::priceSteps(std::size_t kind, std::uint64_t to_come,
-                               std::vector<std::uint32_t>& prices) const {
-    const std::uint32_t share = shares_[kind];
-    prices.resize(loads_.size());
-    for (std::size_t i = 0; i < prices.size(); ++i) {
-        const std::uint32_t lack = demand_ - std::min(loads_[i], demand_);
-        const bool is_in_vain = lack == 0 || lack > share + to_come;
-        const std::uint32_t steps = lack / share + (lack % share != 0 ? 1U : 0U);
-        prices[i] = is_in_vain ? 0 : problem_->weights[i] * step_scale_ / steps;
+void CoverageState::stepGains(std::size_t kind, std::uint64_t to_come,
+                              std::vector<std::uint32_t>& gains) const {
+    const std::uint32_t multiplicity = multiplicities_[kind];
+    gains.resize(loads_.size());
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+        const std::uint32_t lack = required_ - std::min(loads_[i], required_);
+        const bool is_in_vain = lack == 0 || lack > multiplicity + to_come;
+        const std::uint32_t steps = lack / multiplicity + (lack % multiplicity != 0 ? 1U : 0U);
+        gains[i] = is_in_vain ? 0 : problem_->weights[i] * step_scale_ / steps;
     }
 }
 

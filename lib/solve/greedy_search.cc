@@ -21,7 +21,7 @@ constexpr std::size_t kSureSensors = 32;
 
 /// How greedy placement goes on.
 struct GreedyRule {
-    bool by_parts = false;         ///< all parts of a demand count alike, met at last or not
+    bool by_parts = false;         ///< by partial gain
     bool per_cost = false;         ///< by gain for cost
     std::size_t sure_sensors = 0;  ///< so many whatever progress says
 };
@@ -59,7 +59,7 @@ class GreedyPlacement {
   private:
     /// What is known of the sites of a kind.
     struct KnownSites {
-        std::vector<std::uint32_t> prices;  ///< last ones; of steps only
+        std::vector<std::uint32_t> gains;   ///< last ones; of steps only
         std::vector<std::uint32_t> bounds;  ///< empty: nothing is known
         std::vector<CellRun> spans;         ///< of what each sees; of steps only
     };
@@ -80,10 +80,10 @@ class GreedyPlacement {
 
     bool placeNext() {
         const bool is_ordered = !basis_.problem.order.empty();
-        BestPlace best;
+        BestCandidate best;
         std::size_t best_kind = 0;
         for (const std::size_t kind : nextKinds()) {
-            const BestPlace place = bestOf(kind);
+            const BestCandidate place = bestOf(kind);
             if (!place.is_found) continue;
             if (!best.is_found || isBetter(place, kind, best, best_kind)) {
                 best = place;
@@ -97,7 +97,7 @@ class GreedyPlacement {
         return true;
     }
 
-    [[nodiscard]] bool isBetter(const BestPlace& a, std::size_t kind_a, const BestPlace& b,
+    [[nodiscard]] bool isBetter(const BestCandidate& a, std::size_t kind_a, const BestCandidate& b,
                                 std::size_t kind_b) const {
         if (!rule_.per_cost) return a.score > b.score;
         const double cost_a = basis_.problem.kinds[kind_a].cost,
@@ -113,7 +113,7 @@ class GreedyPlacement {
     /// Sensors that may be placed after one more of a kind, all the same in cost and share.
     struct Offer {
         double cost = 0;
-        std::uint64_t share = 0, count = 0;
+        std::uint64_t multiplicity = 0, count = 0;
     };
     [[nodiscard]] std::vector<Offer> offersAfter(std::size_t kind) const {
         const Problem& problem = basis_.problem;
@@ -125,76 +125,77 @@ class GreedyPlacement {
                                        : std::count(pending_.begin(), pending_.end(), k);
             if (k == kind) --count;
             if (count <= 0) continue;
-            const int share = std::min(problem.kinds[k].share, problem.demand);
-            offers.push_back({problem.kinds[k].cost, static_cast<std::uint64_t>(share),
+            const int multiplicity = std::min(problem.kinds[k].multiplicity, problem.required);
+            offers.push_back({problem.kinds[k].cost, static_cast<std::uint64_t>(multiplicity),
                               static_cast<std::uint64_t>(count)});
         }
         return offers;
     }
 
-    /// What sensors after one more of a kind can meet of a cell's demand, at most.
-    [[nodiscard]] std::uint64_t sharesAfter(std::size_t kind) const {
+    /// The most that sensors after one more of a kind can add to the multiplicity of a cell.
+    [[nodiscard]] std::uint64_t multiplicityAfter(std::size_t kind) const {
         std::vector<Offer> offers = offersAfter(kind);
-        std::uint64_t shares = 0;
+        std::uint64_t multiplicities = 0;
         const std::optional<double>& budget = basis_.problem.budget;
         if (!budget) {
-            for (const Offer& offer : offers) shares += offer.share * offer.count;
-            return shares;
+            for (const Offer& offer : offers) multiplicities += offer.multiplicity * offer.count;
+            return multiplicities;
         }
         // What meets most for its cost comes first, the last one in part: nothing meets more.
         std::sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
-            return static_cast<double>(a.share) * b.cost > static_cast<double>(b.share) * a.cost;
+            return static_cast<double>(a.multiplicity) * b.cost >
+                   static_cast<double>(b.multiplicity) * a.cost;
         });
         double spent = state_.cost() + basis_.problem.kinds[kind].cost;
         for (const Offer& offer : offers) {
-            const double cost_of_part = offer.cost / static_cast<double>(offer.share);
-            const std::size_t all = offer.share * offer.count;
+            const double cost_of_part = offer.cost / static_cast<double>(offer.multiplicity);
+            const std::size_t all = offer.multiplicity * offer.count;
             const std::size_t parts = affordableCount(*budget, spent, cost_of_part, all);
-            shares += parts;
+            multiplicities += parts;
             if (parts < all) break;
             spent += offer.cost * static_cast<double>(offer.count);
         }
-        return shares;
+        return multiplicities;
     }
 
-    /// Bounds that hold for the prices of this sensor. Where one meets the demand, prices only
-    /// fall, and what was found before holds (Minoux 1978). Steps towards a demand rise in price
-    /// with the sensors placed: a site then gains no more than all cells in its span together.
+    /// Upper bounds of the gains of this sensor. Where one sensor covers a cell, gains only fall
+    /// and earlier bounds hold (Minoux 1978). Step gains rise as sensors are placed: the bound of a
+    /// site then rises by that of all cells in its span.
     void renew(KnownSites& known, std::size_t kind) {
         const CandidateSet& candidates = *basis_.problem.kinds[kind].candidates;
         if (!has_steps_) {
             if (known.bounds.empty())
-                known.bounds = rule_.by_parts ? basis_.site_parts[kind] : basis_.site_met[kind];
+                known.bounds = rule_.by_parts ? basis_.site_partial[kind] : basis_.site_full[kind];
             return;
         }
         if (known.bounds.empty()) {
             std::vector<std::uint32_t> values(candidates.size());
-            candidates.priceAll(sums_, values);
+            candidates.weighAll(sums_, values);
             known.spans = spansOf(candidates);
-            known.bounds = mostOfSites(candidates, values);
+            known.bounds = maxOfSites(candidates, values);
         } else {
-            std::vector<std::uint32_t>& rises = known.prices;
+            std::vector<std::uint32_t>& rises = known.gains;
             for (std::size_t i = 0; i < rises.size(); ++i)
-                rises[i] = prices_[i] - std::min(prices_[i], rises[i]);
+                rises[i] = gains_[i] - std::min(gains_[i], rises[i]);
             rise_sums_.assign(rises);
             for (std::size_t site = 0; site < known.bounds.size(); ++site) {
                 const std::uint32_t bound = known.bounds[site];
                 known.bounds[site] = bound + std::min(~bound, rise_sums_.of(known.spans[site]));
             }
         }
-        known.prices = prices_;
+        known.gains = gains_;
     }
 
-    BestPlace bestOf(std::size_t kind) {
+    BestCandidate bestOf(std::size_t kind) {
         const Problem& problem = basis_.problem;
         if (has_steps_) {
-            state_.priceSteps(kind, sharesAfter(kind), prices_);
-            state_.price(kind, Measure::Parts, parts_);
+            state_.stepGains(kind, multiplicityAfter(kind), gains_);
+            state_.marginalGains(kind, Measure::Partial, parts_);
             part_sums_.assign(parts_);
         } else {
-            state_.price(kind, rule_.by_parts ? Measure::Parts : Measure::Met, prices_);
+            state_.marginalGains(kind, rule_.by_parts ? Measure::Partial : Measure::Full, gains_);
         }
-        sums_.assign(prices_);
+        sums_.assign(gains_);
         renew(known_[kind], kind);
         std::optional<Connection> connection;
         if (problem.is_connected) connection.emplace(problem, state_.chosen());
@@ -205,7 +206,7 @@ class GreedyPlacement {
         SilentProgress never;
         const bool is_sure = state_.chosen().size() < rule_.sure_sensors;
         const Progress& progress = is_sure ? static_cast<const Progress&>(never) : progress_;
-        BestPlace best = finder_.find(
+        BestCandidate best = finder_.find(
             {problem.kinds[kind].candidates, &sums_, has_steps_ ? &part_sums_ : nullptr},
             known_[kind].bounds, {}, allows, progress);
         // More sensors than candidates: each has a place all the same.
@@ -217,12 +218,12 @@ class GreedyPlacement {
     GreedyRule rule_;
     CoverageState& state_;
     Progress& progress_;
-    bool has_steps_;                    // it takes several sensors of a kind to meet the demand
+    bool has_steps_;                    // it takes several sensors of a kind to cover a cell
     std::vector<KnownSites> known_;     // per kind
     std::vector<std::size_t> pending_;  // with an order: kinds yet to come
-    PlaceFinder finder_;
-    std::vector<std::uint32_t> prices_, parts_;
-    CellPrices sums_, part_sums_, rise_sums_;
+    CandidateFinder finder_;
+    std::vector<std::uint32_t> gains_, parts_;
+    WeightSums sums_, part_sums_, rise_sums_;
 };
 
 }  // namespace
@@ -247,7 +248,8 @@ Solution placeGreedily(const Problem& problem, Progress& progress) {
     if (is_by_cost) {
         CoverageState other = basis.emptyState();
         GreedyPlacement(basis, {false, true, kSureSensors}, other, progress).run();
-        if (std::pair(other.value(), other.parts()) > std::pair(best.value(), best.parts()))
+        if (std::pair(other.value(), other.partialValue()) >
+            std::pair(best.value(), best.partialValue()))
             best = std::move(other);
     }
     progress.end();

@@ -20,12 +20,12 @@ bool holds(const std::vector<Choice>& chosen, const Choice& choice) {
 
 /// Shares that cells have of what stands and of the sensors of different choices.
 std::vector<int> loadsOf(const Problem& problem, const std::vector<Choice>& chosen) {
-    std::vector<int> loads(problem.met.begin(), problem.met.end());
+    std::vector<int> loads(problem.achieved.begin(), problem.achieved.end());
     loads.resize(problem.cells(), 0);
     for (const Choice& choice : chosen) {
         const Kind& kind = problem.kinds[choice.kind];
         kind.candidates->cellsOf(choice.candidate).forEach([&](std::size_t cell) {
-            loads[cell] += kind.share;
+            loads[cell] += kind.multiplicity;
         });
     }
     return loads;
@@ -37,17 +37,18 @@ using Gain = std::pair<std::uint64_t, std::uint64_t>;
 
 Gain gainOf(const Problem& problem, const std::vector<int>& loads, const Choice& choice,
             int to_come) {
-    const int share = problem.kinds[choice.kind].share;
+    const int multiplicity = problem.kinds[choice.kind].multiplicity;
     bool takes_steps = false;
-    for (const Kind& kind : problem.kinds) takes_steps |= kind.share < problem.demand;
+    for (const Kind& kind : problem.kinds) takes_steps |= kind.multiplicity < problem.required;
     Gain gain;
     problem.kinds[choice.kind].candidates->cellsOf(choice.candidate).forEach([&](std::size_t cell) {
-        const int lack = problem.demand - loads[cell];
+        const int lack = problem.required - loads[cell];
         if (lack <= 0) return;
         const std::uint64_t weight = problem.weights[cell];
-        const auto sensors = static_cast<std::uint64_t>((lack + share - 1) / share);
-        if (lack <= share + to_come) gain.first += weight * 840 / sensors;
-        if (takes_steps) gain.second += weight * static_cast<std::uint64_t>(std::min(share, lack));
+        const auto sensors = static_cast<std::uint64_t>((lack + multiplicity - 1) / multiplicity);
+        if (lack <= multiplicity + to_come) gain.first += weight * 840 / sensors;
+        if (takes_steps)
+            gain.second += weight * static_cast<std::uint64_t>(std::min(multiplicity, lack));
     });
     return gain;
 }
@@ -56,10 +57,10 @@ Gain gainOf(const Problem& problem, const std::vector<int>& loads, const Choice&
 std::vector<Choice> naiveGreedy(const Problem& problem) {
     std::vector<Choice> chosen;
     std::vector<int> counts(problem.kinds.size(), 0);
-    int sensors = 0, shares = 0;
+    int sensors = 0, multiplicities = 0;
     for (const Kind& kind : problem.kinds) {
         sensors += kind.most;
-        shares += kind.most * std::min(kind.share, problem.demand);
+        multiplicities += kind.most * std::min(kind.multiplicity, problem.required);
     }
     for (int i = 0; i < sensors; ++i) {
         const std::vector<int> loads = loadsOf(problem, chosen);
@@ -69,7 +70,8 @@ std::vector<Choice> naiveGreedy(const Problem& problem) {
             if (!problem.order.empty() && problem.order[static_cast<std::size_t>(i)] != kind)
                 continue;
             if (counts[kind] == problem.kinds[kind].most) continue;
-            const int to_come = shares - std::min(problem.kinds[kind].share, problem.demand);
+            const int to_come =
+                multiplicities - std::min(problem.kinds[kind].multiplicity, problem.required);
             for (std::size_t c = 0; c < problem.kinds[kind].candidates->size(); ++c) {
                 auto more = chosen;
                 more.push_back({kind, c});
@@ -84,7 +86,7 @@ std::vector<Choice> naiveGreedy(const Problem& problem) {
         if (!best) break;
         chosen.push_back(*best);
         ++counts[best->kind];
-        shares -= std::min(problem.kinds[best->kind].share, problem.demand);
+        multiplicities -= std::min(problem.kinds[best->kind].multiplicity, problem.required);
     }
     return chosen;
 }
@@ -121,12 +123,12 @@ TEST(GreedySearch, IsNaiveGreedyInOrder) {
 TEST(GreedySearch, IsNaiveGreedyWithDemandAndWhatStands) {
     RandomProblemOptions options;
     options.kinds = 2;
-    options.demand = 4;
-    options.shares = {1, 4};
-    options.max_met = 3;
+    options.required = 4;
+    options.multiplicities = {1, 4};
+    options.max_achieved = 3;
     options.max_weight = 5;
     expectNaive(options, 60);
-    options.demand = 8;
+    options.required = 8;
     options.most = 4;
     options.has_order = true;
     expectNaive(options, 40);
@@ -138,9 +140,9 @@ TEST(GreedySearch, IsNaiveGreedyWhereItTakesSeveral) {
     options.rows = 20;
     options.sites = 20;
     options.most = 8;
-    for (options.demand = 2; options.demand <= 4; ++options.demand) expectNaive(options, 30);
+    for (options.required = 2; options.required <= 4; ++options.required) expectNaive(options, 30);
     options.columns = 16;
-    options.demand = 2;
+    options.required = 2;
     options.is_connected = true;
     expectNaive(options, 20);
 }
@@ -159,7 +161,7 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     others.addSite(set_of(0, 12));
     Problem problem;
     problem.weights.assign(cells, 1);
-    problem.demand = 2;
+    problem.required = 2;
     problem.kinds = {{&candidates, 2}};
     SilentProgress progress;
     const std::vector<Choice> same_place{{0, 0}, {0, 2}};
@@ -172,20 +174,20 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     // What follows may be dearer and meet more: a first step towards that is worth something.
     CandidateSet few(cells);
     few.addSite(set_of(0, 4));
-    problem.demand = 5;
+    problem.required = 5;
     problem.kinds = {{&others, 3, 1, 1}, {&few, 3, 2, 4}};
     problem.budget = 3;
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{0, 0}, {1, 0}}));
-    problem.demand = 2;
+    problem.required = 2;
     // One meets nothing: it goes where most are half met.
     problem.budget.reset();
     problem.kinds = {{&candidates, 1}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{0, 0}}));
     // What one sensor meets wholly counts more than a quarter of more cells.
-    problem.demand = 4;
+    problem.required = 4;
     problem.kinds = {{&others, 1, 1, 1}, {&candidates, 1, 1, 4}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen.front(), (Choice{1, 0}));
-    problem.met = {0, 0, 0, 0, 0, 0, 3, 3, 3, 3, 3, 3};
+    problem.achieved = {0, 0, 0, 0, 0, 0, 3, 3, 3, 3, 3, 3};
     problem.kinds = {{&candidates, 1, 1, 1}};
     EXPECT_EQ(placeGreedily(problem, progress).chosen, (std::vector<Choice>{{0, 1}}));
 }
@@ -197,8 +199,8 @@ TEST(GreedySearch, IsWorthMoreThanPartsOfDemands) {
     options.columns = 30;
     options.rows = 25;
     options.max_range = 8;
-    for (options.demand = 2; options.demand <= 4; ++options.demand) {
-        options.most = 3 * options.demand;
+    for (options.required = 2; options.required <= 4; ++options.required) {
+        options.most = 3 * options.required;
         std::uint64_t value = 0, value_of_parts = 0;
         for (std::uint64_t seed = 0; seed < 10; ++seed) {
             const RandomProblem made = randomProblem(seed, options);
@@ -208,7 +210,7 @@ TEST(GreedySearch, IsWorthMoreThanPartsOfDemands) {
             value_of_parts += parts.value();
             value += placeGreedily(made.problem, progress).value;
         }
-        EXPECT_GT(value * 10, value_of_parts * 12) << options.demand;
+        EXPECT_GT(value * 10, value_of_parts * 12) << options.required;
     }
 }
 
@@ -226,7 +228,7 @@ TEST(GreedySearch, IsNaiveGreedyConnected) {
 
 TEST(GreedySearch, ReachesItsShareOfTheOptimum) {
     SilentProgress progress;
-    const double share = 1 - std::exp(-1.0);
+    const double multiplicity = 1 - std::exp(-1.0);
     RandomProblemOptions options;
     options.max_weight = 4;
     options.columns = 16;
@@ -234,7 +236,7 @@ TEST(GreedySearch, ReachesItsShareOfTheOptimum) {
         const RandomProblem made = randomProblem(seed, options);
         const auto best = static_cast<double>(bestByBruteForce(made.problem).value);
         const auto value = static_cast<double>(placeGreedily(made.problem, progress).value);
-        EXPECT_GE(value, share * best) << seed;
+        EXPECT_GE(value, multiplicity * best) << seed;
         EXPECT_LE(value, best) << seed;
     }
 }
@@ -340,7 +342,7 @@ TEST(GreedySearch, StoppedItPlacesThirtyTwoWithCare) {
     options.rows = 50;
     StopWhen stopped(always);
     SilentProgress progress;
-    for (options.demand = 1; options.demand <= 2; ++options.demand) {
+    for (options.required = 1; options.required <= 2; ++options.required) {
         const RandomProblem made = randomProblem(2, options);
         const std::vector<Choice> careful = placeGreedily(made.problem, progress).chosen;
         const std::vector<Choice> hasty = placeGreedily(made.problem, stopped).chosen;
@@ -349,7 +351,7 @@ TEST(GreedySearch, StoppedItPlacesThirtyTwoWithCare) {
         EXPECT_NE(hasty, careful);
     }
     // Both ways to buy.
-    options.demand = 1;
+    options.required = 1;
     options.kinds = 3;
     options.most = 4;
     options.has_costs = true;
@@ -368,7 +370,7 @@ TEST(GreedySearch, HeaviestWeightsDoNotOverflow) {
     Problem problem;
     problem.weights = {1, std::numeric_limits<std::uint32_t>::max() - 2};
     problem.kinds = {{&candidates, 1, 1, 7}};
-    problem.demand = 7;
+    problem.required = 7;
     SilentProgress progress;
     const Solution solution = placeGreedily(problem, progress);
     EXPECT_EQ(solution.chosen, (std::vector<Choice>{{0, 1}}));

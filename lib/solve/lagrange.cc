@@ -19,15 +19,16 @@ RootRelaxation::RootRelaxation(const Problem& problem)
     sums_.resize(kinds);
     for (std::size_t k = 0; k < kinds; ++k) {
         kinds_[k].candidates = problem.kinds[k].candidates;
-        kinds_[k].prices.assign(kinds_[k].candidates->size(), 0);
+        kinds_[k].reduced_costs.assign(kinds_[k].candidates->size(), 0);
         kinds_[k].is_working.assign(kinds_[k].candidates->sites(), 0);
         kinds_[k].is_out.assign(kinds_[k].candidates->size(), 0);
         kinds_[k].sites.resize(kinds_[k].candidates->sites());
         std::iota(kinds_[k].sites.begin(), kinds_[k].sites.end(), 0U);
-        const auto same = std::find(cells_.shares.begin(), cells_.shares.end(), cells_.shares[k]);
-        const auto first = static_cast<std::size_t>(same - cells_.shares.begin());
-        prices_of_.push_back(first == k ? prices_.size() : prices_of_[first]);
-        if (first == k) prices_.emplace_back();
+        const auto same = std::find(cells_.multiplicities.begin(), cells_.multiplicities.end(),
+                                    cells_.multiplicities[k]);
+        const auto first = static_cast<std::size_t>(same - cells_.multiplicities.begin());
+        sums_of_.push_back(first == k ? reduced_costs_.size() : sums_of_[first]);
+        if (first == k) reduced_costs_.emplace_back();
     }
     cover_.resize(problem.cells());
 }
@@ -46,32 +47,32 @@ void RootRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& kep
 }
 
 std::vector<std::uint32_t> RootRelaxation::startFrom(const std::vector<Choice>& chosen) const {
-    std::vector<std::uint16_t> shares(problem_.cells(), 0);
+    std::vector<std::uint16_t> multiplicities(problem_.cells(), 0);
     for (const Choice& choice : chosen) {
-        const std::uint16_t share = cells_.shares[choice.kind];
+        const std::uint16_t multiplicity = cells_.multiplicities[choice.kind];
         kinds_[choice.kind].candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i)
-                shares[i] = static_cast<std::uint16_t>(shares[i] + share);
+                multiplicities[i] = static_cast<std::uint16_t>(multiplicities[i] + multiplicity);
         });
     }
     std::vector<std::uint32_t> multipliers = cells_.weights;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
-        if (shares[i] > cells_.needs[i]) multipliers[i] = 0;
+        if (multiplicities[i] > cells_.needs[i]) multipliers[i] = 0;
     return multipliers;
 }
 
 std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipliers, bool is_all) {
-    setPrices(multipliers);
+    setReducedCosts(multipliers);
     free_ = cells_.settled;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
         free_ += cells_.weights[i] - multipliers[i];
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         const auto& sites = is_all ? kinds_[k].sites : kinds_[k].working;
-        priceSites(k, sites);
+        weighSites(k, sites);
         findTop(k, sites, counts_.most(k));
         sums_[k].assign(1, 0);
         for (const std::uint32_t i : kinds_[k].top)
-            sums_[k].push_back(sums_[k].back() + kinds_[k].prices[i]);
+            sums_[k].push_back(sums_[k].back() + kinds_[k].reduced_costs[i]);
     }
     best_ = counts_.best(sums_);
     chosen_.clear();
@@ -81,29 +82,29 @@ std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipl
     return free_ + best_.value;
 }
 
-void RootRelaxation::setPrices(const std::vector<std::uint32_t>& multipliers) {
+void RootRelaxation::setReducedCosts(const std::vector<std::uint32_t>& multipliers) {
     for (std::size_t k = 0, next = 0; k < kinds_.size(); ++k) {
-        if (prices_of_[k] != next) continue;
-        const std::uint16_t share = cells_.shares[k];
+        if (sums_of_[k] != next) continue;
+        const std::uint16_t multiplicity = cells_.multiplicities[k];
         shared_.resize(multipliers.size());
         for (std::size_t i = 0; i < multipliers.size(); ++i)
-            shared_[i] = priceOf(multipliers[i], share, cells_.needs[i]);
-        prices_[next++].assign(shared_);
+            shared_[i] = reducedCost(multipliers[i], multiplicity, cells_.needs[i]);
+        reduced_costs_[next++].assign(shared_);
     }
 }
 
-void RootRelaxation::priceSites(std::size_t kind, const std::vector<std::uint32_t>& sites) {
+void RootRelaxation::weighSites(std::size_t kind, const std::vector<std::uint32_t>& sites) {
     OfKind& own = kinds_[kind];
-    const CellPrices& prices = prices_[prices_of_[kind]];
+    const WeightSums& reduced_costs = reduced_costs_[sums_of_[kind]];
     constexpr std::size_t kGrain = 32;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites.size(), kGrain),
                       [&](const tbb::blocked_range<std::size_t>& some) {
                           for (std::size_t i = some.begin(); i < some.end(); ++i) {
                               const std::size_t first = own.candidates->firstOf(sites[i]);
                               const std::size_t end = own.candidates->firstOf(sites[i] + 1);
-                              own.candidates->priceSite(
-                                  sites[i], prices,
-                                  std::span(own.prices).subspan(first, end - first));
+                              own.candidates->weighSite(
+                                  sites[i], reduced_costs,
+                                  std::span(own.reduced_costs).subspan(first, end - first));
                           }
                       });
 }
@@ -112,7 +113,9 @@ void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>&
                              std::size_t count) {
     OfKind& own = kinds_[kind];
     const auto is_better = [&own](std::uint32_t a, std::uint32_t b) {
-        return own.prices[a] != own.prices[b] ? own.prices[a] > own.prices[b] : a < b;
+        return own.reduced_costs[a] != own.reduced_costs[b]
+                   ? own.reduced_costs[a] > own.reduced_costs[b]
+                   : a < b;
     };
     // The best are gathered in a list that is cut when it is twice as long as wanted.
     std::vector<std::uint32_t>& top = own.top;
@@ -125,12 +128,12 @@ void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>&
         std::nth_element(top.begin(), top.begin() + static_cast<std::ptrdiff_t>(count - 1),
                          top.end(), is_better);
         top.resize(count);
-        least = own.prices[top[count - 1]];
+        least = own.reduced_costs[top[count - 1]];
     };
     for (const std::uint32_t site : sites)
         for (std::size_t i = own.candidates->firstOf(site), end = own.candidates->firstOf(site + 1);
              i < end; ++i) {
-            if (own.prices[i] < least || own.is_out[i] != 0) continue;
+            if (own.reduced_costs[i] < least || own.is_out[i] != 0) continue;
             top.push_back(static_cast<std::uint32_t>(i));
             if (top.size() >= room) cut();
         }
@@ -141,10 +144,10 @@ void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>&
 void RootRelaxation::setCover() {
     std::fill(cover_.begin(), cover_.end(), 0.0F);
     for (const Choice& choice : chosen_) {
-        const std::uint16_t share = cells_.shares[choice.kind];
+        const std::uint16_t multiplicity = cells_.multiplicities[choice.kind];
         kinds_[choice.kind].candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i)
-                cover_[i] += partOf(share, cells_.needs[i]);
+                cover_[i] += partOf(multiplicity, cells_.needs[i]);
         });
     }
 }
@@ -153,7 +156,7 @@ std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
     std::uint64_t ruled_out = 0;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         OfKind& own = kinds_[k];
-        // With a price of at most this it is in nothing that is worth more.
+        // With a reduced cost of at most this it is in no better solution.
         const std::uint64_t with = free_ + best_.with[k];
         const std::uint64_t most = cut >= with ? cut - with : 0;
         const bool is_any = best_.may[k] == 0 || cut >= with;
@@ -163,9 +166,10 @@ std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
             for (std::size_t i = own.candidates->firstOf(site),
                              end = own.candidates->firstOf(site + 1);
                  i < end; ++i) {
-                if (own.is_out[i] == 0 && (best_.may[k] == 0 || own.prices[i] <= most)) {
+                if (own.is_out[i] == 0 && (best_.may[k] == 0 || own.reduced_costs[i] <= most)) {
                     own.is_out[i] = 1;
-                    if (best_.may[k] != 0) ruled_out = std::max(ruled_out, with + own.prices[i]);
+                    if (best_.may[k] != 0)
+                        ruled_out = std::max(ruled_out, with + own.reduced_costs[i]);
                 }
                 is_empty = is_empty && own.is_out[i] != 0;
             }
@@ -208,8 +212,8 @@ bool isGood(const Bound& bound, const LagrangeLimits& limits) {
 
 }  // namespace
 
-Bound boundWithin(const Problem& problem, const std::vector<Choice>& near,
-                  const LagrangeLimits& limits, Progress& progress) {
+Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
+                      const LagrangeLimits& limits, Progress& progress) {
     RootRelaxation root(problem);
     const RelaxedCells& cells = root.cells();
     Bound bound;
@@ -251,11 +255,6 @@ Bound boundWithin(const Problem& problem, const std::vector<Choice>& near,
     bound.survivors = root.survivors();
     progress.end();
     return bound;
-}
-
-Bound boundByLagrange(const Problem& problem, const Solution& best, double gap,
-                      Progress& progress) {
-    return boundWithin(problem, best.chosen, {.cut = best.value, .gap = gap}, progress);
 }
 
 }  // namespace ispace

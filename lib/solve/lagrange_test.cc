@@ -6,12 +6,16 @@
 
 #include <algorithm>
 
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 #include "solve/test_problems.h"
 
 namespace ispace {
 
 namespace {
+
+Bound boundFor(const Problem& problem, const Solution& best, Progress& progress) {
+    return lagrangianBound(problem, best.chosen, {.cut = best.value}, progress);
+}
 
 TEST(Lagrange, IsTheSumWhereNothingOverlaps) {
     CandidateSet set(30);
@@ -25,7 +29,7 @@ TEST(Lagrange, IsTheSumWhereNothingOverlaps) {
     problem.kinds = {{&set, 2, 1, 1}};
     SilentProgress progress;
     const Solution best{{{0, 0}, {0, 1}}, 17};
-    const Bound bound = boundByLagrange(problem, best, 0, progress);
+    const Bound bound = boundFor(problem, best, progress);
     EXPECT_EQ(bound.value, 17U);
 }
 
@@ -42,7 +46,7 @@ TEST(Lagrange, MultipliersFindThatTwoOverlap) {
     problem.weights = {5, 5, 5};
     problem.kinds = {{&set, 2, 1, 1}};
     SilentProgress progress;
-    const Bound bound = boundByLagrange(problem, {{{0, 0}, {0, 1}}, 15}, 0, progress);
+    const Bound bound = boundFor(problem, {{{0, 0}, {0, 1}}, 15}, progress);
     EXPECT_EQ(bound.value, 15U);
 }
 
@@ -50,12 +54,12 @@ TEST(Lagrange, NothingToPlaceIsWhatIsMet) {
     CandidateSet set(4);
     Problem problem;
     problem.weights = {1, 2, 3, 4};
-    problem.met = {0, 1, 0, 1};
+    problem.achieved = {0, 1, 0, 1};
     problem.kinds = {{&set, 3, 1, 1}};
     SilentProgress progress;
-    EXPECT_EQ(boundByLagrange(problem, {{}, 6}, 0, progress).value, 6U);
+    EXPECT_EQ(boundFor(problem, {{}, 6}, progress).value, 6U);
     problem.kinds.clear();
-    EXPECT_EQ(boundByLagrange(problem, {{}, 6}, 0, progress).value, 6U);
+    EXPECT_EQ(boundFor(problem, {{}, 6}, progress).value, 6U);
 }
 
 TEST(Lagrange, HoldsAndSurvivorsHoldTheBest) {
@@ -66,7 +70,7 @@ TEST(Lagrange, HoldsAndSurvivorsHoldTheBest) {
         const Solution best = bestByBruteForce(problem);
         const Solution poor{{}, valueOf(problem, {})};
         for (const Solution& known : {best, poor}) {
-            const Bound bound = boundByLagrange(problem, known, 0, progress);
+            const Bound bound = boundFor(problem, known, progress);
             ASSERT_GE(bound.value, best.value) << round;
             ASSERT_EQ(bound.multipliers.size(), problem.cells());
             for (std::size_t i = 0; i < problem.cells(); ++i)
@@ -87,7 +91,7 @@ TEST(Lagrange, IsNearOnAverage) {
     for (std::uint64_t round = 0; round < 60; ++round) {
         const RandomProblem random = randomProblem(round);
         const Solution best = bestByBruteForce(random.problem);
-        const Bound bound = boundByLagrange(random.problem, best, 0, progress);
+        const Bound bound = boundFor(random.problem, best, progress);
         sum += static_cast<double>(bound.value - best.value) / static_cast<double>(bound.value);
     }
     EXPECT_LT(sum / 60, 0.02);
@@ -105,10 +109,10 @@ TEST(Lagrange, HoldsWithOddCosts) {
         random.problem.kinds[1].cost = 0.7;
         random.problem.budget = 2.5;
         const Solution best = bestByBruteForce(random.problem);
-        EXPECT_GE(boundByLagrange(random.problem, best, 0, progress).value, best.value);
+        EXPECT_GE(boundFor(random.problem, best, progress).value, best.value);
         for (Kind& kind : random.problem.kinds) kind.cost *= 1e-5;
         *random.problem.budget *= 1e-5;
-        EXPECT_GE(boundByLagrange(random.problem, best, 0, progress).value, best.value);
+        EXPECT_GE(boundFor(random.problem, best, progress).value, best.value);
     }
 }
 
@@ -125,7 +129,7 @@ TEST(Lagrange, IsTheSameForAnyNumberOfThreads) {
     const Solution best = placeGreedily(random.problem, progress);
     const auto bounded = [&](std::size_t threads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return boundByLagrange(random.problem, best, 0, progress);
+        return boundFor(random.problem, best, progress);
     };
     const Bound one = bounded(1), two = bounded(2);
     EXPECT_EQ(one.value, two.value);

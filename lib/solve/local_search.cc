@@ -16,26 +16,26 @@ namespace {
 
 /// Sensors whose bounds are kept apart, and the bytes that these may take on all threads together:
 /// 4 a cell and a site of each kind.
-constexpr std::size_t kMostSlots = 64;
-constexpr std::size_t kMostSlotBytes = 256'000'000;
-constexpr std::size_t kMostResponses = 100'000;
+constexpr std::size_t kMaxSlots = 64;
+constexpr std::size_t kMaxSlotBytes = 256'000'000;
+constexpr std::size_t kMaxResponses = 100'000;
 /// Pairs are made of so many sensors, and so many pairs are tried.
 constexpr std::size_t kPairSensors = 16;
-constexpr int kMostPairs = 400;
+constexpr int kMaxPairs = 400;
 
 /// What a local search makes better: more value, then more parts, then less cost.
 using Rank = std::tuple<std::uint64_t, std::uint64_t, double>;
 
 Rank rankOf(const CoverageState& state) {
     const double cost = state.problem().budget ? state.cost() : 0;
-    return {state.value(), state.parts(), -cost};
+    return {state.value(), state.partialValue(), -cost};
 }
 
 std::size_t slotsFor(const SearchBasis& basis) {
     std::size_t words = 1;
-    for (const auto& sites : basis.site_met) words += basis.problem.cells() + sites.size();
+    for (const auto& sites : basis.site_full) words += basis.problem.cells() + sites.size();
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    return std::clamp<std::size_t>(kMostSlotBytes / (4 * words * threads), 1, kMostSlots);
+    return std::clamp<std::size_t>(kMaxSlotBytes / (4 * words * threads), 1, kMaxSlots);
 }
 
 bool haveCostsThatDiffer(const Problem& problem) {
@@ -63,7 +63,7 @@ std::optional<Response> ResponseCache::find(const Key& others) const {
 
 void ResponseCache::store(const Key& others, const Response& response) {
     const std::lock_guard lock(mutex_);
-    if (responses_.size() < kMostResponses) responses_.emplace(others, response);
+    if (responses_.size() < kMaxResponses) responses_.emplace(others, response);
 }
 
 LocalSearch::LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::uint64_t enough,
@@ -84,24 +84,24 @@ LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
             continue;
         }
         Slot& slot = slots_.emplace_back();
-        slot.reserve(basis_.site_met.size());
-        for (const auto& bounds : basis_.site_met) slot.push_back({{}, bounds});
+        slot.reserve(basis_.site_full.size());
+        for (const auto& bounds : basis_.site_full) slot.push_back({{}, bounds});
     }
     return slots_[index];
 }
 
 void LocalSearch::renew(SiteBounds& known, std::size_t kind) const {
-    if (known.prices.empty()) {
-        known.prices = prices_;
+    if (known.gains.empty()) {
+        known.gains = gains_;
         return;
     }
     // A candidate adds more than before by no more than all cells add together.
     std::uint64_t more = 0;
-    for (std::size_t i = 0; i < prices_.size(); ++i)
-        more += prices_[i] > known.prices[i] ? prices_[i] - known.prices[i] : 0U;
-    known.prices = prices_;
+    for (std::size_t i = 0; i < gains_.size(); ++i)
+        more += gains_[i] > known.gains[i] ? gains_[i] - known.gains[i] : 0U;
+    known.gains = gains_;
     if (more == 0) return;
-    const std::vector<std::uint32_t>& most = basis_.site_met[kind];
+    const std::vector<std::uint32_t>& most = basis_.site_full[kind];
     const auto more32 = static_cast<std::uint32_t>(more);  // below the sum of all weights
     for (std::size_t site = 0; site < most.size(); ++site) {
         const std::uint32_t left = most[site] - std::min(most[site], known.bounds[site]);
@@ -109,16 +109,16 @@ void LocalSearch::renew(SiteBounds& known, std::size_t kind) const {
     }
 }
 
-BestPlace LocalSearch::bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
-                              const BestPlace& known) {
+BestCandidate LocalSearch::bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
+                                  const BestCandidate& known) {
     const Problem& problem = basis_.problem;
-    others.price(kind, Measure::Met, prices_);
+    others.marginalGains(kind, Measure::Full, gains_);
     renew(bounds, kind);
-    sums_.assign(prices_);
-    const bool has_parts = problem.demand > 1;
+    sums_.assign(gains_);
+    const bool has_parts = problem.required > 1;
     if (has_parts) {
-        others.price(kind, Measure::Parts, more_prices_);
-        more_sums_.assign(more_prices_);
+        others.marginalGains(kind, Measure::Partial, more_gains_);
+        more_sums_.assign(more_gains_);
     }
     std::optional<Connection> connection;
     if (problem.is_connected) connection.emplace(problem, others.chosen());
@@ -138,10 +138,10 @@ Response LocalSearch::respond(const CoverageState& others, Slot& slot,
     Response best;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         if (!others.canTake(kind, basis_.limits[kind])) continue;
-        BestPlace start;
+        BestCandidate start;
         if (known && known->choice.kind == kind)
             start = {known->choice.candidate, known->score, true};
-        const BestPlace place = bestOf(others, kind, slot[kind], start);
+        const BestCandidate place = bestOf(others, kind, slot[kind], start);
         if (!place.is_found) continue;
         const bool is_better =
             !best.is_found || place.score > best.score ||
@@ -154,12 +154,12 @@ Response LocalSearch::respond(const CoverageState& others, Slot& slot,
 
 bool LocalSearch::move(CoverageState& state, std::size_t position) {
     const Rank before = rankOf(state);
-    const std::uint64_t value = state.value(), parts = state.parts();
+    const std::uint64_t value = state.value(), parts = state.partialValue();
     const Choice choice = state.chosen()[position];
     state.removeAt(position);
     std::optional<Response> known;
     if (!state.holds(choice)) {
-        const std::uint64_t second = basis_.problem.demand > 1 ? parts - state.parts() : 0;
+        const std::uint64_t second = basis_.problem.required > 1 ? parts - state.partialValue() : 0;
         known = Response{choice, (value - state.value()) << 32U | second, true};
     }
     const Response response = respond(state, slotAt(position), known);
@@ -196,7 +196,7 @@ bool LocalSearch::rebuyWithout(CoverageState& state, const std::vector<std::size
     for (std::size_t kind = 0; kind < basis_.limits.size(); ++kind) {
         if (!rest.canTake(kind, basis_.limits[kind])) continue;
         CoverageState other = rest;
-        const BestPlace place = bestOf(other, kind, slotAt(positions.front())[kind], {});
+        const BestCandidate place = bestOf(other, kind, slotAt(positions.front())[kind], {});
         if (!place.is_found) continue;
         other.add({kind, place.candidate});
         fill(other);
@@ -259,7 +259,7 @@ void LocalSearch::improve(CoverageState& state) {
 }
 
 void LocalSearch::improveByPairs(CoverageState& state) {
-    int tries = is_by_cost_ ? kMostPairs : 0;
+    int tries = is_by_cost_ ? kMaxPairs : 0;
     do improve(state);
     while (rebuyTwo(state, tries));
 }

@@ -14,20 +14,19 @@
 
 namespace ispace {
 
-/// The best sensor to add to others.
+/// The best sensor to add to a given set.
 struct Response {
     Choice choice;
     Score score = 0;
     bool is_found = false;
 };
 
-/// Best responses by what they answer to, shared by searches that run at the same time: those from
-/// different starts meet. A response depends on its key alone, so who found it does not matter.
-/// Keeps the first 100'000.
+/// Best responses by the set they extend, shared by concurrent searches: different starts reach the
+/// same sets. A response depends on its key alone, so results do not depend on timing. Keeps the
+/// first 100'000.
 class ResponseCache {
   public:
-    /// Of choices in any order: two hashes of 64 bits, so that no two of some million sets share
-    /// them.
+    /// A 128-bit hash of a set, independent of order: collisions among millions are negligible.
     struct Key {
         explicit Key(const std::vector<Choice>& chosen);
         friend bool operator==(const Key&, const Key&) = default;
@@ -45,33 +44,33 @@ class ResponseCache {
     std::unordered_map<Key, Response, Hash> responses_;
 };
 
-/// Moves sensors one by one to where they add most to the others, until no move helps: value counts
-/// first, then the parts of demands that are met, then lower cost.
+/// Moves sensors one at a time to their best candidates until no move helps: by value, then partial
+/// value, then lower cost.
 class LocalSearch {
   public:
-    /// \param enough ends once the choices are worth so much
+    /// \param enough the search ends once it reaches this value
     LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::uint64_t enough,
                 const Progress& progress);
 
-    /// Adds the best sensor, again and again, while one may be added.
+    /// Adds the best sensor while the problem allows another.
     void fill(CoverageState& state);
     /// To a local optimum, or until progress says stop. With a budget also buys others for one
     /// sensor. \pre the choices are feasible
     void improve(CoverageState& state);
-    /// Also buys others for two sensors, of those that are worth least. Long: for the best only.
+    /// Also exchanges pairs of the least useful sensors. Slow: for the best solutions only.
     void improveByPairs(CoverageState& state);
 
   private:
-    /// What is known of what each site can add: bounds that hold for these prices.
+    /// Upper bounds of the gain at each site, valid for these gains of the cells.
     struct SiteBounds {
-        std::vector<std::uint32_t> prices;  ///< empty: any
+        std::vector<std::uint32_t> gains;  ///< empty: any
         std::vector<std::uint32_t> bounds;
     };
     using Slot = std::vector<SiteBounds>;  ///< per kind
 
     Response respond(const CoverageState& others, Slot& slot, const std::optional<Response>& known);
-    BestPlace bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
-                     const BestPlace& known);
+    BestCandidate bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
+                         const BestCandidate& known);
     void renew(SiteBounds& known, std::size_t kind) const;
     Slot& slotAt(std::size_t position);
     bool move(CoverageState& state, std::size_t position);
@@ -91,10 +90,10 @@ class LocalSearch {
     const Progress& progress_;
     bool is_by_cost_ = false;  // there is a budget, and costs differ
     std::size_t most_slots_;
-    PlaceFinder finder_;
-    std::vector<Slot> slots_;                          // by position, the last for all beyond
-    std::vector<std::uint32_t> prices_, more_prices_;  // of the search under way
-    CellPrices sums_, more_sums_;
+    CandidateFinder finder_;
+    std::vector<Slot> slots_;                        // by position, the last for all beyond
+    std::vector<std::uint32_t> gains_, more_gains_;  // of the search under way
+    WeightSums sums_, more_sums_;
 };
 
 }  // namespace ispace

@@ -14,8 +14,9 @@ NodeRelaxation::NodeRelaxation(const BranchNode& node)
     for (const BranchGroup& group : node.groups)
         groups_.push_back({group.kind, group.count, *group.list});
     settle(node.pending);
-    prices_.reserve(problem_.kinds.size());
-    for (const auto& kind : problem_.kinds) prices_.emplace_back(kind.candidates->size(), 0U);
+    reduced_costs_.reserve(problem_.kinds.size());
+    for (const auto& kind : problem_.kinds)
+        reduced_costs_.emplace_back(kind.candidates->size(), 0U);
     top_.resize(groups_.size());
     shares_.reserve(groups_.size());
     for (const OpenGroup& group : groups_) shares_.emplace_back(group.list.size(), 0.0F);
@@ -27,8 +28,9 @@ void NodeRelaxation::settle(const std::vector<Choice>& chosen) {
         const ReducedProblem::OfKind& kind = problem_.kinds[choice.kind];
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i) {
-                if (problem_.needs[i] > kind.share) {
-                    problem_.needs[i] = static_cast<std::uint16_t>(problem_.needs[i] - kind.share);
+                if (problem_.needs[i] > kind.multiplicity) {
+                    problem_.needs[i] =
+                        static_cast<std::uint16_t>(problem_.needs[i] - kind.multiplicity);
                     continue;
                 }
                 problem_.settled += problem_.weights[i];
@@ -60,18 +62,18 @@ std::vector<std::uint32_t> NodeRelaxation::start(const BranchNode& node) const {
     return multipliers;
 }
 
-void NodeRelaxation::price(const std::vector<std::uint32_t>& multipliers) {
-    CellPrices prices;
-    std::uint32_t last_share = 0;
+void NodeRelaxation::weigh(const std::vector<std::uint32_t>& multipliers) {
+    WeightSums reduced_costs;
+    std::uint32_t last_multiplicity = 0;
     for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
         if (sites_[k].empty()) continue;
         const ReducedProblem::OfKind& kind = problem_.kinds[k];
-        if (kind.share != last_share) {
-            cell_prices_.resize(multipliers.size());
+        if (kind.multiplicity != last_multiplicity) {
+            cell_costs_.resize(multipliers.size());
             for (std::size_t i = 0; i < multipliers.size(); ++i)
-                cell_prices_[i] = priceOf(multipliers[i], kind.share, problem_.needs[i]);
-            prices.assign(cell_prices_);
-            last_share = kind.share;
+                cell_costs_[i] = reducedCost(multipliers[i], kind.multiplicity, problem_.needs[i]);
+            reduced_costs.assign(cell_costs_);
+            last_multiplicity = kind.multiplicity;
         }
         // The node's own work is shared out, too: there may be few nodes, but large ones.
         constexpr std::size_t kGrain = 256;
@@ -81,30 +83,31 @@ void NodeRelaxation::price(const std::vector<std::uint32_t>& multipliers) {
                                   const std::uint32_t site = sites_[k][i];
                                   const std::size_t first = kind.candidates->firstOf(site);
                                   const std::size_t end = kind.candidates->firstOf(site + 1);
-                                  kind.candidates->priceSite(
-                                      site, prices,
-                                      std::span(prices_[k]).subspan(first, end - first));
+                                  kind.candidates->weighSite(
+                                      site, reduced_costs,
+                                      std::span(reduced_costs_[k]).subspan(first, end - first));
                               }
                           });
     }
 }
 
 std::uint64_t NodeRelaxation::evaluate(const std::vector<std::uint32_t>& multipliers) {
-    price(multipliers);
+    weigh(multipliers);
     bound_ = problem_.settled;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
         bound_ += problem_.weights[i] - multipliers[i];
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         const OpenGroup& group = groups_[g];
-        const std::vector<std::uint32_t>& prices = prices_[group.kind];
-        const auto is_better = [&prices](std::uint32_t a, std::uint32_t b) {
-            return prices[a] != prices[b] ? prices[a] > prices[b] : a < b;
+        const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
+        const auto is_better = [&reduced_costs](std::uint32_t a, std::uint32_t b) {
+            return reduced_costs[a] != reduced_costs[b] ? reduced_costs[a] > reduced_costs[b]
+                                                        : a < b;
         };
         top_[g].resize(std::min(group.count + 1, group.list.size()));
         std::partial_sort_copy(group.list.begin(), group.list.end(), top_[g].begin(), top_[g].end(),
                                is_better);
         for (std::size_t n = 0; n < std::min(group.count, top_[g].size()); ++n)
-            bound_ += prices[top_[g][n]];
+            bound_ += reduced_costs[top_[g][n]];
     }
     setCover();
     return bound_;
@@ -116,7 +119,7 @@ void NodeRelaxation::setCover() {
         const ReducedProblem::OfKind& kind = problem_.kinds[choice.kind];
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i)
-                cover_[i] += partOf(kind.share, problem_.needs[i]);
+                cover_[i] += partOf(kind.multiplicity, problem_.needs[i]);
         });
     }
 }
@@ -135,16 +138,16 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
         OpenGroup& group = groups_[g];
         if (group.list.size() <= group.count) continue;
         // With one that is not among the best, the last of those has to go.
-        const std::vector<std::uint32_t>& prices = prices_[group.kind];
-        const std::uint64_t without = bound_ - prices[top_[g][group.count - 1]];
+        const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
+        const std::uint64_t without = bound_ - reduced_costs[top_[g][group.count - 1]];
         if (without > cut) continue;
         std::size_t kept = 0;
         for (std::size_t i = 0; i < group.list.size(); ++i) {
             const std::uint32_t candidate = group.list[i];
             const bool is_best =
                 std::find(top_[g].begin(), top_[g].end() - 1, candidate) != top_[g].end() - 1;
-            if (!is_best && without + prices[candidate] <= cut) {
-                ruled_out_ = std::max(ruled_out_, without + prices[candidate]);
+            if (!is_best && without + reduced_costs[candidate] <= cut) {
+                ruled_out_ = std::max(ruled_out_, without + reduced_costs[candidate]);
                 continue;
             }
             group.list[kept] = candidate;
@@ -161,12 +164,12 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
     std::vector<Choice> forced;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         OpenGroup& group = groups_[g];
-        const std::vector<std::uint32_t>& prices = prices_[group.kind];
+        const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
         const std::size_t best = std::min(group.count, top_[g].size());
-        const std::uint64_t next = top_[g].size() > best ? prices[top_[g][best]] : 0;
+        const std::uint64_t next = top_[g].size() > best ? reduced_costs[top_[g][best]] : 0;
         for (std::size_t n = 0; n < best; ++n) {
             const std::uint32_t candidate = top_[g][n];
-            const std::uint64_t without = bound_ - prices[candidate] + next;
+            const std::uint64_t without = bound_ - reduced_costs[candidate] + next;
             if (without > cut) continue;
             ruled_out_ = std::max(ruled_out_, without);
             forced.push_back({group.kind, candidate});
@@ -185,7 +188,7 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
 
 void NodeRelaxation::count(float part) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        for (float& share : shares_[g]) share *= 1.0F - part;
+        for (float& multiplicity : shares_[g]) multiplicity *= 1.0F - part;
         const auto& list = groups_[g].list;
         for (std::size_t n = 0; n < std::min(groups_[g].count, top_[g].size()); ++n) {
             const auto at = std::lower_bound(list.begin(), list.end(), top_[g][n]);
@@ -198,18 +201,19 @@ void NodeRelaxation::count(float part) {
 std::vector<float> NodeRelaxation::likeness(std::size_t group, std::uint32_t pivot,
                                             const std::vector<std::uint32_t>& multipliers) {
     const OpenGroup& own = groups_[group];
-    price(multipliers);
-    const std::vector<std::uint32_t> sizes = prices_[own.kind];
+    weigh(multipliers);
+    const std::vector<std::uint32_t> sizes = reduced_costs_[own.kind];
     std::vector<std::uint32_t> seen(multipliers.size(), 0);
     problem_.kinds[own.kind].candidates->forEachRun(pivot, [&](const CellRun& run) {
         for (std::uint32_t i = run.first; i < run.end; ++i) seen[i] = multipliers[i];
     });
-    price(seen);
+    weigh(seen);
     std::vector<float> likeness;
     likeness.reserve(own.list.size());
     for (const std::uint32_t i : own.list) {
         const std::uint32_t larger = std::max({sizes[i], sizes[pivot], 1U});
-        likeness.push_back(static_cast<float>(prices_[own.kind][i]) / static_cast<float>(larger));
+        likeness.push_back(static_cast<float>(reduced_costs_[own.kind][i]) /
+                           static_cast<float>(larger));
     }
     return likeness;
 }

@@ -32,35 +32,36 @@ class NodeRelaxation {
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
     /// The best of all groups, as named in the reduced problem.
     [[nodiscard]] std::vector<Choice> chosen() const;
-    /// Drops the candidates that cannot be in anything worth more than `cut`.
+    /// Reduced-cost fixing: drops candidates that are in no solution better than `cut`.
     void ruleOut(std::uint64_t cut);
-    /// Candidates without which nothing is worth more than `cut`, as named in the reduced problem;
+    /// Candidates that are in every solution better than `cut`, as named in the reduced problem;
     /// their groups have one to choose less.
     std::vector<Choice> takeForced(std::uint64_t cut);
-    /// Nothing that the two have left out is worth more than this, which is at most their cut.
+    /// Upper bound of the solutions that the two have excluded, at most their cut.
     [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
 
-    /// Running shares of how often each candidate was chosen.
+    /// Updates the running frequency with which each candidate is chosen.
     void count(float part);
     [[nodiscard]] const std::vector<std::vector<float>>& shares() const { return shares_; }
     /// By how much what the candidates of a group see is what this one sees: 1 for itself, in
-    /// multipliers given (not all 0). Prices anew: evaluate() before anything else but shares().
+    /// multipliers given (not all 0). Overwrites the reduced costs: call evaluate() before anything
+    /// but shares().
     [[nodiscard]] std::vector<float> likeness(std::size_t group, std::uint32_t pivot,
                                               const std::vector<std::uint32_t>& multipliers);
 
   private:
     void settle(const std::vector<Choice>& chosen);
     void findSites();
-    void price(const std::vector<std::uint32_t>& multipliers);
+    void weigh(const std::vector<std::uint32_t>& multipliers);
     void setCover();
 
     ReducedProblem problem_;
     std::vector<OpenGroup> groups_;
-    std::vector<std::vector<std::uint32_t>> sites_;   // per kind, to be priced
-    std::vector<std::vector<std::uint32_t>> prices_;  // per kind and candidate
-    std::vector<std::vector<std::uint32_t>> top_;     // per group: the best, one more than wanted
-    std::vector<std::vector<float>> shares_;          // per group, beside its list
-    std::vector<std::uint32_t> cell_prices_;
+    std::vector<std::vector<std::uint32_t>> sites_;          // per kind, to be priced
+    std::vector<std::vector<std::uint32_t>> reduced_costs_;  // per kind and candidate
+    std::vector<std::vector<std::uint32_t>> top_;  // per group: the best, one more than wanted
+    std::vector<std::vector<float>> shares_;       // per group, beside its list
+    std::vector<std::uint32_t> cell_costs_;
     std::vector<float> cover_;
     std::uint64_t bound_ = 0, ruled_out_ = 0;
 };

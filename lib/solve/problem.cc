@@ -26,21 +26,21 @@ std::uint64_t Problem::totalWeight() const {
 }
 
 std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen) {
-    // Differences of what is met from cell to cell, so that a run costs two writes.
+    // Differences of the multiplicity from cell to cell, so that a run costs two writes.
     std::vector<std::int64_t> steps(problem.cells() + 1, 0);
     for (const Choice& choice : distinct(chosen)) {
         const Kind& kind = problem.kinds[choice.kind];
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
-            steps[run.first] += kind.share;
-            steps[run.end] -= kind.share;
+            steps[run.first] += kind.multiplicity;
+            steps[run.end] -= kind.multiplicity;
         });
     }
     std::uint64_t value = 0;
-    std::int64_t shares = 0;
+    std::int64_t multiplicities = 0;
     for (std::size_t i = 0; i < problem.cells(); ++i) {
-        shares += steps[i];
-        const std::int64_t met = problem.met.empty() ? 0 : problem.met[i];
-        if (met + shares >= problem.demand) value += problem.weights[i];
+        multiplicities += steps[i];
+        const std::int64_t achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
+        if (achieved + multiplicities >= problem.required) value += problem.weights[i];
     }
     return value;
 }
@@ -85,7 +85,7 @@ std::size_t affordableCount(double budget, double spent, double cost, std::size_
     return least;
 }
 
-double tidyCost(double cost) {
+double normaliseCost(double cost) {
     constexpr int kFewDigits = 12, kAllDigits = 17;
     for (int digits = kFewDigits; digits < kAllDigits; ++digits) {
         std::array<char, 32> text;
@@ -169,48 +169,48 @@ bool Connection::isJoinedBy(const Choice& choice) const {
         }
     }
     const CandidateSet& candidates = *problem_->kinds[choice.kind].candidates;
-    for (const CellPrices& cells : cells_of_part_)
-        if (candidates.price(choice.candidate, cells) == 0) return false;
+    for (const WeightSums& cells : cells_of_part_)
+        if (candidates.weigh(choice.candidate, cells) == 0) return false;
     return true;
 }
 
 namespace {
 
-constexpr double kMostUnits = 4e9;
+constexpr double kMaxUnits = 4e9;
 
 /// Each is a whole number of units, and more than none if it is more than 0.
-bool areWhole(const std::vector<double>& worth, double scale, double slack) {
-    return std::all_of(worth.begin(), worth.end(), [scale, slack](double w) {
+bool areWhole(const std::vector<double>& weights, double scale, double slack) {
+    return std::all_of(weights.begin(), weights.end(), [scale, slack](double w) {
         const double units = std::round(w * scale);
         return std::abs(w * scale - units) < slack * scale && (units > 0 || w == 0);
     });
 }
 
-double scaleOf(const std::vector<double>& worth) {
+double scaleOf(const std::vector<double>& weights) {
     constexpr double kDecimals = 1e6, kDigits = 1e5;
-    constexpr double kMostScale = 1e300;  // of weights that are hardly numbers
+    constexpr double kMaxScale = 1e300;  // of weights that are hardly numbers
     double sum = 0, largest = 0;
-    for (const double w : worth) {
+    for (const double w : weights) {
         sum += w;
         largest = std::max(largest, w);
     }
     if (largest == 0) return 1;
-    if (sum > kMostUnits) return kMostUnits / sum;
+    if (sum > kMaxUnits) return kMaxUnits / sum;
     const double slack = 1e-9 * std::min(1.0, largest);
     double scale = 1;
-    while ((scale < kDecimals || largest * scale < kDigits) && scale < kMostScale &&
-           sum * scale * 10 < kMostUnits && !areWhole(worth, scale, slack))
+    while ((scale < kDecimals || largest * scale < kDigits) && scale < kMaxScale &&
+           sum * scale * 10 < kMaxUnits && !areWhole(weights, scale, slack))
         scale *= 10;
     return scale;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> wholeUnits(const std::vector<double>& worth) {
-    const double scale = scaleOf(worth);
+std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights) {
+    const double scale = scaleOf(weights);
     std::vector<std::uint32_t> units;
-    units.reserve(worth.size());
-    for (const double w : worth)
+    units.reserve(weights.size());
+    for (const double w : weights)
         units.push_back(
             w == 0 ? 0U : static_cast<std::uint32_t>(std::max(1LL, std::llround(w * scale))));
     return units;

@@ -32,16 +32,16 @@ CandidateSet candidatesOf(std::size_t cells, const std::vector<Cells>& seen) {
 std::uint64_t slowValueOf(const Problem& problem, const std::vector<Choice>& chosen) {
     std::uint64_t value = 0;
     for (std::size_t cell = 0; cell < problem.cells(); ++cell) {
-        int shares = problem.met.empty() ? 0 : problem.met[cell];
+        int multiplicities = problem.achieved.empty() ? 0 : problem.achieved[cell];
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             const Kind& kind = problem.kinds[chosen[i].kind];
             const bool is_repeated =
                 std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(i),
                           chosen[i]) != chosen.begin() + static_cast<std::ptrdiff_t>(i);
             if (!is_repeated && kind.candidates->cellsOf(chosen[i].candidate).test(cell))
-                shares += kind.share;
+                multiplicities += kind.multiplicity;
         }
-        if (shares >= problem.demand) value += problem.weights[cell];
+        if (multiplicities >= problem.required) value += problem.weights[cell];
     }
     return value;
 }
@@ -65,7 +65,7 @@ TEST(Problem, ValueIsTheWeightOfTheUnion) {
     EXPECT_EQ(valueOf(problem, {{0, 0}}), 7U);
     EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 1}}), 15U);
     EXPECT_EQ(valueOf(problem, {{0, 2}}), 0U);
-    problem.met = {0, 0, 0, 0, 1, 0};
+    problem.achieved = {0, 0, 0, 0, 1, 0};
     EXPECT_EQ(valueOf(problem, {{0, 1}}), 28U);
 }
 
@@ -73,13 +73,13 @@ TEST(Problem, SharesAddUpToTheDemandAndRepeatedChoicesCountOnce) {
     const CandidateSet narrow = candidatesOf(4, {{0, 1}, {1, 2}}), wide = candidatesOf(4, {{2, 3}});
     Problem problem;
     problem.weights = {1, 1, 1, 1};
-    problem.demand = 2;
+    problem.required = 2;
     problem.kinds = {{&narrow, 2, 1, 1}, {&wide, 1, 1, 2}};
     EXPECT_EQ(valueOf(problem, {{0, 0}}), 0U);
     EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 0}}), 0U);
     EXPECT_EQ(valueOf(problem, {{0, 0}, {0, 1}}), 1U);
     EXPECT_EQ(valueOf(problem, {{0, 0}, {1, 0}}), 2U);
-    problem.met = {1, 0, 0, 0};
+    problem.achieved = {1, 0, 0, 0};
     EXPECT_EQ(valueOf(problem, {{0, 0}}), 1U);
 }
 
@@ -87,9 +87,9 @@ TEST(Problem, ValueIsTheDefinitionOnRandomProblems) {
     RandomProblemOptions options;
     options.kinds = 2;
     options.max_weight = 9;
-    options.demand = 3;
-    options.max_met = 3;
-    options.shares = {1, 2};
+    options.required = 3;
+    options.max_achieved = 3;
+    options.multiplicities = {1, 2};
     test_problems::Random random(3);
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         const RandomProblem made = randomProblem(seed, options);
@@ -101,8 +101,8 @@ TEST(Problem, ValueIsTheDefinitionOnRandomProblems) {
 TEST(Problem, RemovingASensorNeverRaisesTheValue) {
     RandomProblemOptions options;
     options.kinds = 2;
-    options.demand = 2;
-    options.shares = {1, 2};
+    options.required = 2;
+    options.multiplicities = {1, 2};
     test_problems::Random random(4);
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         const RandomProblem made = randomProblem(seed, options);
@@ -145,7 +145,7 @@ TEST(Problem, SmallCostsCountBesideLargeOnes) {
     EXPECT_TRUE(isFeasible(problem, chosen));
     chosen.push_back({1, 0});
     EXPECT_FALSE(isFeasible(problem, chosen));
-    EXPECT_EQ(tidyCost(costOf(problem, chosen)), 1e9 + 0.001);
+    EXPECT_EQ(normaliseCost(costOf(problem, chosen)), 1e9 + 0.001);
 }
 
 TEST(Problem, CostsOfManyAreTheDecimalSumInAnyOrder) {
@@ -161,7 +161,7 @@ TEST(Problem, CostsOfManyAreTheDecimalSumInAnyOrder) {
             tenths += std::vector<std::uint64_t>{1, 7, 10'000'000}[chosen.back().kind];
         }
         const double cost = costOf(problem, chosen);
-        EXPECT_EQ(tidyCost(cost), static_cast<double>(tenths) / 10);
+        EXPECT_EQ(normaliseCost(cost), static_cast<double>(tenths) / 10);
         std::reverse(chosen.begin(), chosen.end());
         EXPECT_EQ(costOf(problem, chosen), cost);
         problem.budget = static_cast<double>(tenths) / 10;
@@ -194,15 +194,15 @@ TEST(Problem, ABudgetBuysSoMany) {
 }
 
 TEST(Problem, TidyIsTheDecimalNumberMeant) {
-    EXPECT_EQ(tidyCost(0.1 + 0.2), 0.3);
-    EXPECT_EQ(tidyCost(327.8252249999999), 327.825225);
-    EXPECT_EQ(tidyCost(4 * 1e-9), 4e-9);
-    EXPECT_EQ(tidyCost(1e9 + 0.001), 1e9 + 0.001);
-    EXPECT_EQ(tidyCost(0), 0);
+    EXPECT_EQ(normaliseCost(0.1 + 0.2), 0.3);
+    EXPECT_EQ(normaliseCost(327.8252249999999), 327.825225);
+    EXPECT_EQ(normaliseCost(4 * 1e-9), 4e-9);
+    EXPECT_EQ(normaliseCost(1e9 + 0.001), 1e9 + 0.001);
+    EXPECT_EQ(normaliseCost(0), 0);
     // What is no short decimal number stays the same cost.
     for (const double cost : {1.0 / 3, 2.0 / 3, 1e6 / 7, 1 + 1.0 / 3}) {
-        EXPECT_FALSE(isCheaper(tidyCost(cost), cost));
-        EXPECT_FALSE(isCheaper(cost, tidyCost(cost)));
+        EXPECT_FALSE(isCheaper(normaliseCost(cost), cost));
+        EXPECT_FALSE(isCheaper(cost, normaliseCost(cost)));
     }
 }
 
@@ -240,19 +240,19 @@ TEST(Problem, ThoseThatStandAreOnePart) {
 using Units = std::vector<std::uint32_t>;
 
 TEST(WholeUnits, WholeWeightsStay) {
-    EXPECT_EQ(wholeUnits({0, 1, 20}), (Units{0, 1, 20}));
-    EXPECT_EQ(wholeUnits({}), Units());
+    EXPECT_EQ(integerWeights({0, 1, 20}), (Units{0, 1, 20}));
+    EXPECT_EQ(integerWeights({}), Units());
 }
 
 TEST(WholeUnits, DecimalsAreScaledTogether) {
-    EXPECT_EQ(wholeUnits({1, 0.5, 2.25}), (Units{100, 50, 225}));
-    EXPECT_EQ(wholeUnits({0.1, 0.3}), (Units{1, 3})) << "as written, not as stored";
+    EXPECT_EQ(integerWeights({1, 0.5, 2.25}), (Units{100, 50, 225}));
+    EXPECT_EQ(integerWeights({0.1, 0.3}), (Units{1, 3})) << "as written, not as stored";
 }
 
 TEST(WholeUnits, SumsStayBelowTheLimit) {
     const std::vector<double> many(1000000, 1.0 / 3);
     std::uint64_t sum = 0;
-    for (const std::uint32_t unit : wholeUnits(many)) sum += unit;
+    for (const std::uint32_t unit : integerWeights(many)) sum += unit;
     EXPECT_LT(sum, std::uint64_t{1} << 32U);
     EXPECT_GT(sum, 300'000'000U) << "and are not coarser than they must be";
 }
@@ -284,30 +284,30 @@ TEST(WholeUnits, OrdinaryWeightsHaveSixDecimals) {
             std::vector<double> worth;
             worth.reserve(size);
             for (std::size_t k = 0; k < size; ++k) worth.push_back(some[random() % 3]);
-            ASSERT_EQ(wholeUnits(worth), unitsOfSixDecimals(worth)) << size << ' ' << i;
+            ASSERT_EQ(integerWeights(worth), unitsOfSixDecimals(worth)) << size << ' ' << i;
         }
 }
 
 TEST(WholeUnits, SmallWeightsCountByTheLargest) {
-    EXPECT_EQ(wholeUnits({3.3333e-7, 0}), (Units{33333, 0}));
-    EXPECT_EQ(wholeUnits({3e-7, 1e-7, 0}), (Units{3, 1, 0}));
-    EXPECT_EQ(wholeUnits({2e-10}), (Units{2}));
-    EXPECT_EQ(wholeUnits({1e-8 / 3}), (Units{333333})) << "six digits";
+    EXPECT_EQ(integerWeights({3.3333e-7, 0}), (Units{33333, 0}));
+    EXPECT_EQ(integerWeights({3e-7, 1e-7, 0}), (Units{3, 1, 0}));
+    EXPECT_EQ(integerWeights({2e-10}), (Units{2}));
+    EXPECT_EQ(integerWeights({1e-8 / 3}), (Units{333333})) << "six digits";
     // Too small to be told apart from nothing beside the large one; but it is not nothing.
-    EXPECT_EQ(wholeUnits({1, 1e-12}), (Units{1000000, 1}));
+    EXPECT_EQ(integerWeights({1, 1e-12}), (Units{1000000, 1}));
     const double least = std::numeric_limits<double>::denorm_min();
-    EXPECT_EQ(wholeUnits({least, 0}), (Units{1, 0}));
+    EXPECT_EQ(integerWeights({least, 0}), (Units{1, 0}));
 }
 
 TEST(WholeUnits, LargeWeightsAreScaledDown) {
-    EXPECT_EQ(wholeUnits({3e9, 1e9}), (Units{3000000000U, 1000000000U})) << "the sum fits";
-    EXPECT_EQ(wholeUnits({6e9, 2e9}), (Units{3000000000U, 1000000000U}));
+    EXPECT_EQ(integerWeights({3e9, 1e9}), (Units{3000000000U, 1000000000U})) << "the sum fits";
+    EXPECT_EQ(integerWeights({6e9, 2e9}), (Units{3000000000U, 1000000000U}));
     std::vector<double> many(10000, 1e6);
-    EXPECT_EQ(wholeUnits(many), Units(10000, 400000));
+    EXPECT_EQ(integerWeights(many), Units(10000, 400000));
     // What counts little still counts where something else counts a million times as much.
     many.resize(1000000, 1);
     std::fill_n(many.begin(), 500000, 1e6);
-    const Units units = wholeUnits(many);
+    const Units units = integerWeights(many);
     EXPECT_EQ(units.front(), 8000U);
     EXPECT_EQ(units.back(), 1U);
     EXPECT_LT(std::accumulate(units.begin(), units.end(), std::uint64_t{0}),

@@ -203,7 +203,7 @@ ReducedProblem wholeProblem(const Problem& problem, const RelaxedCells& cells) {
         // The problem outlives what is made of it.
         std::shared_ptr<const CandidateSet> set(std::shared_ptr<const CandidateSet>(),
                                                 problem.kinds[k].candidates);
-        whole.kinds.push_back({std::move(set), {}, cells.shares[k]});
+        whole.kinds.push_back({std::move(set), {}, cells.multiplicities[k]});
     }
     return whole;
 }
@@ -227,7 +227,7 @@ ReducedProblem reduce(const ReducedProblem& from,
         // A copy takes no more memory than it needs; a set that still grows does.
         auto set = std::make_shared<const CandidateSet>(*sets[k]);
         sets[k].reset();
-        to.kinds.push_back({std::move(set), std::move(original), from.kinds[k].share});
+        to.kinds.push_back({std::move(set), std::move(original), from.kinds[k].multiplicity});
     }
     return to;
 }

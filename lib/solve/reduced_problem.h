@@ -16,9 +16,9 @@ struct ReducedProblem {
     struct OfKind {
         std::shared_ptr<const CandidateSet> candidates;
         std::vector<std::uint32_t> original;  ///< candidates in the problem's set, ascending
-        std::uint16_t share = 1;
+        std::uint16_t multiplicity = 1;
     };
-    std::uint64_t settled = 0;  ///< worth of cells that are met whatever is chosen
+    std::uint64_t settled = 0;  ///< weight of cells that are covered in any case
     std::vector<std::uint32_t> weights;
     std::vector<std::uint16_t> needs;
     std::vector<OfKind> kinds;

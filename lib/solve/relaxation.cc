@@ -11,18 +11,18 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kMostWays = 20'000;
+constexpr std::size_t kMaxWays = 20'000;
 
-/// No cell gets more than these shares from all sensors that may be placed.
+/// The largest multiplicity that all sensors together can give a cell.
 std::uint64_t mostSharesOf(const Problem& problem) {
-    std::uint64_t shares = 0;
+    std::uint64_t multiplicities = 0;
     for (const Kind& kind : problem.kinds) {
         auto most =
             std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
         if (problem.budget) most = affordableCount(*problem.budget, 0, kind.cost, most);
-        shares += most * static_cast<std::uint64_t>(kind.share);
+        multiplicities += most * static_cast<std::uint64_t>(kind.multiplicity);
     }
-    return shares;
+    return multiplicities;
 }
 
 }  // namespace
@@ -33,22 +33,22 @@ RelaxedCells::RelaxedCells(const Problem& problem)
     scale = static_cast<std::uint32_t>(
         std::max<std::uint64_t>(std::numeric_limits<std::uint32_t>::max() / total, 1));
     int common = 0;
-    for (const Kind& kind : problem.kinds) common = std::gcd(common, kind.share);
+    for (const Kind& kind : problem.kinds) common = std::gcd(common, kind.multiplicity);
     common = std::max(common, 1);
-    shares.reserve(problem.kinds.size());
+    multiplicities.reserve(problem.kinds.size());
     for (const Kind& kind : problem.kinds)
-        shares.push_back(static_cast<std::uint16_t>(kind.share / common));
+        multiplicities.push_back(static_cast<std::uint16_t>(kind.multiplicity / common));
     const std::uint64_t most_shares = mostSharesOf(problem);
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const int met = problem.met.empty() ? 0 : problem.met[i];
+        const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
         const std::uint32_t weight = problem.weights[i] * scale;
-        if (met >= problem.demand) {
+        if (achieved >= problem.required) {
             settled += weight;
             continue;
         }
-        if (static_cast<std::uint64_t>(problem.demand - met) > most_shares) continue;
+        if (static_cast<std::uint64_t>(problem.required - achieved) > most_shares) continue;
         weights[i] = weight;
-        needs[i] = static_cast<std::uint16_t>((problem.demand - met + common - 1) / common);
+        needs[i] = static_cast<std::uint16_t>((problem.required - achieved + common - 1) / common);
     }
 }
 
@@ -96,7 +96,7 @@ void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, doubl
     if (kind + 1 == counts.size()) {
         counts[kind] = most;
         ways_.push_back(counts);
-        is_listed_ = ways_.size() <= kMostWays;
+        is_listed_ = ways_.size() <= kMaxWays;
         return;
     }
     for (std::size_t n = most + 1; n-- > 0;) {
@@ -140,14 +140,14 @@ CountChoice::Best CountChoice::best(std::span<const std::vector<std::uint64_t>> 
 std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> sums,
                                     std::vector<std::size_t>& counts) const {
     struct Item {
-        double per_cost, price;
+        double per_cost, weigh;
         std::size_t kind;
     };
     std::vector<Item> items;
     for (std::size_t k = 0; k < sums.size(); ++k)
         for (std::size_t n = 1; n < sums[k].size(); ++n) {
-            const auto price = static_cast<double>(sums[k][n] - sums[k][n - 1]);
-            items.push_back({price / costs_[k], price, k});
+            const auto weigh = static_cast<double>(sums[k][n] - sums[k][n - 1]);
+            items.push_back({weigh / costs_[k], weigh, k});
         }
     std::stable_sort(items.begin(), items.end(),
                      [](const Item& a, const Item& b) { return a.per_cost > b.per_cost; });
@@ -156,10 +156,10 @@ std::uint64_t CountChoice::knapsack(std::span<const std::vector<std::uint64_t>> 
     for (const Item& item : items) {
         const double cost = costs_[item.kind];
         if (isCheaper(budget_, spent + cost)) {
-            value += item.price * std::max(0.0, budget_ - spent) / cost;
+            value += item.weigh * std::max(0.0, budget_ - spent) / cost;
             break;
         }
-        value += item.price;
+        value += item.weigh;
         spent += cost;
         ++counts[item.kind];
     }

@@ -14,15 +14,16 @@ namespace ispace {
 /// The cells of a problem as a Lagrangian relaxation wants them: what standing sensors meet is
 /// settled, and weights are in finer units, as multipliers are fractions of them.
 ///
-/// Shares and needs are divided by what all shares have in common and needs are rounded up: with
-/// shares of 4 a need of 5 takes two sensors, as 8 does.
+/// Multiplicities and needs are divided by the greatest common divisor of the multiplicities, needs
+/// rounded up: with multiplicities of 4 a need of 5 takes two sensors, as 8 does.
 struct RelaxedCells {
     std::uint32_t scale = 1;    ///< fine units in one unit of the problem's weights
-    std::uint64_t settled = 0;  ///< worth of cells that are met already, fine
-    /// Fine; 0 where settled or worth nothing, or where all sensors together are too few.
+    std::uint64_t settled = 0;  ///< weight of cells that are covered already, fine
+    /// Fine; 0 for cells that are settled, do not count, or cannot be covered.
     std::vector<std::uint32_t> weights;
-    std::vector<std::uint16_t> needs;  ///< shares that a cell lacks; at least 1 where it has weight
-    std::vector<std::uint16_t> shares;  ///< of a sensor, per kind
+    std::vector<std::uint16_t>
+        needs;  ///< multiplicity still required; at least 1 where there is weight
+    std::vector<std::uint16_t> multiplicities;  ///< of a sensor, per kind
 
     explicit RelaxedCells(const Problem& problem);
     /// In whole units of the problem. \param value an upper bound, fine
@@ -34,15 +35,17 @@ struct RelaxedCells {
 };
 
 /// What a sensor of that share gains for meeting part of a need of cells with this multiplier;
-/// rounded up, so that bounds hold. More than is needed counts as all: whole cells are met or not.
-inline std::uint32_t priceOf(std::uint32_t multiplier, std::uint32_t share, std::uint32_t need) {
-    if (share >= need) return multiplier;
-    return static_cast<std::uint32_t>((std::uint64_t{multiplier} * share + need - 1) / need);
+/// rounded up, so that bounds hold. More than is needed counts as all of it.
+inline std::uint32_t reducedCost(std::uint32_t multiplier, std::uint32_t multiplicity,
+                                 std::uint32_t need) {
+    if (multiplicity >= need) return multiplier;
+    return static_cast<std::uint32_t>((std::uint64_t{multiplier} * multiplicity + need - 1) / need);
 }
 
 /// The part of a need that a sensor meets.
-inline float partOf(std::uint32_t share, std::uint32_t need) {
-    return share >= need ? 1.0F : static_cast<float>(share) / static_cast<float>(need);
+inline float partOf(std::uint32_t multiplicity, std::uint32_t need) {
+    return multiplicity >= need ? 1.0F
+                                : static_cast<float>(multiplicity) / static_cast<float>(need);
 }
 
 /// How many sensors of each kind there may be, each on a candidate of its own: all ways that stay
@@ -60,16 +63,16 @@ class CountChoice {
     /// The ways, each a count per kind.
     [[nodiscard]] const std::vector<std::vector<std::size_t>>& ways() const { return ways_; }
 
-    /// What sensors are worth if each has a price.
+    /// The best counts for given reduced costs.
     struct Best {
-        std::uint64_t value = 0;  ///< nothing allowed is worth more
+        std::uint64_t value = 0;  ///< no allowed counts give more
         std::vector<std::size_t>
             counts;  ///< of the best of each kind that are worth that, or nearly
         std::vector<std::uint64_t> with;  ///< with[k] + the price of one of kind k: at most worth
                                           ///< that if this one is chosen; less if none may be
         std::vector<char> may;            ///< may[k]: one of kind k fits at all
     };
-    /// \param sums sums[k][n]: the n best prices of kind k together, n up to most(k)
+    /// \param sums sums[k][n]: the n best reduced costs of kind k together, n up to most(k)
     [[nodiscard]] Best best(std::span<const std::vector<std::uint64_t>> sums) const;
 
   private:
@@ -106,7 +109,7 @@ class MultiplierSearch {
     [[nodiscard]] const std::vector<std::uint32_t>& trial() const { return trial_; }
     [[nodiscard]] const std::vector<std::uint32_t>& best() const { return best_; }
     /// What the trial gave, and the next trial.
-    /// \param cover how far the sensors that are best at these prices meet each cell: 1 is just met
+    /// \param cover fraction of each cell's need that the best sensors meet
     void report(double bound, std::span<const float> cover);
     /// The best multipliers have another bound, and are to be gone on from: there are more sensors
     /// to choose from than the last trials knew.

@@ -59,7 +59,7 @@ TEST(CountChoice, WaysAreFeasibleAndHoldAllThatIs) {
             problem.kinds.push_back(
                 {&candidates, static_cast<int>(1 + random() % 5), costs[random() % 10], 1});
         const Counts afforded = {random() % 4, random() % 4, random() % 4};
-        problem.budget = tidyCost(costOf(problem, choicesOf(afforded)));
+        problem.budget = normaliseCost(costOf(problem, choicesOf(afforded)));
         const CountChoice choice(problem);
         for (const Counts& way : choice.ways())
             ASSERT_TRUE(isFeasible(problem, choicesOf(way))) << round;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
 
 namespace ispace {
@@ -35,7 +35,7 @@ LagrangeLimits limitsOf(const SearchOptions& options) {
 
 /// What need not be made better.
 std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) {
-    // Swaps also look for what costs less and is worth the same.
+    // Swaps also look for cheaper solutions of the same value.
     if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
     return bound -
            static_cast<std::uint64_t>(std::clamp(gap, 0.0, 1.0) * static_cast<double>(bound));
@@ -54,7 +54,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         LagrangeLimits quick = kQuick;
         quick.cut = result.best.value;
         quick.gap = std::min(quick.gap, limitsOf(options).gap);
-        result.bound = boundWithin(problem, result.best.chosen, quick, progress).value;
+        result.bound = lagrangianBound(problem, result.best.chosen, quick, progress).value;
         noteProgress(problem, result, progress);
         SwapOptions swap = options.swap;
         swap.enough = std::min(swap.enough, enoughOf(problem, result.bound, options.gap));
@@ -63,7 +63,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
     if (!progress.stopped()) {
         LagrangeLimits limits = limitsOf(options);
         limits.cut = result.best.value;
-        const Bound bound = boundWithin(problem, result.best.chosen, limits, progress);
+        const Bound bound = lagrangianBound(problem, result.best.chosen, limits, progress);
         result.bound = std::min(result.bound, bound.value);
         noteProgress(problem, result, progress);
         if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
@@ -74,7 +74,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
     if (result.bound == problem.totalWeight() && progress.stopped()) {
         SilentProgress silent;  // there shall be some bound
         const LagrangeLimits soon = {.cut = result.best.value, .gap = kQuick.gap, .rounds = 2};
-        result.bound = boundWithin(problem, result.best.chosen, soon, silent).value;
+        result.bound = lagrangianBound(problem, result.best.chosen, soon, silent).value;
     }
     if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
     return result;

@@ -11,110 +11,89 @@
 
 namespace ispace {
 
-/// Places one sensor after another, each on the candidate that adds most to those before it (thesis
-/// section 4.6), among equals on the first; in problem.order if there is one, else the sensor that
-/// adds most, with a budget: most for its cost (and then the better of that and of plain gain).
-/// Where it takes several sensors to meet a demand, a cell counts by its weight shared out among
-/// those that it still lacks, and not at all once those to come are too few; among equals the parts
-/// met decide. Places all that fit, also those that add nothing; where progress says stop, the
-/// first 32 all the same. Lazy (Minoux 1978): a place is looked at again only while what it may add
-/// at most is more than the best so far. Its value is at least 1 - 1/e of the best where one
-/// sensor meets a demand, all are of one kind, and there is no budget; of several kinds 1/2
-/// (Fisher, Nemhauser & Wolsey 1978).
+/// Greedy search (thesis section 4.6): places sensors one by one, each on the candidate with the
+/// largest marginal gain, the first among equals. problem.order sets the order of kinds; without it
+/// the best kind comes next, and with a budget the better of two runs counts, one by gain and one
+/// by gain per cost. Where covering a cell takes several sensors, its weight is divided among those
+/// it still lacks, and is 0 once too few are left; partial gains break ties. Places every sensor
+/// that fits, even if it gains nothing, and at least the first 32 if progress says stop.
 ///
-/// With is_connected each sensor after the first sees a cell that those before it see, if there is
-/// such a candidate; then nothing is guaranteed.
+/// Lazy (Minoux 1978): a candidate is evaluated again only while its upper bound exceeds the best
+/// gain. Reaches at least 1 - 1/e of the optimum if one sensor covers a cell, there is one kind and
+/// no budget; 1/2 with several kinds (Fisher, Nemhauser & Wolsey 1978).
+///
+/// With is_connected each sensor after the first shares a cell with those before it, if any
+/// candidate does; no guarantee holds then.
 Solution placeGreedily(const Problem& problem, Progress& progress);
 
 struct SwapOptions {
-    int starts = 20;  ///< from greedy and from so many others
+    int starts = 20;  ///< random starts, besides the greedy one
     std::uint64_t seed = 0;
-    /// Once something is worth so much, nothing better is looked for.
+    /// The search ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Local search: while it helps, one sensor is moved to the candidate that is best for it given the
-/// others (and sensors of another kind are bought instead, where there is a budget); from the
-/// greedy solution, where demands take several sensors also from one by parts of them, and from
-/// random ones, each from its own random numbers, in parallel. The best result, the one of the
-/// first start among equals; or that of the first start that is worth enough: the same for any
-/// number of threads. Never worse than `start`. \pre start is feasible
+/// Local search: moves one sensor at a time to its best candidate given the others, while that
+/// helps; with a budget it also swaps sensors for those of other kinds. Starts from `start`, from a
+/// greedy solution by partial gains where cells take several sensors, and from random solutions, in
+/// parallel. Returns the best result, of the first start among equals, or that of the first start
+/// to reach options.enough: the same for any number of threads. Never worse than `start`.
+/// \pre start is feasible
 Solution improveBySwaps(const Problem& problem, const Solution& start, const SwapOptions& options,
                         Progress& progress);
 
-/// An upper bound, and the multipliers that prove it.
-struct Bound {
-    std::uint64_t value = 0;  ///< no feasible set of choices is worth more
-    /// Lagrange multipliers of the cells, in units of 1 / scale of those of weights; each at most
-    /// its cell's weight.
-    std::vector<std::uint32_t> multipliers;
-    std::uint32_t scale = 1;
-    /// Per kind, the candidates that may be part of something worth more than `cut`, ascending; the
-    /// others are ruled out.
-    std::vector<std::vector<std::uint32_t>> survivors;
-    std::uint64_t cut = 0;
-};
-
-/// Lagrangian relaxation: of max sum w_i y_i, demand y_i <= met_i + sum_j share_j a_ij x_j, 0 <= y
-/// <= 1, the rows of the cells; multipliers by a subgradient method that ends where bound and
-/// `best` are within `gap` (a fraction of the bound; 0: equal) or nothing moves any more. The
-/// arithmetic is in whole numbers: the bound holds exactly. The same for any number of threads.
-Bound boundByLagrange(const Problem& problem, const Solution& best, double gap, Progress& progress);
-
-/// What a search found and how good it is.
+/// The best solution found and an upper bound.
 struct SearchResult {
     Solution best;
-    std::uint64_t bound = 0;  ///< no feasible set of choices is worth more
+    std::uint64_t bound = 0;  ///< no feasible solution has a larger value
     bool is_complete = true;  ///< false if the search was stopped
 };
 
 enum class Optimizer { Greedy, Swap, Exact };
 
-/// About so much memory the open nodes of a tree may take.
-constexpr std::size_t kMostTreeBytes = std::size_t{1} << 30U;
+/// Default memory limit of the open nodes of a search tree.
+constexpr std::size_t kMaxTreeBytes = std::size_t{1} << 30U;
 
 struct SearchOptions {
     Optimizer optimizer = Optimizer::Swap;
-    double gap = 0;  ///< of value to bound, as a fraction of the bound, that is good enough
+    double gap = 0;  ///< relative gap (bound - value) / bound at which the search ends
     SwapOptions swap = SwapOptions();
-    std::size_t most_bytes = kMostTreeBytes;
+    std::size_t most_bytes = kMaxTreeBytes;
 };
 
-/// Greedy, then by options: with swaps, with the bound of Lagrange for all three (a quick one
-/// before the swaps, so that there is one if time runs out, and for Greedy no other), and for Exact
-/// with branch and bound until value and bound are within the gap. Candidates that the bound rules
-/// out (their reduced value) are dropped first, cells that the same remaining candidates see are
-/// merged, then the tree is searched; where a budget can be shared out among the kinds in more than
-/// 20'000 ways there is no tree and the bound of Lagrange is all there is: it need not meet the
-/// value. Ends early, is_complete = false, where progress says so. The same for any number of
-/// threads unless it is stopped.
+/// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a
+/// Lagrangian bound: a quick one before the swaps, in case time runs out (the only one for Greedy),
+/// and a tight one after. Exact drops the candidates that the bound rules out by their reduced
+/// costs, merges cells that the same remaining candidates see, and branches until value and bound
+/// are within the gap. If a budget can be split among the kinds in more than 20'000 ways there is
+/// no tree, and a gap may remain. Ends early, with is_complete = false, if progress says stop. The
+/// same for any number of threads unless it is stopped.
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
 
-/// The least that reaches a value.
-struct Fewest {
-    /// Of the cheapest found that reach the value one that is worth much, with the bound of what
-    /// costs no more; else the best there is, without sensors that add nothing.
+/// A cheapest solution that reaches a given value.
+struct MinimumCostCover {
+    /// A good one of the cheapest solutions found, with a bound for its cost; if the value is not
+    /// reached, the best solution found, without sensors that gain nothing.
     SearchResult result;
     bool is_reached = false;
-    bool is_all = false;    ///< not reached, and all candidates together are worth no more
-    double cost = 0;        ///< of result, as tidyCost() has it
-    double least_cost = 0;  ///< nothing cheaper reaches it; tidy, too
+    bool is_all = false;    ///< not reached even by all candidates together
+    double cost = 0;        ///< of result, normalised
+    double cost_bound = 0;  ///< lower bound of the cost, normalised
 };
 
-/// The fewest sensors, or the cheapest where costs differ, that are worth at least `wanted`: greedy
-/// until it is reached; quick bounds tell how much less cannot be enough; then what lies between is
-/// searched with the optimiser asked for, with long steps and few starts first; then better bounds,
-/// and with swaps the most that can be had at that cost, but not for Greedy. Kinds without limit
-/// have a `most` of about a thousand.
+/// Minimum-cost cover: the cheapest sensors (the fewest, where all cost the same) that reach the
+/// value `wanted`. Greedy search finds a first solution and quick bounds a lower limit of the cost;
+/// the costs between them are searched with the optimizer of the options, in long steps with few
+/// starts first. Tighter bounds follow and, except for Greedy, a swap search for the best value at
+/// that cost. Kinds without a limit should have a `most` of about a thousand.
 ///
-/// Exact ends with cost and least_cost equal unless it is stopped or has no tree (see search). But
-/// where costs have so little in common that sets can cost more than 4000 different sums, up to
-/// what the first one found costs, it looks at 4000 even steps of that only: then both may be off
-/// the least by a step, and least_cost is below cost.
-Fewest placeFewest(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
-                   Progress& progress);
+/// Exact ends with cost == cost_bound unless it is stopped or has no tree (see search()). If
+/// solutions can have more than 4000 different costs, it searches 4000 even steps instead: cost and
+/// cost_bound may then be off by one step.
+MinimumCostCover minimumCostCover(const Problem& problem, std::uint64_t wanted,
+                                  const SearchOptions& options, Progress& progress);
 
-/// Tells value and bound: "best 85.7 %, at most 85.9 %", of all there is.
+/// Reports value and bound as shares of the total weight: "best 85.7 %, at most 85.9 %".
 void noteProgress(const Problem& problem, std::uint64_t value, std::uint64_t bound,
                   Progress& progress);
 inline void noteProgress(const Problem& problem, const SearchResult& result, Progress& progress) {

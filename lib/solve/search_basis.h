@@ -13,70 +13,68 @@
 
 namespace ispace {
 
-/// What a candidate adds: the first price in the upper half, the second, which decides among
-/// equals, in the lower half.
+/// Marginal gain of a candidate: the primary gain in the upper 32 bits, the tie breaker below.
 using Score = std::uint64_t;
 
-/// A candidate and what it adds.
-struct BestPlace {
+/// The best candidate found and its gain.
+struct BestCandidate {
     std::size_t candidate = 0;
     Score score = 0;
     bool is_found = false;
 };
 
-/// By what candidates are compared.
-struct PlacePrices {
+/// The gains by which candidates are compared.
+struct CandidateGains {
     const CandidateSet* candidates = nullptr;
-    const CellPrices* first = nullptr;
-    const CellPrices* second = nullptr;  ///< may be missing
+    const WeightSums* first = nullptr;
+    const WeightSums* second = nullptr;  ///< may be null
 };
 
-/// Finds the best candidate, lazily: sites in descending order of an upper bound, until no bound is
-/// more than the best found (Minoux 1978). Keeps its memory from call to call; not thread-safe.
-class PlaceFinder {
+/// Finds the best candidate by lazy evaluation: visits sites in descending order of an upper bound
+/// until no bound exceeds the best gain (Minoux 1978). Reuses its memory; not thread-safe.
+class CandidateFinder {
   public:
-    /// The best candidate that `allows` accepts (missing: any), the first among equals.
-    /// Once progress says stop, what is found first is taken.
-    /// \param bounds per site, no first price of its candidates is more; those looked at get exact
-    /// \param known a candidate to begin with, allowed, or none; with one the same is found earlier
-    BestPlace find(const PlacePrices& prices, std::span<std::uint32_t> bounds,
-                   const BestPlace& known, const std::function<bool(std::size_t)>& allows,
-                   const Progress& progress);
+    /// The best candidate that `allows` accepts (null: any), the first among equals; once progress
+    /// says stop, the first one found.
+    /// \param bounds per site, an upper bound of the primary gain; made exact for sites visited
+    /// \param known an allowed candidate to start from, or none; it speeds the search up
+    BestCandidate find(const CandidateGains& gains, std::span<std::uint32_t> bounds,
+                       const BestCandidate& known, const std::function<bool(std::size_t)>& allows,
+                       const Progress& progress);
 
   private:
-    void lookAt(std::size_t site, const PlacePrices& prices, std::span<std::uint32_t> bounds,
-                const std::function<bool(std::size_t)>& allows, BestPlace& best);
+    void lookAt(std::size_t site, const CandidateGains& gains, std::span<std::uint32_t> bounds,
+                const std::function<bool(std::size_t)>& allows, BestCandidate& best);
 
     std::vector<std::uint64_t> queue_;  // a heap: bound, and the complement of the site
     std::vector<std::uint32_t> values_, more_;
 };
 
-/// The most that a candidate of each site has of `values` (per candidate).
-std::vector<std::uint32_t> mostOfSites(const CandidateSet& candidates,
-                                       std::span<const std::uint32_t> values);
+/// Per site, the maximum of `values` over its candidates.
+std::vector<std::uint32_t> maxOfSites(const CandidateSet& candidates,
+                                      std::span<const std::uint32_t> values);
 
-/// What all searches on one problem share. The problem must outlive it.
+/// Data that all searches on one problem share. The problem must outlive it.
 struct SearchBasis {
-    /// Prices all candidates alone, with what stands: O(runs), on all cores.
+    /// Weighs all candidates: O(runs), in parallel.
     explicit SearchBasis(const Problem& of);
 
     /// A state with nothing chosen.
-    [[nodiscard]] CoverageState emptyState() const { return {problem, part_weights}; }
+    [[nodiscard]] CoverageState emptyState() const { return {problem, partial_weights}; }
 
     const Problem& problem;
-    std::vector<std::uint32_t> part_weights;  ///< weightsOfParts
-    std::vector<int> limits;                  ///< limitsOf
-    /// Per kind and candidate: the parts that it adds alone. With others placed it adds no more.
+    std::vector<std::uint32_t> partial_weights;  ///< partialWeights
+    std::vector<int> limits;                     ///< limitsOf
+    /// Per kind and candidate, its partial gain if placed first: an upper bound of any later gain.
     std::vector<std::vector<std::uint32_t>> alone;
-    std::vector<std::vector<std::uint32_t>> site_parts;  ///< the most of these at each site
-    /// Per kind and site: no candidate there ever adds more to the cells met. With a demand of 1
-    /// the same as site_parts.
-    std::vector<std::vector<std::uint32_t>> site_met;
+    std::vector<std::vector<std::uint32_t>> site_partial;  ///< the maximum of these at each site
+    /// Per kind and site, an upper bound of the full gain of its candidates at any time. The same
+    /// as site_partial if 1 is required.
+    std::vector<std::vector<std::uint32_t>> site_full;
 };
 
-/// Places all that may still be placed, each where it adds most parts of demands, met at last or
-/// not; in the order asked for if there is one; with `per_cost` by gain for cost. For the starts of
-/// swaps.
+/// Greedily places all sensors that still may be placed, by partial gain (per unit of cost with
+/// `per_cost`), in the order of the problem if there is one. Starting points for swap search.
 void placeRest(const SearchBasis& basis, bool per_cost, CoverageState& state, Progress& progress);
 
 }  // namespace ispace

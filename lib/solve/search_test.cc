@@ -128,7 +128,7 @@ TEST(Search, IsTheSameForAnyNumberOfThreads) {
 TEST(Search, NothingToPlace) {
     Problem problem;
     problem.weights = {3, 4};
-    problem.met = {1, 0};
+    problem.achieved = {1, 0};
     SilentProgress progress;
     const CandidateSet none(2);
     for (const int most : {0, 2}) {

@@ -22,11 +22,11 @@ namespace ispace {
 namespace {
 
 /// Tells the best value so far.
-class Herald {
+class BestReporter {
   public:
-    Herald(const Problem& problem, Progress& progress)
+    BestReporter(const Problem& problem, Progress& progress)
         : total_(std::max<std::uint64_t>(1, problem.totalWeight())), progress_(progress) {}
-    void tell(std::uint64_t value) {
+    void report(std::uint64_t value) {
         const std::lock_guard lock(mutex_);
         if (value <= best_) return;
         best_ = value;
@@ -43,9 +43,9 @@ class Herald {
 };
 
 /// Draws candidates, the more often the more they add alone.
-class RandomPlaces {
+class RandomCandidates {
   public:
-    explicit RandomPlaces(const SearchBasis& basis) {
+    explicit RandomCandidates(const SearchBasis& basis) {
         sums_.reserve(basis.alone.size());
         for (const std::vector<std::uint32_t>& alone : basis.alone) {
             std::vector<double>& sums = sums_.emplace_back();
@@ -73,7 +73,7 @@ constexpr std::size_t kRandomSensors = 8;
 constexpr std::size_t kStartsPerKicked = 5;
 constexpr std::uint64_t kKicks = 10;
 /// Ends about which others are bought for two sensors, where costs differ.
-constexpr std::size_t kMostBuyers = 6;
+constexpr std::size_t kMaxBuyers = 6;
 constexpr std::size_t kStartsPerBuyer = 4;
 
 /// Where a start has come to.
@@ -87,7 +87,7 @@ struct End {
     End(std::size_t from, const CoverageState& state)
         : start(from),
           value(state.value()),
-          parts(state.parts()),
+          parts(state.partialValue()),
           cost(state.problem().budget ? state.cost() : 0),
           chosen(state.chosen()) {}
     [[nodiscard]] bool isBetterThan(const End& other) const {
@@ -151,7 +151,7 @@ class SwapSearch {
     End searchByPairs(const End& end) {
         CoverageState state = stateOf(end);
         LocalSearch(basis_, cache_, enough_, progress_).improveByPairs(state);
-        herald_.tell(state.value());
+        herald_.report(state.value());
         End next(end.start, state);
         return end.isBetterThan(next) ? end : next;
     }
@@ -176,7 +176,7 @@ class SwapSearch {
             state.clear();
             for (const Choice& choice : before) state.add(choice);
         }
-        herald_.tell(best.value);
+        herald_.report(best.value);
         return best;
     }
 
@@ -194,13 +194,13 @@ class SwapSearch {
             // Greedy placement goes for whole demands; from where parts of them count alike other
             // places are reached.
             if (start > 1 || !takesSteps(basis_.problem)) addRandomSensors(state, start);
-            if (basis_.problem.demand == 1)
+            if (basis_.problem.required == 1)
                 search.fill(state);
             else
                 placeRest(basis_, false, state, progress);
         }
         search.improve(state);
-        herald_.tell(state.value());
+        herald_.report(state.value());
         return {start, state};
     }
 
@@ -245,10 +245,10 @@ class SwapSearch {
     }
 
     SearchBasis basis_;
-    RandomPlaces places_;
+    RandomCandidates places_;
     std::uint64_t seed_, enough_;
     Progress& progress_;
-    Herald herald_;
+    BestReporter herald_;
     ResponseCache cache_;
 };
 
@@ -291,7 +291,7 @@ Solution improveBySwaps(const Problem& problem, const Solution& start, const Swa
     const auto starts = static_cast<std::size_t>(std::max(0, options.starts));
     const std::size_t kicked = (starts + kStartsPerKicked - 1) / kStartsPerKicked;
     const std::size_t buyers =
-        problem.budget ? std::min(1 + starts / kStartsPerBuyer, kMostBuyers) : 0;
+        problem.budget ? std::min(1 + starts / kStartsPerBuyer, kMaxBuyers) : 0;
     progress.begin("improving", static_cast<std::int64_t>(1 + starts + buyers + kicked));
     SwapSearch search(problem, options, progress);
     std::vector<End> ends = search.searchFromAll(starts + 1, start.chosen);

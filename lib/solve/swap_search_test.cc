@@ -69,9 +69,9 @@ TEST(SwapSearch, FindsTheOptimumWithDemand) {
     options.kinds = 2;
     options.sites = 4;
     options.most = 2;
-    options.demand = 2;
-    options.shares = {1, 2};
-    options.max_met = 1;
+    options.required = 2;
+    options.multiplicities = {1, 2};
+    options.max_achieved = 1;
     options.max_weight = 3;
     EXPECT_GE(countOptima(options, 40), 38);
 }
@@ -80,7 +80,7 @@ TEST(SwapSearch, FindsTheOptimumWhereItTakesSeveral) {
     RandomProblemOptions options;
     options.sites = 6;
     options.most = 4;
-    for (options.demand = 2; options.demand <= 3; ++options.demand)
+    for (options.required = 2; options.required <= 3; ++options.required)
         EXPECT_GE(countOptima(options, 20), 19);
 }
 
@@ -152,8 +152,8 @@ TEST(SwapSearch, IsTheSameForAnyNumberOfThreads) {
     options.columns = 40;
     options.rows = 30;
     options.most = 5;
-    for (const int demand : {1, 2}) {
-        options.demand = demand;
+    for (const int required : {1, 2}) {
+        options.required = required;
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
             options.is_connected = seed >= 2;
             options.kinds = 1 + static_cast<int>(seed % 2);
@@ -250,11 +250,11 @@ TEST(SwapSearch, StoppedItKeepsWhatItHas) {
 }
 
 TEST(SwapSearch, TellsHowFarItIs) {
-    for (const int demand : {1, 2}) {
+    for (const int required : {1, 2}) {
         RandomProblemOptions options;
-        options.demand = demand;
-        options.max_met = demand - 1;
-        options.most = demand == 1 ? 3 : 12;  // more than are random: placed greedily
+        options.required = required;
+        options.max_achieved = required - 1;
+        options.most = required == 1 ? 3 : 12;  // more than are random: placed greedily
         const RandomProblem made = randomProblem(2, options);
         StopAfter progress(1 << 30);
         improveBySwaps(made.problem, {}, {}, progress);

@@ -20,18 +20,19 @@ namespace ispace {
 struct RandomProblemOptions {
     int columns = 12, rows = 10;  ///< of the grid
     int kinds = 1;
-    int sites = 6;       ///< of each kind
-    int headings = 4;    ///< of each site with parts; every third site has a plain CellSet
-    int most = 3;        ///< of each kind
-    int max_range = 5;   ///< in cells; at least 2
-    int max_weight = 1;  ///< weights are 0 (rarely) to this
-    int max_met = 0;     ///< shares that stand already
-    int demand = 1;
-    std::vector<int> shares;  ///< per kind; empty: all 1
-    bool has_costs = false;   ///< 1, 1.5, 2, ... by kind, and a budget for about half of all
-    bool has_order = false;   ///< a shuffled order of all sensors
+    int sites = 6;         ///< of each kind
+    int headings = 4;      ///< of each site with parts; every third site has a plain CellSet
+    int most = 3;          ///< of each kind
+    int max_range = 5;     ///< in cells; at least 2
+    int max_weight = 1;    ///< weights are 0 (rarely) to this
+    int max_achieved = 0;  ///< multiplicity from sensors that stand
+    int required = 1;
+    std::vector<int> multiplicities;  ///< per kind; empty: all 1
+    bool has_costs = false;  ///< 1, 1.5, 2, ... by kind, and a budget for about half of all
+    bool has_order = false;  ///< a shuffled order of all sensors
     bool is_connected = false;
-    bool has_standing = false;  ///< some cells are seen already (and met where max_met is above 0)
+    bool has_standing =
+        false;  ///< some cells are seen already (and achieved where max_achieved is above 0)
 };
 
 /// A problem with the candidates that it points to.
@@ -167,18 +168,19 @@ inline RandomProblem randomProblem(std::uint64_t seed, const RandomProblemOption
         problem.weights.push_back(
             random() % 10 == 0 ? 0U
                                : static_cast<std::uint32_t>(anyOf(random, 1, options.max_weight)));
-    problem.demand = options.demand;
-    if (options.max_met > 0)
+    problem.required = options.required;
+    if (options.max_achieved > 0)
         for (std::size_t i = 0; i < cells; ++i)
-            problem.met.push_back(static_cast<std::uint16_t>(
-                std::max(0, anyOf(random, -2 * options.max_met, options.max_met))));
+            problem.achieved.push_back(static_cast<std::uint16_t>(
+                std::max(0, anyOf(random, -2 * options.max_achieved, options.max_achieved))));
     double all = 0;
     for (int kind = 0; kind < options.kinds; ++kind) {
         made.candidates.push_back(test_problems::randomCandidates(random, options));
         const double cost = options.has_costs ? 1 + 0.5 * kind : 1;
-        const int share =
-            options.shares.empty() ? 1 : options.shares[static_cast<std::size_t>(kind)];
-        problem.kinds.push_back({made.candidates.back().get(), options.most, cost, share});
+        const int multiplicity = options.multiplicities.empty()
+                                     ? 1
+                                     : options.multiplicities[static_cast<std::size_t>(kind)];
+        problem.kinds.push_back({made.candidates.back().get(), options.most, cost, multiplicity});
         all += cost * options.most;
     }
     if (options.has_costs) problem.budget = std::max(1.0, std::floor(all) / 2);
@@ -189,7 +191,8 @@ inline RandomProblem randomProblem(std::uint64_t seed, const RandomProblemOption
         const std::size_t first = random() % cells;
         for (std::size_t i = first; i < std::min(cells, first + 6); ++i) {
             problem.standing.set(i);
-            if (!problem.met.empty()) problem.met[i] = std::max<std::uint16_t>(problem.met[i], 1);
+            if (!problem.achieved.empty())
+                problem.achieved[i] = std::max<std::uint16_t>(problem.achieved[i], 1);
         }
     }
     return made;
@@ -221,12 +224,12 @@ inline RandomProblemOptions variedOptions(std::uint64_t round) {
     options.most = options.kinds == 2 ? 2 : 3;
     options.headings = options.kinds == 2 ? 3 : 4;
     options.max_weight = round % 5 == 4 ? 9 : 1;
-    options.demand = round % 4 == 3 ? 2 : 1;
-    options.max_met = round % 4 >= 2 ? 1 : 0;
+    options.required = round % 4 == 3 ? 2 : 1;
+    options.max_achieved = round % 4 >= 2 ? 1 : 0;
     if (round % 8 == 7) {
-        options.demand = 8;
-        options.max_met = 6;
-        options.shares = options.kinds == 2 ? std::vector<int>{4, 1} : std::vector<int>{4};
+        options.required = 8;
+        options.max_achieved = 6;
+        options.multiplicities = options.kinds == 2 ? std::vector<int>{4, 1} : std::vector<int>{4};
     }
     options.has_costs = round % 6 == 5;
     options.has_standing = round % 10 == 9;

@@ -4,9 +4,9 @@
 #include <queue>
 #include <tuple>
 
+#include "solve/branch_and_bound.h"
 #include "solve/cost_levels.h"
 #include "solve/coverage_state.h"
-#include "solve/exact.h"
 #include "solve/lagrange.h"
 #include "solve/search.h"
 
@@ -16,17 +16,17 @@ namespace {
 constexpr int kQuickRounds = 8;  // of a bound
 constexpr int kFewStarts = 4;    // of swaps
 
-/// Looks for the cheapest that is worth something.
-class FewestSearch {
+/// One search for a minimum-cost cover.
+class MinimumCostSearch {
   public:
-    FewestSearch(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
-                 Progress& progress)
+    MinimumCostSearch(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
+                      Progress& progress)
         : problem_(problem), wanted_(wanted), options_(options), progress_(progress) {
         problem_.order.clear();
-        part_weights_ = weightsOfParts(problem_);
+        partial_weights_ = partialWeights(problem_);
         bound_ = problem_.totalWeight();
     }
-    Fewest run() {
+    MinimumCostCover run() {
         const Solution nothing{{}, valueOf(problem_, {})};
         if (nothing.value >= wanted_) return reached(nothing, 0);
         const Solution first = reachGreedily();
@@ -40,8 +40,8 @@ class FewestSearch {
     [[nodiscard]] Solution placed(const Problem& cheaper);
     [[nodiscard]] Solution trimmed(const Solution& solution, std::uint64_t value) const;
     [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
-    [[nodiscard]] Fewest unreached(const Solution& greedy);
-    [[nodiscard]] Fewest cheapen(Solution best);
+    [[nodiscard]] MinimumCostCover unreached(const Solution& greedy);
+    [[nodiscard]] MinimumCostCover cheapen(Solution best);
     void lowerValueBound(const Solution& best, const LagrangeLimits& limits, Progress& progress);
     void raiseProven(const CostLevels& levels, const Solution& best, int rounds);
     void descend(const CostLevels& levels, Solution& best);
@@ -51,23 +51,24 @@ class FewestSearch {
     [[nodiscard]] Solution reachExactly(const Problem& cheaper, const Solution& best,
                                         bool& is_proven);
     [[nodiscard]] Bound boundOf(const Problem& cheaper, const Solution& best, int rounds) {
-        return boundWithin(cheaper, best.chosen, {.cut = wanted_ - 1, .rounds = rounds}, progress_);
+        return lagrangianBound(cheaper, best.chosen, {.cut = wanted_ - 1, .rounds = rounds},
+                               progress_);
     }
     [[nodiscard]] Solution filled(const Solution& best);
-    [[nodiscard]] Fewest reached(const Solution& best, double least_cost);
+    [[nodiscard]] MinimumCostCover reached(const Solution& best, double cost_bound);
 
     Problem problem_;
     std::uint64_t wanted_;
     const SearchOptions& options_;
     Progress& progress_;
-    std::vector<std::uint32_t> part_weights_;
-    bool is_all_ = false;      // there is nothing worth more than what was placed greedily
-    std::uint64_t bound_ = 0;  // nothing that costs no more than the best is worth more
-    std::size_t proven_ = 0;   // of this level nothing is worth enough
+    std::vector<std::uint32_t> partial_weights_;
+    bool is_all_ = false;      // the greedy solution is the best possible
+    std::uint64_t bound_ = 0;  // of the value at the cost of the best
+    std::size_t proven_ = 0;   // no solution of this cost level reaches the value
 };
 
 /// The problem with no more to spend.
-Problem FewestSearch::within(double cost) const {
+Problem MinimumCostSearch::within(double cost) const {
     Problem cheaper = problem_;
     if (cheaper.kinds.size() == 1) {
         Kind& kind = cheaper.kinds[0];
@@ -80,7 +81,7 @@ Problem FewestSearch::within(double cost) const {
 }
 
 /// Places twice as many again and again, until it is enough or nothing more can be had.
-Solution FewestSearch::reachGreedily() {
+Solution MinimumCostSearch::reachGreedily() {
     std::vector<Choice> everything;
     double cost = 0, dearest = 0;
     for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
@@ -102,15 +103,15 @@ Solution FewestSearch::reachGreedily() {
 }
 
 /// Greedily; nothing where that has no way on.
-Solution FewestSearch::placed(const Problem& cheaper) {
+Solution MinimumCostSearch::placed(const Problem& cheaper) {
     Solution solution = placeGreedily(cheaper, progress_);
     if (!isFeasible(cheaper, solution.chosen)) solution = {{}, valueOf(cheaper, {})};
     return solution;
 }
 
-/// The first of the sensors that are worth so much, without those that are not needed for it.
-Solution FewestSearch::trimmed(const Solution& solution, std::uint64_t value) const {
-    CoverageState state(problem_, part_weights_);
+/// The first sensors that reach this value, without those that turn out redundant.
+Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t value) const {
+    CoverageState state(problem_, partial_weights_);
     const auto& chosen = solution.chosen;
     for (std::size_t i = 0; i < chosen.size() && state.value() < value; ++i) state.add(chosen[i]);
     if (!isFeasible(problem_, state.chosen())) {
@@ -136,10 +137,10 @@ Solution FewestSearch::trimmed(const Solution& solution, std::uint64_t value) co
     return {state.chosen(), state.value()};
 }
 
-/// Without the sensors that are worth least for what they cost, until the others are cheap enough;
-/// nothing if those are not feasible.
-Solution FewestSearch::reduced(const Problem& cheaper, const Solution& solution) const {
-    CoverageState state(problem_, part_weights_);
+/// Drops the sensors with the least loss per cost until the rest is cheap enough; empty if that is
+/// infeasible.
+Solution MinimumCostSearch::reduced(const Problem& cheaper, const Solution& solution) const {
+    CoverageState state(problem_, partial_weights_);
     for (const Choice& choice : solution.chosen) state.add(choice);
     const auto position_of = [&state](const Choice& choice) {
         const auto& now = state.chosen();
@@ -147,16 +148,16 @@ Solution FewestSearch::reduced(const Problem& cheaper, const Solution& solution)
     };
     using Loss = std::tuple<double, double, Choice>;  // of value, of parts; for what it costs
     const auto loss_of = [&](const Choice& choice) {
-        const std::uint64_t value = state.value(), parts = state.parts();
+        const std::uint64_t value = state.value(), parts = state.partialValue();
         const std::size_t position = position_of(choice);
         state.removeAt(position);
         const double cost = problem_.kinds[choice.kind].cost;
         const Loss loss(static_cast<double>(value - state.value()) / cost,
-                        static_cast<double>(parts - state.parts()) / cost, choice);
+                        static_cast<double>(parts - state.partialValue()) / cost, choice);
         state.insert(position, choice);
         return loss;
     };
-    // Lazily: with fewer others a sensor is worth more, or nearly always.
+    // Lazily: with fewer others the loss of a sensor grows, or nearly always.
     std::priority_queue<Loss, std::vector<Loss>, std::greater<>> losses;
     for (const Choice& choice : solution.chosen) losses.push(loss_of(choice));
     const auto is_dear = [&] {
@@ -177,32 +178,31 @@ Solution FewestSearch::reduced(const Problem& cheaper, const Solution& solution)
     return {state.chosen(), state.value()};
 }
 
-Fewest FewestSearch::unreached(const Solution& greedy) {
-    Fewest fewest;
+MinimumCostCover MinimumCostSearch::unreached(const Solution& greedy) {
+    MinimumCostCover cover;
     if (is_all_ || progress_.stopped()) {
-        fewest.result.best = greedy;
-        fewest.result.bound = is_all_ ? greedy.value : problem_.totalWeight();
-        fewest.result.is_complete = is_all_;
-        fewest.is_all = is_all_;
+        cover.result.best = greedy;
+        cover.result.bound = is_all_ ? greedy.value : problem_.totalWeight();
+        cover.result.is_complete = is_all_;
+        cover.is_all = is_all_;
     } else {
         SearchOptions options = options_;
         options.swap.enough = wanted_;
-        fewest.result = search(problem_, options, progress_);
-        bound_ = fewest.result.bound;
-        if (fewest.result.best.value >= wanted_)
-            return cheapen(trimmed(fewest.result.best, wanted_));
+        cover.result = search(problem_, options, progress_);
+        bound_ = cover.result.bound;
+        if (cover.result.best.value >= wanted_) return cheapen(trimmed(cover.result.best, wanted_));
     }
-    fewest.result.best = trimmed(fewest.result.best, fewest.result.best.value);
-    fewest.cost = tidyCost(costOf(problem_, fewest.result.best.chosen));
+    cover.result.best = trimmed(cover.result.best, cover.result.best.value);
+    cover.cost = normaliseCost(costOf(problem_, cover.result.best.chosen));
     // If it can be had at all, it costs more than nothing.
-    fewest.least_cost = problem_.kinds.empty() ? 0 : problem_.kinds[0].cost;
+    cover.cost_bound = problem_.kinds.empty() ? 0 : problem_.kinds[0].cost;
     for (const Kind& kind : problem_.kinds)
-        fewest.least_cost = std::min(fewest.least_cost, kind.cost);
-    return fewest;
+        cover.cost_bound = std::min(cover.cost_bound, kind.cost);
+    return cover;
 }
 
-/// Something cheaper that is worth enough, or choices that are worth less.
-Solution FewestSearch::reach(const Problem& cheaper, const Solution& best, int starts) {
+/// A cheaper solution that reaches the value, or the best one that does not.
+Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, int starts) {
     Solution solution{{}, 0};
     if (options_.optimizer != Optimizer::Greedy) solution = reduced(cheaper, best);
     // Of one kind greedy placement is what it was, but for fewer.
@@ -218,7 +218,8 @@ Solution FewestSearch::reach(const Problem& cheaper, const Solution& best, int s
 }
 
 /// As reach(), for Exact by branch and bound if need be. \param is_proven there is nothing
-Solution FewestSearch::reachExactly(const Problem& cheaper, const Solution& best, bool& is_proven) {
+Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution& best,
+                                         bool& is_proven) {
     const bool is_greedy = options_.optimizer == Optimizer::Greedy;
     Bound bound;
     if (!is_greedy) {
@@ -237,7 +238,7 @@ Solution FewestSearch::reachExactly(const Problem& cheaper, const Solution& best
 }
 
 /// True if what was found is better.
-bool FewestSearch::take(const Solution& found, Solution& best) const {
+bool MinimumCostSearch::take(const Solution& found, Solution& best) const {
     if (found.value < wanted_) return false;
     Solution trim = trimmed(found, wanted_);
     if (!isCheaper(costOf(problem_, trim.chosen), costOf(problem_, best.chosen))) return false;
@@ -246,7 +247,7 @@ bool FewestSearch::take(const Solution& found, Solution& best) const {
 }
 
 /// Bounds, by halves, between what is proven and the best.
-void FewestSearch::raiseProven(const CostLevels& levels, const Solution& best, int rounds) {
+void MinimumCostSearch::raiseProven(const CostLevels& levels, const Solution& best, int rounds) {
     std::size_t open = levels.below(costOf(problem_, best.chosen)) + 1;
     while (proven_ + 1 < open && !progress_.stopped()) {
         const std::size_t middle = (proven_ + open) / 2;
@@ -259,7 +260,7 @@ void FewestSearch::raiseProven(const CostLevels& levels, const Solution& best, i
 
 /// Searches with few starts: in longer and longer steps down from the best, and once nothing is
 /// found by halves.
-void FewestSearch::descend(const CostLevels& levels, Solution& best) {
+void MinimumCostSearch::descend(const CostLevels& levels, Solution& best) {
     std::size_t tried = proven_;
     std::size_t step = 0;  // 0: by halves
     for (bool is_first = true; !progress_.stopped(); is_first = false) {
@@ -279,7 +280,7 @@ void FewestSearch::descend(const CostLevels& levels, Solution& best) {
 }
 
 /// Searches for the next cheaper, again and again, as well as the options say.
-void FewestSearch::stepDown(const CostLevels& levels, Solution& best) {
+void MinimumCostSearch::stepDown(const CostLevels& levels, Solution& best) {
     while (!progress_.stopped()) {
         const std::size_t open = levels.below(costOf(problem_, best.chosen));
         if (open <= proven_) return;
@@ -290,7 +291,7 @@ void FewestSearch::stepDown(const CostLevels& levels, Solution& best) {
     }
 }
 
-Fewest FewestSearch::cheapen(Solution best) {
+MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
     // Quick bounds first: if there is no time for more, there are these.
@@ -306,15 +307,15 @@ Fewest FewestSearch::cheapen(Solution best) {
 }
 
 /// For what costs no more than the best.
-void FewestSearch::lowerValueBound(const Solution& best, const LagrangeLimits& limits,
-                                   Progress& progress) {
+void MinimumCostSearch::lowerValueBound(const Solution& best, const LagrangeLimits& limits,
+                                        Progress& progress) {
     const double cost = costOf(problem_, best.chosen);
-    const Bound bound = boundWithin(within(cost), best.chosen, limits, progress);
+    const Bound bound = lagrangianBound(within(cost), best.chosen, limits, progress);
     bound_ = std::min(bound_, bound.value);
 }
 
 /// The most that can be had for what is known to be enough.
-Solution FewestSearch::filled(const Solution& best) {
+Solution MinimumCostSearch::filled(const Solution& best) {
     SearchOptions options = options_;
     options.optimizer = Optimizer::Swap;  // the tree is for the number
     const SearchResult found = search(within(costOf(problem_, best.chosen)), options, progress_);
@@ -322,30 +323,30 @@ Solution FewestSearch::filled(const Solution& best) {
     return found.best.value > best.value ? trimmed(found.best, found.best.value) : best;
 }
 
-Fewest FewestSearch::reached(const Solution& best, double least_cost) {
-    Fewest fewest;
-    fewest.is_reached = true;
-    fewest.result.best = best;
+MinimumCostCover MinimumCostSearch::reached(const Solution& best, double cost_bound) {
+    MinimumCostCover cover;
+    cover.is_reached = true;
+    cover.result.best = best;
     if (progress_.stopped()) {
         SilentProgress silent;  // there shall be some bound
         lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = 2}, silent);
     } else if (options_.optimizer == Optimizer::Greedy) {
         lowerValueBound(best, {.cut = best.value, .gap = 0.01, .rounds = kQuickRounds}, progress_);
     } else {
-        fewest.result.best = filled(best);
+        cover.result.best = filled(best);
     }
-    fewest.cost = tidyCost(costOf(problem_, fewest.result.best.chosen));
-    fewest.least_cost = isCheaper(least_cost, fewest.cost) ? tidyCost(least_cost) : fewest.cost;
-    fewest.result.bound = bound_;
-    fewest.result.is_complete = !progress_.stopped();
-    return fewest;
+    cover.cost = normaliseCost(costOf(problem_, cover.result.best.chosen));
+    cover.cost_bound = isCheaper(cost_bound, cover.cost) ? normaliseCost(cost_bound) : cover.cost;
+    cover.result.bound = bound_;
+    cover.result.is_complete = !progress_.stopped();
+    return cover;
 }
 
 }  // namespace
 
-Fewest placeFewest(const Problem& problem, std::uint64_t wanted, const SearchOptions& options,
-                   Progress& progress) {
-    return FewestSearch(problem, wanted, options, progress).run();
+MinimumCostCover minimumCostCover(const Problem& problem, std::uint64_t wanted,
+                                  const SearchOptions& options, Progress& progress) {
+    return MinimumCostSearch(problem, wanted, options, progress).run();
 }
 
 }  // namespace ispace

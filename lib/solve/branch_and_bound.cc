@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 
 #include <tbb/parallel_for.h>
 
@@ -110,7 +110,7 @@ struct Root {
     std::vector<std::size_t> most;               ///< of them, per kind
     std::shared_ptr<const ReducedProblem> problem;
     std::shared_ptr<const std::vector<std::uint32_t>> multipliers;
-    std::uint64_t closed = 0;  ///< nothing with another candidate is worth more, fine
+    std::uint64_t closed = 0;  ///< upper bound of solutions with another candidate, fine
 };
 
 RootRelaxation ruledOut(const Problem& problem, const Bound& bound, std::uint64_t value,
@@ -147,15 +147,16 @@ std::vector<std::uint64_t> gainsOf(const Root& root, std::size_t kind) {
     const ReducedProblem::OfKind& own = root.problem->kinds[kind];
     std::vector<std::uint32_t> cells(root.problem->cells());
     for (std::size_t i = 0; i < cells.size(); ++i)
-        cells[i] = priceOf((*root.multipliers)[i], own.share, root.problem->needs[i]);
-    std::vector<std::uint32_t> prices(own.original.size());
-    own.candidates->priceAll(CellPrices(cells), prices);
-    const std::size_t most = std::min(root.most[kind], prices.size());
-    std::partial_sort(prices.begin(), prices.begin() + static_cast<std::ptrdiff_t>(most),
-                      prices.end(), std::greater<>());
+        cells[i] = reducedCost((*root.multipliers)[i], own.multiplicity, root.problem->needs[i]);
+    std::vector<std::uint32_t> reduced_costs(own.original.size());
+    own.candidates->weighAll(WeightSums(cells), reduced_costs);
+    const std::size_t most = std::min(root.most[kind], reduced_costs.size());
+    std::partial_sort(reduced_costs.begin(),
+                      reduced_costs.begin() + static_cast<std::ptrdiff_t>(most),
+                      reduced_costs.end(), std::greater<>());
     std::vector<std::uint64_t> gains = {0};
     gains.reserve(most + 1);
-    for (std::size_t n = 0; n < most; ++n) gains.push_back(gains.back() + prices[n]);
+    for (std::size_t n = 0; n < most; ++n) gains.push_back(gains.back() + reduced_costs[n]);
     return gains;
 }
 
@@ -201,7 +202,7 @@ class Tree {
     }
 
   private:
-    /// What is worth no more is of no interest, fine.
+    /// Only solutions above this matter, fine.
     [[nodiscard]] std::uint64_t cut() const {
         return relaxed_.most(goodBound(result_.best.value, gap_));
     }
@@ -227,7 +228,7 @@ class Tree {
     SearchResult result_;
     double gap_;
     std::uint64_t enough_;
-    std::uint64_t closed_ = 0;  // nothing that is neither open nor known is worth more, fine
+    std::uint64_t closed_ = 0;  // upper bound of what is neither open nor known, fine
     OpenNodes open_;
 };
 

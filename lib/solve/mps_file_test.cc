@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/model_file.h"
+#include "solve/mps_file.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ Model modelOf(const Problem& problem, const std::vector<std::string>& kinds) {
 Problem smallProblem(const CandidateSet& set) {
     Problem problem;
     problem.weights = {5, 6, 7, 0, 9};
-    problem.met = {0, 1, 0, 0, 0};
+    problem.achieved = {0, 1, 0, 0, 0};
     problem.kinds = {{&set, 2, 1.5, 1}};
     return problem;
 }
@@ -102,8 +102,8 @@ TEST(WriteMps, HasTheNumbersOfASmallProblem) {
 TEST(WriteMps, WithADemandCellsAreWhole) {
     const CandidateSet set = smallSet();
     Problem problem = smallProblem(set);
-    problem.demand = 5;
-    problem.kinds[0].share = 4;
+    problem.required = 5;
+    problem.kinds[0].multiplicity = 4;
     Model model = modelOf(problem, {"laser"});
     EXPECT_EQ(model.whole.size(), 5U);  // two candidates, three cells
     EXPECT_EQ((model.entries[{"y_0", "cell_0"}]), 5);
@@ -123,16 +123,16 @@ TEST(WriteMps, AllChoicesOfARandomProblemAreWorthTheSame) {
         std::vector<Choice> chosen;
         for (std::size_t k = 0; k < problem.kinds.size(); ++k)
             if (problem.kinds[k].candidates->size() > 1) chosen.push_back({k, round % 2});
-        std::map<std::string, double> met;
+        std::map<std::string, double> achieved;
         for (const auto& [place, number] : model.entries)
             for (const Choice& choice : chosen)
                 if (place.first ==
                     "x_" + names[choice.kind] + "_" + std::to_string(choice.candidate))
-                    met[place.second] -= number;
+                    achieved[place.second] -= number;
         double value = static_cast<double>(valueOf(problem, {}));
         for (const auto& [place, number] : model.entries) {
             if (place.second == "minus_value" || place.first[0] != 'y') continue;
-            if (met[place.second] >= number)
+            if (achieved[place.second] >= number)
                 value -= model.entries.at({place.first, "minus_value"});
         }
         EXPECT_EQ(value, static_cast<double>(valueOf(problem, chosen))) << round;

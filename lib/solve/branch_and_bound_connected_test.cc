@@ -3,7 +3,7 @@
 // not.
 #include <gtest/gtest.h>
 
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
 #include "solve/test_problems.h"
 
@@ -14,7 +14,8 @@ SearchResult searchTree(const Problem& problem) {
     SilentProgress progress;
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
-    const Bound bound = boundWithin(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
+    const Bound bound =
+        lagrangianBound(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
     known.bound = bound.value;
     return branchAndBound(problem, bound, known, 0, progress);
 }
@@ -52,14 +53,14 @@ TEST(ConnectedTree, FewestReachesWhatCanBeReached) {
     SearchOptions options;
     options.optimizer = Optimizer::Exact;
     for (std::uint64_t wanted = 1; wanted <= 13; ++wanted) {
-        const Fewest fewest = placeFewest(row.problem, wanted, options, progress);
+        const MinimumCostCover fewest = minimumCostCover(row.problem, wanted, options, progress);
         ASSERT_TRUE(fewest.is_reached) << wanted;
         // One sees 4, one of a chain 2 more than those before.
         const double cost = wanted <= 4 ? 1 : static_cast<double>(wanted / 2);
         EXPECT_EQ(fewest.cost, cost) << wanted;
-        EXPECT_EQ(fewest.least_cost, cost) << wanted;
+        EXPECT_EQ(fewest.cost_bound, cost) << wanted;
     }
-    EXPECT_FALSE(placeFewest(row.problem, 14, options, progress).is_reached);
+    EXPECT_FALSE(minimumCostCover(row.problem, 14, options, progress).is_reached);
 }
 
 TEST(ConnectedTree, ManySensorsEqualBruteForce) {

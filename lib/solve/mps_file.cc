@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/model_file.h"
+#include "solve/mps_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -21,11 +21,11 @@ class MpsWriter {
                     std::fill(is_seen.begin() + run.first, is_seen.begin() + run.end, char{1});
                 });
         for (std::size_t cell = 0; cell < lacks_.size(); ++cell) {
-            const int met = problem.met.empty() ? 0 : problem.met[cell];
-            if (met >= problem.demand)
-                met_already_ += problem.weights[cell];
+            const int achieved = problem.achieved.empty() ? 0 : problem.achieved[cell];
+            if (achieved >= problem.required)
+                achieved_already_ += problem.weights[cell];
             else if (is_seen[cell] != 0 && problem.weights[cell] > 0)
-                lacks_[cell] = problem.demand - met;
+                lacks_[cell] = problem.required - achieved;
         }
     }
     void write(const std::string& legend,
@@ -37,9 +37,9 @@ class MpsWriter {
         for (std::size_t k = 0; k < names_.size(); ++k)
             for (std::size_t i = 0; i < problem_.kinds[k].candidates->size(); ++i)
                 writeSensor(k, i);
-        if (problem_.demand == 1) line({"    MARKER 'MARKER' 'INTEND'"});
+        if (problem_.required == 1) line({"    MARKER 'MARKER' 'INTEND'"});
         writeCells();
-        if (problem_.demand != 1) line({"    MARKER 'MARKER' 'INTEND'"});
+        if (problem_.required != 1) line({"    MARKER 'MARKER' 'INTEND'"});
         writeLimits();
         line({"ENDATA"});
         flush();
@@ -73,8 +73,8 @@ class MpsWriter {
     const std::vector<std::string>& names_;
     std::ostream& out_;
     std::string text_;
-    std::vector<int> lacks_;  ///< shares that each cell lacks; 0: it is left out
-    std::uint64_t met_already_ = 0;
+    std::vector<int> lacks_;  ///< multiplicity still required of each cell; 0: left out
+    std::uint64_t achieved_already_ = 0;
 };
 
 void MpsWriter::writeComments(const std::string& legend,
@@ -82,7 +82,7 @@ void MpsWriter::writeComments(const std::string& legend,
     line(
         {"* Where sensors see most. y_CELL is 1 if the cell is covered, x_KIND_INDEX if a sensor"});
     line({"* stands there. The objective is to be minimised: the value is ",
-          std::to_string(met_already_), " minus the objective."});
+          std::to_string(achieved_already_), " minus the objective."});
     line({"* The weights of all cells together: ", std::to_string(problem_.totalWeight())});
     if (problem_.is_connected)
         line({"* That the views hang together is not part of this model: its value is a bound."});
@@ -102,7 +102,7 @@ void MpsWriter::writeRows() {
     if (problem_.budget) line({" L budget"});
 }
 
-/// What more shares than a cell lacks meet is cut off: the same whole solutions, a tighter model.
+/// Coefficients are capped at what the cell lacks: the same integer solutions, a tighter model.
 void MpsWriter::writeSensor(std::size_t kind, std::size_t candidate) {
     const Kind& own = problem_.kinds[kind];
     const std::string name = nameOf(kind, candidate);
@@ -112,7 +112,7 @@ void MpsWriter::writeSensor(std::size_t kind, std::size_t candidate) {
         for (std::uint32_t cell = run.first; cell < run.end; ++cell)
             if (lacks_[cell] > 0)
                 line({"    ", name, " cell_", std::to_string(cell), " -",
-                      std::to_string(std::min(own.share, lacks_[cell]))});
+                      std::to_string(std::min(own.multiplicity, lacks_[cell]))});
     });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/exact.h"
+#include "solve/branch_and_bound.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -81,10 +81,11 @@ TEST(OpenNodes, WhatIsSharedCountsOnce) {
 
 /// From nothing known, with a bound that has hardly begun, so that the tree has work to do.
 SearchResult searchTree(const Problem& problem, double gap, Progress& progress,
-                        std::size_t most_bytes = kMostTreeBytes) {
+                        std::size_t most_bytes = kMaxTreeBytes) {
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
-    const Bound bound = boundWithin(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
+    const Bound bound =
+        lagrangianBound(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
     known.bound = bound.value;
     return branchAndBound(problem, bound, known, gap, progress,
                           std::numeric_limits<std::uint64_t>::max(), most_bytes);
@@ -167,7 +168,7 @@ TEST(BranchAndBound, WithAGapTheBoundIsTheBestKnown) {
             SearchResult known;
             known.best = {{}, best - less};
             const Bound bound =
-                boundWithin(random.problem, {}, {.cut = best - less, .rounds = 1}, progress);
+                lagrangianBound(random.problem, {}, {.cut = best - less, .rounds = 1}, progress);
             known.bound = bound.value;
             const double gap = static_cast<double>(less + 1) / static_cast<double>(best);
             ASSERT_GE(branchAndBound(random.problem, bound, known, gap, progress).bound, best);
@@ -196,7 +197,7 @@ TEST(BranchAndBound, LittleMemoryIsEnough) {
 TEST(BranchAndBound, IsTheSameForAnyNumberOfThreads) {
     const RandomProblem random = largerProblem(11);
     SilentProgress progress;
-    for (const std::size_t most_bytes : {kMostTreeBytes, std::size_t{20'000}})
+    for (const std::size_t most_bytes : {kMaxTreeBytes, std::size_t{20'000}})
         for (const double gap : {0.0, 0.02}) {
             const auto searched = [&](std::size_t threads) {
                 const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
@@ -242,7 +243,7 @@ TEST(BranchAndBound, EndsWhenItHasEnough) {
     const RandomProblem random = largerProblem(5);
     SilentProgress progress;
     SearchResult known;
-    const Bound bound = boundWithin(random.problem, {}, {.cut = 99, .rounds = 2}, progress);
+    const Bound bound = lagrangianBound(random.problem, {}, {.cut = 99, .rounds = 2}, progress);
     known.best = {{}, 99};
     known.bound = bound.value;
     const SearchResult result = branchAndBound(random.problem, bound, known, 0, progress, 100);
@@ -263,16 +264,16 @@ TEST(ReducedProblem, PricesStayTheSame) {
         std::vector<std::uint32_t> multipliers = cells.weights;
         for (std::size_t i = 0; i < multipliers.size(); ++i)
             multipliers[i] = static_cast<std::uint32_t>(multipliers[i] * (i % 5) / 5);
-        const CellPrices before(multipliers);
+        const WeightSums before(multipliers);
         const ReducedProblem whole = wholeProblem(random.problem, cells);
         const ReducedProblem reduced = reduce(whole, kept, multipliers);
         ASSERT_LE(reduced.cells(), random.problem.cells());
-        const CellPrices after(multipliers);
+        const WeightSums after(multipliers);
         for (std::size_t k = 0; k < kept.size(); ++k) {
             ASSERT_EQ(reduced.kinds[k].original, kept[k]);
             for (std::size_t i = 0; i < kept[k].size(); ++i)
-                ASSERT_EQ(reduced.kinds[k].candidates->price(i, after),
-                          random.problem.kinds[k].candidates->price(kept[k][i], before));
+                ASSERT_EQ(reduced.kinds[k].candidates->weigh(i, after),
+                          random.problem.kinds[k].candidates->weigh(kept[k][i], before));
         }
     }
 }

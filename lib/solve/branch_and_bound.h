@@ -9,16 +9,16 @@
 #include <vector>
 
 #include "solve/branch_node.h"
+#include "solve/lagrange.h"
 #include "solve/search.h"
 
 namespace ispace {
 
-/// The nodes of a search tree that are still to be looked at. Those with the highest bound come
-/// first, or, while they take too much memory, the newest: depth first leaves few open. What nodes
-/// share counts once.
+/// The open nodes of a search tree. The highest bound comes first (best first), or the newest while
+/// memory is short: depth first leaves few open. Memory that nodes share counts once.
 class OpenNodes {
   public:
-    /// \param most_bytes about so much may be held
+    /// \param most_bytes memory limit, approximate
     explicit OpenNodes(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
@@ -29,7 +29,7 @@ class OpenNodes {
     void add(BranchNode node);
     /// The next nodes to look at: at most `most`, fewer where they are large, but one at least.
     std::vector<BranchNode> take(std::size_t most);
-    /// Drops what is worth at most `cut`; returns the highest bound of that, else 0.
+    /// Drops nodes with a bound of at most `cut`; returns the highest of these bounds, else 0.
     std::uint64_t dropUpTo(std::uint64_t cut);
 
   private:
@@ -49,23 +49,22 @@ class OpenNodes {
     std::unordered_map<const void*, Shared> shared_;
 };
 
-/// Per kind, the candidates that may still be part of something worth more than `value`, ascending:
-/// the others are ruled out by the multipliers of the bound (reduced-cost fixing), or were before.
+/// Per kind, ascending, the candidates that reduced-cost fixing by the bound's multipliers leaves
+/// for solutions better than `value`.
 std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const Bound& bound,
                                                   std::uint64_t value);
 
-/// Branch and bound over what is left: best and bound of `known` are improved until they are within
-/// `gap`, the best is worth `enough`, or progress says stop. Each node is bounded by a Lagrangian
-/// relaxation of its own, warm from its parent's multipliers, and rules out more candidates; nodes
-/// with the highest bound come first, or the newest where the open ones take more than `most_bytes`
-/// of memory. Deterministic unless stopped.
+/// Branch and bound over the surviving candidates: improves `known` until its value and bound are
+/// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
+/// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
+/// Best first, or depth first while open nodes take more than `most_bytes`. Deterministic unless
+/// stopped.
 ///
-/// Where a budget can be shared out in more ways than CountChoice lists (20'000) there is no tree:
-/// `known` comes back as it is, complete, with the bound it had.
-/// \pre known.best need not exist: what is worth no more than its value is not looked for
+/// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
+/// is returned unchanged. known.best need not be a solution: only better values are searched.
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),
-                            std::size_t most_bytes = kMostTreeBytes);
+                            std::size_t most_bytes = kMaxTreeBytes);
 
 }  // namespace ispace

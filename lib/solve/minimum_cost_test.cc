@@ -39,21 +39,21 @@ TEST(PlaceFewest, EqualsBruteForce) {
                 SearchOptions options;
                 options.optimizer = optimizer;
                 options.swap.starts = 3;
-                const Fewest fewest = placeFewest(problem, wanted, options, progress);
-                ASSERT_TRUE(isFeasible(problem, fewest.result.best.chosen));
-                ASSERT_EQ(valueOf(problem, fewest.result.best.chosen), fewest.result.best.value);
-                ASSERT_DOUBLE_EQ(costOf(problem, fewest.result.best.chosen), fewest.cost);
-                ASSERT_LE(fewest.least_cost, least + 1e-9) << round << ' ' << wanted;
-                if (fewest.is_reached) {
+                const MinimumCostCover cover = minimumCostCover(problem, wanted, options, progress);
+                ASSERT_TRUE(isFeasible(problem, cover.result.best.chosen));
+                ASSERT_EQ(valueOf(problem, cover.result.best.chosen), cover.result.best.value);
+                ASSERT_DOUBLE_EQ(costOf(problem, cover.result.best.chosen), cover.cost);
+                ASSERT_LE(cover.cost_bound, least + 1e-9) << round << ' ' << wanted;
+                if (cover.is_reached) {
                     ++reached;
-                    ASSERT_GE(fewest.result.best.value, wanted);
-                    ASSERT_GE(fewest.cost, least - 1e-9);
+                    ASSERT_GE(cover.result.best.value, wanted);
+                    ASSERT_GE(cover.cost, least - 1e-9);
                 } else {
                     ASSERT_TRUE(optimizer != Optimizer::Exact || least > 1e9) << round;
                 }
-                if (optimizer != Optimizer::Exact || !fewest.is_reached) continue;
-                ASSERT_NEAR(fewest.cost, least, 1e-9) << round << ' ' << wanted;
-                ASSERT_NEAR(fewest.least_cost, least, 1e-9) << round << ' ' << wanted;
+                if (optimizer != Optimizer::Exact || !cover.is_reached) continue;
+                ASSERT_NEAR(cover.cost, least, 1e-9) << round << ' ' << wanted;
+                ASSERT_NEAR(cover.cost_bound, least, 1e-9) << round << ' ' << wanted;
             }
         }
     }
@@ -76,10 +76,10 @@ TEST(PlaceFewest, EqualsBruteForceWithCostsFarApart) {
         const std::uint64_t best = bestByBruteForce(problem).value;
         for (const std::uint64_t wanted : {best / 2, best * 9 / 10, best}) {
             const double least = leastCost(problem, wanted);
-            const Fewest fewest = placeFewest(problem, wanted, options, progress);
-            ASSERT_TRUE(fewest.is_reached);
-            ASSERT_EQ(fewest.cost, tidyCost(least)) << round << ' ' << wanted;
-            ASSERT_EQ(fewest.least_cost, fewest.cost) << round << ' ' << wanted;
+            const MinimumCostCover cover = minimumCostCover(problem, wanted, options, progress);
+            ASSERT_TRUE(cover.is_reached);
+            ASSERT_EQ(cover.cost, normaliseCost(least)) << round << ' ' << wanted;
+            ASSERT_EQ(cover.cost_bound, cover.cost) << round << ' ' << wanted;
         }
     }
 }
@@ -99,9 +99,9 @@ TEST(PlaceFewest, SmallCostsCountBesideLargeOnes) {
     problem.weights.assign(10, 1);
     problem.kinds = {{&large, 1, 1e6, 1}, {&small, 1, 0.001, 1}};
     SilentProgress progress;
-    const Fewest fewest = placeFewest(problem, 10, {}, progress);
-    EXPECT_EQ(fewest.cost, 1000000.001);
-    EXPECT_EQ(fewest.least_cost, 1000000.001);
+    const MinimumCostCover cover = minimumCostCover(problem, 10, {}, progress);
+    EXPECT_EQ(cover.cost, 1000000.001);
+    EXPECT_EQ(cover.cost_bound, 1000000.001);
 }
 
 TEST(PlaceFewest, ManyOfEqualCostHideNothingCheaper) {
@@ -125,10 +125,10 @@ TEST(PlaceFewest, ManyOfEqualCostHideNothingCheaper) {
     SilentProgress progress;
     SearchOptions options;
     options.optimizer = Optimizer::Greedy;
-    const Fewest fewest = placeFewest(problem, kCells, options, progress);
-    EXPECT_EQ(fewest.cost, 1700);
-    EXPECT_LE(fewest.least_cost, 1500);
-    EXPECT_GE(fewest.least_cost, 1300);
+    const MinimumCostCover cover = minimumCostCover(problem, kCells, options, progress);
+    EXPECT_EQ(cover.cost, 1700);
+    EXPECT_LE(cover.cost_bound, 1500);
+    EXPECT_GE(cover.cost_bound, 1300);
 }
 
 TEST(PlaceFewest, EvenLevelsHaveFewDigits) {
@@ -146,11 +146,11 @@ TEST(PlaceFewest, EvenLevelsHaveFewDigits) {
         SearchOptions options;
         options.optimizer = optimizer;
         options.swap.starts = 2;
-        const Fewest fewest = placeFewest(problem, 65, options, progress);
-        EXPECT_LE(fewest.least_cost, least);
-        EXPECT_GE(fewest.least_cost, 0.99 * least);
-        EXPECT_LE(formatDouble(fewest.least_cost).size(), 7U);
-        EXPECT_EQ(fewest.cost, tidyCost(least));
+        const MinimumCostCover cover = minimumCostCover(problem, 65, options, progress);
+        EXPECT_LE(cover.cost_bound, least);
+        EXPECT_GE(cover.cost_bound, 0.99 * least);
+        EXPECT_LE(formatDouble(cover.cost_bound).size(), 7U);
+        EXPECT_EQ(cover.cost, normaliseCost(least));
     }
 }
 
@@ -163,12 +163,12 @@ TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {
     const RandomProblem random = randomProblem(2, options);
     SilentProgress progress;
     const std::uint64_t wanted = random.problem.totalWeight() * 6 / 10;
-    const Fewest fewest = placeFewest(random.problem, wanted, {}, progress);
-    EXPECT_TRUE(fewest.is_reached);
-    EXPECT_GE(fewest.result.best.value, wanted);
-    EXPECT_LT(fewest.cost, 30);
-    EXPECT_GE(fewest.cost, fewest.least_cost);
-    EXPECT_GE(fewest.least_cost, fewest.cost * 0.6);
+    const MinimumCostCover cover = minimumCostCover(random.problem, wanted, {}, progress);
+    EXPECT_TRUE(cover.is_reached);
+    EXPECT_GE(cover.result.best.value, wanted);
+    EXPECT_LT(cover.cost, 30);
+    EXPECT_GE(cover.cost, cover.cost_bound);
+    EXPECT_GE(cover.cost_bound, cover.cost * 0.6);
 }
 
 bool onceSwapsBegin(const StopWhen& told) {
@@ -187,11 +187,12 @@ TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
         const RandomProblem random = randomProblem(seed, options);
         const std::uint64_t total = random.problem.totalWeight();
         StopWhen progress(onceSwapsBegin);
-        const Fewest fewest = placeFewest(random.problem, total * 7 / 10, {}, progress);
-        ASSERT_TRUE(fewest.is_reached);
-        EXPECT_EQ(fewest.result.is_complete, !progress.stopped());
-        EXPECT_GE(fewest.least_cost, 0.8 * fewest.cost);
-        EXPECT_LT(fewest.result.bound, total * 9 / 10);
+        const MinimumCostCover cover =
+            minimumCostCover(random.problem, total * 7 / 10, {}, progress);
+        ASSERT_TRUE(cover.is_reached);
+        EXPECT_EQ(cover.result.is_complete, !progress.stopped());
+        EXPECT_GE(cover.cost_bound, 0.8 * cover.cost);
+        EXPECT_LT(cover.result.bound, total * 9 / 10);
         if (progress.stopped()) ++stopped;
     }
     EXPECT_GE(stopped, 1);
@@ -203,8 +204,8 @@ TEST(PlaceFewest, GreedilyRunsNoSwaps) {
     SearchOptions options;
     options.optimizer = Optimizer::Greedy;
     const std::uint64_t wanted = random.problem.totalWeight() / 10;
-    const Fewest fewest = placeFewest(random.problem, wanted, options, progress);
-    EXPECT_TRUE(fewest.is_reached);
+    const MinimumCostCover cover = minimumCostCover(random.problem, wanted, options, progress);
+    EXPECT_TRUE(cover.is_reached);
     EXPECT_FALSE(progress.stopped());
 }
 
@@ -220,25 +221,25 @@ TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {
     problem.weights.assign(10, 1);
     problem.kinds = {{&set, 1000, 2, 1}};
     SilentProgress progress;
-    const Fewest fewest = placeFewest(problem, 10, {}, progress);
-    EXPECT_FALSE(fewest.is_reached);
-    EXPECT_EQ(fewest.result.best.value, 7U);
-    EXPECT_EQ(fewest.result.best.chosen.size(), 3U);
-    EXPECT_EQ(fewest.result.bound, 7U);
-    EXPECT_DOUBLE_EQ(fewest.cost, 6);
+    const MinimumCostCover cover = minimumCostCover(problem, 10, {}, progress);
+    EXPECT_FALSE(cover.is_reached);
+    EXPECT_EQ(cover.result.best.value, 7U);
+    EXPECT_EQ(cover.result.best.chosen.size(), 3U);
+    EXPECT_EQ(cover.result.bound, 7U);
+    EXPECT_DOUBLE_EQ(cover.cost, 6);
 }
 
 TEST(PlaceFewest, WhatStandsMayBeEnough) {
     CandidateSet set(2);
     Problem problem;
     problem.weights = {1, 1};
-    problem.met = {1, 0};
+    problem.achieved = {1, 0};
     problem.kinds = {{&set, 5, 1, 1}};
     SilentProgress progress;
-    const Fewest fewest = placeFewest(problem, 1, {}, progress);
-    EXPECT_TRUE(fewest.is_reached);
-    EXPECT_TRUE(fewest.result.best.chosen.empty());
-    EXPECT_EQ(fewest.least_cost, 0);
+    const MinimumCostCover cover = minimumCostCover(problem, 1, {}, progress);
+    EXPECT_TRUE(cover.is_reached);
+    EXPECT_TRUE(cover.result.best.chosen.empty());
+    EXPECT_EQ(cover.cost_bound, 0);
 }
 
 }  // namespace
