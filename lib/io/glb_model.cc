@@ -52,23 +52,9 @@ std::array<double, 3> gltfAxes(Vec3 v) {
     return {v.x + 0.0, v.z + 0.0, -v.y + 0.0};
 }
 
-Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-    return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
-            a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
-            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
-            a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
-}
-
-Quaternion rotationAbout(std::size_t axis, Angle angle) {
-    Quaternion q{0, 0, 0, cos(0.5 * angle)};
-    q[axis] = sin(0.5 * angle);
-    return q;
-}
-
-Quaternion rotationOf(const Pose3& pose) {
+Eigen::Quaterniond rotationOf(const Pose3& pose) {
     // Our z is glTF's Y and our -y its Z.
-    return rotationAbout(1, pose.heading) * rotationAbout(2, pose.tilt) *
-           rotationAbout(0, pose.roll);
+    return turnAbout(1, pose.heading) * turnAbout(2, pose.tilt) * turnAbout(0, pose.roll);
 }
 
 GlbSurface surfaceOf(const Mesh& mesh, Point3 origin) {
@@ -204,9 +190,9 @@ void GlbBuilder::addNode(const GlbNode& node) {
     if (node.frame != nullptr) {
         writeList(json.key("translation"), node.frame->translation);
         // Adding zero makes -0 plain 0.
-        Quaternion rotation = node.frame->rotation;
-        for (double& part : rotation) part += 0.0;
-        writeList(json.key("rotation"), rotation);
+        const Eigen::Quaterniond& q = node.frame->rotation;
+        writeList(json.key("rotation"),
+                  std::array{q.x() + 0.0, q.y() + 0.0, q.z() + 0.0, q.w() + 0.0});
         if (const double scale = node.frame->scale; scale != 1)
             writeList(json.key("scale"), std::array{scale, scale, scale});
     }

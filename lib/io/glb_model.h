@@ -14,7 +14,7 @@
 
 #include "base/json_writer.h"
 #include "env/mesh.h"
-#include "geom/pose.h"
+#include "geom/rotation.h"
 #include "geom/triangle_mesh.h"
 
 namespace ispace {
@@ -22,13 +22,8 @@ namespace ispace {
 /// glTF's (X, Y, Z) are our (x, z, -y).
 std::array<double, 3> gltfAxes(Vec3 v);
 
-/// A rotation: x, y, z, w as in glTF.
-using Quaternion = std::array<double, 4>;
-Quaternion operator*(const Quaternion& a, const Quaternion& b);
-/// By the angle about glTF's X (0), Y (1) or Z (2).
-Quaternion rotationAbout(std::size_t axis, Angle angle);
 /// Rz(heading) Ry(-tilt) Rx(roll) in glTF's axes.
-Quaternion rotationOf(const Pose3& pose);
+Eigen::Quaterniond rotationOf(const Pose3& pose);
 
 /// Triangles as glTF draws them, in its axes, with a normal a face: vertices are shared only where
 /// the normal is the same.
@@ -49,7 +44,7 @@ struct GlbNode {
     /// Where its mesh stands, in glTF's axes; none: where the whole room does.
     struct Frame {
         std::array<double, 3> translation{};
-        Quaternion rotation{0, 0, 0, 1};
+        Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
         double scale = 1;
     };
     std::unique_ptr<const Frame> frame;

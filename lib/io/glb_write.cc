@@ -27,10 +27,11 @@ Point3 meshOrigin(const Box2& limits) {
 }
 
 /// From the axes of a file to glTF's: (x, z, -y) of z-up, the same of y-up, (y, x, -z) of x-up.
-Quaternion gltfFromFile(const std::string& up) {
-    if (up == "y") return {0, 0, 0, 1};
-    if (up == "x") return {std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2, 0, 0};
-    return rotationAbout(0, Angle::degrees(-90));
+Eigen::Quaterniond gltfFromFile(const std::string& up) {
+    if (up == "y") return Eigen::Quaterniond::Identity();
+    // A half turn about X + Y.
+    if (up == "x") return {0, std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2, 0};
+    return turnAbout(0, Angle::degrees(-90));
 }
 
 /// Adds the nodes of a scene.
@@ -104,7 +105,7 @@ class GlbScene {
         const Point3 position{at[0], at[1], at.size() > 2 ? at[2] : 0};
         const GlbNode::Frame frame{
             gltfAxes(position - origin_),
-            rotationAbout(1, record.angle("heading")) * gltfFromFile(record.text("up")),
+            turnAbout(1, record.angle("heading")) * gltfFromFile(record.text("up")),
             meshScale(record)};
         builder_.addNode(
             {node.id, node.keyword, place->second, std::make_unique<const GlbNode::Frame>(frame)});

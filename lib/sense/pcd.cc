@@ -4,19 +4,19 @@
 #include <string_view>
 
 #include "base/number.h"
+#include "geom/rotation.h"
 #include "sense/float_text.h"
 #include "sense/point_cloud.h"
-#include "sense/trajectory.h"
 
 namespace ispace {
 
 namespace {
 
 void appendViewpoint(std::string& out, const Pose3& pose) {
-    const Quaternion turn = quaternionOf(pose);
+    const Eigen::Quaterniond turn = quaternionOf(pose);
     out += "VIEWPOINT";
-    for (const double part :
-         {pose.position.x, pose.position.y, pose.position.z, turn.w, turn.x, turn.y, turn.z}) {
+    for (const double part : {pose.position.x, pose.position.y, pose.position.z, turn.w(), turn.x(),
+                              turn.y(), turn.z()}) {
         out += ' ';
         appendDouble(out, part);
     }

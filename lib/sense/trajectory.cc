@@ -7,23 +7,11 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 
 namespace {
-
-double dot(const Quaternion& a, const Quaternion& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
-}
-
-Quaternion sum(double s, const Quaternion& a, double t, const Quaternion& b) {
-    return {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z, s * a.w + t * b.w};
-}
-
-Quaternion normalized(const Quaternion& q) {
-    const double size = std::sqrt(dot(q, q));
-    return {q.x / size, q.y / size, q.z / size, q.w / size};
-}
 
 constexpr std::string_view kBlanks = " \t\r";
 
@@ -45,36 +33,6 @@ std::string_view nextWord(std::string_view& line) {
 constexpr double kFarthest = 1e6;
 
 }  // namespace
-
-Quaternion quaternionOf(const Pose3& pose) {
-    const CosSin h = cosSin(0.5 * pose.heading), t = cosSin(-0.5 * pose.tilt),
-                 r = cosSin(0.5 * pose.roll);
-    // Rz(heading) Ry(-tilt) Rx(roll).
-    return {h.cos * t.cos * r.sin - h.sin * t.sin * r.cos,
-            h.cos * t.sin * r.cos + h.sin * t.cos * r.sin,
-            h.sin * t.cos * r.cos - h.cos * t.sin * r.sin,
-            h.cos * t.cos * r.cos + h.sin * t.sin * r.sin};
-}
-
-Pose3 poseOf(Point3 position, const Quaternion& rotation) {
-    const Quaternion q = normalized(rotation);
-    if (q.x == 0 && q.y == 0)
-        return {position, wrapped(Angle::radians(2 * std::atan2(q.z, q.w))), {}, {}};
-    const double up = 2 * (q.x * q.z - q.w * q.y);  // of the forward axis
-    const Angle tilt = Angle::radians(std::asin(std::clamp(up, -1.0, 1.0)));
-    // Straight up or down heading and roll turn about the same axis: all is heading then.
-    constexpr double kStraight = 1 - 1e-12;
-    if (std::fabs(up) >= kStraight) {
-        const double left_x = 2 * (q.x * q.y - q.w * q.z);
-        const double left_y = 1 - 2 * (q.x * q.x + q.z * q.z);
-        return {position, directionOf(left_y, -left_x), Angle::degrees(up > 0 ? 90 : -90), {}};
-    }
-    const double forward_x = 1 - 2 * (q.y * q.y + q.z * q.z);
-    const double forward_y = 2 * (q.x * q.y + q.w * q.z);
-    const double left_z = 2 * (q.y * q.z + q.w * q.x);
-    const double top_z = 1 - 2 * (q.x * q.x + q.y * q.y);
-    return {position, directionOf(forward_x, forward_y), tilt, directionOf(top_z, left_z)};
-}
 
 std::optional<TimedPose> parseTumLine(std::string_view line) {
     constexpr std::array kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
@@ -105,7 +63,7 @@ std::optional<TimedPose> parseTumLine(std::string_view line) {
     if (std::fabs(t) > kLongest) fail(columns[0], "t is more than 285 years away");
     const double size = std::max({std::fabs(qx), std::fabs(qy), std::fabs(qz), std::fabs(qw)});
     if (size == 0) fail(columns[4], "the quaternion is 0, which is no rotation");
-    const Quaternion rotation{qx / size, qy / size, qz / size, qw / size};
+    const Eigen::Quaterniond rotation(qw / size, qx / size, qy / size, qz / size);
     return TimedPose{t, poseOf({x, y, z}, rotation)};
 }
 
@@ -113,18 +71,7 @@ Pose3 between(const Pose3& a, const Pose3& b, double share) {
     const Point3 position = a.position + share * (b.position - a.position);
     if (a.isLevel() && b.isLevel())
         return {position, wrapped(a.heading + share * wrapped(b.heading - a.heading)), {}, {}};
-    const Quaternion from = quaternionOf(a);
-    Quaternion to = quaternionOf(b);
-    double cosine = dot(from, to);
-    if (cosine < 0) {
-        to = sum(-1, to, 0, to);
-        cosine = -cosine;
-    }
-    // Nearly equal: the straight way is as good, and has no small divisor.
-    constexpr double kNear = 1 - 1e-9;
-    if (cosine > kNear) return poseOf(position, sum(1 - share, from, share, to));
-    const double angle = std::acos(cosine);
-    return poseOf(position, sum(std::sin((1 - share) * angle), from, std::sin(share * angle), to));
+    return poseOf(position, quaternionOf(a).slerp(share, quaternionOf(b)));
 }
 
 Pose3 poseAlong(std::span<const TimedPose> way, double time) {

@@ -30,12 +30,4 @@ Pose3 between(const Pose3& a, const Pose3& b, double share);
 /// times grow
 Pose3 poseAlong(std::span<const TimedPose> way, double time);
 
-/// A rotation as a unit quaternion.
-struct Quaternion {
-    double x = 0, y = 0, z = 0, w = 1;
-};
-Quaternion quaternionOf(const Pose3& pose);
-/// Heading, tilt and roll of a rotation, at `position`; without x and y parts exactly level.
-Pose3 poseOf(Point3 position, const Quaternion& rotation);
-
 }  // namespace ispace

@@ -15,6 +15,7 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "embree_raw.h"
+#include "geom/rotation.h"
 #include "sense/depth.h"
 #include "sense/trajectory.h"
 #include "tool_run.h"
@@ -59,10 +60,10 @@ class Case {
         for (std::size_t i = 0; i < count; ++i) {
             Pose3 pose = places[i % kPlaces].pose;
             pose.heading = Angle::degrees(heading(random));
-            const Quaternion turn = quaternionOf(pose);
+            const Eigen::Quaterniond turn = quaternionOf(pose);
             text += std::to_string(i);
-            for (const double number : {pose.position.x, pose.position.y, pose.position.z, turn.x,
-                                        turn.y, turn.z, turn.w})
+            for (const double number : {pose.position.x, pose.position.y, pose.position.z, turn.x(),
+                                        turn.y(), turn.z(), turn.w()})
                 text.append(" ").append(formatDouble(number));
             text += '\n';
         }
