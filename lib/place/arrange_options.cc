@@ -3,24 +3,6 @@
 
 namespace ispace {
 
-std::string_view nameOf(Strategy strategy) {
-    switch (strategy) {
-        case Strategy::Grid:
-            return "grid";
-        case Strategy::Random:
-            return "random";
-        case Strategy::Wall:
-            return "wall";
-        case Strategy::Medial:
-            return "medial";
-        case Strategy::List:
-            return "list";
-        case Strategy::All:
-            break;
-    }
-    return "all";
-}
-
 std::string_view nameOf(Optimizer optimizer) {
     switch (optimizer) {
         case Optimizer::Greedy:
@@ -31,10 +13,6 @@ std::string_view nameOf(Optimizer optimizer) {
             break;
     }
     return "exact";
-}
-
-bool isOfThesis(Strategy strategy) {
-    return strategy == Strategy::Grid || strategy == Strategy::Random || strategy == Strategy::Wall;
 }
 
 std::string_view nameOf(MountOn mount) {

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-/// How places are proposed.
+/// How places are proposed; each has its row in place/strategy.h.
 enum class Strategy {
     Grid,    ///< the thesis' Ordinary Grid
     Random,  ///< its Hierarchical Random
@@ -23,13 +23,11 @@ enum class Strategy {
     List,    ///< places that somebody gives
     All,     ///< a lattice, and along everything that stands
 };
-constexpr Strategy kStrategies[] = {Strategy::All,  Strategy::Grid,   Strategy::Random,
-                                    Strategy::Wall, Strategy::Medial, Strategy::List};
 constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
 /// The words of the command line and of results.
 std::string_view nameOf(Strategy strategy);
 std::string_view nameOf(Optimizer optimizer);
-/// Ordinary Grid, Hierarchical Random, Along Wall.
+/// True for Ordinary Grid, Hierarchical Random and Along Wall.
 bool isOfThesis(Strategy strategy);
 
 /// What a sensor is fixed to.

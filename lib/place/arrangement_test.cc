@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include "base/error.h"
+#include "place/strategy.h"
 #include "place/test_arrange.h"
 #include "solve/test_progress.h"
 
@@ -48,7 +49,8 @@ TEST(Arrangement, ALargeRoomIsSearchedOnFewerCellsAndMeasuredAsEver) {
 
 TEST(SearchCells, AreTheThesisWithItsStrategies) {
     ArrangeOptions options;
-    for (const Strategy strategy : kStrategies) {
+    for (const StrategyRow& row : strategies()) {
+        const Strategy strategy = row.strategy;
         options.strategy = strategy;
         options.cells.reset();
         EXPECT_EQ(std::holds_alternative<CellCount>(searchCells(options)), isOfThesis(strategy));

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "place/candidate_views.h"
+#include "place/strategy.h"
 
 namespace ispace {
 
@@ -68,12 +69,6 @@ struct CandidatePool::Data {
         return *judge;
     }
 
-    [[nodiscard]] std::vector<Angle> headings() const {
-        const bool thesis =
-            options.strategy == Strategy::Grid || options.strategy == Strategy::Random;
-        return headingsAround(options.headings.value_or(thesis ? 8 : options.density.headings));
-    }
-
     [[nodiscard]] std::vector<double> heights() const {
         if (!options.mount.heights.empty()) return options.mount.heights;
         if (options.mount.on == MountOn::Ceiling)
@@ -90,55 +85,10 @@ struct CandidatePool::Data {
         return {Angle()};
     }
 
-    [[nodiscard]] GridSearch gridFor(const SensorKind& kind) const {
-        GridSearch search = defaultGridSearch(environment.limits(), maxRange(kind.device));
-        search.x = options.x.value_or(search.x);
-        search.y = options.y.value_or(search.y);
-        if (static_cast<double>(search.x) * search.y > kMostSites)
-            throw UsageError("a grid of " + std::to_string(search.x) + " x " +
-                             std::to_string(search.y) +
-                             " places is more than a million: use fewer lines (-X, -Y)");
-        return search;
-    }
-
-    [[nodiscard]] std::vector<Site> wallSitesAt(double height) const {
-        std::vector<Site> sites = wallSites(environment, height, options.dist, options.times);
-        if (options.headings)
-            for (Site& site : sites) {
-                const Angle normal = site.headings.front();
-                site.headings = headingsAround(*options.headings);
-                for (Angle& heading : site.headings) heading = normal + heading;
-            }
-        return sites;
-    }
-
     /// What the strategy proposes at one height; Random comes by itself.
     [[nodiscard]] std::vector<Site> proposals(const SensorKind& kind, double height) const {
-        const CandidateDensity& density = options.density;
-        switch (options.strategy) {
-            case Strategy::Grid:
-                return sitesAt(gridPlaces(environment.limits(), gridFor(kind)), headings());
-            case Strategy::Wall:
-                return onNanometres(wallSitesAt(height));
-            case Strategy::Medial:
-                return sitesAt(medialPlaces(environment.freeFloor(height), density.lattice_step,
-                                            environment.slice(height).sheets),
-                               headings());
-            case Strategy::List:
-                return onNanometres(options.list);
-            case Strategy::Random:
-                return {};
-            case Strategy::All:
-                break;
-        }
-        std::vector<Site> sites =
-            sitesAt(latticePlaces(environment.limits(), density.lattice_step), headings());
-        std::vector<Site> along =
-            sitesAt(placesAlong(environment.freeFloor(height), density.wall_step, kOffWall,
-                                environment.slice(height).sheets),
-                    headings());
-        std::move(along.begin(), along.end(), std::back_inserter(sites));
-        return sites;
+        return onNanometres(
+            rowOf(options.strategy).propose({environment, height, maxRange(kind.device), options}));
     }
 
     [[nodiscard]] std::vector<Level> frameLevels() const {
@@ -148,7 +98,7 @@ struct CandidatePool::Data {
         std::vector<Level> levels;
         levels.reserve(by_height.size());
         for (const auto& [height, places] : by_height)
-            levels.push_back({height, sitesAt(places, headings())});
+            levels.push_back({height, sitesAt(places, headingsPerPlace(options))});
         return levels;
     }
 
@@ -193,8 +143,8 @@ struct CandidatePool::Data {
         if (!mount.keep_out.empty() || !mount.keep_in.empty() || mount.clearance > 0 ||
             mount.on == MountOn::Wall)
             text += " within the rules for places (--keep-out, --keep-in, --clearance, --mount)";
-        if (options.strategy == Strategy::Grid && !on_frame)
-            text += "; use more grid lines (-X, -Y)";
+        if (const std::string_view hint = rowOf(options.strategy).hint; !hint.empty() && !on_frame)
+            text.append("; ").append(hint);
         return text;
     }
 
@@ -254,7 +204,7 @@ struct CandidatePool::Data {
                 ++drawn.places;
                 progress.advance(1);
             }
-            drawn.levels.push_back({height, sitesAt(places, headings())});
+            drawn.levels.push_back({height, sitesAt(places, headingsPerPlace(options))});
         }
         progress.end();
         return drawn;

@@ -2,6 +2,8 @@
 #include "arrange/options.h"
 
 #include <algorithm>
+#include <type_traits>
+#include <variant>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -14,7 +16,7 @@ namespace ispace {
 namespace {
 
 /// As many as a room may ask for, and no slip of a digit.
-constexpr int kMostLines = 10000, kMostHeadings = 3600, kMostPlaces = 100000;
+constexpr int kMostHeadings = 3600;
 constexpr double kLongest = 1e6;  // metres
 
 /// Numbers of a unit, parted by commas.
@@ -118,10 +120,14 @@ void ArrangeCommand::addPlaceOptions() {
     line_.choice("--effort", words_.effort, {"low", "medium", "high"},
                  "the thesis' time levels: random places; a grid with 8 headings; one with 16",
                  Enters::History);
-    line_.choice("--strategy", words_.strategy, wordsOf(kStrategies),
-                 "how places are proposed: all (default: a lattice and along walls), the thesis' "
-                 "grid, random and wall, medial (axis of the free floor), list (--places)",
-                 Enters::History);
+    std::vector<std::string> names;
+    std::string help = "how places are proposed: ";
+    for (const StrategyRow& row : strategies()) {
+        help.append(names.empty() ? "" : ", ").append(row.name).append(" (").append(row.help) +=
+            ')';
+        names.emplace_back(row.name);
+    }
+    line_.choice("--strategy", words_.strategy, names, help, Enters::History);
     line_.parsed(
         "--candidates", "GRID,WALL,HEADINGS",
         [&how](const std::string& text) { how.density = readDensity(text); },
@@ -129,26 +135,27 @@ void ArrangeCommand::addPlaceOptions() {
         Enters::History);
     line_.file("--places", "FILE", options_.places_file,
                "of list: lines X,Y[,HEADING] (CSV), - is stdin", Enters::BaseName);
-    line_.count("-X", "N", how.x, 1, kMostLines,
-                "of grid: interior lines across x (default: 5 per maximum range)", Enters::History);
-    line_.count("-Y", "N", how.y, 1, kMostLines,
-                "of grid: interior lines across y (default: 5 per maximum range)", Enters::History);
+    for (const StrategyRow& row : strategies())
+        for (const StrategyOption& option : row.options) addStrategyOption(row, option);
     line_.count(
         "--deg", "N", how.headings, 1, kMostHeadings,
         "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
         "(default 8 of grid and random, else those of --candidates; of wall the normals alone)",
         Enters::History);
-    line_.count("--r1", "N", how.first_places, 1, kMostPlaces, "of random: places tried first",
-                Enters::History);
-    line_.count("--r2", "N", how.more_places, 0, kMostPlaces,
-                "of random: places tried about the best of them, for each sensor", Enters::History);
-    line_.meters("--scope", how.scope, 0.001, kLongest,
-                 "of random: radius in which these lie (default: maximum range / 5)",
-                 Enters::History);
-    line_.meters("--dist", how.dist, 0.001, 1000, "of wall: distance from the wall",
-                 Enters::History);
-    line_.count("--times", "N", how.times, 1, kMostPlaces, "of wall: places a wall",
-                Enters::History);
+}
+
+void ArrangeCommand::addStrategyOption(const StrategyRow& row, const StrategyOption& option) {
+    const std::string help = "of " + std::string(row.name) + ": " + option.help;
+    const auto add = [&](auto field) {
+        auto& value = options_.how.*field;
+        using Value = std::remove_reference_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>)
+            line_.count(option.name, "N", value, static_cast<int>(option.lowest),
+                        static_cast<int>(option.highest), help, Enters::History);
+        else
+            line_.meters(option.name, value, option.lowest, option.highest, help, Enters::History);
+    };
+    std::visit(add, option.field);
 }
 
 void ArrangeCommand::addMountOptions() {
@@ -291,22 +298,20 @@ void ArrangeCommand::settleStrategy() {
         how.strategy = words_.effort == "low" ? Strategy::Random : Strategy::Grid;
         how.headings = words_.effort == "high" ? 16 : 8;
     } else if (!words_.strategy.empty()) {
-        how.strategy = valueOf(words_.strategy, kStrategies);
+        how.strategy = strategyNamed(words_.strategy)->strategy;
     } else if (!options_.places_file.empty()) {
         how.strategy = Strategy::List;
     }
-    const auto only_with = [&](Strategy strategy, std::initializer_list<const char*> options) {
-        for (const char* option : options)
-            if (how.strategy != strategy && line_.given(option))
-                throw UsageError(std::string(option) + " is about --strategy " +
-                                 std::string(nameOf(strategy)) + ": give that, too");
+    const auto only_with = [&](const StrategyRow& row, const char* option) {
+        if (how.strategy != row.strategy && line_.given(option))
+            throw UsageError(std::string(option) + " is about --strategy " + std::string(row.name) +
+                             ": give that, too");
     };
-    only_with(Strategy::Grid, {"-X", "-Y"});
-    only_with(Strategy::Random, {"--r1", "--r2", "--scope"});
-    only_with(Strategy::List, {"--places"});
-    if (how.mount.on != MountOn::Wall && words_.mount != "wall")
-        only_with(Strategy::Wall, {"--dist"});
-    only_with(Strategy::Wall, {"--times"});
+    for (const StrategyRow& row : strategies())
+        for (const StrategyOption& option : row.options)
+            if (!option.or_mount || words_.mount != nameOf(*option.or_mount))
+                only_with(row, option.name);
+    only_with(rowOf(Strategy::List), "--places");
     if (how.strategy == Strategy::List && options_.places_file.empty())
         throw UsageError("--strategy list: give the list with --places FILE");
     const bool is_thesis = isOfThesis(how.strategy);

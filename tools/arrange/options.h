@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/scene_options.h"
 #include "place/arrange_options.h"
+#include "place/strategy.h"
 
 namespace ispace {
 
@@ -43,6 +44,7 @@ class ArrangeCommand {
 
   private:
     void addPlaceOptions();
+    void addStrategyOption(const StrategyRow& row, const StrategyOption& option);
     void addMountOptions();
     void addGoalOptions();
     void addSearchOptions();

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "place/strategy.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kMaxLines = 10000, kMaxPlaces = 100000;
+constexpr double kMaxScope = 1e6, kMaxDist = 1000, kMinLength = 0.001;  // metres
+
+std::vector<Site> sitesAt(const std::vector<Point2>& places, const ArrangeOptions& options) {
+    const std::vector<Angle> headings = headingsPerPlace(options);
+    std::vector<Site> sites;
+    sites.reserve(places.size());
+    for (const Point2 place : places) sites.push_back({place, headings});
+    return sites;
+}
+
+std::vector<Site> proposeAll(const ProposalRequest& request) {
+    const auto& [environment, height, max_range, options] = request;
+    const CandidateDensity& density = options.density;
+    std::vector<Point2> places = latticePlaces(environment.limits(), density.lattice_step);
+    const std::vector<Point2> along = placesAlong(environment.freeFloor(height), density.wall_step,
+                                                  kOffWall, environment.slice(height).sheets);
+    places.insert(places.end(), along.begin(), along.end());
+    return sitesAt(places, options);
+}
+
+std::vector<Site> proposeGrid(const ProposalRequest& request) {
+    const Box2& limits = request.environment.limits();
+    GridSearch search = defaultGridSearch(limits, request.max_range);
+    search.x = request.options.x.value_or(search.x);
+    search.y = request.options.y.value_or(search.y);
+    if (static_cast<double>(search.x) * search.y > kMostSites)
+        throw UsageError("a grid of " + std::to_string(search.x) + " x " +
+                         std::to_string(search.y) +
+                         " places is more than a million: use fewer lines (-X, -Y)");
+    return sitesAt(gridPlaces(limits, search), request.options);
+}
+
+std::vector<Site> proposeNone(const ProposalRequest& /*request*/) { return {}; }
+
+std::vector<Site> proposeAlongWalls(const ProposalRequest& request) {
+    const ArrangeOptions& options = request.options;
+    std::vector<Site> sites =
+        wallSites(request.environment, request.height, options.dist, options.times);
+    if (!options.headings) return sites;
+    for (Site& site : sites) {
+        const Angle normal = site.headings.front();
+        site.headings = headingsAround(*options.headings);
+        for (Angle& heading : site.headings) heading = normal + heading;
+    }
+    return sites;
+}
+
+std::vector<Site> proposeMedialAxis(const ProposalRequest& request) {
+    const auto& [environment, height, max_range, options] = request;
+    return sitesAt(medialPlaces(environment.freeFloor(height), options.density.lattice_step,
+                                environment.slice(height).sheets),
+                   options);
+}
+
+std::vector<Site> proposeListed(const ProposalRequest& request) { return request.options.list; }
+
+constexpr StrategyOption kGridOptions[] = {
+    {"-X", &ArrangeOptions::x, 1, kMaxLines,
+     "interior lines across x (default: 5 per maximum range)"},
+    {"-Y", &ArrangeOptions::y, 1, kMaxLines,
+     "interior lines across y (default: 5 per maximum range)"}};
+constexpr StrategyOption kRandomOptions[] = {
+    {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first"},
+    {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces,
+     "places tried about the best of them, for each sensor"},
+    {"--scope", &ArrangeOptions::scope, kMinLength, kMaxScope,
+     "radius in which these lie (default: maximum range / 5)"}};
+constexpr StrategyOption kWallOptions[] = {
+    {"--dist", &ArrangeOptions::dist, kMinLength, kMaxDist, "distance from the wall",
+     MountOn::Wall},
+    {"--times", &ArrangeOptions::times, 1, kMaxPlaces, "places per wall"}};
+
+constexpr StrategyRow kRows[] = {
+    {Strategy::All, "all", "default: a lattice and along walls", false, 0, {}, proposeAll},
+    {Strategy::Grid, "grid", "Ordinary Grid of the thesis", true, 8, kGridOptions, proposeGrid,
+     "use more grid lines (-X, -Y)"},
+    {Strategy::Random, "random", "its Hierarchical Random", true, 8, kRandomOptions, proposeNone},
+    {Strategy::Wall, "wall", "its Along Wall", true, 0, kWallOptions, proposeAlongWalls},
+    {Strategy::Medial, "medial", "axis of the free floor", false, 0, {}, proposeMedialAxis},
+    {Strategy::List, "list", "the places of --places", false, 0, {}, proposeListed}};
+
+}  // namespace
+
+std::span<const StrategyRow> strategies() { return kRows; }
+
+const StrategyRow& rowOf(Strategy strategy) {
+    return *std::find_if(std::begin(kRows), std::end(kRows),
+                         [strategy](const StrategyRow& row) { return row.strategy == strategy; });
+}
+
+const StrategyRow* strategyNamed(std::string_view name) {
+    const auto row = std::find_if(std::begin(kRows), std::end(kRows),
+                                  [name](const StrategyRow& one) { return one.name == name; });
+    return row == std::end(kRows) ? nullptr : row;
+}
+
+std::vector<Angle> headingsPerPlace(const ArrangeOptions& options) {
+    const int usual = rowOf(options.strategy).headings;
+    return headingsAround(options.headings.value_or(usual > 0 ? usual : options.density.headings));
+}
+
+std::string_view nameOf(Strategy strategy) { return rowOf(strategy).name; }
+
+bool isOfThesis(Strategy strategy) { return rowOf(strategy).is_of_thesis; }
+
+}  // namespace ispace

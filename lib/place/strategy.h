@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "env/environment.h"
+#include "place/arrange_options.h"
+#include "place/sites.h"
+
+namespace ispace {
+
+/// A command-line option of one strategy: a count, or a length in metres.
+struct StrategyOption {
+    using Field = std::variant<int ArrangeOptions::*, std::optional<int> ArrangeOptions::*,
+                               double ArrangeOptions::*, std::optional<double> ArrangeOptions::*>;
+    const char* name;
+    Field field;
+    double lowest, highest;
+    const char* help;
+    std::optional<MountOn> or_mount = {};  ///< also an option of this mount
+};
+
+/// What a strategy proposes places for.
+struct ProposalRequest {
+    const Environment& environment;
+    double height;     ///< of the sensor
+    double max_range;  ///< of the sensor
+    const ArrangeOptions& options;
+};
+
+/// A strategy for proposing places. To add one, write its function and a row.
+struct StrategyRow {
+    Strategy strategy;
+    std::string_view name;  ///< on the command line and in results
+    std::string_view help;
+    bool is_of_thesis;                        ///< defaults: its grid of cells and greedy search
+    int headings;                             ///< default per place; 0: of options.density
+    std::span<const StrategyOption> options;  ///< refused with any other strategy
+    /// Proposes sites, valid or not. Strategy::Random proposes none: its places depend on the
+    /// candidates made before, see CandidatePool.
+    std::vector<Site> (*propose)(const ProposalRequest& request);
+    std::string_view hint = {};  ///< what may help if no proposed place is valid
+};
+
+/// All strategies, the default first.
+std::span<const StrategyRow> strategies();
+const StrategyRow& rowOf(Strategy strategy);
+/// The row with this name; null if there is none.
+const StrategyRow* strategyNamed(std::string_view name);
+
+/// The headings to try at each place, if the strategy does not choose them itself.
+std::vector<Angle> headingsPerPlace(const ArrangeOptions& options);
+
+}  // namespace ispace
