@@ -34,7 +34,7 @@ CellSet cellsHeard(const Grid& grid, const RayWorld& mesh, const PlacedReceiver&
                    double height);
 
 /// The same as exact regions, by the shadows that bodies throw. (Contact with the plane is by
-/// height here and along the ray there: where sight grazes what is less than kContact above the
+/// height here and along the ray there: where sight grazes what is less than kRayEpsilon above the
 /// plane, the two differ.) Needs the environment no longer once it is made; copies share what they
 /// hold. Thread-safe. O(n log n) in the triangles near the field of view and the crossings of their
 /// shadows.

@@ -17,8 +17,6 @@
 
 namespace ispace {
 
-static_assert(kRayEpsilon == kContact, "rays and exact regions have the same rule for contact");
-
 namespace {
 
 /// \param device the figures of a placed sensor

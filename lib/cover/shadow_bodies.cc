@@ -178,7 +178,7 @@ Shadows::Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double heigh
         if (!mayTouch(body)) continue;
         for (std::size_t i = 0; i < body.triangles.size(); ++i) {
             const std::array<Point3, 3> triangle = cornersOf(body, i);
-            if (distance(sensor_, triangle) > kContact) continue;
+            if (distance(sensor_, triangle) > kRayEpsilon) continue;
             const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
             const double size = length(normal);
             if (size > 0) touched_.push_back(1 / size * normal);
@@ -187,9 +187,11 @@ Shadows::Shadows(std::span<const ShadowBody> bodies, Point3 sensor, double heigh
 }
 
 bool Shadows::mayTouch(const ShadowBody& body) const {
-    return sensor_.x >= body.plan.low.x - kContact && sensor_.x <= body.plan.high.x + kContact &&
-           sensor_.y >= body.plan.low.y - kContact && sensor_.y <= body.plan.high.y + kContact &&
-           sensor_.z >= body.bottom - kContact && sensor_.z <= body.top + kContact;
+    return sensor_.x >= body.plan.low.x - kRayEpsilon &&
+           sensor_.x <= body.plan.high.x + kRayEpsilon &&
+           sensor_.y >= body.plan.low.y - kRayEpsilon &&
+           sensor_.y <= body.plan.high.y + kRayEpsilon && sensor_.z >= body.bottom - kRayEpsilon &&
+           sensor_.z <= body.top + kRayEpsilon;
 }
 
 bool Shadows::isPassed(const std::array<Point3, 3>& triangle) const {
@@ -197,7 +199,7 @@ bool Shadows::isPassed(const std::array<Point3, 3>& triangle) const {
     if (touched_.empty()) return false;
     const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const double size = length(normal);
-    if (std::fabs(dot(sensor_ - triangle[0], normal)) > kContact * size) return false;
+    if (std::fabs(dot(sensor_ - triangle[0], normal)) > kRayEpsilon * size) return false;
     return std::any_of(touched_.begin(), touched_.end(), [&](Vec3 other) {
         return std::fabs(dot(other, normal)) >= kParallel * size;
     });
@@ -227,7 +229,7 @@ double Shadows::sideOf(const Place& p, int plane) const {
 /// True if nothing of the triangle falls into the box, or lies farther from the plane than contact.
 bool Shadows::isClear(const Corners& corners) const {
     const auto& [a, b, c] = corners;
-    const double touching = 1 - kContact / std::fabs(drop_);
+    const double touching = 1 - kRayEpsilon / std::fabs(drop_);
     if (std::min({a.share, b.share, c.share}) >= touching) return true;
     for (int plane = 0; plane < kSides; ++plane)
         if (sideOf(a, plane) < 0 && sideOf(b, plane) < 0 && sideOf(c, plane) < 0) return true;

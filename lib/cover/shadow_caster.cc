@@ -50,7 +50,7 @@ std::vector<Curve> laid(std::span<const Layer> layers, std::uint64_t marks, Poin
 }
 
 /// A plane this near to the sensor is taken for one that passes through it.
-bool passesThrough(double drop) { return std::fabs(drop) <= kContact; }
+bool passesThrough(double drop) { return std::fabs(drop) <= kRayEpsilon; }
 
 std::vector<Curve> regionInView(std::span<const ShadowBody> bodies, const FieldOfView& view,
                                 double height) {
@@ -131,7 +131,7 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
     if (laser.sweep != SweepAxis::None) return std::nullopt;
     const ScanPlane plane(sensor.pose);
     if (plane.up() == 0) return std::vector<Curve>{};
-    const bool is_over_floor = sensor.pose.position.z > kContact;
+    const bool is_over_floor = sensor.pose.position.z > kRayEpsilon;
     const std::span<const ShadowBody> opaque = data_->opaque();
     std::vector<Segment2> lines = cutsOf(is_over_floor ? opaque.first(opaque.size() - 1) : opaque,
                                          plane.frame(), laser.max_range);

@@ -162,7 +162,7 @@ struct CandidateViews::Data {
     void lookThroughMesh(const Site& site, CellParts& parts) const {
         parts.runs.clear();
         parts.first.assign(headingsOf(site) + 2, 0);
-        if (solids.isInside(site.place, kContact)) return;
+        if (solids.isInside(site.place, kRayEpsilon)) return;
         if (std::holds_alternative<Laser>(device)) return lookOneByOne(site, parts);
         std::vector<FieldOfView> fields;
         fields.reserve(headingsOf(site));

@@ -27,7 +27,7 @@ inline std::uint32_t spreadOut(std::uint32_t x) {
 /// Where a place is along a curve through the whole box, on which neighbours mostly are near each
 /// other: the bits of both coordinates in turn (Morton order).
 inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
-    const double scale = 0xffff / std::max({box.width(), box.depth(), kContact});
+    const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
     const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
     const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
     return spreadOut(x & 0xffffU) | spreadOut(y & 0xffffU) << 1U;

@@ -5,7 +5,7 @@
 
 #include "base/simd.h"
 #include "sense/noise.h"
-#include "trace/ray_limits.h"
+#include "trace/rays.h"
 
 namespace ispace {
 

@@ -29,7 +29,7 @@ SolidJudge::~SolidJudge() = default;
 
 bool SolidJudge::isInside(Point3 place) {
     const SolidTree* const level = data_->at(place.z);
-    return level != nullptr && level->isInside(place.onFloor(), kContact);
+    return level != nullptr && level->isInside(place.onFloor(), kRayEpsilon);
 }
 
 std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,

@@ -195,13 +195,17 @@ void castFromAfar(const TriangleSoup& soup, double size, double far, std::mt1993
     // Sight ends before what is met, or just behind it.
     std::vector<std::uint8_t> seen(count);
     for (const double more : {-1e-3, 1e-3}) {
-        std::vector<double> reach;
-        reach.reserve(count);
-        for (std::size_t i = 0; i < count; ++i)
-            reach.push_back(bruteForce(set, {origin, beams.directions[i], 1e9}) + more * size);
-        scene.look(origin, beams.directions, reach, seen);
-        for (std::size_t i = 0; i < count; ++i)
-            EXPECT_EQ(seen[i] == 1, more < 0 || std::isinf(reach[i])) << reach[i];
+        std::vector<Point3> targets;
+        std::vector<bool> is_free;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 direction = beams.directions[i];
+            const double exact = bruteForce(set, {origin, direction, 1e9});
+            is_free.push_back(more < 0 || std::isinf(exact));
+            const double reach = std::isinf(exact) ? 2 * far : exact + more * size;
+            targets.push_back(origin + (reach + kTouching) * direction);
+        }
+        scene.look(origin, targets, seen);
+        for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(seen[i] == 1, is_free[i]) << i;
     }
     EXPECT_GT(met, 100);
     EXPECT_LT(met, 500);

@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "trace/embree_query.h"
-#include "trace/ray_limits.h"
 #include "trace/ray_packet.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -320,18 +320,18 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
                       });
 }
 
-void EmbreeScene::look(Point3 origin, const Directions& directions, std::span<const double> reach,
+void EmbreeScene::look(Point3 origin, std::span<const Point3> targets,
                        std::span<std::uint8_t> seen) const {
     if (set_.size() == 0) return std::fill(seen.begin(), seen.end(), std::uint8_t{1});
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     Caster caster(*this, ignored, origin, 0);
     caster.most = kNoReturn;
-    for (std::size_t first = 0; first < directions.size(); first += kLanes) {
-        const std::size_t lanes = std::min(kLanes, directions.size() - first);
+    for (std::size_t first = 0; first < targets.size(); first += kLanes) {
+        const std::size_t lanes = std::min(kLanes, targets.size() - first);
         if (lanes < kLanes) caster.keep(lanes);
-        copyLanes(directions, first, lanes, caster.packet);
         for (std::size_t lane = 0; lane < kLanes; ++lane)
-            caster.packet.reach[lane] = reach[first + std::min(lane, lanes - 1)];
+            caster.packet.aim(lane, targets[first + std::min(lane, lanes - 1)] - origin,
+                              ray_epsilon_);
         caster.trace();
         for (std::size_t lane = 0; lane < lanes; ++lane)
             seen[first + lane] = caster.packet.multiples[lane] == kNoReturn ? 1 : 0;

@@ -6,8 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "trace/directions.h"
-#include "trace/ray_grid.h"
+#include "trace/rays.h"
 #include "trace/triangle_set.h"
 
 struct RTCDeviceTy;
@@ -49,9 +48,8 @@ class EmbreeScene {
               const Results& results) const;
     /// The same in multiples of a picture's rays, row by row, in square tiles.
     void cast(Point3 origin, const RayGrid& grid, double most, const Results& results) const;
-    /// seen[i] = 1 if nothing stands on the first reach[i] metres.
-    void look(Point3 origin, const Directions& directions, std::span<const double> reach,
-              std::span<std::uint8_t> seen) const;
+    /// seen[i] = 1 if nothing stands between origin and target i, the last `ray_epsilon` left out.
+    void look(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 
   private:
     struct Caster;

@@ -237,16 +237,12 @@ TEST(EmbreeScene, SightEndsWhereItIsTold) {
     TriangleSoup soup;
     addBox(soup, {0, 0, 0}, {1, 1, 1}, 0);
     const EmbreeScene scene(soup, kTouching, 0);
-    Directions directions;
-    directions.resize(20);
-    std::vector<double> reach;
-    for (std::size_t i = 0; i < 20; ++i) {
-        directions.set(i, {0, 1, 0});
-        reach.push_back(0.1 * static_cast<double>(i) + 0.05);
-    }
+    std::vector<Point3> targets;
+    targets.reserve(20);
+    for (int i = 0; i < 20; ++i) targets.push_back({0.2, 0.1 * i + 0.05, 0.1});
     std::vector<std::uint8_t> seen(20, 7);
-    scene.look({0.2, 0, 0.1}, directions, reach, seen);
-    for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], reach[i] < 1 ? 1 : 0);
+    scene.look({0.2, 0, 0.1}, targets, seen);
+    for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], targets[i].y < 1 ? 1 : 0);
 }
 
 TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {

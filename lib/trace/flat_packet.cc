@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/flat_packet.h"
+#include "trace/flat_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,7 @@
 #include <limits>
 
 #include "base/simd.h"
-#include "trace/flat_contact.h"
-#include "trace/flat_line.h"
-#include "trace/flat_ray.h"
-#include "trace/flat_round.h"
+#include "trace/flat_shapes.h"
 
 namespace ispace {
 
@@ -20,13 +17,13 @@ constexpr int kWidth = FlatTree::kWidth;
 constexpr int kBlock = FlatPacket::kBlock;
 /// Least cosine between a ray and the middle of its packet, of one block and of more: wide packets
 /// are quick if they are small. Not less than cos 45 degrees.
-constexpr double kLeastAlongOfBlock = 0.72, kLeastAlong = 0.975;
+constexpr double kMinAlongOfBlock = 0.72, kMinAlong = 0.975;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ISPACE_INLINE double leastOf(const double* eight) {
     double four[4];
-    for (int i = 0; i < 4; ++i) four[i] = flatLess(eight[i], eight[i + 4]);
-    return flatLess(flatLess(four[0], four[2]), flatLess(four[1], four[3]));
+    for (int i = 0; i < 4; ++i) four[i] = flatMin(eight[i], eight[i + 4]);
+    return flatMin(flatMin(four[0], four[2]), flatMin(four[1], four[3]));
 }
 
 ISPACE_INLINE double sumOf(const double* eight) {
@@ -62,10 +59,10 @@ void Cone::setOrigins(const FlatPacket& packet) {
         const double* const ox = packet.origin_x + begin;
         const double* const oy = packet.origin_y + begin;
         ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
-            least_x[i] = flatLess(ox[i], least_x[i]);
-            least_y[i] = flatLess(oy[i], least_y[i]);
-            less_x[i] = flatLess(-ox[i], less_x[i]);
-            less_y[i] = flatLess(-oy[i], less_y[i]);
+            least_x[i] = flatMin(ox[i], least_x[i]);
+            least_y[i] = flatMin(oy[i], least_y[i]);
+            less_x[i] = flatMin(-ox[i], less_x[i]);
+            less_y[i] = flatMin(-oy[i], less_y[i]);
         }
     }
     left = leastOf(least_x);
@@ -74,8 +71,8 @@ void Cone::setOrigins(const FlatPacket& packet) {
     high = -leastOf(less_y);
     x = 0.5 * (left + right);
     y = 0.5 * (low + high);
-    half_width = flatMore(right - x, x - left);
-    half_height = flatMore(high - y, y - low);
+    half_width = flatMax(right - x, x - left);
+    half_height = flatMax(high - y, y - low);
 }
 
 double Cone::setDirections(const FlatPacket& packet) {
@@ -103,9 +100,9 @@ double Cone::setDirections(const FlatPacket& packet) {
         ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
             const double here = ahead_x * dx[i] + ahead_y * dy[i];
             const double aside = (ahead_x * dy[i] - ahead_y * dx[i]) / here;
-            along[i] = flatLess(here, along[i]);
-            least[i] = flatLess(aside, least[i]);
-            less[i] = flatLess(-aside, less[i]);
+            along[i] = flatMin(here, along[i]);
+            least[i] = flatMin(aside, least[i]);
+            less[i] = flatMin(-aside, less[i]);
         }
     }
     const double to_right = leastOf(least), to_left = -leastOf(less);
@@ -132,28 +129,28 @@ class Walk {
     ISPACE_INLINE bool enclose();
     ISPACE_INLINE void visit(const FlatTree::Node& node);
     ISPACE_INLINE void meetLeaf(const FlatTree::Leaf& leaf);
-    template <bool kContact>
+    template <bool kRayEpsilon>
     ISPACE_INLINE void draw(const FlatTree::Leaf& leaf, int i);
-    template <bool kContact>
+    template <bool kRayEpsilon>
     ISPACE_INLINE double drawBlock(const FlatTree::Leaf& leaf, int i, int begin);
     ISPACE_INLINE void drawRound(const FlatTree::Round& round);
-    bool isInContact();
+    bool mayTouch();
 
     const FlatTree& tree_;
     const FlatPacketLimits& limits_;
     FlatPacket& packet_;
     Cone cone_;
-    double least_;  ///< nearness of the ray that sees farthest
+    double least_;  ///< inverse range of the ray that sees farthest
     FlatStack stack_;
     /// Whether a line may be in contact with an origin, once somebody wanted to know.
-    enum class Contact : std::uint8_t { Unknown, None, Some } contact_ = Contact::Unknown;
+    enum class Contact : std::uint8_t { Unknown, None, Some } touching_ = Contact::Unknown;
 };
 
 template <bool kCosines>
 bool Walk<kCosines>::enclose() {
     cone_.setOrigins(packet_);
     const double along = cone_.setDirections(packet_);
-    return along < 2 && along > (packet_.count > kBlock ? kLeastAlong : kLeastAlongOfBlock) &&
+    return along < 2 && along > (packet_.count > kBlock ? kMinAlong : kMinAlongOfBlock) &&
            cone_.right - cone_.left < limits_.widest && cone_.high - cone_.low < limits_.widest;
 }
 
@@ -167,14 +164,14 @@ void Walk<kCosines>::visit(const FlatTree::Node& node) {
         // As seen from all origins at once.
         const double left = node.left[i] - cone.right, right = node.right[i] - cone.left;
         const double low = node.low[i] - cone.high, high = node.high[i] - cone.low;
-        const double right_side = flatMore(cone.right_x * low, cone.right_x * high) -
-                                  flatLess(cone.right_y * left, cone.right_y * right);
-        const double left_side = flatLess(cone.left_x * low, cone.left_x * high) -
-                                 flatMore(cone.left_y * left, cone.left_y * right);
-        const double ahead = flatMore(cone.ahead_x * left, cone.ahead_x * right) +
-                             flatMore(cone.ahead_y * low, cone.ahead_y * high);
-        const double slack = slackOf(flatMore(std::fabs(left), std::fabs(right)),
-                                     flatMore(std::fabs(low), std::fabs(high)));
+        const double right_side = flatMax(cone.right_x * low, cone.right_x * high) -
+                                  flatMin(cone.right_y * left, cone.right_y * right);
+        const double left_side = flatMin(cone.left_x * low, cone.left_x * high) -
+                                 flatMax(cone.left_y * left, cone.left_y * right);
+        const double ahead = flatMax(cone.ahead_x * left, cone.ahead_x * right) +
+                             flatMax(cone.ahead_y * low, cone.ahead_y * high);
+        const double slack = slackOf(flatMax(std::fabs(left), std::fabs(right)),
+                                     flatMax(std::fabs(low), std::fabs(high)));
         const double far = distanceOf(left, right, low, high);
         const bool meets = (right_side >= -slack) & (left_side <= slack) & (ahead >= -slack) &
                            mayBeNearer(far, least);
@@ -185,18 +182,18 @@ void Walk<kCosines>::visit(const FlatTree::Node& node) {
 
 /// Of all origins at once: exact enough, as it is only whether to ask for each.
 template <bool kCosines>
-bool Walk<kCosines>::isInContact() {
-    if (contact_ != Contact::Unknown) return contact_ == Contact::Some;
-    contact_ = Contact::None;
-    const double contact = limits_.contact * (1 + 1e-6);
+bool Walk<kCosines>::mayTouch() {
+    if (touching_ != Contact::Unknown) return touching_ == Contact::Some;
+    touching_ = Contact::None;
+    const double ray_epsilon = limits_.ray_epsilon * (1 + 1e-6);
     const auto is_near = [&](double left, double right, double low, double high) {
-        return left - cone_.right <= contact && cone_.left - right <= contact &&
-               low - cone_.high <= contact && cone_.low - high <= contact;
+        return left - cone_.right <= ray_epsilon && cone_.left - right <= ray_epsilon &&
+               low - cone_.high <= ray_epsilon && cone_.low - high <= ray_epsilon;
     };
     std::int32_t waiting[FlatTree::kStack];
     int count = 0;
     waiting[count++] = 0;
-    while (count > 0 && contact_ == Contact::None) {
+    while (count > 0 && touching_ == Contact::None) {
         const FlatTree::Node& node = tree_.node(waiting[--count]);
         for (int k = 0; k < node.count; ++k) {
             if (!is_near(node.left[k], node.right[k], node.low[k], node.high[k])) continue;
@@ -208,60 +205,61 @@ bool Walk<kCosines>::isInContact() {
             for (int j = 0; j < leaf.count; ++j)
                 if (is_near(leaf.ax[j], leaf.bx[j], std::min(leaf.ay[j], leaf.by[j]),
                             std::max(leaf.ay[j], leaf.by[j])))
-                    contact_ = Contact::Some;
+                    touching_ = Contact::Some;
         }
     }
-    return contact_ == Contact::Some;
+    return touching_ == Contact::Some;
 }
 
-/// Draws a line into a block; returns the least nearness of it.
+/// Draws a line into a block; returns the least inverse range of it.
 template <bool kCosines>
-template <bool kContact>
+template <bool kRayEpsilon>
 double Walk<kCosines>::drawBlock(const FlatTree::Leaf& leaf, int i, int begin) {
     const double* const x = packet_.x + begin;
     const double* const y = packet_.y + begin;
     const double* const ox = packet_.origin_x + begin;
     const double* const oy = packet_.origin_y + begin;
-    double* const nearness = packet_.nearness + begin;
+    double* const inverse_range = packet_.inverse_range + begin;
     double* const cosine = packet_.cosine + begin;
     alignas(64) double least[kBlock];
     const auto meet = [=, &least](int k, double here, [[maybe_unused]] double height) {
-        const double old = nearness[k];
+        const double old = inverse_range[k];
         if constexpr (kCosines) {
             const double incidence = here * height;
-            const double tied = flatChoice(here == old, flatMore(incidence, cosine[k]), cosine[k]);
+            const double tied = flatChoice(here == old, flatMax(incidence, cosine[k]), cosine[k]);
             cosine[k] = flatChoice(here > old, incidence, tied);
         }
-        least[k] = flatMore(here, old);
-        nearness[k] = least[k];
+        least[k] = flatMax(here, old);
+        inverse_range[k] = least[k];
     };
     alignas(64) double all_here[kBlock], heights[kBlock];
     ISPACE_LANES for (int k = 0; k < kBlock; ++k) {
         const FlatLine line = lineFrom(leaf, i, ox[k], oy[k]);
-        const double here = flatChoice(line.stops, nearnessAlong(line, x[k], y[k]), 0.0);
-        if constexpr (kContact) {
+        const double here = flatChoice(line.stops, inverseRangeAlong(line, x[k], y[k]), 0.0);
+        if constexpr (kRayEpsilon) {
             all_here[k] = here;
             heights[k] = line.height;
         } else {
             meet(k, here, line.height);
         }
     }
-    if constexpr (kContact)
+    if constexpr (kRayEpsilon)
         for (int k = 0; k < kBlock; ++k) {
-            const bool is_new = all_here[k] > 0 && all_here[k] >= nearness[k];
-            const bool is_contact = is_new && mayContinueContact(heights[k], limits_.contact) &&
-                                    continuesContact(tree_, leaf, i, ox[k], oy[k], limits_.contact);
+            const bool is_new = all_here[k] > 0 && all_here[k] >= inverse_range[k];
+            const bool is_contact =
+                is_new && mayContinueTouched(heights[k], limits_.ray_epsilon) &&
+                continuesTouched(tree_, leaf, i, ox[k], oy[k], limits_.ray_epsilon);
             meet(k, is_contact ? 0 : all_here[k], heights[k]);
         }
     return leastOf(least);
 }
 
 template <bool kCosines>
-template <bool kContact>
+template <bool kRayEpsilon>
 void Walk<kCosines>::draw(const FlatTree::Leaf& leaf, int i) {
     double least = kInfinity;
     for (int begin = 0; begin < packet_.count; begin += kBlock)
-        least = flatLess(least, drawBlock<kContact>(leaf, i, begin));
+        least = flatMin(least, drawBlock<kRayEpsilon>(leaf, i, begin));
     least_ = least;
 }
 
@@ -269,24 +267,24 @@ template <bool kCosines>
 void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
     const Cone cone = cone_;
     const double least = least_;
-    const double contact = limits_.contact * (1 + 1e-6);
+    const double ray_epsilon = limits_.ray_epsilon * (1 + 1e-6);
     alignas(64) double far[kWidth], clear[kWidth];
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const double px = leaf.ax[i] - cone.x, py = leaf.ay[i] - cone.y;
         const double qx = leaf.bx[i] - cone.x, qy = leaf.by[i] - cone.y;
         const double right_side =
-            flatMore(cone.right_x * py - cone.right_y * px, cone.right_x * qy - cone.right_y * qx);
+            flatMax(cone.right_x * py - cone.right_y * px, cone.right_x * qy - cone.right_y * qx);
         const double left_side =
-            flatLess(cone.left_x * py - cone.left_y * px, cone.left_x * qy - cone.left_y * qx);
+            flatMin(cone.left_x * py - cone.left_y * px, cone.left_x * qy - cone.left_y * qx);
         const double ahead =
-            flatMore(cone.ahead_x * px + cone.ahead_y * py, cone.ahead_x * qx + cone.ahead_y * qy);
-        const double width = flatMore(std::fabs(px), std::fabs(qx)) + cone.half_width;
-        const double height = flatMore(std::fabs(py), std::fabs(qy)) + cone.half_height;
+            flatMax(cone.ahead_x * px + cone.ahead_y * py, cone.ahead_x * qx + cone.ahead_y * qy);
+        const double width = flatMax(std::fabs(px), std::fabs(qx)) + cone.half_width;
+        const double height = flatMax(std::fabs(py), std::fabs(qy)) + cone.half_height;
         const double slack = slackOf(width, height);
-        const double distance = distanceOf(flatLess(leaf.ax[i], leaf.bx[i]) - cone.right,
-                                           flatMore(leaf.ax[i], leaf.bx[i]) - cone.left,
-                                           flatLess(leaf.ay[i], leaf.by[i]) - cone.high,
-                                           flatMore(leaf.ay[i], leaf.by[i]) - cone.low);
+        const double distance = distanceOf(flatMin(leaf.ax[i], leaf.bx[i]) - cone.right,
+                                           flatMax(leaf.ax[i], leaf.bx[i]) - cone.left,
+                                           flatMin(leaf.ay[i], leaf.by[i]) - cone.high,
+                                           flatMax(leaf.ay[i], leaf.by[i]) - cone.low);
         const bool meets = (right_side + cone.right_reach >= -slack) &
                            (left_side - cone.left_reach <= slack) &
                            (ahead + cone.ahead_reach >= -slack) & mayBeNearer(distance, least);
@@ -295,11 +293,11 @@ void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
         const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
         const double reach = cone.half_width * std::fabs(ey) + cone.half_height * std::fabs(ex);
         const double rounding = 1e-12 * (width * std::fabs(ey) + height * std::fabs(ex));
-        clear[i] = std::fabs(px * ey - py * ex) - reach - rounding - contact * leaf.length[i];
+        clear[i] = std::fabs(px * ey - py * ex) - reach - rounding - ray_epsilon * leaf.length[i];
     }
     for (int i = 0; i < leaf.count; ++i) {
         if (far[i] < 0 || !mayBeNearer(far[i], least_)) continue;
-        if (clear[i] > 0 || !isInContact())
+        if (clear[i] > 0 || !mayTouch())
             draw<false>(leaf, i);
         else
             draw<true>(leaf, i);
@@ -310,14 +308,14 @@ template <bool kCosines>
 void Walk<kCosines>::drawRound(const FlatTree::Round& round) {
     double least = kInfinity;
     for (int k = 0; k < packet_.count; ++k) {
-        const RoundFrom from(round, packet_.origin_x[k], packet_.origin_y[k], limits_.contact);
+        const RoundFrom from(round, packet_.origin_x[k], packet_.origin_y[k], limits_.ray_epsilon);
         const RoundFrom::Hit met = from.meet<kCosines>(packet_.x[k], packet_.y[k]);
-        const double old = packet_.nearness[k];
-        if (kCosines && met.nearness >= old)
+        const double old = packet_.inverse_range[k];
+        if (kCosines && met.inverse_range >= old)
             packet_.cosine[k] =
-                met.nearness > old ? met.cosine : std::max(met.cosine, packet_.cosine[k]);
-        packet_.nearness[k] = std::max(met.nearness, old);
-        least = std::min(least, packet_.nearness[k]);
+                met.inverse_range > old ? met.cosine : std::max(met.cosine, packet_.cosine[k]);
+        packet_.inverse_range[k] = std::max(met.inverse_range, old);
+        least = std::min(least, packet_.inverse_range[k]);
     }
     least_ = least;
 }
@@ -325,9 +323,9 @@ void Walk<kCosines>::drawRound(const FlatTree::Round& round) {
 template <bool kCosines>
 bool Walk<kCosines>::run() {
     if (!enclose()) return false;
-    std::fill_n(packet_.nearness, packet_.count, limits_.least_nearness);
+    std::fill_n(packet_.inverse_range, packet_.count, limits_.min_inverse_range);
     if constexpr (kCosines) std::fill_n(packet_.cosine, packet_.count, 0.0);
-    least_ = limits_.least_nearness;
+    least_ = limits_.min_inverse_range;
     if (tree_.nodes.empty()) return true;
     visit(tree_.nodes.front());
     while (!stack_.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/flat_packet.h"
+#include "trace/flat_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "geom/pose.h"
-#include "trace/flat_ray.h"
-#include "trace/test_fans.h"
+#include "trace/test_scans.h"
 
 namespace ispace {
 
@@ -38,35 +37,35 @@ struct Rays {
 };
 
 Seen castTogether(const FlatWorld& world, const Rays& rays, double max_range = kInfinity,
-                  double contact = kTouching) {
+                  double ray_epsilon = kTouching) {
     Seen seen{std::vector<float>(rays.size(), -1), std::vector<float>(rays.size(), -1)};
-    world.cast(rays.origins, rays.directions, max_range, contact, seen.ranges, seen.cosines);
+    world.cast(rays.origins, rays.directions, max_range, ray_epsilon, seen.ranges, seen.cosines);
     std::vector<float> plain(rays.size(), -1);
-    world.cast(rays.origins, rays.directions, max_range, contact, plain, {});
+    world.cast(rays.origins, rays.directions, max_range, ray_epsilon, plain, {});
     EXPECT_EQ(plain, seen.ranges);
     return seen;
 }
 
 /// The same rays, one a call.
 Seen castAlone(const FlatWorld& world, const Rays& rays, double max_range = kInfinity,
-               double contact = kTouching) {
+               double ray_epsilon = kTouching) {
     Seen seen{std::vector<float>(rays.size(), -1), std::vector<float>(rays.size(), -1)};
     Directions one;
     one.resize(1);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         one.set(0, rays.directions[i]);
-        world.cast(rays.origins[i], one, max_range, contact, std::span(&seen.ranges[i], 1),
+        world.cast(rays.origins[i], one, max_range, ray_epsilon, std::span(&seen.ranges[i], 1),
                    std::span(&seen.cosines[i], 1));
     }
     return seen;
 }
 
 /// Draws all rays as one packet and compares to the bit with each alone; false if it is too wide.
-bool agrees(const FlatTree& tree, const Rays& rays, double least_nearness = 0,
-            double contact = kTouching) {
+bool agrees(const FlatTree& tree, const Rays& rays, double min_inverse_range = 0,
+            double ray_epsilon = kTouching) {
     FlatPacket packet;
     packet.count = static_cast<int>((rays.size() + 7) / 8 * 8);
-    EXPECT_LE(packet.count, FlatPacket::kMost);
+    EXPECT_LE(packet.count, FlatPacket::kMax);
     for (int i = 0; i < packet.count; ++i) {
         const auto lane = static_cast<std::size_t>(i);
         const std::size_t k = lane < rays.size() ? lane : rays.size() / 2;
@@ -75,17 +74,18 @@ bool agrees(const FlatTree& tree, const Rays& rays, double least_nearness = 0,
         packet.origin_x[i] = rays.origins[k].x;
         packet.origin_y[i] = rays.origins[k].y;
     }
-    const FlatPacketLimits limits{contact, least_nearness, widestPacket(tree)};
+    const FlatPacketLimits limits{ray_epsilon, min_inverse_range, widestPacket(tree)};
     FlatPacket plain = packet;
     const bool is_drawn = drawLinesAndCosines(tree, limits, packet);
     EXPECT_EQ(drawLines(tree, limits, plain), is_drawn);
     if (!is_drawn) return false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const FlatHit hit = firstLine(tree, {rays.origins[i].x, rays.origins[i].y, contact},
-                                      rays.directions.x[i], rays.directions.y[i], least_nearness);
-        EXPECT_EQ(packet.nearness[i], hit.nearness) << i;
-        EXPECT_EQ(plain.nearness[i], hit.nearness) << i;
-        if (hit.nearness > least_nearness) {
+        const FlatHit hit =
+            firstLine(tree, {rays.origins[i].x, rays.origins[i].y, ray_epsilon},
+                      rays.directions.x[i], rays.directions.y[i], min_inverse_range);
+        EXPECT_EQ(packet.inverse_range[i], hit.inverse_range) << i;
+        EXPECT_EQ(plain.inverse_range[i], hit.inverse_range) << i;
+        if (hit.inverse_range > min_inverse_range) {
             EXPECT_EQ(packet.cosine[i], hit.cosine) << i;
         }
     }
@@ -95,7 +95,7 @@ bool agrees(const FlatTree& tree, const Rays& rays, double least_nearness = 0,
 /// As many neighbours as fit a packet, or fewer: from a disc, into a sector.
 Rays neighbours(std::mt19937_64& random, Point2 middle, double radius, Angle sector) {
     std::uniform_real_distribution<double> turn(-180, 180), part(-0.5, 0.5);
-    std::uniform_int_distribution<int> size(1, FlatPacket::kMost);
+    std::uniform_int_distribution<int> size(1, FlatPacket::kMax);
     const Angle ahead = Angle::degrees(turn(random));
     Rays rays;
     const int count = size(random);
@@ -148,7 +148,7 @@ TEST(FlatPacket, RaysThatJustTouchAnEndAtTheRimOfThePacket) {
         const FlatTree tree(
             std::vector<Segment2>{line, {{-9 * far, -9 * far}, {-9 * far, 9 * far}}});
         EXPECT_TRUE(agrees(tree, rays, 0, 0));
-        met += firstLine(tree, {0, 0, 0}, way.x, way.y, 0).nearness > 0 ? 1 : 0;
+        met += firstLine(tree, {0, 0, 0}, way.x, way.y, 0).inverse_range > 0 ? 1 : 0;
     }
     EXPECT_GT(met, 1000);
     EXPECT_LT(met, 3500);
@@ -232,7 +232,7 @@ TEST(FlatPacket, APacketIsThePartOfAFan) {
     for (int i = 0; i < 60; ++i) {
         Point2 origin{place(random), place(random)};
         if (i % 3 == 0) origin = lines[random() % lines.size()].a;
-        Directions beams = fan(Angle::degrees(turn(random)), Angle::degrees(0.3), 700);
+        Directions beams = scan(Angle::degrees(turn(random)), Angle::degrees(0.3), 700);
         const Seen seen = cast(world, origin, beams, 9);
         EXPECT_EQ(castTogether(world, {std::vector<Point2>(700, origin), beams}, 9), seen);
         beams.arc.reset();
@@ -260,10 +260,10 @@ TEST(FlatPacket, InContactForSomeOfTheRays) {
             const Rays rays = movingScan(
                 random, at * from, at * to, i % 4 == 0 ? at.heading : Angle::degrees(turn(random)),
                 Angle::degrees(i % 5 == 0 ? 0.001 : 0.25), i % 2 == 0 ? 0.1 : 0, 64);
-            for (const double contact : {0.0, kTouching, 1e-2}) {
-                agrees(tree, rays, 0, contact);
-                EXPECT_EQ(castTogether(world, rays, 20, contact),
-                          castAlone(world, rays, 20, contact));
+            for (const double ray_epsilon : {0.0, kTouching, 1e-2}) {
+                agrees(tree, rays, 0, ray_epsilon);
+                EXPECT_EQ(castTogether(world, rays, 20, ray_epsilon),
+                          castAlone(world, rays, 20, ray_epsilon));
             }
         }
     }

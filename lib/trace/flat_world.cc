@@ -6,11 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "trace/flat_fan.h"
-#include "trace/flat_packet.h"
-#include "trace/flat_ray.h"
+#include "trace/flat_kernels.h"
 #include "trace/flat_tree.h"
-#include "trace/ray_limits.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -19,13 +17,13 @@ namespace {
 /// Ranges end at max_range as float32, so that what rounds to it is met. \pre max_range >= 0
 struct Limit {
     float range;
-    double nearness;  ///< of the first float32 beyond
+    double inverse_range;  ///< of the first float32 beyond
 
     explicit Limit(double max_range)
         : range(static_cast<float>(max_range)),
-          nearness(1 / static_cast<double>(std::nextafter(range, kNoReturn))) {}
-    [[nodiscard]] float rangeOf(double nearness_met) const {
-        const auto met = static_cast<float>(1 / nearness_met);
+          inverse_range(1 / static_cast<double>(std::nextafter(range, kNoReturn))) {}
+    [[nodiscard]] float rangeOf(double inverse_range_met) const {
+        const auto met = static_cast<float>(1 / inverse_range_met);
         if (met > range) return kNoReturn;
         return met;
     }
@@ -39,7 +37,7 @@ struct Cast {
     const Point2* origins;
     bool is_one_origin;
     const Directions& directions;
-    double contact;
+    double ray_epsilon;
     Limit limit;
     float* ranges;
     float* cosines;  ///< or null
@@ -47,10 +45,10 @@ struct Cast {
     [[nodiscard]] Point2 origin(std::size_t i) const { return origins[is_one_origin ? 0 : i]; }
 };
 
-bool isFan(const Directions& directions) {
-    if (!directions.arc || directions.size() < FlatFan::kLeast) return false;
+bool isScan(const Directions& directions) {
+    if (!directions.arc || directions.size() < FlatScan::kMin) return false;
     const double step = std::fabs(directions.arc->step.radians());
-    return step >= FlatFan::kFinestStep && step <= FlatFan::kWidestStep;
+    return step >= FlatScan::kMinStep && step <= FlatScan::kMaxStep;
 }
 
 }  // namespace
@@ -66,16 +64,16 @@ struct FlatWorld::Data {
     void castRay(const Cast& cast, std::size_t i) const {
         const Point2 origin = cast.origin(i);
         const FlatHit hit =
-            firstLine(tree, {origin.x, origin.y, cast.contact}, cast.directions.x[i],
-                      cast.directions.y[i], cast.limit.nearness);
-        cast.ranges[i] = cast.limit.rangeOf(hit.nearness);
+            firstLine(tree, {origin.x, origin.y, cast.ray_epsilon}, cast.directions.x[i],
+                      cast.directions.y[i], cast.limit.inverse_range);
+        cast.ranges[i] = cast.limit.rangeOf(hit.inverse_range);
         if (cast.cosines != nullptr)
             cast.cosines[i] = cast.limit.cosineOf(cast.ranges[i], hit.cosine);
     }
 
     /// Rays begin .. begin + count - 1; false, and nothing done, if they are better cast singly.
     [[nodiscard]] bool castPacket(const Cast& cast, std::size_t begin, std::size_t count) const {
-        if (count < FlatPacket::kLeast) return false;
+        if (count < FlatPacket::kMin) return false;
         constexpr std::size_t kBlock = FlatPacket::kBlock;
         const std::size_t lanes = (count + kBlock - 1) / kBlock * kBlock;
         FlatPacket packet;
@@ -89,12 +87,13 @@ struct FlatWorld::Data {
         };
         for (std::size_t i = 0; i < count; ++i) set(i, begin + i);
         for (std::size_t i = count; i < lanes; ++i) set(i, begin + count / 2);
-        const FlatPacketLimits limits{cast.contact, cast.limit.nearness, widest_packet};
+        const FlatPacketLimits limits{cast.ray_epsilon, cast.limit.inverse_range, widest_packet};
         if (!(cast.cosines == nullptr ? drawLines(tree, limits, packet)
                                       : drawLinesAndCosines(tree, limits, packet)))
             return false;
         float* const ranges = cast.ranges + begin;
-        for (std::size_t i = 0; i < count; ++i) ranges[i] = cast.limit.rangeOf(packet.nearness[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            ranges[i] = cast.limit.rangeOf(packet.inverse_range[i]);
         if (cast.cosines != nullptr)
             for (std::size_t i = 0; i < count; ++i)
                 cast.cosines[begin + i] = cast.limit.cosineOf(ranges[i], packet.cosine[i]);
@@ -104,13 +103,13 @@ struct FlatWorld::Data {
     /// In packets as large as rays are near to one another.
     void castRays(const Cast& cast) const {
         const std::size_t size = cast.directions.size();
-        std::size_t most = FlatPacket::kMost;
+        std::size_t most = FlatPacket::kMax;
         int before_more = 0;
         for (std::size_t begin = 0; begin < size;) {
             const std::size_t count = std::min(most, size - begin);
             if (castPacket(cast, begin, count)) {
                 begin += count;
-                if (--before_more > 0 || most == FlatPacket::kMost) continue;
+                if (--before_more > 0 || most == FlatPacket::kMax) continue;
                 most *= 2;
             } else if (count > FlatPacket::kBlock) {
                 while (most >= count) most /= 2;
@@ -122,27 +121,28 @@ struct FlatWorld::Data {
         }
     }
 
-    /// Beams begin .. begin + count - 1 of a fan.
-    void castFan(const FlatView& view, const Directions& directions, const Limit& limit,
-                 std::size_t begin, std::size_t count, float* ranges, float* cosines) const {
-        FlatFan fan;
-        fan.count = static_cast<int>(count);
+    /// Beams begin .. begin + count - 1 of a scan.
+    void castScan(const FlatView& view, const Directions& directions, const Limit& limit,
+                  std::size_t begin, std::size_t count, float* ranges, float* cosines) const {
+        FlatScan scan;
+        scan.count = static_cast<int>(count);
         const double step = directions.arc->step.radians();
         const double* const x = directions.x.data() + begin;
         const double* const y = directions.y.data() + begin;
         if (step > 0) {
-            std::copy_n(x, count, fan.x);
-            std::copy_n(y, count, fan.y);
+            std::copy_n(x, count, scan.x);
+            std::copy_n(y, count, scan.y);
         } else {
-            std::reverse_copy(x, x + count, fan.x);
-            std::reverse_copy(y, y + count, fan.y);
+            std::reverse_copy(x, x + count, scan.x);
+            std::reverse_copy(y, y + count, scan.y);
         }
-        fan.begin(std::fabs(step), limit.nearness);
-        cosines == nullptr ? drawLines(tree, view, fan) : drawLinesAndCosines(tree, view, fan);
-        for (std::size_t i = 0; i < count; ++i) ranges[begin + i] = limit.rangeOf(fan.nearness[i]);
+        scan.begin(std::fabs(step), limit.inverse_range);
+        cosines == nullptr ? drawLines(tree, view, scan) : drawLinesAndCosines(tree, view, scan);
+        for (std::size_t i = 0; i < count; ++i)
+            ranges[begin + i] = limit.rangeOf(scan.inverse_range[i]);
         if (cosines != nullptr)
             for (std::size_t i = 0; i < count; ++i)
-                cosines[begin + i] = limit.cosineOf(ranges[begin + i], fan.cosine[i]);
+                cosines[begin + i] = limit.cosineOf(ranges[begin + i], scan.cosine[i]);
         if (step > 0) return;
         std::reverse(ranges + begin, ranges + begin + count);
         if (cosines != nullptr) std::reverse(cosines + begin, cosines + begin + count);
@@ -155,8 +155,8 @@ FlatWorld::FlatWorld(FlatWorld&&) noexcept = default;
 FlatWorld& FlatWorld::operator=(FlatWorld&&) noexcept = default;
 FlatWorld::~FlatWorld() = default;
 
-void FlatWorld::cast(Point2 origin, const Directions& directions, double max_range, double contact,
-                     std::span<float> ranges, std::span<float> cosines) const {
+void FlatWorld::cast(Point2 origin, const Directions& directions, double max_range,
+                     double ray_epsilon, std::span<float> ranges, std::span<float> cosines) const {
     assert(ranges.size() == directions.size());
     assert(cosines.empty() || cosines.size() == directions.size());
     if (!(static_cast<float>(max_range) >= 0)) {
@@ -165,24 +165,24 @@ void FlatWorld::cast(Point2 origin, const Directions& directions, double max_ran
         return;
     }
     const Limit limit(max_range);
-    const FlatView view{origin.x, origin.y, contact};
+    const FlatView view{origin.x, origin.y, ray_epsilon};
     const std::size_t size = directions.size();
-    if (isFan(directions)) {
+    if (isScan(directions)) {
         // Of one size, so that none has too few beams.
-        const std::size_t parts = (size + FlatFan::kMost - 1) / FlatFan::kMost;
+        const std::size_t parts = (size + FlatScan::kMax - 1) / FlatScan::kMax;
         for (std::size_t part = 0; part < parts; ++part) {
             const std::size_t begin = size * part / parts, end = size * (part + 1) / parts;
-            data_->castFan(view, directions, limit, begin, end - begin, ranges.data(),
-                           cosines.empty() ? nullptr : cosines.data());
+            data_->castScan(view, directions, limit, begin, end - begin, ranges.data(),
+                            cosines.empty() ? nullptr : cosines.data());
         }
         return;
     }
-    data_->castRays({&origin, true, directions, contact, limit, ranges.data(),
+    data_->castRays({&origin, true, directions, ray_epsilon, limit, ranges.data(),
                      cosines.empty() ? nullptr : cosines.data()});
 }
 
 void FlatWorld::cast(std::span<const Point2> origins, const Directions& directions,
-                     double max_range, double contact, std::span<float> ranges,
+                     double max_range, double ray_epsilon, std::span<float> ranges,
                      std::span<float> cosines) const {
     assert(ranges.size() == directions.size() && origins.size() == directions.size());
     assert(cosines.empty() || cosines.size() == directions.size());
@@ -191,8 +191,8 @@ void FlatWorld::cast(std::span<const Point2> origins, const Directions& directio
         std::fill(cosines.begin(), cosines.end(), 1.0F);
         return;
     }
-    data_->castRays({origins.data(), false, directions, contact, Limit(max_range), ranges.data(),
-                     cosines.empty() ? nullptr : cosines.data()});
+    data_->castRays({origins.data(), false, directions, ray_epsilon, Limit(max_range),
+                     ranges.data(), cosines.empty() ? nullptr : cosines.data()});
 }
 
 }  // namespace ispace

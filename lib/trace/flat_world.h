@@ -6,25 +6,25 @@
 
 #include "geom/curve.h"
 #include "geom/polygon.h"
-#include "trace/directions.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
 /// The lines and round bodies of a slice, for level rays: exact to rounding of doubles, and faster
 /// than a general ray tracer.
 ///
-/// A fan is drawn like a picture with one row: a bounding volume hierarchy is walked front to back,
-/// what lies behind the farthest range of the beams it could shorten is left out, and each line
-/// that is not is drawn into the beams between its ends. A beam meets a line if it crosses it or
-/// passes one of its ends within a nanometre (less if it sees it almost from its edge, see
+/// A scan is drawn like a picture with one row: a bounding volume hierarchy is walked front to
+/// back, what lies behind the farthest range of the beams it could shorten is left out, and each
+/// line that is not is drawn into the beams between its ends. A beam meets a line if it crosses it
+/// or passes one of its ends within a nanometre (less if it sees it almost from its edge, see
 /// flat_line.h), decided in doubles for each beam and line: none slips between lines with a common
 /// end, and one that just touches a corner meets it.
 ///
-/// Lines in contact with the origin (nearer than `contact`) stop nothing, nor do those that
+/// Lines in contact with the origin (nearer than `ray_epsilon`) stop nothing, nor do those that
 /// continue them within it; a round body in contact is met at its far side only. Nor does a line
 /// seen exactly from its edge (its straight continuation passes the origin within a nanometre).
 /// Thread-safe; results depend on nothing but the lines and the ray, not on the order of lines, the
-/// fan a ray is part of, or the processor.
+/// scan a ray is part of, or the processor.
 class FlatWorld {
   public:
     explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});
@@ -37,11 +37,11 @@ class FlatWorld {
     /// for neighbours alike. `cosines`, if not empty: |cosine| of the angle between ray and normal,
     /// 1 without return; the larger where two lines are met at once. \pre ranges.size() ==
     /// directions.size(), cosines.size() as well or 0
-    void cast(Point2 origin, const Directions& directions, double max_range, double contact,
+    void cast(Point2 origin, const Directions& directions, double max_range, double ray_epsilon,
               std::span<float> ranges, std::span<float> cosines) const;
     /// The same with an origin for each ray.
     void cast(std::span<const Point2> origins, const Directions& directions, double max_range,
-              double contact, std::span<float> ranges, std::span<float> cosines) const;
+              double ray_epsilon, std::span<float> ranges, std::span<float> cosines) const;
 
   private:
     struct Data;

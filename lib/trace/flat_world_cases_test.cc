@@ -12,7 +12,7 @@
 
 #include "geom/pose.h"
 #include "trace/flat_world.h"
-#include "trace/test_fans.h"
+#include "trace/test_scans.h"
 
 namespace ispace {
 
@@ -20,10 +20,10 @@ using namespace testing;
 
 namespace {
 
-/// Along a heading, as one ray and as one of a fan.
+/// Along a heading, as one ray and as one of a scan.
 double range(const FlatWorld& world, Point2 origin, Angle heading, double max_range = kInfinity) {
-    const float found = cast(world, origin, fan(heading, {}, 1), max_range).ranges[0];
-    const Directions turn = fan(heading, Angle::degrees(30), 12);
+    const float found = cast(world, origin, scan(heading, {}, 1), max_range).ranges[0];
+    const Directions turn = scan(heading, Angle::degrees(30), 12);
     EXPECT_EQ(cast(world, origin, turn, max_range).ranges[0], found);
     return static_cast<double>(found);
 }
@@ -121,7 +121,7 @@ TEST_P(FlatWorldCases, MaximumRangeIsInclusive) {
 
 TEST(FlatWorld, CosineOfTheNearestOrTheLarger) {
     const FlatWorld room(rectangle({0, 0}, {8, 6}));
-    const Directions beams = fan({}, Angle::degrees(30), 12);
+    const Directions beams = scan({}, Angle::degrees(30), 12);
     const Seen seen = cast(room, {4, 3}, beams);
     EXPECT_FLOAT_EQ(seen.cosines[0], 1);
     EXPECT_FLOAT_EQ(seen.cosines[1], static_cast<float>(std::cos(std::numbers::pi / 6)));
@@ -145,7 +145,7 @@ TEST(FlatWorld, AFullTurnMeetsWhatBeginsWhereItEnds) {
     for (int i = 0; i < 2000; ++i) {
         const Angle first = Angle::degrees(i % 4 == 0 ? 7.5 * i : turn(random));
         const int sign = i % 2 == 0 ? 1 : -1;
-        const Directions beams = fan(first, Angle::degrees(sign), 361);
+        const Directions beams = scan(first, Angle::degrees(sign), 361);
         // A line to the left or to the right of the cut.
         const Vec2 way{beams.x[0], beams.y[0]};
         const Vec2 aside = perpendicular(i % 3 == 0 ? -way : way);
@@ -162,13 +162,13 @@ TEST(FlatWorld, AFullTurnMeetsWhatBeginsWhereItEnds) {
 TEST(FlatWorld, NothingStopsNothing) {
     for (const Lines& lines : {Lines{}, Lines{{{1, 1}, {1, 1}}}, Lines(20, {{2, 0}, {2, 0}})}) {
         const FlatWorld world(lines);
-        const Directions beams = fan({}, Angle::degrees(0.5), 720);
+        const Directions beams = scan({}, Angle::degrees(0.5), 720);
         const Seen seen = cast(world, {0, 0}, beams);
         EXPECT_EQ(seen.ranges, std::vector<float>(720, std::numeric_limits<float>::infinity()));
         EXPECT_EQ(seen.cosines, std::vector<float>(720, 1.0F));
         EXPECT_EQ(castApart(world, {0, 0}, beams), seen);
         cast(world, {0, 0}, Directions{});
-        cast(world, {0, 0}, fan({}, Angle::degrees(1), 0));
+        cast(world, {0, 0}, scan({}, Angle::degrees(1), 0));
     }
 }
 
@@ -191,7 +191,7 @@ TEST(FlatWorld, SeveralThreadsShareAWorld) {
     const Lines lines = office(4, 4);
     FlatWorld first(lines);
     const FlatWorld world = std::move(first);
-    const Directions beams = fan({}, Angle::degrees(0.1), 3600);
+    const Directions beams = scan({}, Angle::degrees(0.1), 3600);
     std::vector<Seen> seen(4);
     std::vector<std::thread> threads;
     threads.reserve(seen.size());

@@ -13,7 +13,7 @@
 #include "base/file.h"
 #include "geom/box.h"
 #include "layout/test_layout.h"
-#include "trace/test_fans.h"
+#include "trace/test_scans.h"
 
 namespace ispace {
 
@@ -149,7 +149,7 @@ TEST(FlatWorld, AMillionBeamsAgreeWithBruteForce) {
         double worst = 0;
         for (int i = 0; i < 200; ++i) {
             const Directions beams =
-                fan(Angle::degrees(turn(random)), Angle::degrees(i % 2 == 0 ? 0.25 : -0.25), 1081);
+                scan(Angle::degrees(turn(random)), Angle::degrees(i % 2 == 0 ? 0.25 : -0.25), 1081);
             worst = std::max(worst, worstError(world, lines, {x(random), y(random)}, beams, 30));
         }
         EXPECT_LT(worst, 1e-3);
@@ -171,7 +171,7 @@ TEST(FlatWorld, FansOfAllKindsAgreeWithBruteForce) {
         for (int i = 0; i < 30; ++i) {
             // Multiples of 90 degrees lie along walls and the ends of turns.
             const double first = i % 3 == 0 ? 90.0 * (i % 4) : turn(random);
-            const Directions beams = fan(Angle::degrees(first), Angle::degrees(step), count);
+            const Directions beams = scan(Angle::degrees(first), Angle::degrees(step), count);
             const Point2 origin{x(random), y(random)};
             EXPECT_LT(worstError(world, lines, origin, beams, i % 2 == 0 ? kInfinity : 6), 1e-3);
         }
@@ -181,7 +181,7 @@ TEST(FlatWorld, FansOfAllKindsAgreeWithBruteForce) {
 TEST(FlatWorld, AMillionBeamsInOneFan) {
     const Lines lines = office(2, 2);
     const FlatWorld world(lines);
-    const Directions beams = fan(Angle::degrees(30), Angle::degrees(120e-6), 1000001);
+    const Directions beams = scan(Angle::degrees(30), Angle::degrees(120e-6), 1000001);
     EXPECT_LT(worstError(world, lines, {3.9, 6.1}, beams, 30), 1e-3);
 }
 
@@ -203,7 +203,7 @@ TEST(FlatWorld, ARayIsTheSameInAnyCompany) {
             if (i % 4 == 0) origin = lines[random() % lines.size()].a;
             if (i % 4 == 1) origin.y = lines[random() % lines.size()].a.y;
             const Angle first = Angle::degrees(i % 2 == 0 ? 90 : turn(random));
-            const Directions beams = fan(first, Angle::degrees(0.5), 721);
+            const Directions beams = scan(first, Angle::degrees(0.5), 721);
             const Seen seen = cast(world, origin, beams, 12);
             EXPECT_EQ(cast(other, origin, beams, 12), seen);
             EXPECT_EQ(castApart(world, origin, beams, 12), seen);
@@ -211,7 +211,7 @@ TEST(FlatWorld, ARayIsTheSameInAnyCompany) {
             free.arc.reset();
             EXPECT_EQ(cast(world, origin, free, 12), seen);
             for (const std::size_t begin : {0U, 5U, 600U}) {
-                Directions part = fan({}, Angle::degrees(0.5), 121);
+                Directions part = scan({}, Angle::degrees(0.5), 121);
                 part.arc->first = first + static_cast<double>(begin) * Angle::degrees(0.5);
                 for (std::size_t k = 0; k < part.size(); ++k) part.set(k, beams[begin + k]);
                 const Seen few = cast(world, origin, part, 12);
@@ -238,11 +238,11 @@ TEST(FlatWorld, NoBeamSlipsThroughACommonEnd) {
             const Seen seen = cast(world, origin, towards(origin, corners));
             for (std::size_t k = 0; k < corners.size(); ++k)
                 EXPECT_NEAR(seen.ranges[k], distance(origin, corners[k]), 1e-5);
-            // The same directions as fans so narrow that all beams point at the corner.
+            // The same directions as scans so narrow that all beams point at the corner.
             for (std::size_t k = 0; k < corners.size(); k += 97) {
                 const Vec2 way = corners[k] - origin;
                 const Directions beams =
-                    fan(directionOf(way.x, way.y) - Angle::degrees(4e-7), Angle::degrees(1e-7), 9);
+                    scan(directionOf(way.x, way.y) - Angle::degrees(4e-7), Angle::degrees(1e-7), 9);
                 for (const float found : cast(world, origin, beams).ranges)
                     EXPECT_NEAR(found, length(way), 1e-5);
             }
@@ -257,7 +257,7 @@ TEST(FlatWorld, Sizes) {
         const FlatWorld world(lines);
         std::uniform_real_distribution<double> place(0, scale), turn(-180, 180);
         for (int i = 0; i < 40; ++i) {
-            const Directions beams = fan(Angle::degrees(turn(random)), Angle::degrees(0.5), 541);
+            const Directions beams = scan(Angle::degrees(turn(random)), Angle::degrees(0.5), 541);
             const Point2 origin{place(random), place(random)};
             EXPECT_LT(worstError(world, lines, origin, beams, kInfinity), 1e-3 + 1e-7 * scale);
         }

@@ -6,10 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "trace/body_fan.h"
-#include "trace/body_picture.h"
-#include "trace/body_ray.h"
-#include "trace/ray_limits.h"
+#include "trace/body_rays.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -84,7 +82,7 @@ void MovingBodies::shorten(Point3 origin, const Directions& directions, double m
                            std::span<float> cosines) const {
     assert(directions.size() == ranges.size());
     if (ranges.empty() || grid_.empty()) return;
-    BodyFan fan(origin, directions, max_range, {max_range, ranges, cosines});
+    BodyScan fan(origin, directions, max_range, {max_range, ranges, cosines});
     grid_.forEachNear(fan.box(), [&](std::size_t i) {
         if (bodies_[i].owner != own) fan.meet(bodies_[i], extents_[i]);
     });

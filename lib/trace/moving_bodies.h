@@ -9,8 +9,7 @@
 
 #include "geom/box.h"
 #include "geom/pose.h"
-#include "trace/directions.h"
-#include "trace/ray_grid.h"
+#include "trace/rays.h"
 
 namespace ispace {
 

@@ -6,7 +6,7 @@
 
 #include "base/simd.h"
 #include "base/simd_math.h"
-#include "trace/ray_limits.h"
+#include "trace/rays.h"
 
 namespace ispace {
 

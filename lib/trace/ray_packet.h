@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "trace/embree_query.h"
-#include "trace/ray_grid.h"
+#include "trace/rays.h"
 #include "trace/triangle_set.h"
 
 namespace ispace {
@@ -21,6 +22,18 @@ struct alignas(64) RayPacket {
     std::array<float, kLanes> multiples;
     std::array<float, kLanes> slopes;  ///< |normal times direction|; +infinity likewise
 
+    /// A ray along `way` that ends `before` its end.
+    void aim(std::size_t lane, Vec3 way, double before) {
+        // Squares of what fits in float32 fit in double: no need of hypot, which takes longer.
+        const double distance = std::sqrt(dot(way, way));
+        // Nothing stands on a way so short: a ray of no length meets nothing.
+        const bool is_short = distance <= 2 * before;
+        const Vec3 direction = is_short ? Vec3{1, 0, 0} : (1 / distance) * way;
+        x[lane] = direction.x;
+        y[lane] = direction.y;
+        z[lane] = direction.z;
+        reach[lane] = is_short ? 0 : distance - before;
+    }
     [[nodiscard]] Ray ray(std::size_t lane) const {
         return {{origin_x[lane], origin_y[lane], origin_z[lane]},
                 {x[lane], y[lane], z[lane]},

@@ -13,7 +13,7 @@
 #include "geom/box.h"
 #include "trace/embree_scene.h"
 #include "trace/flat_world.h"
-#include "trace/ray_limits.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -26,23 +26,6 @@ Point3 middleOf(const Box2& plan) {
 }
 
 Point3 relative(Point3 p, Point3 middle) { return {p.x - middle.x, p.y - middle.y, p.z}; }
-
-/// Each line stands upright about the plane of the rays, high enough for any rounding.
-TriangleSoup standing(const std::vector<Segment2>& lines) {
-    constexpr double kHalfHeight = 1;
-    TriangleSoup soup;
-    soup.vertices.reserve(4 * lines.size());
-    soup.triangles.reserve(2 * lines.size());
-    for (const Segment2& line : lines) {
-        const std::uint32_t a = soup.add({line.a.x, line.a.y, -kHalfHeight});
-        const std::uint32_t b = soup.add({line.b.x, line.b.y, -kHalfHeight});
-        const std::uint32_t c = soup.add({line.b.x, line.b.y, kHalfHeight});
-        const std::uint32_t d = soup.add({line.a.x, line.a.y, kHalfHeight});
-        soup.triangles.push_back({a, b, c});
-        soup.triangles.push_back({a, c, d});
-    }
-    return soup;
-}
 
 Body withoutRounds(Body body) {
     std::erase_if(body.prisms, [](const Prism& prism) { return prism.curve.has_value(); });
@@ -71,24 +54,11 @@ ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
 
 struct RayWorld::Data {
     Point3 middle;
-    int packet_width;
-    std::optional<FlatWorld> flat;  ///< of a slice; z of rays does not count
-    std::vector<Segment2> lines;    ///< of a slice
-    mutable std::once_flag is_made;
-    mutable std::optional<EmbreeScene> embree;  ///< of a slice once it is looked through
+    // One of both; in a slice z of rays does not count.
+    std::optional<FlatWorld> flat = {};
+    std::optional<EmbreeScene> mesh = {};
 
-    Data(Point3 origin, int width) : middle(origin), packet_width(width) {}
-
-    [[nodiscard]] Point3 local(Point3 p) const {
-        const Point3 near = relative(p, middle);
-        return flat ? Point3{near.x, near.y, 0} : near;
-    }
-    [[nodiscard]] const EmbreeScene& scene() const {
-        std::call_once(is_made, [this] {
-            if (!embree) embree.emplace(standing(lines), kContact, packet_width);
-        });
-        return *embree;
-    }
+    [[nodiscard]] Point3 local(Point3 p) const { return relative(p, middle); }
 };
 
 RayWorld::RayWorld(std::unique_ptr<Data> data) : data_(std::move(data)) {}
@@ -96,17 +66,13 @@ RayWorld::RayWorld(RayWorld&&) noexcept = default;
 RayWorld& RayWorld::operator=(RayWorld&&) noexcept = default;
 RayWorld::~RayWorld() = default;
 
-RayWorld RayWorld::ofSlice(const Slice& slice, int packet_width) {
+RayWorld RayWorld::ofSlice(const Slice& slice) {
     Box2 plan;
     slice.forEachLine([&](const Segment2& line) {
         plan.add(line.a);
         plan.add(line.b);
     });
-    auto data = std::make_unique<Data>(middleOf(plan), packet_width);
-    slice.forEachLine([&](const Segment2& line) {
-        data->lines.push_back({data->local({line.a.x, line.a.y, 0}).onFloor(),
-                               data->local({line.b.x, line.b.y, 0}).onFloor()});
-    });
+    auto data = std::make_unique<Data>(Data{middleOf(plan)});
     const auto local = [&](Point2 p) { return data->local({p.x, p.y, 0}).onFloor(); };
     std::vector<Segment2> straight = slice.straightLines();
     for (Segment2& line : straight) line = {local(line.a), local(line.b)};
@@ -134,7 +100,7 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfac
     Box2 plan;
     for (const Mesh& mesh : meshes)
         for (const Point3& vertex : mesh.vertices) plan.add(vertex.onFloor());
-    auto data = std::make_unique<Data>(middleOf(plan), packet_width);
+    auto data = std::make_unique<Data>(Data{middleOf(plan)});
     TriangleSoup soup;
     std::size_t vertices = 0, triangles = 0;
     for (const Mesh& mesh : meshes) {
@@ -161,7 +127,7 @@ RayWorld RayWorld::ofEnvironment(const Environment& environment, Surfaces surfac
         round.curve.center = relative({center.x, center.y, 0}, data->middle).onFloor();
         soup.rounds.push_back(round);
     }
-    data->embree.emplace(std::move(soup), kContact, packet_width);
+    data->mesh.emplace(soup, kRayEpsilon, packet_width);
     return RayWorld(std::move(data));
 }
 
@@ -169,8 +135,8 @@ void RayWorld::cast(Point3 origin, const Directions& directions, double max_rang
                     std::span<float> ranges, std::span<float> cosines) const {
     assert(ranges.size() == directions.size());
     const Point3 from = data_->local(origin);
-    if (!data_->flat) return data_->scene().cast(from, directions, max_range, {ranges, cosines});
-    data_->flat->cast(from.onFloor(), directions, max_range * (1 + kFarSlack), kContact, ranges,
+    if (!data_->flat) return data_->mesh->cast(from, directions, max_range, {ranges, cosines});
+    data_->flat->cast(from.onFloor(), directions, max_range * (1 + kFarSlack), kRayEpsilon, ranges,
                       cosines);
     limit(ranges, static_cast<float>(max_range));
 }
@@ -182,37 +148,28 @@ void RayWorld::cast(std::span<const Point3> origins, const Directions& direction
         std::vector<Point3> from;
         from.reserve(origins.size());
         for (const Point3& origin : origins) from.push_back(data_->local(origin));
-        return data_->scene().cast(from, directions, max_range, {ranges, cosines});
+        return data_->mesh->cast(from, directions, max_range, {ranges, cosines});
     }
     std::vector<Point2> from;
     from.reserve(origins.size());
     for (const Point3& origin : origins) from.push_back(data_->local(origin).onFloor());
-    data_->flat->cast(from, directions, max_range * (1 + kFarSlack), kContact, ranges, cosines);
+    data_->flat->cast(from, directions, max_range * (1 + kFarSlack), kRayEpsilon, ranges, cosines);
     limit(ranges, static_cast<float>(max_range));
 }
 
 void RayWorld::cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
                     std::span<float> cosines) const {
     assert(multiples.size() == grid.size() && !data_->flat);
-    data_->scene().cast(data_->local(origin), grid, most, {multiples, cosines});
+    data_->mesh->cast(data_->local(origin), grid, most, {multiples, cosines});
 }
 
 void RayWorld::look(Point3 origin, std::span<const Point3> targets,
                     std::span<std::uint8_t> seen) const {
-    const Point3 from = data_->local(origin);
-    Directions directions;
-    directions.resize(targets.size());
-    std::vector<double> reach(targets.size());
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        const Vec3 way = data_->local(targets[i]) - from;
-        // Squares of what fits in float32 fit in double: no need of hypot, which takes longer.
-        const double distance = std::sqrt(dot(way, way));
-        // Nothing stands on a way so short: a ray of no length meets nothing.
-        const bool is_short = distance <= 2 * kContact;
-        directions.set(i, is_short ? Vec3{1, 0, 0} : (1 / distance) * way);
-        reach[i] = is_short ? 0 : distance - kContact;
-    }
-    data_->scene().look(from, directions, reach, seen);
+    assert(seen.size() == targets.size() && data_->mesh);
+    std::vector<Point3> local;
+    local.reserve(targets.size());
+    for (const Point3& target : targets) local.push_back(data_->local(target));
+    data_->mesh->look(data_->local(origin), local, seen);
 }
 
 }  // namespace ispace

@@ -9,36 +9,31 @@
 #include "env/environment.h"
 #include "env/mesh.h"
 #include "geom/point.h"
-#include "trace/directions.h"
-#include "trace/ray_grid.h"
+#include "geom/visibility.h"  // kRayEpsilon
+#include "trace/rays.h"
 
 namespace ispace {
 
-/// Surfaces this near to a ray's origin do not stop it, in metres, nor does what continues their
-/// plane: a sensor drawn on a wall looks out of it, on both sides and along it. A ray that ends
-/// this near to a surface reaches its end.
-constexpr double kContact = 1e-4;
-
-/// Rays against a slice (a FlatWorld; an Embree scene for sight, made when first looked through) or
-/// against the whole mesh (an Embree scene).
+/// Rays against a slice (a FlatWorld) or against the whole mesh (an EmbreeScene).
 ///
-/// Surfaces are closed sets without thickness: one seen exactly from its edge (within the rounding
-/// of float32 in the mesh and for sight) stops nothing. No ray slips between surfaces that share an
-/// edge or a corner; what a ray meets decides its range, computed in doubles. Round bodies are met
-/// on their curves; for sight (look) they are the polygons of a slice, within kCurveTolerance.
-/// Coordinates are kept relative to the middle of the plan: float32, in which the mesh is searched,
-/// then is exact to micrometres in a building, wherever its coordinates are counted from.
-/// Thread-safe once built; the number of threads changes nothing.
+/// Surfaces are closed sets without thickness: one seen exactly from its edge stops nothing (within
+/// the rounding of float32 in the mesh). Surfaces within kRayEpsilon of a ray's origin do not stop
+/// it, nor does what continues their plane: a sensor drawn on a wall looks out of it, on both sides
+/// and along it. No ray slips between surfaces that touch; what a ray meets decides its range,
+/// computed in doubles. Round bodies are met on their curves. Coordinates are kept relative to the
+/// middle of the plan: float32, in which the mesh is searched, then is exact to micrometres in a
+/// building, wherever its coordinates are counted from. Thread-safe once built; the number of
+/// threads changes nothing.
 class RayWorld {
   public:
     /// What a level sensor at `slice.height` meets: rays must start at that height and be level (z
     /// does not count).
+    static RayWorld ofSlice(const Slice& slice);
+    /// These surfaces of all bodies and the floor, for rays of any direction: of light unless told
+    /// otherwise, which pass clear glass as level ones do.
     /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for what the processor
     ///        does best; it changes no result but as cast() says
     /// \throws std::runtime_error if Embree fails (no memory)
-    static RayWorld ofSlice(const Slice& slice, int packet_width = 0);
-    /// These surfaces of all bodies and the floor, for rays of any direction: of light unless told
-    /// otherwise, which pass clear glass as level ones do.
     static RayWorld ofEnvironment(const Environment& environment,
                                   Surfaces surfaces = Surfaces::Opaque, int packet_width = 0);
     RayWorld(RayWorld&&) noexcept;
@@ -62,9 +57,9 @@ class RayWorld {
     void cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
               std::span<float> cosines = {}) const;
 
-    /// seen[i] = 1 if nothing stands between origin and target i, the last kContact metres left
+    /// seen[i] = 1 if nothing stands between origin and target i, the last kRayEpsilon metres left
     /// out. Targets in any order; neighbours are fastest.
-    /// \pre seen.size() == targets.size()
+    /// \pre not of a slice; seen.size() == targets.size()
     void look(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 
   private:

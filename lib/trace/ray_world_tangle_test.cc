@@ -37,7 +37,7 @@ double bruteForce(const std::vector<Segment2>& lines, Point2 origin, Angle headi
     double nearest = kInfinity;
     for (const Segment2& line : lines) {
         const Vec2 along = line.b - line.a, way = line.a - origin;
-        if (std::fabs(cross(along, way)) <= kContact * length(along)) continue;
+        if (std::fabs(cross(along, way)) <= kRayEpsilon * length(along)) continue;
         const double slope = cross(direction, along);
         const double t = cross(way, along) / slope, s = cross(way, direction) / slope;
         if (t > 0 && s >= 0 && s <= 1) nearest = std::min(nearest, t);
@@ -53,7 +53,7 @@ TEST(RayWorld, TangleAgreesWithBruteForceAsSliceAndAsMeshOfEveryWidth) {
         const RayWorld slice = RayWorld::ofSlice({0.15, lines, {}});
         std::vector<EmbreeScene> meshes;
         for (const int width : testing::kWidths)
-            meshes.emplace_back(testing::standing(lines), kContact, width);
+            meshes.emplace_back(testing::standing(lines), kRayEpsilon, width);
         int beside = 0;
         for (int i = 0; i < 50; ++i) {
             const Point2 origin{place(random), place(random)};
@@ -91,16 +91,16 @@ TEST(RayWorld, TangleAgreesWithBruteForceAsSliceAndAsMeshOfEveryWidth) {
 TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
     std::mt19937_64 random(12);
     const std::vector<Segment2> lines = tangle(random, 100, 10);
-    std::vector<RayWorld> worlds;
+    std::vector<EmbreeScene> worlds;
     for (const int width : testing::kWidths)
-        worlds.push_back(RayWorld::ofSlice({0.15, lines, {}}, width));
+        worlds.emplace_back(testing::standing(lines), kRayEpsilon, width);
     std::uniform_real_distribution<double> place(0, 10);
     for (int i = 0; i < 50; ++i) {
         const Point2 origin{place(random), place(random)};
         std::vector<Point3> targets;
         targets.reserve(301);
         for (int k = 0; k < 301; ++k) targets.push_back({place(random), place(random), 0.15});
-        for (const RayWorld& world : worlds) {
+        for (const EmbreeScene& world : worlds) {
             std::vector<std::uint8_t> seen(targets.size(), 7);
             world.look({origin.x, origin.y, 0.15}, targets, seen);
             for (std::size_t k = 0; k < targets.size(); ++k) {
@@ -115,7 +115,7 @@ TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
 
 TEST(RayWorld, SightIsSymmetric) {
     std::mt19937_64 random(13);
-    const RayWorld world = RayWorld::ofSlice({0.15, tangle(random, 100, 10), {}});
+    const EmbreeScene world(testing::standing(tangle(random, 100, 10)), kRayEpsilon, 0);
     std::uniform_real_distribution<double> place(0, 10);
     const auto sees = [&](Point2 from, Point2 to) {
         std::uint8_t seen = 7;
@@ -133,6 +133,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
     std::mt19937_64 random(14);
     const std::vector<Segment2> lines = tangle(random, 2000, 10);
     const RayWorld world = RayWorld::ofSlice({0.15, lines, {}});
+    const EmbreeScene mesh(testing::standing(lines), kRayEpsilon, 0);
     Directions directions;
     directions.resize(2000);
     for (std::size_t k = 0; k < directions.size(); ++k) {
@@ -149,7 +150,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
     threads.reserve(found.size());
     for (std::size_t i = 0; i < found.size(); ++i)
         threads.emplace_back([&, i] {
-            world.look({5, 5, 0.15}, targets, seen[i]);
+            mesh.look({5, 5, 0.15}, targets, seen[i]);
             world.cast({5, 5, 0.15}, directions, 20, found[i]);
         });
     for (std::thread& thread : threads) thread.join();

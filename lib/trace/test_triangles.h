@@ -16,7 +16,6 @@
 namespace ispace::testing {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 inline constexpr double kTouching = 1e-4;
 inline constexpr int kWidths[] = {16, 8, 4, 1};
 

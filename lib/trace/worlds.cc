@@ -32,7 +32,7 @@ void Worlds::prepare(const Pose3& pose) {
     if (!pose.isLevel()) return prepareMesh();
     const double height = pose.position.z;
     if (slices_.contains(height)) return;
-    if (slices_.size() >= kMostSlices) return prepareMesh();
+    if (slices_.size() >= kMaxSlices) return prepareMesh();
     RayWorld slice = RayWorld::ofSlice(environment_->slice(height));
     const std::unique_lock lock(mutex_);
     slices_.emplace(height, std::move(slice));

@@ -19,7 +19,7 @@ class Worlds {
   public:
     /// A stream of poses may have any number of heights. Level poses at heights beyond these, in
     /// the order of prepare(), are traced in the mesh.
-    static constexpr std::size_t kMostSlices = 64;
+    static constexpr std::size_t kMaxSlices = 64;
 
     explicit Worlds(const Environment& environment);
     void prepare(const Pose3& pose);
@@ -29,7 +29,7 @@ class Worlds {
     void prepareSound();
     /// The slice of a level pose's height if one is kept, else the mesh.
     /// \pre one of them was prepared: the slice by prepare() for a pose of this height, the mesh by
-    ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMostSlices
+    ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMaxSlices
     [[nodiscard]] const RayWorld& at(const Pose3& pose) const;
     /// \pre it was prepared, see at()
     [[nodiscard]] const RayWorld& mesh() const;

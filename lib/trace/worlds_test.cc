@@ -82,10 +82,10 @@ TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     const auto pose = [](std::size_t i) {
         return at(7.5, 3, 0.1 + 0.01 * static_cast<double>(i), 180);
     };
-    const std::size_t count = Worlds::kMostSlices + 20;
+    const std::size_t count = Worlds::kMaxSlices + 20;
     for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
     for (std::size_t i = 0; i < count; ++i) {
-        EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= Worlds::kMostSlices) << i;
+        EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= Worlds::kMaxSlices) << i;
         // The cube is met up to its top.
         EXPECT_NEAR(ahead(worlds, pose(i)), i <= 40 ? 1 : 7.5, 1e-6) << i;
     }

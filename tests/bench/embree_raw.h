@@ -12,7 +12,7 @@
 #include "env/environment.h"
 #include "env/slice.h"
 #include "layout/laser.h"
-#include "trace/ray_grid.h"
+#include "trace/rays.h"
 
 namespace ispace::bench {
 

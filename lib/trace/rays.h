@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rays as all of lib/trace takes them, and what limits them.
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "geom/point.h"
 
 namespace ispace {
+
+/// The range of a ray that meets nothing.
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+
+/// Slack for rounding at the far end of a ray, or about a body, relative to the distance.
+constexpr double kFarSlack = 1e-6;
 
 /// Unit vectors, a component an array, as kernels want them.
 struct Directions {
@@ -34,6 +42,22 @@ struct Directions {
         z[i] = direction.z;
     }
     [[nodiscard]] Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// The rays of a picture through one origin: that of pixel (column, row) points along
+/// corner + column * right + row * down, which need not be of unit length.
+struct RayGrid {
+    Vec3 corner, right, down;
+    int columns = 0, rows = 0;
+
+    [[nodiscard]] std::size_t size() const {
+        return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    }
+    [[nodiscard]] Vec3 ray(int column, int row) const {
+        const double i = column, j = row;
+        return {corner.x + i * right.x + j * down.x, corner.y + i * right.y + j * down.y,
+                corner.z + i * right.z + j * down.z};
+    }
 };
 
 }  // namespace ispace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to MovingBodies: where rays meet bodies, one by one, in a scan and in a picture.
 #pragma once
 
 #include <algorithm>
@@ -117,6 +118,65 @@ class ShortenedRanges {
   private:
     float far_;
     std::span<float> ranges_, cosines_;
+};
+
+/// A fan of rays from one place, and the ranges that bodies shorten.
+class BodyScan {
+  public:
+    BodyScan(Point3 origin, const Directions& directions, double max_range,
+             const ShortenedRanges& ranges);
+
+    /// All that may be met lies on this part of the floor.
+    [[nodiscard]] Box2 box() const;
+    void meet(const MovingBody& body, const BodyExtent& extent);
+
+  private:
+    void meetArc(const MovingBody& body, const BodyExtent& extent);
+    void meetAll(const BodyFrom& body);
+    [[nodiscard]] bool approach(const MovingBody& body, const BodyExtent& extent);
+    void meetBetween(const BodyFrom& body, double middle, double half);
+    void meetBeams(const BodyFrom& body, std::size_t begin, std::size_t end);
+
+    Point3 origin_;
+    const Directions& directions_;
+    double far_;
+    ShortenedRanges ranges_;
+    double first_ = 0, step_ = 0;  // of an arc, degrees
+    Vec2 ahead_;  // no beam points away from it; null if there is no such direction
+    // Of the body at hand, on the floor.
+    Vec2 way_;
+    double distance_ = 0, reach_ = 0;
+};
+
+/// The pixels [left, right) x [top, bottom) of a picture.
+struct PixelBox {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// A picture whose ranges bodies shorten.
+class BodyPicture {
+  public:
+    BodyPicture(Point3 origin, const RayGrid& grid, double most, const ShortenedRanges& ranges);
+
+    /// All that may be met lies on this part of the floor.
+    [[nodiscard]] Box2 box() const;
+    void meet(const MovingBody& body, const BodyExtent& extent);
+
+    /// Pixels whose rays may meet the body: all if it holds the origin.
+    [[nodiscard]] PixelBox pixelsOf(const MovingBody& body, const BodyExtent& extent) const;
+
+  private:
+    /// A place as the picture has it: multiples of right, down and corner that lead to it.
+    [[nodiscard]] Vec3 projected(Vec3 way) const {
+        return {dot(to_right_, way), dot(to_down_, way), dot(to_corner_, way)};
+    }
+
+    Point3 origin_;
+    const RayGrid& grid_;
+    double far_;  // metres
+    ShortenedRanges ranges_;
+    bool is_plane_ = false;  // else its rays lie in a plane through the origin
+    Vec3 to_right_, to_down_, to_corner_;
 };
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trace/flat_fan.h"
+#include "trace/flat_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +8,14 @@
 #include <numbers>
 
 #include "base/simd.h"
-#include "trace/flat_contact.h"
-#include "trace/flat_line.h"
-#include "trace/flat_round.h"
+#include "trace/flat_shapes.h"
 
 namespace ispace {
 
 namespace {
 
 constexpr int kWidth = FlatTree::kWidth;
-constexpr int kBlock = FlatFan::kBlock;
+constexpr int kBlock = FlatScan::kBlock;
 constexpr double kTurn = 2 * std::numbers::pi;
 /// Beams within this angle of a line's ends are looked at, in radians: more than kFlatEdgeAngle and
 /// what angleOf() and the directions err.
@@ -27,7 +25,7 @@ constexpr double kSlack = 2.5e-5;
 /// Stegun, 4.4.47 and the quadrants).
 ISPACE_INLINE double angleOf(double x, double y) {
     const double far = std::fabs(x), wide = std::fabs(y);
-    const double ratio = flatLess(far, wide) / flatMore(flatMore(far, wide), 1e-300);
+    const double ratio = flatMin(far, wide) / flatMax(flatMax(far, wide), 1e-300);
     const double square = ratio * ratio;
     const double octant =
         ratio *
@@ -41,22 +39,22 @@ ISPACE_INLINE double angleOf(double x, double y) {
     return std::copysign(half, y);
 }
 
-/// What of a fan the loops over lanes need.
+/// What of a scan the loops over lanes need.
 struct Frame {
     double cos, sin, rate, middle, count;
-    explicit Frame(const FlatFan& fan)
-        : cos(fan.cos),
-          sin(fan.sin),
-          rate(fan.rate),
-          middle((fan.count - 1) * 0.5),
-          count(fan.count) {}
+    explicit Frame(const FlatScan& scan)
+        : cos(scan.cos),
+          sin(scan.sin),
+          rate(scan.rate),
+          middle((scan.count - 1) * 0.5),
+          count(scan.count) {}
     /// The number of beams before this angle, and a fraction.
     [[nodiscard]] ISPACE_INLINE double beam(double angle) const {
-        return flatLess(flatMore(angle * rate + middle + 1, 0.0), count);
+        return flatMin(flatMax(angle * rate + middle + 1, 0.0), count);
     }
 };
 
-/// Beams of a fan, first > last if none; an angle behind the middle of the fan cuts the turn, so
+/// Beams of a scan, first > last if none; an angle behind the middle of the scan cuts the turn, so
 /// that there may be others at its other end.
 struct alignas(64) Spans {
     std::int32_t first[kWidth], last[kWidth], other_first[kWidth], other_last[kWidth];
@@ -91,20 +89,20 @@ struct alignas(64) Spans {
 
 /// A node or leaf to be visited, and the blocks of beams it may shorten.
 struct Waiting {
-    double nearness;
+    double inverse_range;
     std::int32_t child;
     std::int16_t first, last, other_first, other_last;
 };
 
-ISPACE_INLINE bool isSeen(const FlatFan& fan, int first, int last, double nearness) {
+ISPACE_INLINE bool isSeen(const FlatScan& scan, int first, int last, double inverse_range) {
     for (int block = first; block <= last; ++block)
-        if (fan.least[block] <= nearness) return true;
+        if (scan.least[block] <= inverse_range) return true;
     return false;
 }
 
-ISPACE_INLINE bool isSeen(const FlatFan& fan, const Waiting& box) {
-    return isSeen(fan, box.first, box.last, box.nearness) ||
-           isSeen(fan, box.other_first, box.other_last, box.nearness);
+ISPACE_INLINE bool isSeen(const FlatScan& scan, const Waiting& box) {
+    return isSeen(scan, box.first, box.last, box.inverse_range) ||
+           isSeen(scan, box.other_first, box.other_last, box.inverse_range);
 }
 
 /// Lines of a leaf, a component an array.
@@ -118,41 +116,41 @@ struct alignas(64) Lines {
     }
 };
 
-/// Draws a line into a block; returns the least nearness of it.
+/// Draws a line into a block; returns the least inverse range of it.
 template <bool kCosines>
-ISPACE_INLINE double drawBlock(FlatFan& fan, int block, const FlatLine& line) {
+ISPACE_INLINE double drawBlock(FlatScan& scan, int block, const FlatLine& line) {
     const std::ptrdiff_t begin = std::ptrdiff_t{block} * kBlock;
-    const double* const x = fan.x + begin;
-    const double* const y = fan.y + begin;
-    double* const nearness = fan.nearness + begin;
-    double* const cosine = fan.cosine + begin;
+    const double* const x = scan.x + begin;
+    const double* const y = scan.y + begin;
+    double* const inverse_range = scan.inverse_range + begin;
+    double* const cosine = scan.cosine + begin;
     double least[kBlock];
     ISPACE_LANES for (int i = 0; i < kBlock; ++i) {
-        const double here = nearnessAlong(line, x[i], y[i]);
-        const double old = nearness[i];
+        const double here = inverseRangeAlong(line, x[i], y[i]);
+        const double old = inverse_range[i];
         if constexpr (kCosines) {
             const double incidence = here * line.height;
-            const double tied = flatChoice(here == old, flatMore(incidence, cosine[i]), cosine[i]);
+            const double tied = flatChoice(here == old, flatMax(incidence, cosine[i]), cosine[i]);
             cosine[i] = flatChoice(here > old, incidence, tied);
         }
-        least[i] = flatMore(here, old);
-        nearness[i] = least[i];
+        least[i] = flatMax(here, old);
+        inverse_range[i] = least[i];
     }
     double four[4];
-    for (int i = 0; i < 4; ++i) four[i] = flatLess(least[i], least[i + 4]);
-    return flatLess(flatLess(four[0], four[2]), flatLess(four[1], four[3]));
+    for (int i = 0; i < 4; ++i) four[i] = flatMin(least[i], least[i + 4]);
+    return flatMin(flatMin(four[0], four[2]), flatMin(four[1], four[3]));
 }
 
 template <bool kCosines>
-ISPACE_INLINE void drawSpan(FlatFan& fan, int first, int last, const FlatLine& line) {
+ISPACE_INLINE void drawSpan(FlatScan& scan, int first, int last, const FlatLine& line) {
     for (int block = first / kBlock; block <= last / kBlock; ++block)
-        if (fan.least[block] <= line.nearest)
-            fan.least[block] = drawBlock<kCosines>(fan, block, line);
+        if (scan.least[block] <= line.nearest)
+            scan.least[block] = drawBlock<kCosines>(scan, block, line);
 }
 
 template <bool kCosines>
 ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const FlatTree::Leaf& leaf,
-                            const Frame& frame, FlatFan& fan) {
+                            const Frame& frame, FlatScan& scan) {
     Lines lines;
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const FlatLine line = lineFrom(leaf, i, view.x, view.y);
@@ -173,31 +171,31 @@ ISPACE_INLINE void drawLeaf(const FlatTree& tree, const FlatView& view, const Fl
         const bool plain = spans.first[i] <= spans.last[i];
         const bool other = spans.other_first[i] <= spans.other_last[i];
         if (lines.stops[i] == 0 || (!plain && !other)) continue;
-        if (mayContinueContact(lines.height[i], view.contact) &&
-            continuesContact(tree, leaf, i, view.x, view.y, view.contact))
+        if (mayContinueTouched(lines.height[i], view.ray_epsilon) &&
+            continuesTouched(tree, leaf, i, view.x, view.y, view.ray_epsilon))
             continue;
         const FlatLine line = lines[i];
-        if (plain) drawSpan<kCosines>(fan, spans.first[i], spans.last[i], line);
-        if (other) drawSpan<kCosines>(fan, spans.other_first[i], spans.other_last[i], line);
+        if (plain) drawSpan<kCosines>(scan, spans.first[i], spans.last[i], line);
+        if (other) drawSpan<kCosines>(scan, spans.other_first[i], spans.other_last[i], line);
     }
 }
 
 /// Draws a round body into blocks of beams.
 template <bool kCosines>
-void drawRound(FlatFan& fan, int first, int last, double nearest, const RoundFrom& round) {
+void drawRound(FlatScan& scan, int first, int last, double nearest, const RoundFrom& round) {
     for (int block = first; block <= last; ++block) {
-        if (fan.least[block] > nearest) continue;
+        if (scan.least[block] > nearest) continue;
         double least = 1e300;
         for (int i = block * kBlock; i < (block + 1) * kBlock; ++i) {
-            const RoundFrom::Hit met = round.meet<kCosines>(fan.x[i], fan.y[i]);
-            const double old = fan.nearness[i];
-            if (kCosines && met.nearness >= old)
-                fan.cosine[i] =
-                    met.nearness > old ? met.cosine : std::max(met.cosine, fan.cosine[i]);
-            fan.nearness[i] = std::max(met.nearness, old);
-            least = std::min(least, fan.nearness[i]);
+            const RoundFrom::Hit met = round.meet<kCosines>(scan.x[i], scan.y[i]);
+            const double old = scan.inverse_range[i];
+            if (kCosines && met.inverse_range >= old)
+                scan.cosine[i] =
+                    met.inverse_range > old ? met.cosine : std::max(met.cosine, scan.cosine[i]);
+            scan.inverse_range[i] = std::max(met.inverse_range, old);
+            least = std::min(least, scan.inverse_range[i]);
         }
-        fan.least[block] = least;
+        scan.least[block] = least;
     }
 }
 
@@ -208,14 +206,14 @@ struct Stack {
 
 /// Puts those children on the stack that may shorten beams, the nearest on top.
 ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const Frame& frame,
-                         const FlatFan& fan, Stack& stack) {
-    alignas(64) double nearness[kWidth];
+                         const FlatScan& scan, Stack& stack) {
+    alignas(64) double inverse_range[kWidth];
     alignas(64) double ax[kWidth], ay[kWidth], bx[kWidth], by[kWidth];
     Spans spans;
     ISPACE_LANES for (int i = 0; i < kWidth; ++i) {
         const double left = node.left[i] - view.x, right = node.right[i] - view.x;
         const double low = node.low[i] - view.y, high = node.high[i] - view.y;
-        nearness[i] = 1 / distanceOf(left, right, low, high);
+        inverse_range[i] = 1 / distanceOf(left, right, low, high);
         // The corners between which the box is seen.
         const bool above = low > 0, below = high<0, east = left> 0, west = right < 0;
         ax[i] = above ? right : (below ? left : (east ? left : right));
@@ -227,58 +225,59 @@ ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const
     const int bottom = stack.count;
     for (int i = 0; i < node.count; ++i) {
         Waiting next{};
-        next.nearness = nearness[i];
+        next.inverse_range = inverse_range[i];
         next.child = node.child[i];
-        const bool around = nearness[i] > 1e300;
+        const bool around = inverse_range[i] > 1e300;
         const bool plain = spans.first[i] <= spans.last[i];
         const bool other = spans.other_first[i] <= spans.other_last[i];
         if (!around && !plain && !other) continue;
         const auto block = [](int beam) { return static_cast<std::int16_t>(beam / kBlock); };
         next.first = around ? std::int16_t{0} : block(spans.first[i]);
-        next.last = around ? block(fan.count - 1)
+        next.last = around ? block(scan.count - 1)
                            : static_cast<std::int16_t>(plain ? block(spans.last[i]) : -1);
         next.other_first = block(spans.other_first[i]);
         next.other_last = static_cast<std::int16_t>(other ? block(spans.other_last[i]) : -1);
-        if (!isSeen(fan, next)) continue;
+        if (!isSeen(scan, next)) continue;
         int place = stack.count++;
-        for (; place > bottom && stack.entries[place - 1].nearness > next.nearness; --place)
+        for (; place > bottom && stack.entries[place - 1].inverse_range > next.inverse_range;
+             --place)
             stack.entries[place] = stack.entries[place - 1];
         stack.entries[place] = next;
     }
 }
 
 template <bool kCosines>
-ISPACE_INLINE void drawTree(const FlatTree& tree, const FlatView& view, FlatFan& fan) {
+ISPACE_INLINE void drawTree(const FlatTree& tree, const FlatView& view, FlatScan& scan) {
     if (tree.nodes.empty()) return;
-    const Frame frame(fan);
+    const Frame frame(scan);
     Stack stack;
-    visit(tree.nodes.front(), view, frame, fan, stack);
+    visit(tree.nodes.front(), view, frame, scan, stack);
     while (stack.count > 0) {
         const Waiting box = stack.entries[--stack.count];
-        if (!isSeen(fan, box)) continue;
+        if (!isSeen(scan, box)) continue;
         if (box.child >= 0)
-            visit(tree.node(box.child), view, frame, fan, stack);
+            visit(tree.node(box.child), view, frame, scan, stack);
         else
-            drawLeaf<kCosines>(tree, view, tree.leaf(box.child), frame, fan);
+            drawLeaf<kCosines>(tree, view, tree.leaf(box.child), frame, scan);
     }
     if (tree.round_root < 0) return;
-    visit(tree.node(tree.round_root), view, frame, fan, stack);
+    visit(tree.node(tree.round_root), view, frame, scan, stack);
     while (stack.count > 0) {
         const Waiting box = stack.entries[--stack.count];
-        if (!isSeen(fan, box)) continue;
+        if (!isSeen(scan, box)) continue;
         if (box.child >= 0) {
-            visit(tree.node(box.child), view, frame, fan, stack);
+            visit(tree.node(box.child), view, frame, scan, stack);
             continue;
         }
-        const RoundFrom round(tree.round(box.child), view.x, view.y, view.contact);
-        drawRound<kCosines>(fan, box.first, box.last, box.nearness, round);
-        drawRound<kCosines>(fan, box.other_first, box.other_last, box.nearness, round);
+        const RoundFrom round(tree.round(box.child), view.x, view.y, view.ray_epsilon);
+        drawRound<kCosines>(scan, box.first, box.last, box.inverse_range, round);
+        drawRound<kCosines>(scan, box.other_first, box.other_last, box.inverse_range, round);
     }
 }
 
 }  // namespace
 
-void FlatFan::begin(double step_radians, double least_nearness) {
+void FlatScan::begin(double step_radians, double min_inverse_range) {
     const int i = (count - 1) / 2, j = count / 2;
     cos = x[i] + x[j];
     sin = y[i] + y[j];
@@ -287,19 +286,19 @@ void FlatFan::begin(double step_radians, double least_nearness) {
         x[k] = x[count - 1];
         y[k] = y[count - 1];
     }
-    std::fill_n(nearness, blocks() * kBlock, least_nearness);
-    std::fill_n(least, blocks(), least_nearness);
+    std::fill_n(inverse_range, blocks() * kBlock, min_inverse_range);
+    std::fill_n(least, blocks(), min_inverse_range);
 }
 
 ISPACE_SIMD_CLONES
-void drawLines(const FlatTree& tree, const FlatView& view, FlatFan& fan) {
-    drawTree<false>(tree, view, fan);
+void drawLines(const FlatTree& tree, const FlatView& view, FlatScan& scan) {
+    drawTree<false>(tree, view, scan);
 }
 
 ISPACE_SIMD_CLONES
-void drawLinesAndCosines(const FlatTree& tree, const FlatView& view, FlatFan& fan) {
-    std::fill_n(fan.cosine, fan.blocks() * kBlock, 0.0);
-    drawTree<true>(tree, view, fan);
+void drawLinesAndCosines(const FlatTree& tree, const FlatView& view, FlatScan& scan) {
+    std::fill_n(scan.cosine, scan.blocks() * kBlock, 0.0);
+    drawTree<true>(tree, view, scan);
 }
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of FlatWorld: fans, what they see, and plans.
+// For tests of FlatWorld: scans, what they see, and plans.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kTouching = 1e-4;
 using Lines = std::vector<Segment2>;
 
-inline Directions fan(Angle first, Angle step, std::size_t beams) {
+inline Directions scan(Angle first, Angle step, std::size_t beams) {
     Directions directions;
     directions.resize(beams);
     directions.arc = Directions::Arc{first, step};

@@ -1,16 +1,85 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Level rays against round bodies: the curve itself decides.
+// Level rays past the ends of lines, and against round bodies: the curve itself decides.
+#include "trace/flat_shapes.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <utility>
 
-#include "trace/test_fans.h"
+#include "geom/pose.h"
+#include "trace/test_scans.h"
 
 namespace ispace {
-namespace {
 
 using namespace testing;
+
+namespace {
+
+/// All ways in which a ray may be cast; they agree.
+float rangeOf(const FlatWorld& world, Point2 origin, Vec2 way) {
+    Directions directions;
+    directions.resize(20);
+    for (std::size_t i = 0; i < 20; ++i)
+        directions.set(i, {way.x / length(way), way.y / length(way), 0});
+    const Seen seen = cast(world, origin, directions);
+    EXPECT_EQ(castApart(world, origin, directions), seen);
+    for (const float range : seen.ranges) EXPECT_EQ(range, seen.ranges.front());
+    const Vec3 first = directions[0];
+    directions.resize(1);
+    EXPECT_EQ(cast(world, origin, directions).ranges.front(), seen.ranges.front());
+    directions.resize(5);
+    for (std::size_t i = 0; i < 5; ++i) directions.set(i, first);
+    directions.arc = Directions::Arc{directionOf(way.x, way.y), Angle::radians(1e-9)};
+    EXPECT_EQ(cast(world, origin, directions).ranges[2], seen.ranges.front());
+    return seen.ranges.front();
+}
+
+/// A wall from 5 m to 6 m ahead, seen almost from its edge, and one across at 9 m.
+TEST(FlatLine, ARayPastAnEndMeetsThatEndOrPasses) {
+    std::mt19937_64 random(51);
+    std::uniform_real_distribution<double> turn(0, 360), place(-3, 3), exponent(-8.5, -2);
+    int passed = 0, met = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Pose2 pose{{i % 2 == 0 ? 0 : place(random), 0},
+                         Angle::degrees(i % 8 == 0 ? 22.5 * i : turn(random))};
+        // The straight continuation passes this far below the origin, the end this far aside.
+        const double height = std::pow(10, exponent(random));
+        const double aside = i % 3 == 0 ? 0.5e-9 : 3e-10 * place(random);
+        const bool at_near = i % 5 < 3;
+        const double at = at_near ? 5 : 6, slope = (aside + height) / at;
+        const Point2 near = pose * Point2{5, aside + (5 - at) * slope};
+        const Point2 far = pose * Point2{6, aside + (6 - at) * slope};
+        const FlatWorld world(Lines{{near, far}, {pose * Point2{9, -1}, pose * Point2{9, 1}}});
+        const double range = rangeOf(world, pose.position, unitVector(pose.heading));
+        const bool is_past = at_near ? aside > 0 : aside < 0;
+        const double off = std::min(std::fabs(range - at), std::fabs(range - 9));
+        if (is_past) {
+            EXPECT_LT(off, 1e-5) << height << ' ' << aside << ' ' << at;
+        } else {
+            EXPECT_TRUE((range > 5 - 1e-5 && range < 6 + 1e-5) || off < 1e-5) << range;
+        }
+        ++(range > 8 ? passed : met);
+    }
+    EXPECT_GT(passed, 400);
+    EXPECT_GT(met, 400);
+}
+
+TEST(FlatLine, NoRayPassesACommonEndSeenFromTheEdge) {
+    std::mt19937_64 random(52);
+    std::uniform_real_distribution<double> turn(0, 360), exponent(-9, 0);
+    for (int i = 0; i < 2000; ++i) {
+        // Two walls with a bend between them, almost in line with the rays.
+        const Pose2 pose{{0.3, 0.1}, Angle::degrees(turn(random))};
+        const double low = std::pow(10, exponent(random)), high = std::pow(10, exponent(random));
+        const Point2 bend = pose * Point2{5, 0};
+        const Lines lines{{pose * Point2{4, -low}, bend}, {bend, pose * Point2{6, high}}};
+        const double range = rangeOf(FlatWorld(lines), pose.position, bend - pose.position);
+        EXPECT_NEAR(range, 5, 1e-5) << low << ' ' << high;
+    }
+}
 
 /// Distance and cosine at which a ray from outside meets a disc.
 std::pair<double, double> meetDisc(const Ellipse& disc, Point2 from, Vec2 ray) {
@@ -87,7 +156,7 @@ TEST(FlatRound, FansPacketsAndSingleRaysAgree) {
         if (i % 4 == 0)
             from = rounds.back().center +
                    rounds.back().fromUnit(unitVector(Angle::degrees(uniform(0, 360))));
-        Directions beams = fan(Angle::degrees(uniform(0, 360)), Angle::degrees(0.4), 800);
+        Directions beams = scan(Angle::degrees(uniform(0, 360)), Angle::degrees(0.4), 800);
         const Seen as_fan = cast(world, from, beams, i % 3 == 0 ? 4 : kInfinity);
         const Seen apart = castApart(world, from, beams, i % 3 == 0 ? 4 : kInfinity);
         EXPECT_EQ(as_fan, apart) << i;
@@ -110,7 +179,7 @@ TEST(FlatRound, EllipsesInAnyHeading) {
     const Ellipse round({1, -1}, 2 * a, 2 * b, heading);
     const FlatWorld world({}, {&round, 1});
     const Point2 focus = round.center - std::sqrt(3) * unitVector(heading);
-    const Directions beams = fan({}, Angle::degrees(0.5), 720);
+    const Directions beams = scan({}, Angle::degrees(0.5), 720);
     const Seen seen = cast(world, focus, beams);
     for (std::size_t k = 0; k < beams.size(); ++k) {
         const double angle = (0.5 * static_cast<double>(k) - 33) * std::numbers::pi / 180;
@@ -121,7 +190,7 @@ TEST(FlatRound, EllipsesInAnyHeading) {
 TEST(FlatRound, FromItsSurfaceBeamsLeaveFreely) {
     const Ellipse disc({0, 0}, 2, 2, {});
     const FlatWorld world({}, {&disc, 1});
-    const Directions beams = fan({}, Angle::degrees(1), 360);
+    const Directions beams = scan({}, Angle::degrees(1), 360);
     for (const double height : {0.0, 9e-5, -9e-5}) {
         const Seen seen = cast(world, {1 + height, 0}, beams);
         for (std::size_t k = 0; k < 360; ++k) {
@@ -142,7 +211,7 @@ TEST(FlatRound, NearestOfMany) {
     const std::vector<Ellipse> rounds{{{2, 0}, 1, 1, {}}, {{4, 0}, 1, 1, {}}, {{8, 0}, 1, 1, {}}};
     const Lines wall{{{6, -5}, {6, 5}}};
     const FlatWorld world(wall, rounds);
-    const Directions beams = fan(Angle::degrees(-0.1), Angle::degrees(0.1), 3);
+    const Directions beams = scan(Angle::degrees(-0.1), Angle::degrees(0.1), 3);
     EXPECT_FLOAT_EQ(cast(world, {0, 0}, beams).ranges[1], 1.5F);
     EXPECT_FLOAT_EQ(cast(world, {3, 0}, beams).ranges[1], 0.5F);
     EXPECT_FLOAT_EQ(cast(world, {5, 0}, beams).ranges[1], 1);
@@ -152,4 +221,5 @@ TEST(FlatRound, NearestOfMany) {
 }
 
 }  // namespace
+
 }  // namespace ispace

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to FlatWorld: lines and round bodies as seen from the origin of a ray.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "base/simd.h"
+#include "trace/flat_tree.h"
+
+namespace ispace {
+
+// What decides about rays and lines, in plain doubles and in one place: scans and single rays
+// compute with it in the same order, so that they agree to the last bit. All is relative to the
+// origin, in inverse ranges: the nearest is the largest, and no line costs a division a beam.
+
+/// Before a loop over lanes: it becomes vectors, which it cannot once it is unrolled.
+#define ISPACE_LANES _Pragma("GCC unroll 1")
+
+/// A line whose straight continuation passes this near to the origin is seen from its edge; a ray
+/// that passes an end of a line this near meets it. More than coordinates of a town round by.
+constexpr double kFlatEdge = 1e-9;
+/// No ray meets an end farther aside than this times the distance of the line's straight
+/// continuation: of a line seen almost from its edge it would meet that far before or behind the
+/// end. So it is never more of the turn, in radians.
+constexpr double kFlatEdgeAngle = 1e-6;
+/// Least |cosine| between lines of one direction.
+constexpr double kFlatParallel = 1 - 1e-6;
+
+ISPACE_INLINE double flatMin(double a, double b) { return a < b ? a : b; }
+ISPACE_INLINE double flatMax(double a, double b) { return a > b ? a : b; }
+/// One of two, both computed. Of a plain choice the compiler makes a branch around what traps, as
+/// it says of all arithmetic, and then no vectors.
+ISPACE_INLINE double flatChoice(bool first, double a, double b) {
+    const std::uint64_t mask = first ? ~std::uint64_t{0} : 0;
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) |
+                                 (std::bit_cast<std::uint64_t>(b) & ~mask));
+}
+
+/// A lower bound of the distance to a box, 0 if the origin is in it: the octagon about the origin
+/// that touches the box, at most 8 % too near. A box within another is never nearer, roundings
+/// included, so that leaving out boxes changes nothing.
+ISPACE_INLINE double distanceOf(double left, double right, double low, double high) {
+    constexpr double kDiagonal = 0.70710678;
+    const double x = flatMax(flatMax(left, -right), 0.0);
+    const double y = flatMax(flatMax(low, -high), 0.0);
+    return flatMax(flatMax(x, y), kDiagonal * (x + y));
+}
+
+/// A line as seen from an origin.
+struct FlatLine {
+    double ax, ay, bx, by;  ///< its ends, counter-clockwise about the origin
+    double ux, uy;          ///< from a to b, times the inverse range of the line at a unit angle
+    double nearest;         ///< upper bound of its inverse range
+    double height;          ///< distance of its straight continuation
+    double edge;            ///< how near to an end a ray meets it
+    bool stops;             ///< not seen from its edge
+};
+
+ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, double oy) {
+    const double px = leaf.ax[i] - ox, py = leaf.ay[i] - oy;
+    const double qx = leaf.bx[i] - ox, qy = leaf.by[i] - oy;
+    const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
+    const double area = px * ey - py * ex;
+    const double size = std::fabs(area), over = 1 / area;
+    const bool turned = area < 0;
+    FlatLine line;
+    line.ax = turned ? qx : px;
+    line.ay = turned ? qy : py;
+    line.bx = turned ? px : qx;
+    line.by = turned ? py : qy;
+    line.ux = ex * over;
+    line.uy = ey * over;
+    line.nearest =
+        1 / distanceOf(flatMin(px, qx), flatMax(px, qx), flatMin(py, qy), flatMax(py, qy));
+    line.height = size / leaf.length[i];
+    line.edge = flatMin(kFlatEdge, kFlatEdgeAngle * line.height);
+    line.stops = size > kFlatEdge * leaf.length[i];
+    return line;
+}
+
+/// Inverse range of the place where a ray along (x, y) meets the closed line; not positive if it
+/// does not.
+ISPACE_INLINE double inverseRangeAlong(const FlatLine& line, double x, double y) {
+    const double from_a = line.ax * y - line.ay * x, to_b = x * line.by - y * line.bx;
+    const double steep = x * line.uy - y * line.ux;
+    const bool is_between = (from_a >= -line.edge) & (to_b >= -line.edge);
+    return flatChoice(is_between, flatMin(steep, line.nearest), 0.0);
+}
+
+/// True if the straight continuation of a line may pass within `ray_epsilon` of the origin: then
+/// ask continuesTouched().
+inline bool mayContinueTouched(double height, double ray_epsilon) {
+    // Distances of lines and of their continuations round differently.
+    return height < ray_epsilon * (1 + 1e-9);
+}
+
+inline bool touches(const FlatTree::Leaf& leaf, int i, double ox, double oy, double ray_epsilon) {
+    const double ax = leaf.ax[i] - ox, ay = leaf.ay[i] - oy;
+    const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
+    const double along = -(ax * ex + ay * ey) / (ex * ex + ey * ey);
+    const double s = std::clamp(along, 0.0, 1.0);
+    const double x = ax + s * ex, y = ay + s * ey;
+    return x * x + y * y < ray_epsilon * ray_epsilon;
+}
+
+inline bool areParallel(const FlatTree::Leaf& leaf, int i, const FlatTree::Leaf& other, int j) {
+    const double cosine = (leaf.bx[i] - leaf.ax[i]) * (other.bx[j] - other.ax[j]) +
+                          (leaf.by[i] - leaf.ay[i]) * (other.by[j] - other.ay[j]);
+    return std::fabs(cosine) >= kFlatParallel * leaf.length[i] * other.length[j];
+}
+
+inline bool isNear(const FlatTree::Node& node, int i, double ox, double oy, double ray_epsilon) {
+    return node.left[i] - ox <= ray_epsilon && ox - node.right[i] <= ray_epsilon &&
+           node.low[i] - oy <= ray_epsilon && oy - node.high[i] <= ray_epsilon;
+}
+
+/// True if some line nearer to the origin than `ray_epsilon` has the direction of line i of the
+/// leaf.
+inline bool continuesTouched(const FlatTree& tree, const FlatTree::Leaf& leaf, int i, double ox,
+                             double oy, double ray_epsilon) {
+    std::int32_t waiting[FlatTree::kStack];
+    int count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+        const FlatTree::Node& node = tree.node(waiting[--count]);
+        for (int k = 0; k < node.count; ++k) {
+            if (!isNear(node, k, ox, oy, ray_epsilon)) continue;
+            if (node.child[k] >= 0) {
+                waiting[count++] = node.child[k];
+                continue;
+            }
+            const FlatTree::Leaf& near = tree.leaf(node.child[k]);
+            for (int j = 0; j < near.count; ++j)
+                if (areParallel(leaf, i, near, j) && touches(near, j, ox, oy, ray_epsilon))
+                    return true;
+        }
+    }
+    return false;
+}
+
+/// A round body as seen from an origin: rays meet the curve itself, from outside where they enter,
+/// from inside where they leave. From an origin in contact with the curve they go out freely, and
+/// those that go in meet its far side.
+///
+/// All in the frame where the body is the unit disc. There the ray q + t d meets the curve where
+/// a t^2 + 2 b t + c = 0; written so that neither root cancels.
+class RoundFrom {
+  public:
+    ISPACE_INLINE RoundFrom(const FlatTree::Round& round, double ox, double oy, double ray_epsilon)
+        : round_(round), touching_(ray_epsilon) {
+        const double x = ox - round.cx, y = oy - round.cy;
+        qx_ = round.xx * x + round.xy * y;
+        qy_ = round.yx * x + round.yy * y;
+        c_ = qx_ * qx_ + qy_ * qy_ - 1;
+        // c is, near the curve, the distance from it times the length of its gradient.
+        touches_ = std::fabs(c_) <= 2 * ray_epsilon * gradientAt(qx_, qy_);
+    }
+
+    /// One over the distance along the unit vector (x, y), and the |cosine| there; inverse range is
+    /// not positive if the ray does not meet it.
+    struct Hit {
+        double inverse_range, cosine;
+    };
+    template <bool kCosine>
+    [[nodiscard]] ISPACE_INLINE Hit meet(double x, double y) const {
+        const double dx = round_.xx * x + round_.xy * y, dy = round_.yx * x + round_.yy * y;
+        const double a = dx * dx + dy * dy, b = qx_ * dx + qy_ * dy;
+        const double side = qx_ * dy - qy_ * dx;
+        const double square = a - side * side;
+        if (square < 0) return {0, 0};
+        const double root = std::sqrt(square), far = root - b;
+        double inverse_range = 0;
+        if (touches_)
+            inverse_range = b < 0 && far > touching_ * a ? a / far : 0;
+        else
+            inverse_range = (std::copysign(root, c_) - b) / c_;
+        if constexpr (!kCosine) return {inverse_range, 0};
+        if (!(inverse_range > 0)) return {0, 0};
+        const double t = 1 / inverse_range;
+        return {inverse_range, root / gradientAt(qx_ + t * dx, qy_ + t * dy)};
+    }
+
+  private:
+    /// Half of the length, in the world, of the gradient of c.
+    [[nodiscard]] ISPACE_INLINE double gradientAt(double ux, double uy) const {
+        const double x = round_.xx * ux + round_.yx * uy, y = round_.xy * ux + round_.yy * uy;
+        return std::sqrt(x * x + y * y);
+    }
+
+    const FlatTree::Round& round_;
+    double touching_;
+    double qx_, qy_, c_;
+    bool touches_;
+};
+
+}  // namespace ispace
