@@ -21,24 +21,6 @@ constexpr double kTurn = 2 * std::numbers::pi;
 /// what angleOf() and the directions err.
 constexpr double kSlack = 2.5e-5;
 
-/// Direction of (x, y) in [-pi, pi], within 1e-5; 0 for the null vector (Abramowitz &
-/// Stegun, 4.4.47 and the quadrants).
-ISPACE_INLINE double angleOf(double x, double y) {
-    const double far = std::fabs(x), wide = std::fabs(y);
-    const double ratio = flatMin(far, wide) / flatMax(flatMax(far, wide), 1e-300);
-    const double square = ratio * ratio;
-    const double octant =
-        ratio *
-        (0.9998660 +
-         square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
-    // Only constants are chosen between: that leaves no branches.
-    const bool is_steep = wide > far, is_behind = x < 0;
-    const double quarter =
-        (is_steep ? std::numbers::pi / 2 : 0.0) + (is_steep ? -1.0 : 1.0) * octant;
-    const double half = (is_behind ? std::numbers::pi : 0.0) + (is_behind ? -1.0 : 1.0) * quarter;
-    return std::copysign(half, y);
-}
-
 /// What of a scan the loops over lanes need.
 struct Frame {
     double cos, sin, rate, middle, count;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
