@@ -140,7 +140,9 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     const double rim = page.margin - 0.2 * page.em;
     const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
                      {page.plan.high.x + rim, page.plan.high.y + rim}};
+    picture.pushLayer("places tried");
     drawTrace(picture, map, frame);
+    picture.pop();
     drawMarks(picture, map, frame);
     picture.pushLayer("frame");
     drawHead(picture, map, page);

@@ -228,18 +228,24 @@ std::size_t markedSpots(const MapPicture& map) {
 
 void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
     LabelPlacer places(frame, map.em);
+    picture.pushLayer("sensors");
     if (map.other != nullptr) {
         const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
         drawSensors(picture, other, frame, true, places);
     }
     drawSensors(picture, map, frame, false, places);
+    picture.pop();
+    picture.pushLayer("unseen spots");
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
         const Point2 page = map.view * map.coverage.report.unseen[i].place;
         drawSpotSign(picture, places.placeSign(page, kSpotRadius * map.em), std::to_string(i + 1),
                      map.em);
     }
+    picture.pop();
+    picture.pushLayer("labels");
     drawIds(picture, map, frame, places);
     drawZoneNames(picture, map, places);
+    picture.pop();
 }
 
 }  // namespace ispace

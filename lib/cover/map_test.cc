@@ -86,6 +86,24 @@ TEST(Map, SvgIsWellFormedAndSmall) {
     }
 }
 
+TEST(Map, SvgHasLayersWithTheRecordsIds) {
+    const std::string svg = mapOf(
+        "fence id=f closed=yes path=0,0;8,0;8,8;0,8\nwindow id=high wall=f offset=1 size=1\n"
+        "door id=way wall=f offset=3 size=1 open=yes\ndesk id=d at=4,4\nlaser id=l at=2,2\n",
+        {PictureFormat::Svg, 800, ""});
+    std::size_t at = 0;
+    for (const std::string part :
+         {"label=\"floor\"", "label=\"coverage\"", "label=\"fields of view\"", "label=\"objects\"",
+          "<g id=\"d\">", "label=\"walls\"", "<g id=\"f\">", "label=\"doors &amp; windows\"",
+          "<g id=\"way\">", "label=\"sensors\"", "<g id=\"l\">", "label=\"labels\"",
+          "label=\"frame\"", "label=\"legend\""}) {
+        at = svg.find(part, at);
+        ASSERT_NE(at, std::string::npos) << part;
+    }
+    EXPECT_EQ(svg.find("<g id=\"high\">"), std::string::npos);  // a wall at 0.15 m
+    EXPECT_NE(svg.find(">door</text>"), std::string::npos);
+}
+
 TEST(Map, SvgHoldsTitleIdsAndFiguresAsText) {
     const std::string svg =
         mapOf("ispace size=8,8\nlaser id=left-one at=0,0 heading=45 fov=90 range=20\n",

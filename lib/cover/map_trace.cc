@@ -56,12 +56,7 @@ std::vector<TriedPlace> placesTried(const std::vector<TriedPose>& trace) {
 Color triedColor(double share) {
     constexpr std::array<std::uint32_t, 5> kStops = {0xF2CF4E, 0xF2A83A, 0xE26D14, 0xA83A05,
                                                      0x4A1600};
-    const double place = std::clamp(share, 0.0, 1.0) * (kStops.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-    const Color a = Color::rgb(kStops[below]), b = Color::rgb(kStops[below + 1]);
-    const double part = place - static_cast<double>(below);
-    return {a.red + part * (b.red - a.red), a.green + part * (b.green - a.green),
-            a.blue + part * (b.blue - a.blue), 1};
+    return rampColor(kStops, share);
 }
 
 void drawChosenRing(Picture& picture, Point2 page, double radius, double em) {

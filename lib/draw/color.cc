@@ -31,6 +31,25 @@ double lightness(Color color) {
     return 0.2126 * color.red + 0.7152 * color.green + 0.0722 * color.blue;
 }
 
+Color rampColor(std::span<const std::uint32_t> stops, double share) {
+    const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+    return mixed(Color::rgb(stops[below]), Color::rgb(stops[below + 1]),
+                 place - static_cast<double>(below));
+}
+
+Color turboColor(double share) {
+    const auto channel = [share](double c0, double c1, double c2, double c3, double c4, double c5) {
+        const double value =
+            c0 + share * (c1 + share * (c2 + share * (c3 + share * (c4 + share * c5))));
+        return std::clamp(value, 0.0, 1.0);
+    };
+    return {channel(0.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943),
+            channel(0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604),
+            channel(0.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973),
+            1};
+}
+
 Color sequentialColor(int level, int levels) {
     constexpr std::array<std::uint32_t, 5> kStops = {0xBFD8EC, 0x94C1DF, 0x62A3CF, 0x347FBA,
                                                      0x174F8C};
@@ -38,10 +57,7 @@ Color sequentialColor(int level, int levels) {
     const double top = std::min(1.0, 0.25 * levels);
     const double share =
         levels <= 1 ? 0.25 : top * (std::clamp(level, 1, levels) - 1) / (levels - 1);
-    const double place = share * (kStops.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-    return mixed(Color::rgb(kStops[below]), Color::rgb(kStops[below + 1]),
-                 place - static_cast<double>(below));
+    return rampColor(kStops, share);
 }
 
 }  // namespace ispace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace ispace {
 
@@ -39,6 +40,14 @@ Color tint(Color color, double share);
 
 /// How light a colour looks, 0..1: what is left of it in grey (luma of BT.709).
 double lightness(Color color);
+
+/// Between colours (0xRRGGBB) at equal distances: 0 is the first, 1 the last. \pre two stops or
+/// more
+Color rampColor(std::span<const std::uint32_t> stops, double share);
+
+/// The Turbo colour map (A. Mikhailov, Google 2019) in R. Du's polynomials: 0 is dark blue, 1 dark
+/// red.
+Color turboColor(double share);
 
 /// Step `level` (1..levels) of a scheme from light to dark blue: lightness falls with each level,
 /// so that it reads in grey as well; the first is well below white.

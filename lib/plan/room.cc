@@ -105,6 +105,9 @@ Box2 planBox(const Scene& scene) {
 }
 
 std::vector<Polygon> outsideOf(const Regions& indoor) {
+    if (std::none_of(indoor.parts.begin(), indoor.parts.end(),
+                     [](const Region& part) { return !part.holes.empty(); }))
+        return {};
     std::vector<Point2> middles;
     middles.reserve(indoor.parts.size());
     for (const Region& part : indoor.parts) middles.push_back(interiorPoint(part));

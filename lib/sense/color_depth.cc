@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "draw/axis.h"
+#include "draw/palette.h"
 #include "draw/picture.h"
 #include "sense/depth_picture.h"
 #include "sense/figure_parts.h"
@@ -17,19 +18,14 @@ constexpr double kMargin = 16, kText = 13, kTitle = 16, kHead = 58;
 constexpr double kBarGap = 28, kBarWidth = 18, kLegendWidth = 112;
 constexpr int kLeastWidth = 640, kMostWidth = 4096, kLeastHeight = 200;
 constexpr std::uint32_t kNoReturn = 0x000000;
-constexpr Color kInk = Color::rgb(0x222222), kFaint = Color::rgb(0x666666);
+using palette::kInk;
+constexpr Color kFaint = palette::kFaintInk;
 
-/// The Turbo colour map (A. Mikhailov, Google 2019) in R. Du's polynomials: 0 is dark blue, 1 dark
-/// red.
-std::uint32_t turbo(double t) {
-    const auto channel = [t](double c0, double c1, double c2, double c3, double c4, double c5) {
-        const double value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))));
-        return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
+std::uint32_t pixelOf(Color color) {
+    const auto part = [](double share) {
+        return static_cast<std::uint32_t>(std::lround(share * 255));
     };
-    return channel(0.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943)
-               << 16U |
-           channel(0.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604) << 8U |
-           channel(0.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973);
+    return part(color.red) << 16U | part(color.green) << 8U | part(color.blue);
 }
 
 /// Which colour stands for which depth. Of a device that reaches far equal steps of colour are
@@ -54,7 +50,7 @@ class Scale {
     [[nodiscard]] static std::uint32_t color(double share) {
         // The ends of the map are left out: its darkest blue looks like no return.
         constexpr double kColdest = 0.07, kWarmest = 0.96;
-        return turbo(kWarmest + (kColdest - kWarmest) * share);
+        return pixelOf(turboColor(kWarmest + (kColdest - kWarmest) * share));
     }
     /// Round depths for an axis with room for so many labels.
     [[nodiscard]] std::vector<double> ticks(double room) const {

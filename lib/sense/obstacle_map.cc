@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "draw/axis.h"
+#include "draw/palette.h"
 #include "draw/picture.h"
 #include "sense/figure_parts.h"
 
@@ -13,7 +14,8 @@ namespace ispace {
 
 namespace {
 
-constexpr Color kInk = Color::rgb(0x222222), kFaint = Color::rgb(0x666666);
+using palette::kInk;
+constexpr Color kFaint = palette::kFaintInk;
 constexpr Color kGrid = Color::rgb(0xC8CCD0), kView = Color::rgb(0xEAF2F9);
 constexpr Color kViewEdge = Color::rgb(0x9DBAD5), kReturn = Color::rgb(0xC0392B);
 
