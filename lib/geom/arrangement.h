@@ -9,9 +9,9 @@
 
 namespace ispace {
 
-/// The bounded faces of the arrangement of lines. Faces on both sides of a passage are one, if both
-/// are bounded. Segments that bound nothing are ignored. Sorted; curves begin at their lowest
-/// vertex. \throws FormatError (without a place) as noded() does
+/// The bounded faces of the arrangement of lines; the faces on the two sides of a passage are one
+/// if both are bounded. Dangling segments are ignored. Sorted; curves begin at their lowest vertex.
+/// \throws FormatError (without a place) as noded() does
 std::vector<Region> facesOf(std::vector<LinePiece> lines, const CrossingMessage& message);
 
 /// The open connected pieces where the winding number `added` is positive and `removed` is zero.
@@ -20,10 +20,11 @@ std::vector<Region> facesOf(std::vector<LinePiece> lines, const CrossingMessage&
 /// does
 std::vector<Region> differenceOf(std::vector<LinePiece> lines, const CrossingMessage& message);
 
-/// Lets the curve begin at its lowest vertex, at that of its visits with the lower successor.
+/// Rotates the curve so that it begins at its lowest vertex; if it visits that more than once, at
+/// the visit with the lower successor.
 void rotateToLowest(Polygon& curve);
 
-/// Drops regions without outline; sorts the others and the holes of each.
+/// Drops regions without an outline; sorts the others, and the holes of each.
 void putInOrder(std::vector<Region>& regions);
 
 }  // namespace ispace

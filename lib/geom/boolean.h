@@ -9,16 +9,15 @@
 
 namespace ispace {
 
-/// The pieces of `region` outside all closed `solids` (simple polygons, any orientation, which may
-/// overlap and touch). Where outlines cross, to the nearest doubles.
+/// The pieces of `region` outside all closed `solids`: simple polygons of either orientation, which
+/// may overlap and touch. Crossings are rounded to doubles, nothing else is.
 /// \throws FormatError (without a place) for outlines that cross each other by the million
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
 
 /// The same of each part.
 std::vector<Region> difference(const Regions& regions, std::span<const Polygon> solids);
 
-/// The pieces of all closed `solids` together (simple polygons, any orientation, which may overlap
-/// and touch). As exact as difference().
+/// The union of closed `solids`, which are as for difference().
 std::vector<Region> unite(std::span<const Polygon> solids);
 
 /// Sum of the areas of disjoint regions.
@@ -26,8 +25,8 @@ double totalArea(std::span<const Region> regions);
 
 // Convex polygons, in time linear in their corners: round tables have tens of thousands.
 
-/// How far a convex polygon reaches in directions that are asked in turn. It walks from one answer
-/// to the next: O(1) on average if the directions go once round, O(n) if they jump.
+/// The support function of a convex polygon, for a sequence of directions. Each query walks on from
+/// the last answer: O(1) on average if the directions turn steadily, O(n) if they jump.
 class Caliper {
   public:
     /// Keeps a view of the corners; at least one.
@@ -41,7 +40,7 @@ class Caliper {
     Vec2 last_;
 };
 
-/// What two convex polygons share; both counter-clockwise. Empty if nothing. O(n + m)
+/// Intersection of two counter-clockwise convex polygons; empty if they share no area. O(n + m)
 Polygon sharedByConvex(const Polygon& a, const Polygon& b);
 
 }  // namespace ispace

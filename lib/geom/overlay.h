@@ -10,16 +10,16 @@
 
 namespace ispace {
 
-/// What lies over a place.
+/// Which layers contain a point.
 struct LayerLabel {
-    std::int32_t count = 0;    ///< of counted layers that hold it
-    std::int64_t numbers = 0;  ///< sum of their numbers: of one layer, which it is
-    std::uint64_t marks = 0;   ///< bits of the marking layers that hold it
+    std::int32_t count = 0;    ///< of counted layers that contain it
+    std::int64_t numbers = 0;  ///< sum of their numbers: identifies a single layer
+    std::uint64_t marks = 0;   ///< bits of the marking layers that contain it
     friend bool operator==(const LayerLabel&, const LayerLabel&) = default;
 };
 
-/// A set of places to be laid over others: what its curves hold on their left, each place once (a
-/// region and its holes, or several that are disjoint; they may touch).
+/// A point set to be overlaid with others: what lies to the left of its curves. These are the
+/// outlines and holes of one region, or of several disjoint ones, which may touch.
 struct Layer {
     std::vector<Curve> curves;
     /// Adds 1 to count and its number to numbers, else sets bits of marks.
@@ -28,18 +28,20 @@ struct Layer {
     std::uint64_t marks = 0;
 };
 
-/// Layers laid over each other: the faces into which all boundaries divide the plane, and what lies
-/// over each. One pass answers how much is held by any, by none, by one alone, by k at once.
+/// The overlay of layers: the faces into which their boundaries divide the plane, each with the set
+/// of layers that contain it. One pass gives the areas covered by any layer, by none, by exactly
+/// one and by k at once.
 ///
-/// Robust for whatever coincides (views end at the same walls all the time): end points and
-/// crossings are rounded to a lattice, by snap rounding (Hobby 1999), so that edges meet at common
-/// ends only; its step is unit(). A layer holds what its rounded curves enclose by the even-odd
-/// rule, so that every label is of a set of layers, in slivers of rounding too. Arcs are laid out
-/// as chords (kChordError), and the area between arc and chord is added in closed form: figures err
-/// by no more than three times unit() by the length of all boundaries, and by the square of
-/// kChordError where an arc is crossed (by up to kChordError times the length of a chord where
-/// something ends or passes between an arc and its chord). Deterministic. O((n + crossings) log n)
-/// for what does not crowd at one place; memory about 300 bytes an edge.
+/// Robust against coincidences (many views end at the same walls): end points and crossings are
+/// rounded to a lattice of step unit() by snap rounding (Hobby 1999), so that edges meet at common
+/// ends only. A layer contains what its rounded curves enclose by the even-odd rule, so labels are
+/// consistent even in slivers made by rounding. Arcs are replaced by chords (kChordError) and the
+/// area between arc and chord is added in closed form. Areas err by at most 3 * unit() times the
+/// length of all boundaries, plus kChordError squared where an arc is crossed (kChordError times a
+/// chord's length where something ends or passes between an arc and its chord). Where input
+/// vertices must keep their doubles, as for rooms and walls, use boolean.h or planar_map.h.
+/// Deterministic. O((n + crossings) log n) unless edges crowd at one place; about 300 bytes an
+/// edge.
 class Overlay {
   public:
     /// An edge of the overlay. Label `left` is what lies on its left.
@@ -52,41 +54,37 @@ class Overlay {
         Point2 center = {};
     };
 
-    /// `walls` part what regions() gives: it joins nothing across them. They change no label.
+    /// `walls` separate the regions of regions() without changing any label.
     /// \pre all coordinates are finite
-    /// \throws FormatError (without a place) for outlines that cross by the ten million (16 million
-    /// places
-    ///         where an edge passes a point of another)
+    /// \throws FormatError (without a place) for outlines that cross by the ten million
     explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {});
 
-    /// Edges between different labels; in an order that depends only on the input.
+    /// Edges between faces of different labels, in an order that depends only on the input.
     [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
     /// Step of the lattice, metres, a power of two: at most 2^-29 of the extent of all layers. 0 if
     /// they have none.
     [[nodiscard]] double unit() const { return unit_; }
 
-    /// Calls add(label, area) so that the areas given for a label add up to that of all faces with
-    /// it; single ones may be negative. The plane outside of everything ({0, 0, 0}) comes as well
-    /// and is to be ignored.
+    /// Calls add(label, area) several times for each label; the areas, some of them negative, add
+    /// up to that of all faces with this label. Ignore those of {0, 0, 0}, the unbounded face.
     template <typename Add>
     void addAreas(Add add) const;
-    /// Area of all faces whose label `in` accepts. \pre not in({})
+    /// Area of all faces whose label satisfies `in`. \pre not in({})
     template <typename In>
     [[nodiscard]] double area(In in) const;
-    /// The connected pieces of what `in` accepts, chords for arcs. Pieces that touch at a point are
-    /// apart. Sorted; curves begin at their lowest vertex. Vertices where an outline goes straight
-    /// on are left out. \pre not in({})
+    /// The connected regions of the faces whose label satisfies `in`, with chords for arcs. Regions
+    /// that touch only at a point are separate. Sorted; curves begin at their lowest vertex.
+    /// Vertices within straight edges are left out. \pre not in({})
     template <typename In>
     [[nodiscard]] std::vector<Region> regions(In in) const;
 
-    /// The outlines and holes of regions() with arcs in the place of their chords, each with the
-    /// area of its piece of the arc.
+    /// The outlines and holes of regions(), with arcs instead of chords.
     template <typename In>
     [[nodiscard]] std::vector<Curve> curves(In in) const {
         return withArcs(regions(in));
     }
 
-    /// The areas of regions(), each with the arcs of its outline.
+    /// The areas of regions(), arcs included.
     [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
 
   private:

@@ -14,13 +14,12 @@ namespace ispace {
 /// on it: walls given by length and heading meet as drawn in spite of rounding.
 constexpr double kWeldDistance = 1e-6;
 
-/// The lines with end points moved together and lines split where an end point of another touches
-/// them (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the
-/// line that piece i comes from, the pieces of a line in its order. Deterministic; O((n +
-/// touches) log n) for lines that mostly run in two directions at right angles or are short, in
-/// whatever place they are.
-/// \throws FormatError (without a place) for lines that lie upon each other by the million, and for
-/// many long lines in all directions
+/// The lines with nearby end points merged, split where an end point of another line touches them
+/// (within kWeldDistance); zero-length pieces are dropped. `source[i]` is the index of the line
+/// that piece i comes from; the pieces of a line keep its order. Deterministic; O((n + touches) log
+/// n) for lines that are short or mostly run in two directions at right angles. \throws FormatError
+/// (without a place) if lines overlap by the million, or if very many long lines run in all
+/// directions
 struct WeldedLines {
     std::vector<Segment2> pieces;
     std::vector<std::size_t> source;
@@ -37,8 +36,8 @@ WeldedLines weld(std::span<const Segment2> lines);
 /// \throws FormatError (without a place) for lines that cross by the million
 std::vector<Region> boundedFaces(const WeldedLines& lines);
 
-/// The same where some of the lines are passages: faces on both sides of a passage are one, if both
-/// are bounded and no line lies on it.
+/// The same, but the faces on the two sides of a passage are one if both are bounded and no line
+/// lies on the passage.
 std::vector<Region> boundedFaces(std::span<const Segment2> lines,
                                  std::span<const Segment2> passages);
 
@@ -49,23 +48,23 @@ struct Closing {
     std::size_t a, b;  ///< indices of the two lines that do not meet, a <= b
 };
 
-/// The ways to close gaps: from each loose end of a line, and from each of the `corners` (points on
-/// lines), to the nearest points of other lines, up to four each and none longer than `widest`. The
-/// shortest come first, in an order that depends only on the input; at most 10 000.
+/// Ways to close gaps: from each loose end of a line, and from each of the `corners` (points on
+/// lines), to the nearest points of other lines; up to four each, none longer than `widest`.
+/// Shortest first, in an order that depends only on the input; at most 10 000.
 /// O(n log n) for gaps that are narrow against the plan.
 std::vector<Closing> closings(std::span<const Segment2> lines, std::span<const Point2> corners,
                               double widest);
 
-/// Why lines enclose nothing at a place, and the least that would cure it.
+/// Why lines do not enclose a point: the gap that would have to be closed.
 struct Gap {
     double width;      ///< metres
     Point2 place;      ///< middle of the gap
     std::size_t a, b;  ///< indices of the two lines that do not meet
 };
 
-/// The widest of the gaps that have to be closed before `inside` (or, without it, any point) is
-/// enclosed, when gaps are closed from the narrowest on; nothing if closing all dangling ends
-/// with their nearest line does not enclose it either.
+/// Closes gaps from the narrowest up until `inside` (or, without it, any point) is enclosed, and
+/// returns the last one closed; nothing if it is not enclosed even with every dangling end joined
+/// to its nearest lines.
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside);
 
 }  // namespace ispace

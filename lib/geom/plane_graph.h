@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom: segments that meet at common ends only, as a graph of half-edges, and the faces
-// into which they divide the plane. Points are doubles or of a lattice; all decisions are exact.
+// Inside lib/geom: the half-edge graph of segments that meet at common ends only, and the faces
+// into which they divide the plane. Points are doubles or lattice points; all decisions are exact.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline Index twin(Index half) { return half ^ 1U; }
 template <typename P>
 class Graph {
   public:
-    /// Keeps both. \pre lines are distinct and meet at common ends only. O(n log(n))
+    /// Keeps references to both. \pre lines are distinct and meet at common ends only. O(n log n)
     Graph(const std::vector<P>& points, const std::vector<Line>& lines);
 
     [[nodiscard]] Index source(Index half) const {
@@ -40,8 +40,8 @@ class Graph {
     [[nodiscard]] std::size_t vertices() const { return first_.size() - 1; }
     [[nodiscard]] Index halves() const { return static_cast<Index>(order_.size()); }
 
-    /// Those that leave a point, counter-clockwise. The first follows on the direction straight
-    /// down: before it, and behind the last, lies the direction to the left.
+    /// Half-edges that leave a point, counter-clockwise from the direction straight down for those
+    /// to the right, then for those to the left.
     [[nodiscard]] std::span<const Index> leaving(Index vertex) const {
         return std::span(order_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
@@ -54,7 +54,7 @@ class Graph {
         return about[place_[back] == 0 ? about.size() - 1 : place_[back] - 1];
     }
 
-    /// Of two lines over a common stretch of x; of a point over a line.
+    /// Of two lines with a common range of x, and of a point within a line's range of x.
     [[nodiscard]] bool isAbove(Index line, Index other) const;
     [[nodiscard]] bool isAbove(const P& p, Index line) const;
     /// For each of these points the line right below the place just to the left of it, or kNone.
@@ -71,27 +71,28 @@ class Graph {
     std::vector<Index> place_;
 };
 
-/// Half-edges that follow each other along a boundary, what it bounds on the left.
+/// Consecutive half-edges of a boundary; what it bounds is on the left.
 using Loop = std::vector<Index>;
 
 /// The faces of a graph, and the boundaries of pieces made of some of them.
 template <typename P>
 class Faces {
   public:
-    /// \param wanted for each half-edge whether the face on its left matters, which all half-edges
-    ///               around a face agree upon; empty: all do
+    /// \param wanted for each half-edge whether the face on its left is needed (the same for all
+    ///               half-edges around a face); empty: all are
     Faces(const std::vector<P>& points, const std::vector<Line>& lines,
           std::vector<bool> wanted = {});
 
     [[nodiscard]] const Graph<P>& graph() const { return graph_; }
     [[nodiscard]] Index count() const { return count_; }
-    /// The face on its left; kNone: the outside of everything, or not wanted.
+    /// The face on its left; kNone: the unbounded face, or not wanted.
     [[nodiscard]] Index of(Index half) const {
         return cycle_[half] == kNone ? kNone : face_of_cycle_[cycle_[half]];
     }
 
-    /// Calls visit(piece, loop, is_outline) for each boundary. Faces for whose half-edges
-    /// piece_of(half) is the same are one piece; those with kNone belong to none.
+    /// Calls visit(piece, loop, is_outline) for each boundary of each piece. A piece consists of
+    /// the faces whose half-edges have its number by piece_of(half); kNone is for faces in no
+    /// piece.
     template <typename PieceOf, typename Visit>
     void forEachBoundary(PieceOf piece_of, Visit visit) const {
         const auto is_boundary = [&](Index half) {

@@ -19,13 +19,13 @@ class SegmentGrid {
   public:
     SegmentGrid(std::span<const Segment2> segments, double margin);
 
-    /// Ascending indices of segments, among them all those within `margin` of p, wherever it is:
-    /// beyond the bounding box of the segments, it counts as in the nearest cell.
+    /// Ascending indices of the segments of p's cell, including all those within `margin` of p. A
+    /// point outside the segments' bounding box is looked up in the nearest cell.
     [[nodiscard]] std::span<const std::uint32_t> near(Point2 p) const;
 
-    /// Visits cells around p in growing rings: visit(indices of one cell), then, with all segments
-    /// nearer than `reach` seen, done(reach) ends the search by returning true. An index may come
-    /// several times.
+    /// Visits cells around p in growing rings: visit(indices of one cell). After each ring, when
+    /// all segments nearer than `reach` have been visited, done(reach) ends the search by returning
+    /// true. An index may be visited more than once.
     template <typename Visit, typename Done>
     void searchFrom(Point2 p, Visit visit, Done done) const;
 
@@ -34,13 +34,13 @@ class SegmentGrid {
     template <typename Visit>
     void forEachCell(Visit visit) const;
 
-    /// Visits the cells that touch the box: visit(indices of one cell). Among them are all segments
-    /// that come within the margin of the box; an index may come several times.
+    /// Visits the cells that touch the box: visit(indices of one cell). All segments within the
+    /// margin of the box are visited; an index may be visited more than once.
     template <typename Visit>
     void searchBox(const Box2& box, Visit visit) const;
 
-    /// Visits the cells under p, from its own downwards, until visit(indices, bottom) returns true:
-    /// all segments that the line from p down to the height `bottom` meets have been seen then.
+    /// Visits the cells below p, starting with its own, until visit(indices, bottom) returns true.
+    /// By then all segments that cross the vertical from p down to `bottom` have been visited.
     template <typename Visit>
     void searchBelow(Point2 p, Visit visit) const;
 
@@ -154,15 +154,15 @@ void BoxTree::search(const Box2& window, Visit visit) const {
     }
 }
 
-/// Finds the segments near others, however unevenly they are spread: a tree of their bounding
-/// boxes, along the axes in which most of them run (so that a plan in any heading has thin boxes).
-/// O(n log n) to build.
+/// Finds segments near a given one, however unevenly they are spread: a tree of bounding boxes
+/// aligned with the direction in which most segments run, so that boxes stay thin in a rotated
+/// plan. O(n log n) to build.
 class SegmentTree {
   public:
     explicit SegmentTree(std::span<const Segment2> segments);
 
-    /// Calls visit(index) once for each of some segments, in an order that depends only on the
-    /// segments: among them are all that come within `reach` of the given one.
+    /// Calls visit(index) once for each candidate: all segments within `reach` of the given one,
+    /// and some others. The order depends only on the segments.
     template <typename Visit>
     void search(const Segment2& segment, double reach, Visit visit) const {
         tree_.search(boxOf(segment, reach), visit);

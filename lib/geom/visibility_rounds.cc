@@ -57,16 +57,14 @@ struct Part {
     double low, high;
 };
 
-/// The near side of a body as seen from a viewpoint, counter-clockwise: places in its frame, of
-/// ascending slope.
+/// The near side of a body, counter-clockwise: places in its frame, by ascending slope.
 struct NearSide {
     ShadowFrame frame;
     std::vector<Vec2> places;
     double nearest = kInfinity;  ///< upper bound of its inverse range
 
     [[nodiscard]] double slope(std::size_t i) const {
-        if (i == 0 && widest) return -kWidest;
-        if (i + 1 == places.size() && widest) return kWidest;
+        if (widest && (i == 0 || i + 1 == places.size())) return i == 0 ? -kWidest : kWidest;
         return places[i].y / places[i].x;
     }
     bool widest = false;  ///< over half a turn
