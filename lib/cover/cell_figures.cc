@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "cover/figures.h"
-#include "raster/cell_groups.h"
+#include "raster/morphology.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {
@@ -63,20 +63,34 @@ void addSensorFigures(Coverage& coverage, const std::vector<std::uint32_t>& time
     }
 }
 
+/// The pieces of free floor that nothing sees, the largest first.
+void addUnseen(Coverage& coverage, const CellSet& covered) {
+    const Grid& grid = coverage.target.grid;
+    CellSet cells = coverage.target.free;
+    cells -= covered;
+    const MapCells unseen(cells, grid.columns, grid.rows);
+    const CellPieces pieces(unseen, CellPieces::Joined::BySides);
+    const std::vector<CellPlace> places = deepestPlaces(unseen, pieces);
+    auto& list = coverage.report.unseen;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        list.push_back({grid.center(grid.cell(places[i].x, places[i].y)),
+                        static_cast<double>(pieces[i].cells) * grid.cellArea()});
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+}
+
 void addPieces(Coverage& coverage, const CellSet& covered) {
     const Grid& grid = coverage.target.grid;
     CellSet inside = covered;
     inside &= coverage.target.indoor;
-    const std::vector<CellGroup> pieces = piecesOf(grid, inside);
+    const CellPieces pieces(MapCells(inside, grid.columns, grid.rows), CellPieces::Joined::BySides);
     coverage.report.pieces = pieces.size();
-    if (!pieces.empty())
+    std::size_t largest = 0;
+    for (const CellPiece& piece : pieces.list()) largest = std::max(largest, piece.cells);
+    if (largest > 0)
         coverage.report.largest_piece =
-            static_cast<double>(pieces.front().cells) / static_cast<double>(inside.count());
-    CellSet unseen = coverage.target.free;
-    unseen -= covered;
-    for (const CellGroup& piece : piecesOf(grid, unseen))
-        coverage.report.unseen.push_back(
-            {grid.center(piece.middle), static_cast<double>(piece.cells) * grid.cellArea()});
+            static_cast<double>(largest) / static_cast<double>(inside.count());
+    addUnseen(coverage, covered);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "cover/range_rule.h"
 #include "cover/sector_limits.h"
 #include "cover/sight_outline.h"
-#include "raster/scanline.h"
+#include "raster/grid.h"
 
 namespace ispace {
 

@@ -11,12 +11,11 @@
 #include "env/check.h"
 #include "geom/box.h"
 #include "io/cell_report.h"
-#include "raster/cell_cleaning.h"
-#include "raster/cell_distance.h"
-#include "raster/cell_gaps.h"
-#include "raster/cell_pieces.h"
-#include "raster/cell_rooms.h"
-#include "raster/outline.h"
+#include "raster/cleaning.h"
+#include "raster/contour.h"
+#include "raster/distance.h"
+#include "raster/morphology.h"
+#include "raster/rooms.h"
 
 namespace ispace {
 
@@ -178,8 +177,9 @@ class CellMapImport {
         std::optional<MapCells> raw;
         if (barrier_) raw = room.floor;
         double tolerance = options_.simplify.value_or(0) / map_.resolution;
-        if (options_.simplify != 0) {
-            const Cleaning own = cleanRoom(room, map_.resolution, keep);
+        if (const double width = options_.clean.value_or(options_.simplify == 0 ? 0 : kNoiseWidth);
+            width > 0) {
+            const Cleaning own = cleanRoom(room, map_.resolution, width, keep);
             cleaning += own;
             if (!options_.simplify) tolerance = own.isRagged() ? kRaggedSimplify : kDefaultSimplify;
         }
@@ -197,22 +197,27 @@ class CellMapImport {
         write(room, tolerance, rigid, choices);
     }
 
+    /// The cells of the map within a room's grid.
+    static MapCells cutOf(const MapCells& map, const MapCells& grid, CellPlace offset) {
+        MapCells cells(grid.width(), grid.height());
+        const int left = std::max(offset.x, 0),
+                  right = std::min(offset.x + grid.width(), map.width());
+        const int top = std::min(offset.y + grid.height(), map.height());
+        for (int y = std::max(offset.y, 0); y < top; ++y) {
+            const auto row = map.row(y).subspan(static_cast<std::size_t>(left),
+                                                static_cast<std::size_t>(right - left));
+            forEachRunOf(row, [&](int first, int last) {
+                cells.insertRun(y - offset.y, first + left - offset.x, last + left - offset.x);
+            });
+        }
+        return cells;
+    }
+
     /// Cells of a room's grid within two of walls that were added. Nothing moves there, so that
     /// these reach the walls of the map as they were drawn to.
     [[nodiscard]] std::optional<MapCells> besideBarriers(const RoomCells& room) const {
-        constexpr int kNear = 2;
         if (!barrier_) return std::nullopt;
-        MapCells cells(room.floor.width(), room.floor.height());
-        for (int y = -kNear; y < cells.height() + kNear; ++y)
-            for (int x = -kNear; x < cells.width() + kNear; ++x) {
-                if (!barrier_->contains(x + room.offset.x, y + room.offset.y)) continue;
-                for (int v = std::max(y - kNear, 0); v <= std::min(y + kNear, cells.height() - 1);
-                     ++v)
-                    for (int u = std::max(x - kNear, 0);
-                         u <= std::min(x + kNear, cells.width() - 1); ++u)
-                        cells.insert(u, v);
-            }
-        return cells;
+        return grown(cutOf(*barrier_, room.floor, room.offset), 2);
     }
 
     /// With a rim for what is given back.
@@ -220,24 +225,13 @@ class CellMapImport {
         constexpr int kRim = 3;
         const CellPiece& box = pieces[piece];
         const CellPlace offset{box.lowest.x - kRim, box.lowest.y - kRim};
-        const int width = box.highest.x - box.lowest.x + 1 + 2 * kRim;
-        const int height = box.highest.y - box.lowest.y + 1 + 2 * kRim;
-        RoomCells room{MapCells(width, height), MapCells(width, height), offset};
-        pieces.forEachRunOfPiece(piece, [&](const CellRun& run) {
-            room.floor.insertRun(run.row - offset.y, run.first - offset.x, run.last - offset.x);
+        MapCells floor(box.highest.x - box.lowest.x + 1 + 2 * kRim,
+                       box.highest.y - box.lowest.y + 1 + 2 * kRim);
+        pieces.forEachRunOfPiece(piece, [&](const RowRun& run) {
+            floor.insertRun(run.row - offset.y, run.first - offset.x, run.last - offset.x);
         });
-        const int left = std::max(offset.x, 0), bottom = std::max(offset.y, 0);
-        const int right = std::min(offset.x + width, map_.occupied.width());
-        const int top = std::min(offset.y + height, map_.occupied.height());
-        for (int y = bottom; y < top; ++y) {
-            const auto row = map_.occupied.row(y).subspan(static_cast<std::size_t>(left),
-                                                          static_cast<std::size_t>(right - left));
-            forEachRunOf(row, [&](int first, int last) {
-                room.occupied.insertRun(y - offset.y, first + left - offset.x,
-                                        last + left - offset.x);
-            });
-        }
-        return room;
+        MapCells occupied = cutOf(map_.occupied, floor, offset);
+        return {std::move(floor), std::move(occupied), offset};
     }
 
     void keepReachable(RoomCells& room, const std::vector<CellPlace>& from) {
@@ -255,24 +249,15 @@ class CellMapImport {
 
     /// The floor under walls that were added, and a cell beyond, so that they are the border.
     void giveBack(RoomCells& room) const {
-        const auto is_free = [&](int x, int y) {
-            return map_.free.contains(x + room.offset.x, y + room.offset.y);
-        };
-        std::vector<CellPlace> under;
-        for (int y = 1; y + 1 < room.floor.height(); ++y)
-            for (int x = 1; x + 1 < room.floor.width(); ++x) {
-                if (!barrier_->contains(x + room.offset.x, y + room.offset.y) || !is_free(x, y))
-                    continue;
-                bool touches = false;
-                for (int v = y - 1; v <= y + 1; ++v)
-                    for (int u = x - 1; u <= x + 1; ++u)
-                        touches = touches || room.floor.contains(u, v);
-                if (touches) under.push_back({x, y});
-            }
-        for (const CellPlace at : under)
-            for (int v = at.y - 1; v <= at.y + 1; ++v)
-                for (int u = at.x - 1; u <= at.x + 1; ++u)
-                    if (is_free(u, v)) room.floor.insert(u, v);
+        const MapCells free = cutOf(map_.free, room.floor, room.offset);
+        const MapCells near = grown(room.floor, 1);
+        MapCells under(near.width(), near.height());
+        cutOf(*barrier_, room.floor, room.offset).forEach([&](int x, int y) {
+            if (near.contains(x, y) && free.contains(x, y)) under.insert(x, y);
+        });
+        grown(under, 1).forEach([&](int x, int y) {
+            if (free.contains(x, y)) room.floor.insert(x, y);
+        });
         // Cells that touch by a corner alone are no part of it.
         const CellPieces pieces(room.floor, CellPieces::Joined::BySides);
         const auto& list = pieces.list();

@@ -6,7 +6,7 @@
 #include "geom/pose.h"
 #include "io/import_options.h"
 #include "io/import_records.h"
-#include "raster/occupancy.h"
+#include "raster/cells.h"
 
 namespace ispace {
 
@@ -49,7 +49,7 @@ struct CellMapSource {
 ///    of at most `close_gaps` are closed (gapCells()).
 /// 2. The rooms are the regions with the points of `inside` and `known_inside`; without any the
 ///    likeliest one (likeliestRoom()) or, with RoomChoice::All, all that are closed.
-/// 3. What is below the map's noise goes (cleanRoom()), unless `simplify` is 0.
+/// 3. What is below the map's noise goes (cleanRoom()), what is smaller than `clean`.
 /// 4. With `reachable` the floor is what a disc of that radius reaches.
 /// 5. Outlines follow the cells' edges, simplified by at most `simplify` (default one cell: slanted
 ///    walls become straight lines through their stairs; two where the map is noisy).

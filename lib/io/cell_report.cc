@@ -2,14 +2,13 @@
 #include "io/cell_report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 #include "base/number.h"
 #include "env/check.h"
-#include "raster/cell_gaps.h"
-#include "raster/cell_rooms.h"
+#include "raster/distance.h"
+#include "raster/rooms.h"
 
 namespace ispace {
 
@@ -18,8 +17,6 @@ namespace {
 constexpr double kLeastOpening = 0.5;     ///< metres of the picture's border
 constexpr double kWidestDoor = 1.2;       ///< metres
 constexpr double kShareBehindDoor = 0.1;  ///< of the floor, that is worth a warning
-
-constexpr std::array<CellPlace, 4> kSides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 /// For each piece whether it is one of the rooms.
 std::vector<bool> areRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
@@ -152,7 +149,7 @@ void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& o
     if (filled + cleaning.spike_cells == 0) return;
     out.note("below the map's noise: " + countText(cleaning.specks, "speck") + " and slits of " +
              areaText(map.area(filled)) + " became floor, " + countText(cleaning.spikes, "spike") +
-             " of " + areaText(map.area(cleaning.spike_cells)) + " went; --simplify 0 keeps them");
+             " of " + areaText(map.area(cleaning.spike_cells)) + " went; --clean 0 keeps them");
 }
 
 void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
@@ -160,7 +157,7 @@ void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
     const CellPieces gaps(cut, CellPieces::Joined::ByCorners);
     const std::vector<bool> are_rooms = areRooms(pieces, rooms);
     std::vector<bool> is_ours(gaps.size());
-    gaps.forEachRun([&](const CellRun& run, std::size_t gap) {
+    gaps.forEachRun([&](const RowRun& run, std::size_t gap) {
         for (int x = run.first; x <= run.last; ++x)
             for (const CellPlace side : kSides)
                 if (const auto piece = pieces.at({x + side.x, run.row + side.y});

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "io/cell_map.h"
-#include "raster/cell_cleaning.h"
-#include "raster/cell_pieces.h"
+#include "raster/cleaning.h"
 
 namespace ispace {
 

@@ -125,7 +125,7 @@ TEST(CellReport, SpeckleOffTellsNothing) {
     EXPECT_EQ(import(drawing.map()).notes,
               std::vector<std::string>{
                   "below the map's noise: 1 speck and slits of 0.0 m2 became floor, 0 spikes of "
-                  "0.0 m2 went; --simplify 0 keeps them"});
+                  "0.0 m2 went; --clean 0 keeps them"});
     ImportOptions exact;
     exact.simplify = 0;
     EXPECT_TRUE(import(drawing.map(), exact).notes.empty());

@@ -37,6 +37,8 @@ struct ImportOptions {
     std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
                                      ///< importer's own
     std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
+    std::optional<double> clean;     ///< metres: what is smaller on a map is noise; 0: nothing;
+                                     ///< default: kNoiseWidth, or 0 where `simplify` is 0
     std::string units;               ///< m, cm, mm, inch or foot; "": as the file says
     std::string up = "auto";         ///< a mesh's upward axis: auto, x, y or z
     std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise

@@ -12,7 +12,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "plan/elements.h"
-#include "raster/cell_raster.h"
+#include "raster/grid.h"
 
 namespace ispace {
 
@@ -34,17 +34,16 @@ double coarserResolution(double resolution, double times) {
     return std::ceil(least / digit) * digit;
 }
 
-CellFrame frameOf(const Box2& box, double resolution) {
+Grid gridOf(const Box2& box, double resolution) {
     if (!(resolution >= kFinest && resolution <= kCoarsest))
         throw UsageError("a map of " + formatDouble(resolution) +
                          " m a cell cannot be written, wanted " + formatDouble(kFinest) + " to " +
                          formatDouble(kCoarsest));
     const double rim = kRim * resolution;
-    CellFrame frame{
-        {multipleBelow(box.low.x - rim, resolution), multipleBelow(box.low.y - rim, resolution)},
-        resolution};
-    const double columns = std::ceil((box.high.x + rim - frame.origin.x) / resolution);
-    const double rows = std::ceil((box.high.y + rim - frame.origin.y) / resolution);
+    const Point2 origin{multipleBelow(box.low.x - rim, resolution),
+                        multipleBelow(box.low.y - rim, resolution)};
+    const double columns = std::ceil((box.high.x + rim - origin.x) / resolution);
+    const double rows = std::ceil((box.high.y + rim - origin.y) / resolution);
     const double too_many =
         std::max(std::max(columns, rows) / kMostMapSide,
                  std::sqrt(columns * rows / static_cast<double>(kMostMapCells)));
@@ -54,30 +53,27 @@ CellFrame frameOf(const Box2& box, double resolution) {
                          " each way and " + std::to_string(kMostMapCells) +
                          " in all: take a resolution of " +
                          formatDouble(coarserResolution(resolution, too_many)) + " m");
-    frame.columns = static_cast<int>(columns);
-    frame.rows = static_cast<int>(rows);
-    return frame;
+    return gridOf(origin, resolution, static_cast<int>(columns), static_cast<int>(rows));
 }
 
 /// Paints the cells, straight into the bytes of the picture, whose top row comes first.
 class MapPainter {
   public:
-    explicit MapPainter(const CellFrame& frame) : frame_(frame) {
-        pgm_ =
-            "P5\n" + std::to_string(frame.columns) + ' ' + std::to_string(frame.rows) + "\n255\n";
+    explicit MapPainter(const Grid& grid) : grid_(grid) {
+        pgm_ = "P5\n" + std::to_string(grid.columns) + ' ' + std::to_string(grid.rows) + "\n255\n";
         header_ = pgm_.size();
-        pgm_.resize(header_ + static_cast<std::size_t>(frame.columns) *
-                                  static_cast<std::size_t>(frame.rows),
-                    kUnknown);
+        pgm_.resize(
+            header_ + static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows),
+            kUnknown);
     }
 
     void addFloor(const Regions& indoor) {
-        fill(insideRuns(curvesOf(indoor), frame_), kFree);
+        fill(runsWithin(grid_, curvesOf(indoor)), kFree);
         indoor.forEachEdge([this](const Segment2& edge) { addMiddlesOn(edge); });
     }
 
     void addSolid(const Polygon& solid) {
-        fill(insideRuns(std::span(&solid, 1), frame_), kOccupied);
+        fill(runsWithin(grid_, std::span(&solid, 1)), kOccupied);
         forEachEdge(solid, [this](const Segment2& edge) { addMiddlesOn(edge); });
     }
 
@@ -94,7 +90,7 @@ class MapPainter {
         forEachEdge(body, [&](const Segment2& edge) {
             has_cells = has_cells || !crossingsOf(edge).empty();
         });
-        const Point2 middle = frame_.toCells(bounds(body).center());
+        const Point2 middle = grid_.toCells(bounds(body).center());
         const auto column = static_cast<std::int64_t>(std::clamp(std::round(middle.x), -1.0, 1e9));
         const auto row = static_cast<std::int64_t>(std::clamp(std::round(middle.y), -1.0, 1e9));
         if (!has_cells && isFree(column, row)) *cell(column, row) = kOccupied;
@@ -102,9 +98,9 @@ class MapPainter {
 
     /// What touches free cells, at a side or a corner, is known to be no floor.
     void closeRim() {
-        for (int row = 0; row < frame_.rows; ++row) {
+        for (int row = 0; row < grid_.rows; ++row) {
             const char* const begin = cell(0, row);
-            const char* const end = begin + frame_.columns;
+            const char* const end = begin + grid_.columns;
             for (const char* at = std::find(begin, end, kFree); at != end;) {
                 const char* const stop = std::find_if(at, end, [](char c) { return c != kFree; });
                 closeAround(row, static_cast<int>(at - begin), static_cast<int>(stop - begin) - 1);
@@ -117,21 +113,21 @@ class MapPainter {
 
   private:
     [[nodiscard]] char* cell(std::int64_t column, std::int64_t row) {
-        return pgm_.data() + header_ + (frame_.rows - 1 - row) * frame_.columns + column;
+        return pgm_.data() + header_ + (grid_.rows - 1 - row) * grid_.columns + column;
     }
     [[nodiscard]] bool isFree(std::int64_t column, std::int64_t row) {
-        return column >= 0 && row >= 0 && column < frame_.columns && row < frame_.rows &&
+        return column >= 0 && row >= 0 && column < grid_.columns && row < grid_.rows &&
                *cell(column, row) == kFree;
     }
 
     const std::vector<CellPair>& crossingsOf(const Segment2& segment) {
         crossings_.clear();
-        appendCrossings(segment, frame_, crossings_);
+        appendCrossings(segment, grid_, crossings_);
         return crossings_;
     }
 
-    void fill(const std::vector<CellRun>& runs, char value) {
-        for (const CellRun& run : runs)
+    void fill(const std::vector<RowRun>& runs, char value) {
+        for (const RowRun& run : runs)
             std::fill(cell(run.first, run.row), cell(run.last, run.row) + 1, value);
     }
 
@@ -143,12 +139,12 @@ class MapPainter {
     }
 
     void closeAround(int row, int first, int last) {
-        const int left = std::max(first - 1, 0), right = std::min(last + 1, frame_.columns - 1);
-        for (int r = std::max(row - 1, 0); r <= std::min(row + 1, frame_.rows - 1); ++r)
+        const int left = std::max(first - 1, 0), right = std::min(last + 1, grid_.columns - 1);
+        for (int r = std::max(row - 1, 0); r <= std::min(row + 1, grid_.rows - 1); ++r)
             std::replace(cell(left, r), cell(right, r) + 1, kUnknown, kOccupied);
     }
 
-    const CellFrame& frame_;
+    const Grid& grid_;
     std::string pgm_;
     std::size_t header_ = 0;
     std::vector<CellPair> crossings_;
@@ -177,11 +173,11 @@ std::string yamlText(const std::string& text) {
 RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
                         const std::string& image_name) {
     const Regions& indoor = scene.environment.indoor();
-    const CellFrame frame = frameOf(bounds(indoor), resolution);
+    const Grid grid = gridOf(bounds(indoor), resolution);
     Slice slice = scene.environment.slice(height);
     // Cells are occupied that something touches: not those that a curve touches just from within.
     slice.solids = inscribedSolids(slice);
-    MapPainter painter(frame);
+    MapPainter painter(grid);
     painter.addFloor(indoor);
     for (const Polygon& solid : slice.solids) painter.addSolid(solid);
     slice.forEachLine([&](const Segment2& line) { painter.addLine(line); });
@@ -194,7 +190,7 @@ RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
     RosMapFiles files;
     files.yaml = "image: " + yamlText(image_name) +
                  "\nmode: trinary\nresolution: " + formatDouble(resolution) + "\norigin: [" +
-                 formatDouble(frame.origin.x) + ", " + formatDouble(frame.origin.y) +
+                 formatDouble(grid.limits.low.x) + ", " + formatDouble(grid.limits.low.y) +
                  ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
     files.pgm = painter.take();
     return files;

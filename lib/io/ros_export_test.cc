@@ -17,7 +17,7 @@
 #include "io/ros_map.h"
 #include "layout/test_layout.h"
 #include "raster/occupancy.h"
-#include "raster/pgm.h"
+#include "raster/picture.h"
 
 namespace ispace {
 namespace {

@@ -284,13 +284,14 @@ TEST_F(RealMaps, OfficeLosesItsNoiseAndKeepsItsFloor) {
     EXPECT_NEAR(environmentOf(read("willow-full.yaml", exact)).indoor().area(), 1312.46, 1e-6);
     const Document document = read("willow-full.yaml");
     const Environment room = environmentOf(document);
-    EXPECT_NEAR(room.indoor().area(), 1312.46, 13.1);
+    // Beams through windows and doorways, which are no floor, are 2 % of it.
+    EXPECT_NEAR(room.indoor().area(), 1312.46, 26.2);
     // Of 846 holes most were specks.
     EXPECT_LT(room.indoor().parts.at(0).holes.size(), 100U);
     EXPECT_GT(room.indoor().parts.at(0).holes.size(), 60U);
     EXPECT_LT(verticesOf(document), 2000U);
     // Rays through a window do leave the picture.
-    EXPECT_NE(warningsOf(document).find("the room leaves the picture over 2.40 m at"),
+    EXPECT_NE(warningsOf(document).find("the room leaves the picture over 2.10 m at"),
               std::string::npos);
 }
 

@@ -12,9 +12,8 @@
 #include "geom/boolean.h"
 #include "geom/box.h"
 #include "geom/predicates.h"
-#include "raster/cell_raster.h"
-#include "raster/occupancy.h"
-#include "raster/outline.h"
+#include "raster/contour.h"
+#include "raster/grid.h"
 
 namespace ispace {
 
@@ -57,22 +56,21 @@ std::vector<Polygon> trianglesAbove(const Mesh& mesh) {
 }
 
 /// Cells that triangles touch, with an empty rim of one.
-MapCells cellsUnder(const std::vector<Polygon>& triangles, const CellFrame& frame) {
-    MapCells cells(frame.columns, frame.rows);
+MapCells cellsUnder(const std::vector<Polygon>& triangles, const Grid& grid) {
+    MapCells cells(grid.columns, grid.rows);
     const auto insert = [&](std::int64_t column, std::int64_t row) {
-        if (column >= 0 && row >= 0 && column < frame.columns && row < frame.rows)
+        if (column >= 0 && row >= 0 && column < grid.columns && row < grid.rows)
             cells.insert(static_cast<int>(column), static_cast<int>(row));
     };
     std::vector<CellPair> crossings;
     for (const Polygon& triangle : triangles) {
-        for (const CellRun& run : insideRuns(std::span(&triangle, 1), frame))
-            for (int column = run.first; column <= run.last; ++column)
-                cells.insert(column, run.row);
+        for (const RowRun& run : runsWithin(grid, std::span(&triangle, 1)))
+            cells.insertRun(run.row, run.first, run.last);
         // What is thinner than a cell shows by its edges.
         crossings.clear();
-        forEachEdge(triangle, [&](const Segment2& e) { appendCrossings(e, frame, crossings); });
+        forEachEdge(triangle, [&](const Segment2& e) { appendCrossings(e, grid, crossings); });
         for (const CellPair& pair : crossings) insert(pair.near_column, pair.near_row);
-        const Point2 corner = frame.toCells(triangle.front());
+        const Point2 corner = grid.toCells(triangle.front());
         insert(std::lround(corner.x), std::lround(corner.y));
     }
     return cells;
@@ -84,15 +82,13 @@ std::vector<Polygon> rasterOutline(const std::vector<Polygon>& triangles) {
         for (const Point2 p : triangle) box.add(p);
     const double side = std::max(box.width(), box.depth());
     if (!(side > kUnseen)) return {};
-    CellFrame frame;
-    frame.size = side / kCells;
-    frame.origin = {box.low.x - 2 * frame.size, box.low.y - 2 * frame.size};
-    frame.columns = static_cast<int>(box.width() / frame.size) + 5;
-    frame.rows = static_cast<int>(box.depth() / frame.size) + 5;
-    std::vector<Polygon> curves = withoutStairs(boundaryCurves(cellsUnder(triangles, frame)));
+    const double size = side / kCells;
+    const Grid grid =
+        gridOf(box.low - Vec2{2 * size, 2 * size}, size, static_cast<int>(box.width() / size) + 5,
+               static_cast<int>(box.depth() / size) + 5);
+    std::vector<Polygon> curves = withoutStairs(boundaryCurves(cellsUnder(triangles, grid)));
     for (Polygon& curve : curves)
-        for (Point2& p : curve)
-            p = {frame.origin.x + frame.size * p.x, frame.origin.y + frame.size * p.y};
+        for (Point2& p : curve) p = grid.limits.low + size * (p - Point2{});
     return curves;
 }
 

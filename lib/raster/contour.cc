@@ -1,100 +1,161 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "raster/contour.h"
 
+#include <algorithm>
 #include <array>
-#include <bit>
-#include <cstdint>
+#include <cstddef>
+#include <iterator>
 #include <optional>
+#include <utility>
 
+#include "geom/predicates.h"
+#include "geom/simplify.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {
 
 namespace {
 
-/// The edges between cells of the set and others, directed with the set on the left, kept as one
-/// bit per direction (east, north, west, south) at the lattice point where each starts.
-class EdgeLattice {
-  public:
-    EdgeLattice(const Grid& grid, const CellSet& cells)
-        : grid_(grid), across_(grid.columns + 1), starts_(lattice(grid.columns, grid.rows) + 1) {
-        const auto has = [&](int column, int row) {
-            return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows &&
-                   cells.test(grid.cell(column, row));
-        };
-        cells.forEach([&](std::size_t cell) {
-            const auto columns = static_cast<std::size_t>(grid.columns);
-            const int column = static_cast<int>(cell % columns);
-            const int row = static_cast<int>(cell / columns);
-            if (!has(column, row - 1)) start(column, row, 0);
-            if (!has(column + 1, row)) start(column + 1, row, 1);
-            if (!has(column, row + 1)) start(column + 1, row + 1, 2);
-            if (!has(column - 1, row)) start(column, row + 1, 3);
-        });
-    }
+/// A run of this many cells is a wall of its own, not a tread of a slanted wall's stairs.
+constexpr double kLongRun = 12;
 
-    std::vector<Polygon> trace() {
-        std::vector<Polygon> curves;
-        for (int row = 0; row <= grid_.rows; ++row)
-            for (int column = 0; column <= grid_.columns; ++column)
-                while (starts_[lattice(column, row)] != 0) curves.push_back(follow(column, row));
-        return curves;
-    }
+/// The face of a bump keeps its corners from this many cells on; shorter ones are noise. Found on
+/// maps of robots: with it round pillars and rough walls keep their areas best.
+constexpr double kFace = 4;
 
-  private:
-    [[nodiscard]] std::size_t lattice(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
-               static_cast<std::size_t>(column);
-    }
-    void start(int column, int row, unsigned direction) {
-        starts_[lattice(column, row)] |= static_cast<std::uint8_t>(1U << direction);
-    }
-    [[nodiscard]] Point2 place(int column, int row) const {
-        const Box2& limits = grid_.limits;
-        return {limits.low.x + limits.width() * (static_cast<double>(column) / grid_.columns),
-                limits.low.y + limits.depth() * (static_cast<double>(row) / grid_.rows)};
-    }
+/// Half a cell is what withoutStairs takes of a tolerance.
+constexpr double kStairTolerance = 0.5;
 
-    [[nodiscard]] bool starts(int column, int row, unsigned direction) const {
-        return (starts_[lattice(column, row)] >> direction & 1U) != 0;
-    }
-    void take(int column, int row, unsigned direction) {
-        starts_[lattice(column, row)] &= static_cast<std::uint8_t>(~(1U << direction));
-    }
+/// In the order of kSides.
+enum Direction { East, North, West, South };
 
-    /// Takes one closed curve out of the lattice; its first edge goes last, to be met again.
-    Polygon follow(const int first_column, const int first_row) {
-        constexpr std::array<int, 4> kEast = {1, 0, -1, 0}, kNorth = {0, 1, 0, -1};
-        int column = first_column, row = first_row;
-        const auto first_direction =
-            static_cast<unsigned>(std::countr_zero(starts_[lattice(column, row)]));
-        unsigned direction = first_direction;
-        Polygon curve;
-        while (true) {
-            column += kEast[direction];
-            row += kNorth[direction];
-            // Left first: where two cells touch at a corner, stay with this one.
-            unsigned next = (direction + 1) % 4;
-            if (!starts(column, row, next)) next = direction;
-            if (!starts(column, row, next)) next = (direction + 3) % 4;
-            if (next != direction) curve.push_back(place(column, row));
-            direction = next;
-            const bool closed =
-                column == first_column && row == first_row && direction == first_direction;
-            take(column, row, direction);
-            if (closed) return curve;
-        }
-    }
+/// Offset from a lattice point to the cell ahead on the left of each direction; the one ahead on
+/// the right is that of the direction to the right.
+constexpr std::array<CellPlace, 4> kAheadLeft{{{0, 0}, {-1, 0}, {-1, -1}, {0, -1}}};
 
-    const Grid& grid_;
-    int across_;
-    std::vector<std::uint8_t> starts_;
-};
+Direction turned(Direction direction, int quarters) {
+    return static_cast<Direction>((static_cast<int>(direction) + quarters + 4) % 4);
+}
+
+bool isSetAhead(const MapCells& cells, CellPlace at, Direction direction) {
+    const CellPlace offset = kAheadLeft[direction];
+    return cells.contains(at.x + offset.x, at.y + offset.y);
+}
+
+/// Follows the boundary with the set on the left from the lower edge of the cell at `start`;
+/// marks the cells whose lower edge it passes eastwards.
+Polygon walk(const MapCells& cells, CellPlace start, MapCells& passed) {
+    Polygon corners;
+    CellPlace at = start;
+    Direction direction = East;
+    do {
+        if (direction == East) passed.insert(at.x, at.y);
+        at = {at.x + kSides[direction].x, at.y + kSides[direction].y};
+        int quarters = 0;
+        // Left first: at a corner where two cells touch the curve stays with its own.
+        if (!isSetAhead(cells, at, direction))
+            quarters = 1;
+        else if (isSetAhead(cells, at, turned(direction, -1)))
+            quarters = -1;
+        if (quarters == 0) continue;
+        direction = turned(direction, quarters);
+        corners.push_back({static_cast<double>(at.x), static_cast<double>(at.y)});
+    } while (at.x != start.x || at.y != start.y || direction != East);
+    return corners;
+}
+
+/// Without vertices at which the curve does not turn.
+Polygon cornersOf(const Polygon& curve) {
+    const std::size_t n = curve.size();
+    Polygon corners;
+    for (std::size_t i = 0; i < n; ++i)
+        if (orientation(curve[(i + n - 1) % n], curve[i], curve[(i + 1) % n]) != Turn::Straight)
+            corners.push_back(curve[i]);
+    return corners;
+}
+
+/// True for the corners of rigid cells.
+bool isRigid(Point2 corner, const MapCells* rigid) {
+    if (rigid == nullptr) return false;
+    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+    return rigid->contains(x, y) || rigid->contains(x - 1, y) || rigid->contains(x, y - 1) ||
+           rigid->contains(x - 1, y - 1);
+}
+
+/// One curve of withoutStairs.
+Polygon withoutStairs(const Polygon& curve, const MapCells* rigid) {
+    const std::size_t n = curve.size();
+    std::vector<double> run(n);  // length of edge i, from vertex i to the next
+    std::vector<Turn> turn(n);   // at vertex i
+    for (std::size_t i = 0; i < n; ++i) {
+        const Point2 before = curve[(i + n - 1) % n];
+        const Point2 after = curve[(i + 1) % n];
+        run[i] = distance(curve[i], after);
+        turn[i] = orientation(before, curve[i], after);
+    }
+    // Edges that turn one way and then back: treads and risers. The others are faces.
+    const auto is_stair = [&](std::size_t i) { return turn[i] != turn[(i + 1) % n]; };
+    const auto is_step = [&](std::size_t i) {
+        return run[i] == 1 && is_stair(i) && run[(i + n - 1) % n] < kLongRun &&
+               run[(i + 1) % n] < kLongRun && !isRigid(curve[i], rigid) &&
+               !isRigid(curve[(i + 1) % n], rigid);
+    };
+    const auto yields = [&](std::size_t i) { return is_stair(i) || run[i] < kFace; };
+    Polygon smooth;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t before = (i + n - 1) % n;
+        const bool goes = (is_step(before) || is_step(i)) && yields(before) && yields(i);
+        if (!goes) smooth.push_back(curve[i]);
+        if (is_step(i)) smooth.push_back(curve[i] + 0.5 * (curve[(i + 1) % n] - curve[i]));
+    }
+    return cornersOf(smooth);
+}
 
 }  // namespace
 
+std::vector<Polygon> boundaryCurves(const MapCells& cells) {
+    std::vector<Polygon> curves;
+    MapCells passed(cells.width(), cells.height());
+    for (int y = 0; y < cells.height(); ++y)
+        for (int x = 0; x < cells.width(); ++x)
+            if (cells.contains(x, y) && !cells.contains(x, y - 1) && !passed.contains(x, y))
+                curves.push_back(walk(cells, {x, y}, passed));
+    return curves;
+}
+
+std::vector<Polygon> withoutStairs(const std::vector<Polygon>& curves, const MapCells* rigid) {
+    std::vector<Polygon> smooth;
+    smooth.reserve(curves.size());
+    for (const Polygon& curve : curves) smooth.push_back(withoutStairs(curve, rigid));
+    return smooth;
+}
+
+Region vectorised(const MapCells& cells, double tolerance, const MapCells* rigid) {
+    std::vector<Polygon> curves = boundaryCurves(cells);
+    std::vector<Point2> kept;
+    for (const Polygon& curve : curves)
+        std::copy_if(curve.begin(), curve.end(), std::back_inserter(kept),
+                     [rigid](Point2 corner) { return isRigid(corner, rigid); });
+    if (tolerance >= kStairTolerance) {
+        curves = withoutStairs(curves, rigid);
+        tolerance -= kStairTolerance;
+    }
+    if (tolerance > 0) curves = simplified(curves, tolerance, std::move(kept));
+    Region region;
+    region.outline = std::move(curves.front());
+    region.holes.assign(std::make_move_iterator(curves.begin() + 1),
+                        std::make_move_iterator(curves.end()));
+    return region;
+}
+
 std::vector<Polygon> contours(const Grid& grid, const CellSet& cells) {
-    return EdgeLattice(grid, cells).trace();
+    std::vector<Polygon> curves = boundaryCurves(MapCells(cells, grid.columns, grid.rows));
+    const Box2& limits = grid.limits;
+    for (Polygon& curve : curves)
+        for (Point2& p : curve)
+            p = {limits.low.x + limits.width() * (p.x / grid.columns),
+                 limits.low.y + limits.depth() * (p.y / grid.rows)};
+    return curves;
 }
 
 std::vector<Region> cellRegions(const Grid& grid, const CellSet& cells) {

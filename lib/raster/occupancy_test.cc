@@ -67,46 +67,5 @@ TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
     EXPECT_TRUE(freeCells(image, {}).contains(0, 1));
 }
 
-TEST(Occupancy, WidestPlace) {
-    const CellPlace place = widestPlace(cellsOf({".....#",  //
-                                                 ".....#",  //
-                                                 ".....#",  //
-                                                 ".....#",  //
-                                                 ".....#",  //
-                                                 "....#."}));
-    EXPECT_EQ(place.x, 2);
-    EXPECT_EQ(place.y, 3);  // the ring below it holds the corner of the notch
-    const CellPlace corner = widestPlace(cellsOf({"#.", "##"}));
-    EXPECT_EQ(corner.x, 1);
-    EXPECT_EQ(corner.y, 1);
-}
-
-TEST(Occupancy, WidestPlaceEqualsBruteForce) {
-    std::mt19937_64 random(99);
-    for (int round = 0; round < 200; ++round) {
-        MapCells cells(1 + static_cast<int>(random() % 12), 1 + static_cast<int>(random() % 12));
-        for (int y = 0; y < cells.height(); ++y)
-            for (int x = 0; x < cells.width(); ++x)
-                if (random() % 8 != 0) cells.insert(x, y);
-        if (cells.count() == 0) continue;
-        const auto rings = [&cells](int x, int y) {
-            int ring = 0;
-            const auto whole = [&](int r) {
-                for (int v = y - r; v <= y + r; ++v)
-                    for (int u = x - r; u <= x + r; ++u)
-                        if (!cells.contains(u, v)) return false;
-                return true;
-            };
-            while (whole(ring)) ++ring;
-            return ring;
-        };
-        int best = 0;
-        for (int y = 0; y < cells.height(); ++y)
-            for (int x = 0; x < cells.width(); ++x) best = std::max(best, rings(x, y));
-        const CellPlace place = widestPlace(cells);
-        EXPECT_EQ(rings(place.x, place.y), best);
-    }
-}
-
 }  // namespace
 }  // namespace ispace

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/pgm.h"
-
 #include <algorithm>
 #include <cstddef>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "base/utf8.h"
+#include "raster/picture.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/pgm.h"
+#include "raster/picture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,251 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "raster/picture.h"
 
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
 #include "base/error.h"
-#include "raster/pgm.h"
-#include "raster/picture_module.h"
-#include "raster/png_picture.h"
+#include "base/number.h"
+#include "base/program.h"
+#include "base/utf8.h"
+#include "raster/module/decoded_picture.h"
 
 namespace ispace {
+
+namespace {
+
+/// Width and height as a header has them.
+using Size = std::pair<std::int64_t, std::int64_t>;
+
+/// Numbers of a header; nothing beyond the end of the file.
+class Bytes {
+  public:
+    Bytes(std::string_view bytes, bool big_endian) : bytes_(bytes), big_endian_(big_endian) {}
+
+    [[nodiscard]] std::optional<std::int64_t> number(std::size_t at, std::size_t count) const {
+        if (at > bytes_.size() || bytes_.size() - at < count) return std::nullopt;
+        std::int64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            value = value * 256 +
+                    static_cast<unsigned char>(bytes_[at + (big_endian_ ? i : count - 1 - i)]);
+        return value;
+    }
+    [[nodiscard]] std::optional<Size> size(std::size_t width_at, std::size_t height_at,
+                                           std::size_t count) const {
+        const auto width = number(width_at, count), height = number(height_at, count);
+        if (!width || !height) return std::nullopt;
+        return Size(*width, *height);
+    }
+
+  private:
+    std::string_view bytes_;
+    bool big_endian_;
+};
+
+std::optional<Size> sizeOfBmp(std::string_view bytes) {
+    const Bytes header(bytes, false);
+    if (header.number(14, 4) == 12) return header.size(18, 20, 2);
+    auto size = header.size(18, 22, 4);
+    // Rows from the top down have a negative height.
+    if (size && size->second > INT32_MAX) size->second = (std::int64_t{1} << 32) - size->second;
+    return size;
+}
+
+/// Walks over the segments to the one that begins a frame.
+std::optional<Size> sizeOfJpeg(std::string_view bytes) {
+    const Bytes header(bytes, true);
+    for (std::size_t at = 2;;) {
+        const auto mark = header.number(at, 2), length = header.number(at + 2, 2);
+        if (!mark || !length || *mark < 0xff01) return std::nullopt;
+        const std::int64_t kind = *mark & 0xff;
+        if (kind == 0xff) {  // padding
+            ++at;
+            continue;
+        }
+        const bool is_frame =
+            kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc;
+        if (is_frame) return header.size(at + 7, at + 5, 2);
+        at += 2 + static_cast<std::size_t>(*length);
+    }
+}
+
+/// libjpeg fills what is cut off with grey. The mark of the end cannot stand in the picture's data,
+/// and a small picture within the picture comes before them.
+bool isWholeJpeg(std::string_view bytes) {
+    const std::size_t data = bytes.rfind("\xff\xda");
+    return data != std::string_view::npos && bytes.find("\xff\xd9", data) != std::string_view::npos;
+}
+
+/// Of the first picture in the file.
+std::optional<Size> sizeOfTiff(std::string_view bytes) {
+    const Bytes file(bytes, bytes.starts_with("MM"));
+    const auto directory = file.number(4, 4);
+    if (!directory) return std::nullopt;
+    const auto first = static_cast<std::size_t>(*directory);
+    const auto entries = file.number(first, 2);
+    Size size;
+    for (std::size_t i = 0; entries && i < static_cast<std::size_t>(*entries); ++i) {
+        constexpr std::int64_t kWidth = 256, kHeight = 257, kShort = 3;
+        const std::size_t at = first + 2 + 12 * i;
+        const std::int64_t tag = file.number(at, 2).value_or(0);
+        if (tag != kWidth && tag != kHeight) continue;
+        const auto type = file.number(at + 2, 2);
+        const auto value = file.number(at + 8, type == kShort ? 2 : 4);
+        (tag == kWidth ? size.first : size.second) = value.value_or(0);
+    }
+    return size;
+}
+
+std::optional<Size> sizeOfWebP(std::string_view bytes) {
+    const Bytes header(bytes, false);
+    const std::string_view kind = bytes.substr(std::min<std::size_t>(12, bytes.size()), 4);
+    if (kind == "VP8X") {
+        const auto size = header.size(24, 27, 3);
+        return size ? std::optional(Size(size->first + 1, size->second + 1)) : std::nullopt;
+    }
+    if (kind == "VP8L") {
+        const auto bits = header.number(21, 4);
+        if (!bits) return std::nullopt;
+        return Size((*bits & 0x3fff) + 1, (*bits >> 14 & 0x3fff) + 1);
+    }
+    const auto size = header.size(26, 28, 2);
+    return size ? std::optional(Size(size->first & 0x3fff, size->second & 0x3fff)) : std::nullopt;
+}
+
+/// The first two numbers behind the magic, past comments.
+std::optional<Size> sizeOfPnm(std::string_view bytes) {
+    constexpr std::string_view kBlanks = " \t\r\n\v\f";
+    std::array<std::int64_t, 2> numbers{};
+    std::size_t at = 2;
+    for (std::int64_t& number : numbers) {
+        while ((at = bytes.find_first_not_of(kBlanks, at)) != std::string_view::npos &&
+               bytes[at] == '#')
+            at = bytes.find('\n', at);
+        if (at == std::string_view::npos) return std::nullopt;
+        const std::size_t end = std::min(bytes.find_first_of(kBlanks, at), bytes.size());
+        const auto value = parseInteger(bytes.substr(at, end - at));
+        if (!value || *value < 1) return std::nullopt;
+        number = *value;
+        at = end;
+    }
+    return Size(numbers[0], numbers[1]);
+}
+
+bool isBmp(std::string_view bytes) {
+    // Text may begin with BM; a header goes on with zeros, and its length.
+    constexpr std::array<std::int64_t, 7> kLengths{12, 40, 52, 56, 64, 108, 124};
+    const Bytes header(bytes, false);
+    return bytes.starts_with("BM") && header.number(6, 4) == 0 &&
+           std::find(kLengths.begin(), kLengths.end(), header.number(14, 4)) != kLengths.end();
+}
+
+bool isTiff(std::string_view bytes) {
+    return bytes.starts_with(std::string_view("II*\0", 4)) ||
+           bytes.starts_with(std::string_view("MM\0*", 4));
+}
+
+bool isPnm(std::string_view bytes) {
+    constexpr std::string_view kKinds = "1346";  // 2 and 5 are PGM
+    return bytes.size() > 2 && bytes[0] == 'P' && kKinds.find(bytes[1]) != kKinds.npos &&
+           (bytes[2] == ' ' || bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == '\t');
+}
+
+struct PictureFormat {
+    const char* name;
+    bool (*holds)(std::string_view);
+    std::optional<Size> (*size)(std::string_view);
+};
+
+constexpr PictureFormat kFormats[] = {
+    {"JPEG", [](std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }, sizeOfJpeg},
+    {"BMP", isBmp, sizeOfBmp},
+    {"TIFF", isTiff, sizeOfTiff},
+    {"WebP",
+     [](std::string_view bytes) {
+         return bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP");
+     },
+     sizeOfWebP},
+    {"PNM", isPnm, sizeOfPnm},
+};
+
+const PictureFormat* formatOf(std::string_view bytes) {
+    const auto* const found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                           [bytes](const auto& f) { return f.holds(bytes); });
+    return found == std::end(kFormats) ? nullptr : found;
+}
+
+/// Opened anew each time: the loader counts, and pictures are few.
+PictureDecoder& decoder(const std::string& format, const std::string& name) {
+    const std::string path =
+        (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "pictures.so").string();
+    void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    void* const function = module == nullptr ? nullptr : ::dlsym(module, kPictureDecoder);
+    if (function == nullptr) {
+        const char* const reason = ::dlerror();
+        throw FormatError(
+            Diagnostic{displayName(name), 0, 0,
+                       "a " + format + " picture needs OpenCV (Debian: libopencv-imgcodecs406): " +
+                           printable(reason == nullptr ? path : reason) +
+                           "; or convert it, for example with `convert FILE map.png`"});
+    }
+    return *reinterpret_cast<PictureDecoder*>(function);
+}
+
+Picture pictureOf(const DecodedPicture& decoded) {
+    Picture picture;
+    picture.width = decoded.width;
+    picture.height = decoded.height;
+    picture.max_value = 3 * 255;
+    const auto channels = static_cast<std::size_t>(decoded.channels);
+    const std::vector<std::uint8_t>& samples = decoded.samples;
+    picture.samples.reserve(samples.size() / channels);
+    if (channels == 4) picture.opacity.reserve(samples.size() / channels);
+    for (std::size_t i = 0; i + channels <= samples.size(); i += channels) {
+        const int sum =
+            channels == 1 ? 3 * samples[i] : samples[i] + samples[i + 1] + samples[i + 2];
+        picture.samples.push_back(static_cast<std::uint16_t>(sum));
+        if (channels == 4) picture.opacity.push_back(samples[i + 3]);
+    }
+    return picture;
+}
+
+}  // namespace
+
+std::string foreignPicture(std::string_view bytes) {
+    const PictureFormat* const format = formatOf(bytes);
+    return format == nullptr ? "" : format->name;
+}
+
+Picture decodePicture(std::string_view bytes, const std::string& name) {
+    const auto fail = [&name](const std::string& message) {
+        throw FormatError(Diagnostic{displayName(name), 0, 0, message});
+    };
+    const PictureFormat* const format = formatOf(bytes);
+    if (format == nullptr) fail("no picture that OpenCV reads");
+    const std::string kind = format->name;
+    const auto size = format->size(bytes);
+    if (!size || size->first < 1 || size->second < 1)
+        fail("bad " + kind + " picture: its header says no size; is the file whole?");
+    const auto [width, height] = *size;
+    const std::string extent = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+    if (width > kMaxDecodedPixels || height > kMaxDecodedPixels ||
+        width * height > kMaxDecodedPixels)
+        fail(extent + ", wanted at most " + std::to_string(kMaxDecodedPixels));
+    if (kind == "JPEG" && !isWholeJpeg(bytes)) fail("truncated JPEG picture");
+    DecodedPicture decoded;
+    decoder(kind, name)(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), decoded);
+    if (!decoded.error.empty()) fail("bad " + kind + " picture: " + printable(decoded.error));
+    if (decoded.width != width || decoded.height != height)
+        fail("bad " + kind + " picture: its header says " + extent + ", it holds " +
+             std::to_string(decoded.width) + " x " + std::to_string(decoded.height));
+    return pictureOf(decoded);
+}
 
 bool isPicture(std::string_view bytes) {
     const bool is_pgm = (bytes.starts_with("P2") || bytes.starts_with("P5")) && bytes.size() > 2 &&

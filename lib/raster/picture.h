@@ -17,7 +17,7 @@ struct Picture {
     std::vector<std::uint8_t> opacity;   ///< 0 .. 255 for each sample; empty: all opaque
 };
 
-/// True if the bytes begin like a picture that parsePicture reads.
+/// True if the bytes start like a picture that parsePicture() reads.
 bool isPicture(std::string_view bytes);
 
 /// Reads a picture, told apart by content: PNG, PGM, and through OpenCV JPEG, BMP, TIFF, WebP, PBM
@@ -25,5 +25,38 @@ bool isPicture(std::string_view bytes);
 /// \param name the picture's file, for messages
 /// \throws FormatError
 Picture parsePicture(std::string_view bytes, const std::string& name);
+
+/// Pictures with more pixels are refused before anything is allocated.
+constexpr std::int64_t kMaxPgmPixels = 400'000'000;
+
+/// Reads a PGM picture: P2 (text) or P5 (one byte a sample, or two, big-endian, where the maximum
+/// is above 255), with comments in the header, and nothing after the last sample.
+/// \param name the picture's file, for messages
+/// \throws FormatError
+Picture parsePgm(std::string_view bytes, const std::string& name);
+
+/// Larger PNG pictures are refused before anything is allocated: they compress a thousandfold.
+constexpr std::int64_t kMaxPngPixels = 100'000'000;
+
+bool isPng(std::string_view bytes);
+
+/// Reads a PNG picture of any kind; colours with 16 bits are rounded to eight. Colour space
+/// information (gAMA, iCCP, …) is ignored: maps store values, not colours.
+/// The result's max_value is 765 = 3 * 255.
+/// \throws FormatError: no PNG, damaged, too large
+Picture parsePng(std::string_view bytes, const std::string& name);
+
+/// Pictures with more pixels are refused before they are decoded.
+constexpr std::int64_t kMaxDecodedPixels = 100'000'000;
+
+/// The format of a picture that only OpenCV reads ("JPEG", "BMP", …);
+/// "" for any other.
+std::string foreignPicture(std::string_view bytes);
+
+/// Decodes such a picture with the module `lib/ispace/pictures.so` beside the program, opened on
+/// demand because OpenCV's imgcodecs loads 140 more libraries. Grey becomes
+/// three equal colours, 16 bits become 8.
+/// \throws FormatError: damaged, too large, or the module cannot be opened (with what to install)
+Picture decodePicture(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "raster/cell_pieces.h"
-#include "raster/occupancy.h"
+#include "raster/cells.h"
 
 namespace ispace::testing {
 

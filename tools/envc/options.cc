@@ -121,6 +121,9 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.meters("--simplify", import.simplify, 0, 1000,
                 "outlines of plans may move by this (default: one cell of a map, else 0)",
                 Enters::History);
+    line.meters("--clean", import.clean, 0, 100,
+                "what is smaller on a map made by a robot is noise (default: 0.5 m; 0: none)",
+                Enters::History);
     line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
     line.choice("--up", import.up, {"auto", "x", "y", "z"}, "axis of a mesh that points up",
                 Enters::History);

@@ -1,72 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/cell_strips.h"
+#include "raster/spikes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_set>
 
-#include "raster/cell_pieces.h"
+#include "raster/cells.h"
+#include "raster/morphology.h"
+#include "raster/rooms.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr double kLeastRoom = 1;         ///< m2
-constexpr double kLeastRoomWidth = 0.5;  ///< metres
-constexpr std::size_t kLeastSpike = 3;   ///< cells; shorter ones are bumps
-constexpr int kNearWall = 5;             ///< cells
+constexpr std::size_t kMinSpike = 3;  ///< cells; smaller ones are bumps
+constexpr int kMinNear = 5;           ///< cells to a wall that is near
 
-/// The union of all squares of `side` cells in the set.
-MapCells opened(const MapCells& cells, int side) {
-    // First the squares' lower left cells, then the squares; each by columns, then by rows.
-    const auto n = static_cast<std::size_t>(cells.width());
-    MapCells squares(cells.width(), cells.height()), result(cells.width(), cells.height());
-    std::vector<int> column(n);         // cells of a run upwards, or of a square that are left
-    std::vector<std::uint8_t> flag(n);  // that is long enough, or begins in the row
-    for (int y = cells.height() - 1; y >= 0; --y) {
-        const std::span<const std::uint8_t> row = cells.row(y);
-        for (std::size_t i = 0; i < n; ++i) {
-            column[i] = row[i] == 0 ? 0 : column[i] + 1;
-            flag[i] = column[i] >= side ? 1 : 0;
-        }
-        forEachRunOf(flag, [&](int first, int last) {
-            if (last - first + 1 >= side) squares.insertRun(y, first, last - side + 1);
-        });
-    }
-    std::fill(column.begin(), column.end(), 0);
-    for (int y = 0; y < cells.height(); ++y) {
-        const std::span<const std::uint8_t> row = squares.row(y);
-        for (std::size_t i = 0; i < n; ++i) {
-            column[i] = row[i] != 0 ? side : std::max(column[i] - 1, 0);
-            flag[i] = column[i] > 0 ? 1 : 0;
-        }
-        forEachRunOf(flag,
-                     [&](int first, int last) { result.insertRun(y, first, last + side - 1); });
-    }
-    return result;
-}
-
-/// Cells with an occupied one within kNearWall cells along rows and columns.
-MapCells nearOccupied(const MapCells& occupied) {
-    MapCells beside(occupied.width(), occupied.height());
-    occupied.forEach([&beside](int x, int y) {
-        const int last = std::min(x + kNearWall, beside.width() - 1);
-        for (int u = std::max(x - kNearWall, 0); u <= last; ++u) beside.insert(u, y);
-    });
-    MapCells near(occupied.width(), occupied.height());
-    beside.forEach([&near](int x, int y) {
-        const int last = std::min(y + kNearWall, near.height() - 1);
-        for (int v = std::max(y - kNearWall, 0); v <= last; ++v) near.insert(x, v);
-    });
-    return near;
-}
-
-/// The floor that is no strip: wider than a cell, and than two where no wall is near.
-MapCells broadFloor(const RoomCells& room) {
-    MapCells broad = opened(room.floor, 3);
+/// The floor that is no strip: wider than a cell, and than `widest` cells where no wall is near.
+MapCells broadFloor(const RoomCells& room, int widest) {
+    MapCells broad = opened(room.floor, widest + 1);
     const MapCells two = opened(room.floor, 2);
-    const MapCells near = nearOccupied(room.occupied);
+    const MapCells near = grown(room.occupied, std::max(kMinNear, widest));
     two.forEach([&](int x, int y) {
         if (near.contains(x, y)) broad.insert(x, y);
     });
@@ -82,7 +37,7 @@ class Strips {
           strips_(difference(floor, broad), CellPieces::Joined::BySides),
           neighbours_(broad_.size() + strips_.size()),
           stays_(neighbours_.size()) {
-        strips_.forEachRun([&](const CellRun& run, std::size_t strip) {
+        strips_.forEachRun([&](const RowRun& run, std::size_t strip) {
             for (int x = run.first; x <= run.last; ++x)
                 for (const int y : {run.row - 1, run.row + 1}) meet({x, y}, strip);
             meet({run.first - 1, run.row}, strip);
@@ -101,7 +56,7 @@ class Strips {
             const auto& around = neighbours_[broad_.size() + i];
             const bool hangs_on = std::any_of(around.begin(), around.end(),
                                               [this](std::size_t node) { return stays_[node]; });
-            if (hangs_on && strips_[i].cells < kLeastSpike) stays_[broad_.size() + i] = true;
+            if (hangs_on && strips_[i].cells < kMinSpike) stays_[broad_.size() + i] = true;
         }
     }
 
@@ -110,10 +65,10 @@ class Strips {
         const auto erase = [&](const CellPieces& pieces, std::size_t offset) {
             for (std::size_t i = 0; i < pieces.size(); ++i) {
                 if (stays_[offset + i]) continue;
-                if (pieces[i].cells >= kLeastSpike) ++done.spikes;
+                if (pieces[i].cells >= kMinSpike) ++done.spikes;
                 done.spike_cells += pieces[i].cells;
             }
-            pieces.forEachRun([&](const CellRun& run, std::size_t piece) {
+            pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
                 if (stays_[offset + piece]) return;
                 floor.eraseRun(run.row, run.first, run.last);
             });
@@ -144,7 +99,7 @@ class Strips {
         std::size_t largest = 0;
         for (std::size_t i = 0; i < broad_.size(); ++i) {
             if (broad_[i].cells > broad_[largest].cells) largest = i;
-            if (static_cast<double>(broad_[i].cells) * resolution * resolution >= kLeastRoom &&
+            if (static_cast<double>(broad_[i].cells) * resolution * resolution >= kMinRoomArea &&
                 isWide(i, resolution))
                 stays_[i] = true;
         }
@@ -152,14 +107,14 @@ class Strips {
         if (!any && !stays_.empty()) stays_[largest] = true;
     }
 
-    /// A square of kLeastRoomWidth fits in.
+    /// A square of kMinRoomWidth fits in.
     bool isWide(std::size_t piece, double resolution) {
-        const int side = static_cast<int>(std::ceil(kLeastRoomWidth / resolution));
+        const int side = static_cast<int>(std::ceil(kMinRoomWidth / resolution));
         if (broad_[piece].extent() < side) return false;
         if (is_wide_.empty()) {
             is_wide_.resize(broad_.size());
             const MapCells wide = opened(floor_, side);
-            broad_.forEachRun([&](const CellRun& run, std::size_t of) {
+            broad_.forEachRun([&](const RowRun& run, std::size_t of) {
                 const auto begin = wide.row(run.row).begin();
                 const auto end = begin + run.last + 1;
                 if (std::find(begin + run.first, end, 1) != end) is_wide_[of] = true;
@@ -195,9 +150,10 @@ class Strips {
 
 }  // namespace
 
-void removeSpikes(RoomCells& room, double resolution, const std::vector<CellPlace>& keep,
-                  Cleaning& done) {
-    const MapCells broad = broadFloor(room);
+void removeSpikes(RoomCells& room, double resolution, double width,
+                  const std::vector<CellPlace>& keep, Cleaning& done) {
+    const MapCells broad =
+        broadFloor(room, std::max(2, static_cast<int>(width / resolution * 1.001)));
     Strips strips(room.floor, broad);
     strips.choose(resolution, keep);
     strips.apply(room.floor, done);

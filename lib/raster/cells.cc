@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/cell_pieces.h"
+#include "raster/cells.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace ispace {
+
+std::size_t MapCells::count() const {
+    return static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), 1));
+}
+
+MapCells difference(const MapCells& cells, const MapCells& others) {
+    MapCells rest = cells;
+    others.forEach([&rest](int x, int y) { rest.erase(x, y); });
+    return rest;
+}
+
+MapCells complement(const MapCells& cells) {
+    MapCells others(cells.width(), cells.height());
+    for (int y = 0; y < cells.height(); ++y) {
+        int next = 0;
+        forEachRunOf(cells.row(y), [&](int first, int last) {
+            if (next < first) others.insertRun(y, next, first - 1);
+            next = last + 1;
+        });
+        if (next < cells.width()) others.insertRun(y, next, cells.width() - 1);
+    }
+    return others;
+}
 
 namespace {
 
@@ -56,8 +79,8 @@ void CellPieces::joinRows(Joined joined, std::vector<Index>& root) const {
         std::size_t below = row_begin_[y - 1];
         std::size_t above = row_begin_[y];
         while (below < row_begin_[y] && above < row_begin_[y + 1]) {
-            const CellRun& low = runs_[below];
-            const CellRun& high = runs_[above];
+            const RowRun& low = runs_[below];
+            const RowRun& high = runs_[above];
             if (low.first <= high.last + reach && high.first <= low.last + reach) {
                 const Index a = rootOf(root, static_cast<Index>(below));
                 const Index b = rootOf(root, static_cast<Index>(above));
@@ -71,7 +94,7 @@ void CellPieces::joinRows(Joined joined, std::vector<Index>& root) const {
 void CellPieces::addUp(std::vector<Index>& root) {
     piece_of_.resize(runs_.size());
     for (std::size_t i = 0; i < runs_.size(); ++i) {
-        const CellRun& run = runs_[i];
+        const RowRun& run = runs_[i];
         const Index r = rootOf(root, static_cast<Index>(i));
         if (r == i) {
             piece_of_[i] = static_cast<Index>(pieces_.size());
@@ -106,7 +129,7 @@ std::size_t CellPieces::firstRun(CellPlace place) const {
     const auto begin = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y]);
     const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(row_begin_[y + 1]);
     const auto run = std::partition_point(
-        begin, end, [&place](const CellRun& run) { return run.last < place.x; });
+        begin, end, [&place](const RowRun& run) { return run.last < place.x; });
     return static_cast<std::size_t>(run - runs_.begin());
 }
 
@@ -118,7 +141,7 @@ double CellPieces::borderShare(std::size_t piece) const {
 MapCells CellPieces::cellsOf(std::size_t piece) const {
     MapCells cells(width_, height_);
     forEachRunOfPiece(piece,
-                      [&](const CellRun& run) { cells.insertRun(run.row, run.first, run.last); });
+                      [&](const RowRun& run) { cells.insertRun(run.row, run.first, run.last); });
     return cells;
 }
 

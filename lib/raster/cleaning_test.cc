@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/cell_cleaning.h"
+#include "raster/cleaning.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "raster/cell_pieces.h"
 #include "raster/test_cells.h"
 
 namespace ispace {
@@ -42,7 +41,7 @@ TEST(CleanRoom, SpecksBecomeFloorAndLegsOfTablesStay) {
                              "#...........    ...#",  //
                              "#..................#",  //
                              "####################"});
-    const Cleaning done = cleanRoom(room, kFine, {});
+    const Cleaning done = cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), (std::vector<std::string>{"####################",  //
                                                             "#..................#",  //
                                                             "#..................#",  //
@@ -67,7 +66,7 @@ TEST(CleanRoom, CoarseCellsMeanSomething) {
                                         "###.#####",  //
                                         "###.#####"};
     RoomCells room = roomOf(rows);
-    cleanRoom(room, 0.5, {});
+    cleanRoom(room, 0.5, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), rows);
 }
 
@@ -81,13 +80,13 @@ TEST(CleanRoom, RaysThroughWindowsGoAndDoorsOfOneCellStay) {
     for (std::size_t y = 35; y < 38; ++y) rows[y][20] = '.';
     for (std::size_t x = 35; x < 58; ++x) rows[10][x] = '.';
     RoomCells room = roomOf(rows);
-    const Cleaning done = cleanRoom(room, kFine, {});
+    const Cleaning done = cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(room.floor.count(), 2U * 900 + 3);
     EXPECT_EQ(done.spikes, 1U);
     EXPECT_EQ(done.spike_cells, 23U);
     // A point on the ray keeps it.
     RoomCells kept = roomOf(rows);
-    cleanRoom(kept, kFine, {{50, 59}});
+    cleanRoom(kept, kFine, kNoiseWidth, {{50, 59}});
     EXPECT_EQ(kept.floor.count(), 2U * 900 + 3 + 23);
 }
 
@@ -100,7 +99,7 @@ TEST(CleanRoom, WhatHangsOnAStripGoesUnlessItIsARoom) {
         for (std::size_t y = 5; y < 5 + side; ++y)
             for (std::size_t x = 40; x < 40 + side; ++x) rows[y][x] = '.';
         RoomCells room = roomOf(rows);
-        cleanRoom(room, kFine, {});
+        cleanRoom(room, kFine, kNoiseWidth, {});
         return room.floor.count();
     };
     EXPECT_EQ(with_room(19), 900U);  // 0.9 m2
@@ -120,7 +119,7 @@ TEST(CleanRoom, SlitsOfUnknownCloseAndThinWallsStay) {
                              " .................#.....#.... ",  //
                              " ........ ........#.....#.... ",  //
                              "         ###      #     #     "});
-    cleanRoom(room, 0.14, {});
+    cleanRoom(room, 0.14, kNoiseWidth, {});
     // Dead ends of unknown became floor, above and below the door …
     EXPECT_TRUE(room.floor.contains(9, 9));
     EXPECT_TRUE(room.floor.contains(9, 1));
@@ -142,7 +141,7 @@ TEST(CleanRoom, SlitsOfUnknownCloseAndThinWallsStay) {
                               " .......... ",  //
                               "            "});
     const auto before = rowsOf(rooms.floor);
-    EXPECT_EQ(cleanRoom(rooms, kFine, {{2, 2}, {2, 6}}).slit_cells, 0U);
+    EXPECT_EQ(cleanRoom(rooms, kFine, kNoiseWidth, {{2, 2}, {2, 6}}).slit_cells, 0U);
     EXPECT_EQ(rowsOf(rooms.floor), before);
 }
 
@@ -167,7 +166,7 @@ TEST(CleanRoom, BumpsOfWallsBecomeFlatAndCornersStay) {
     stays(rough);
     stays(flat);
     RoomCells room = roomOf(rough);
-    cleanRoom(room, kFine, {});
+    cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), flat);
 }
 
@@ -179,7 +178,7 @@ TEST(CleanRoom, NoiseOverARectangleComesOutAsTheRectangle) {
             for (int x = 3; x < 203; ++x)
                 (random() % 100 < percent ? room.occupied : room.floor).insert(x, y);
         room.floor = largestPiece(room.floor);
-        const Cleaning done = cleanRoom(room, kFine, {});
+        const Cleaning done = cleanRoom(room, kFine, kNoiseWidth, {});
         EXPECT_TRUE(done.isRagged());
         EXPECT_EQ(CellPieces(room.floor, CellPieces::Joined::BySides).size(), 1U);
         EXPECT_NEAR(static_cast<double>(room.floor.count()), 30000, 150) << percent;
@@ -193,7 +192,7 @@ TEST(CleanRoom, FineCellsCostNoMoreThanCoarseOnes) {
     RoomCells room{MapCells(kSide, kSide), MapCells(kSide, kSide), {}};
     for (int y = 1; y + 1 < kSide; ++y) room.floor.insertRun(y, 1, kSide - 2);
     room.floor.erase(kSide / 2, kSide / 2);
-    const Cleaning done = cleanRoom(room, 0.0005, {});
+    const Cleaning done = cleanRoom(room, 0.0005, kNoiseWidth, {});
     EXPECT_EQ(done.specks, 1U);
     EXPECT_EQ(room.floor.count(), std::size_t{kSide - 2} * (kSide - 2));
 }
@@ -206,7 +205,7 @@ TEST(CleanRoom, LanesWithManyRooms) {
     for (int x = 0; x + 3 < kLength; x += 4)
         for (int y = 1; y < 4; ++y) room.floor.insertRun(y, x, x + 2);
     room.occupied.insertRun(4, 0, kLength - 1);
-    cleanRoom(room, 0.14, {{1, 2}, {kLength - 4, 2}});
+    cleanRoom(room, 0.14, kNoiseWidth, {{1, 2}, {kLength - 4, 2}});
     EXPECT_TRUE(room.floor.contains(1, 2));
     EXPECT_TRUE(room.floor.contains(kLength / 2, 0)) << "joins both";
     EXPECT_TRUE(room.floor.contains(kLength - 4, 2));

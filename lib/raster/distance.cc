@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/cell_distance.h"
+#include "raster/distance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-
-#include "raster/cell_pieces.h"
 
 namespace ispace {
 
@@ -104,56 +100,38 @@ std::vector<int> squaredDistances(const MapCells& cells, Beyond beyond) {
     return result;
 }
 
-namespace {
-
-template <typename Test>
-MapCells cellsWhere(const MapCells& like, const std::vector<int>& values, Test test) {
-    MapCells cells(like.width(), like.height());
-    std::size_t i = 0;
-    for (int y = 0; y < like.height(); ++y)
-        for (int x = 0; x < like.width(); ++x, ++i)
-            if (test(values[i])) cells.insert(x, y);
-    return cells;
-}
-
-}  // namespace
-
-MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellPlace>& from) {
-    // Half a cell: the edge of the cells outside lies that much before their middles.
-    const double reach = (radius + 0.5) * (radius + 0.5);
-    const MapCells middles = cellsWhere(cells, squaredDistances(cells, Beyond::Out),
-                                        [reach](int squared) { return squared >= reach; });
-    const CellPieces pieces(middles, CellPieces::Joined::BySides);
-    MapCells chosen(cells.width(), cells.height());
-    const auto choose = [&](std::size_t piece) {
-        pieces.forEachRun([&](const CellRun& run, std::size_t of) {
-            if (of != piece) return;
-            for (int x = run.first; x <= run.last; ++x) chosen.insert(x, run.row);
-        });
-    };
-    if (from.empty() && pieces.size() > 0) {
-        const auto& list = pieces.list();
-        choose(static_cast<std::size_t>(
-            std::max_element(list.begin(), list.end(),
-                             [](const auto& a, const auto& b) { return a.cells < b.cells; }) -
-            list.begin()));
+CellPlace widestPlace(const MapCells& cells) {
+    const int width = cells.width(), height = cells.height();
+    // Rows with a column on each side, and a row below and above: rings grow from beyond the grid.
+    // They are at most half as many as the shorter side, which 16 bits hold for any picture.
+    const std::size_t n = static_cast<std::size_t>(width) + 2;
+    std::vector<std::uint16_t> rings(n * (static_cast<std::size_t>(height) + 2));
+    const auto row_of = [&](int y) { return &rings[n * (static_cast<std::size_t>(y) + 1) + 1]; };
+    // Distance transform in two passes: from below and the left, then from above and the right.
+    const auto grown = [](std::uint16_t ring) { return static_cast<std::uint16_t>(ring + 1); };
+    for (int y = 0; y < height; ++y) {
+        const std::uint8_t* const is_in = cells.row(y).data();
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const below = row - n;
+        for (int x = 0; x < width; ++x)
+            if (is_in[x] != 0)
+                row[x] = grown(std::min({row[x - 1], below[x - 1], below[x], below[x + 1]}));
     }
-    const int steps = static_cast<int>(std::ceil(radius));
-    for (const CellPlace place : from) {
-        // The nearest middle whose disc covers the place.
-        std::optional<std::size_t> nearest;
-        double least = reach;
-        for (int v = -steps; v <= steps; ++v)
-            for (int u = -steps; u <= steps; ++u) {
-                const double squared = static_cast<double>(u) * u + static_cast<double>(v) * v;
-                if (squared >= least || !middles.contains(place.x + u, place.y + v)) continue;
-                least = squared;
-                nearest = pieces.at({place.x + u, place.y + v});
-            }
-        if (nearest) choose(*nearest);
+    CellPlace best;
+    std::uint16_t widest = 0;
+    for (int y = height - 1; y >= 0; --y) {
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const above = row + n;
+        for (int x = width - 1; x >= 0; --x) {
+            if (row[x] == 0) continue;
+            row[x] = std::min(row[x],
+                              grown(std::min({row[x + 1], above[x + 1], above[x], above[x - 1]})));
+            if (row[x] < widest) continue;
+            widest = row[x];
+            best = {x, y};
+        }
     }
-    return cellsWhere(cells, squaredDistances(complement(chosen), Beyond::In),
-                      [reach](int squared) { return squared < reach; });
+    return best;
 }
 
 }  // namespace ispace

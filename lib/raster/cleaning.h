@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "raster/occupancy.h"
+#include "raster/cells.h"
 
 namespace ispace {
 
@@ -13,6 +13,9 @@ struct RoomCells {
     MapCells floor, occupied;
     CellPlace offset;  ///< of the cut in the map
 };
+
+/// Metres: on a map made by a robot what is smaller is noise of its sensor.
+constexpr double kNoiseWidth = 0.5;
 
 /// What cleanRoom() did, in pieces and cells.
 struct Cleaning {
@@ -30,17 +33,19 @@ struct Cleaning {
 ///
 /// - Specks become floor: islands of one or two occupied cells, or as many as chance joins where
 ///   single ones are as frequent as on this map; islands that hold no occupied cell, pinholes
-///   between rays, of up to eight. None is wider than 0.3 m, and legs of tables stay from three
+///   between rays, of up to eight. None is wider than `width`, and legs of tables stay from three
 ///   cells on.
-/// - Spikes go: strips of floor that are one cell wide, or two where no occupied cell is near, and
-///   what hangs on them, unless that is a room by itself (1 m2, and 0.5 m wide somewhere) or holds
-///   one of `keep`. Strips that rooms need to hang together stay.
+/// - Spikes go: strips of floor that are one cell wide, or up to `width` where no occupied cell is
+///   near, and what hangs on them, unless that is a room by itself (kMinRoomArea, kMinRoomWidth) or
+///   holds one of `keep`. Strips that rooms need to hang together stay.
 /// - Slits of unknown between rays, one cell wide and with a dead end, become floor.
 /// - Bumps of straight walls, one cell deep and up to three long, become flat; corners keep
 ///   their places.
 ///
-/// Cells of 0.15 m and more are wide enough to mean something, and nothing is done. What is left is
-/// connected by sides. O(cells).
-Cleaning cleanRoom(RoomCells& room, double resolution, const std::vector<CellPlace>& keep);
+/// Cells of 0.3 times the width and more mean something, and nothing is done. What is left is
+/// connected by sides. O(cells). \param resolution, width metres: of a cell, and below which
+/// features are noise
+Cleaning cleanRoom(RoomCells& room, double resolution, double width,
+                   const std::vector<CellPlace>& keep);
 
 }  // namespace ispace

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/png_picture.h"
-
 #include <png.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/utf8.h"
+#include "raster/picture.h"
 
 namespace ispace {
 
@@ -19,7 +18,7 @@ constexpr std::size_t kChunkFrame = 12;  // length, type and check sum about a c
 constexpr std::size_t kHeaderLength = 13;
 
 /// Deflate makes at most 1032 bytes of one.
-constexpr std::int64_t kMostInflation = 1040;
+constexpr std::int64_t kMaxInflation = 1040;
 
 [[noreturn]] void fail(const std::string& name, const std::string& message) {
     throw FormatError(Diagnostic{displayName(name), 0, 0, message});
@@ -73,7 +72,7 @@ void checkSize(const Chunks& chunks, const std::string& name) {
     const auto color = static_cast<std::size_t>(static_cast<unsigned char>(header[9]));
     const std::int64_t channels = color < kChannels.size() ? kChannels[color] : 1;
     const std::int64_t bits = static_cast<unsigned char>(header[8]) * channels * width;
-    if (bits / 8 * height > kMostInflation * chunks.data)
+    if (bits / 8 * height > kMaxInflation * chunks.data)
         fail(name, "truncated PNG picture: " + std::to_string(chunks.data) +
                        " bytes of data do not hold " + size);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/picture_module.h"
+#include "raster/picture.h"
 
 #include "base/file.h"
 #include "base/test_damage.h"

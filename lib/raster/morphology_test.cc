@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "raster/morphology.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "raster/test_cells.h"
+
+namespace ispace {
+namespace {
+
+using testing::cellsOf;
+using testing::rowsOf;
+
+/// The cells of `all` for which a square of `side` cells through them meets `fits`.
+template <typename Fits>
+MapCells inSquares(const MapCells& like, int side, Fits fits) {
+    MapCells result(like.width(), like.height());
+    for (int y = 1 - side; y < like.height(); ++y)
+        for (int x = 1 - side; x < like.width(); ++x) {
+            if (!fits(x, y)) continue;
+            for (int v = y; v < y + side; ++v)
+                for (int u = x; u < x + side; ++u)
+                    if (u >= 0 && v >= 0 && u < like.width() && v < like.height())
+                        result.insert(u, v);
+        }
+    return result;
+}
+
+TEST(Morphology, EqualsBruteForce) {
+    std::mt19937_64 random(8);
+    for (int round = 0; round < 200; ++round) {
+        MapCells cells(1 + static_cast<int>(random() % 20), 1 + static_cast<int>(random() % 20));
+        for (int y = 0; y < cells.height(); ++y)
+            for (int x = 0; x < cells.width(); ++x)
+                if (random() % 10 < 8) cells.insert(x, y);
+        const int side = 1 + round % 6;
+        const auto count = [&](int x, int y) {
+            int set = 0;
+            for (int v = y; v < y + side; ++v)
+                for (int u = x; u < x + side; ++u) set += cells.contains(u, v) ? 1 : 0;
+            return set;
+        };
+        EXPECT_EQ(rowsOf(opened(cells, side)), rowsOf(inSquares(cells, side, [&](int x, int y) {
+                      return count(x, y) == side * side;
+                  })));
+        const MapCells near = grown(cells, side);
+        for (int y = 0; y < cells.height(); ++y)
+            for (int x = 0; x < cells.width(); ++x) {
+                bool any = false;
+                cells.forEach([&](int u, int v) {
+                    any = any || std::max(std::abs(u - x), std::abs(v - y)) <= side;
+                });
+                ASSERT_EQ(near.contains(x, y), any);
+            }
+    }
+}
+
+TEST(DeepestPlaces, AreFarFromTheRimAndTheGridsEdge) {
+    const MapCells cells = cellsOf({"#.....#.",  //
+                                    "#.....##",  //
+                                    "#.....#.",  //
+                                    "#.....#.",  //
+                                    ".......#"});
+    const CellPieces pieces(cells, CellPieces::Joined::BySides);
+    const std::vector<CellPlace> places = deepestPlaces(cells, pieces);
+    ASSERT_EQ(places.size(), 3U);
+    EXPECT_EQ(places[0].x, 3);
+    EXPECT_EQ(places[0].y, 2);
+    EXPECT_EQ(places[1].x, 7);
+    EXPECT_EQ(places[1].y, 1);
+}
+
+}  // namespace
+}  // namespace ispace
