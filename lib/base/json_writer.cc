@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 
 namespace ispace {
 

@@ -10,6 +10,7 @@
 #include <random>
 
 namespace ispace {
+
 namespace {
 
 TEST(ParseDouble, TakesWholeNumbersOnly) {
@@ -198,4 +199,5 @@ TEST(NumberTest, SizesForPeople) {
 }
 
 }  // namespace
+
 }  // namespace ispace

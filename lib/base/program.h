@@ -2,11 +2,35 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace ispace {
 
 /// The folder above the one that holds the running program (`PREFIX` of `PREFIX/bin/envc`): what
 /// comes with the program is found from there, installed, moved or in the build. "" if unknown.
 std::string programPrefix();
+
+class JsonWriter;
+
+/// Version of the project, as CMake's project() has it.
+std::string_view version();
+
+/// Begins the object of a report: {"schema","tool","version", and the rest follows.
+JsonWriter& beginReport(JsonWriter& json, std::string_view schema, std::string_view tool);
+
+/// The commands that touched a stream, oldest first, without the leading "# ".
+///
+/// A line holds the tool, its operands by base name and the options that change the result, so
+/// that equal work gives equal bytes wherever it is done.
+using History = std::vector<std::string>;
+
+/// `word` as a shell would need it: quoted if it holds anything but plain characters; control
+/// characters and bytes that are no UTF-8 become '?', so that a history line stays one line of
+/// text.
+std::string shellQuote(std::string_view word);
+
+/// The operand as history names it: the base name, "-" for a stream.
+std::string baseName(std::string_view operand);
 
 }  // namespace ispace

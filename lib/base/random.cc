@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "base/random_loops.h"
 #include "base/simd.h"
 
 namespace ispace {

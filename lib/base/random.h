@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
+
+#include "base/simd.h"
 
 namespace ispace {
 
@@ -43,3 +46,100 @@ struct RandomDraws {
 void draw(const RandomKey& key, std::uint32_t first, const RandomDraws& draws);
 
 }  // namespace ispace
+
+/// The loops of draw(), to be compiled for one processor or another.
+namespace ispace::random_loops {
+
+/// Elements computed together in memory.
+constexpr std::size_t kBlock = 256;
+/// Elements whose rounds are computed together.
+constexpr std::size_t kGroup = 64;
+
+/// The part of Philox' input that all elements of a sequence share; word 0 of its counter is the
+/// element.
+struct Philox {
+    std::uint32_t counter1 = 0, counter2 = 0, counter3 = 0;
+    std::uint32_t key0 = 0, key1 = 0;
+};
+
+/// Three of the four random words of each element.
+struct Words {
+    alignas(64) std::array<std::uint32_t, kBlock> a, b, c;
+};
+
+/// Where the draws of a block go; null if not wanted.
+struct Targets {
+    float* normal = nullptr;
+    float* other = nullptr;
+    float* uniform = nullptr;
+};
+
+/// Philox4x32-10 of elements first .. first + kGroup - 1.
+ISPACE_INLINE void computeGroup(const Philox& philox, std::uint32_t first, std::uint32_t* a,
+                                std::uint32_t* b, std::uint32_t* c) {
+    std::array<std::uint32_t, kGroup> x0, x1, x2, x3;  // NOLINT: set in the loop
+    for (std::uint32_t i = 0; i < kGroup; ++i) {
+        x0[i] = first + i;
+        x1[i] = philox.counter1;
+        x2[i] = philox.counter2;
+        x3[i] = philox.counter3;
+    }
+    std::uint32_t key0 = philox.key0;
+    std::uint32_t key1 = philox.key1;
+    for (int round = 0; round < 10; ++round) {
+        for (std::size_t i = 0; i < kGroup; ++i) {
+            const std::uint64_t p0 = std::uint64_t{0xD2511F53} * x0[i];
+            const std::uint64_t p1 = std::uint64_t{0xCD9E8D57} * x2[i];
+            x0[i] = static_cast<std::uint32_t>(p1 >> 32U) ^ x1[i] ^ key0;
+            x2[i] = static_cast<std::uint32_t>(p0 >> 32U) ^ x3[i] ^ key1;
+            x1[i] = static_cast<std::uint32_t>(p1);
+            x3[i] = static_cast<std::uint32_t>(p0);
+        }
+        key0 += 0x9E3779B9U;
+        key1 += 0xBB67AE85U;
+    }
+    for (std::size_t i = 0; i < kGroup; ++i) {
+        a[i] = x0[i];
+        b[i] = x1[i];
+        c[i] = x2[i];
+    }
+}
+
+/// Draws elements first .. first + count - 1. \pre count <= kBlock
+///
+/// Normals are those of Box and Muller: the root of -2 ln u in the direction of a random angle.
+ISPACE_INLINE void drawBlock(const Philox& philox, std::uint32_t first, std::size_t count,
+                             const Targets& targets) {
+    Words words;  // NOLINT: computed as far as it is read
+    for (std::size_t k = 0; k < count; k += kGroup) {
+        computeGroup(philox, first + static_cast<std::uint32_t>(k), &words.a[k], &words.b[k],
+                     &words.c[k]);
+    }
+    if (float* __restrict uniform = targets.uniform; uniform != nullptr) {
+        for (std::size_t k = 0; k < count; ++k) {
+            uniform[k] = static_cast<float>(static_cast<std::int32_t>(words.c[k] >> 8U)) * 0x1p-24F;
+        }
+    }
+    float* __restrict normal = targets.normal;
+    float* __restrict other = targets.other;
+    if (normal == nullptr && other == nullptr) return;
+    alignas(64) std::array<float, kBlock> radius;  // NOLINT: computed as far as it is read
+    for (std::size_t k = 0; k < count; ++k) {
+        // In [2^-32, 1], to 31 bits where it is small, which is what matters for the tails.
+        const float u =
+            (static_cast<float>(static_cast<std::int32_t>(words.a[k] >> 1U)) + 0.5F) * 0x1p-31F;
+        radius[k] = simd::squareRoot(-2.0F * simd::logarithm(u));
+    }
+    if (normal != nullptr) {
+        for (std::size_t k = 0; k < count; ++k) {
+            normal[k] = radius[k] * simd::sineOfTurn(words.b[k] + 0x40000000U);
+        }
+    }
+    if (other != nullptr) {
+        for (std::size_t k = 0; k < count; ++k) {
+            other[k] = radius[k] * simd::sineOfTurn(words.b[k]);
+        }
+    }
+}
+
+}  // namespace ispace::random_loops

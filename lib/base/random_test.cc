@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "base/random_loops.h"
-
 namespace ispace {
+
 namespace {
 
 using Floats = std::vector<float>;
@@ -316,4 +315,5 @@ TEST(Draw, AllAreIndependent) {
 }
 
 }  // namespace
+
 }  // namespace ispace

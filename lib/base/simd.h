@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bit>
 #include <cstddef>  // defines __GLIBC__ where it is
+#include <cstdint>
 
 /// Before a function: it is compiled for several generations of the processor, and the program
 /// takes the fastest that runs here. Loops in it must be plain enough for the compiler to
@@ -21,3 +23,85 @@
 
 /// Inlined into its callers whatever the compiler thinks.
 #define ISPACE_INLINE [[gnu::always_inline]] inline
+
+/// Elementary functions of float for loops that the compiler vectorises: additions, multiplications
+/// and operations on bits alone, so that they give the same bits on any processor and in vectors of
+/// any width. Polynomials of the logarithm, sine and cosine are those of Moshier's Cephes library.
+namespace ispace::simd {
+
+/// `a` if `first`, else `b`, without a branch that would keep a loop from being vectorised.
+ISPACE_INLINE float choose(bool first, float a, float b) {
+    const std::uint32_t mask = 0U - static_cast<std::uint32_t>(first);
+    return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a) & mask) |
+                                (std::bit_cast<std::uint32_t>(b) & ~mask));
+}
+
+/// Square root, within 2 units in the last place (relative 2e-7). \pre 0 or within [1e-30, 1e30]
+ISPACE_INLINE float squareRoot(float x) {
+    // The reciprocal root by Newton's method, from a guess that halves the exponent. 0 stays
+    // finite.
+    float y = std::bit_cast<float>(0x5f375a86U - (std::bit_cast<std::uint32_t>(x) >> 1U));
+    const float half = 0.5F * x;
+    y *= 1.5F - half * y * y;
+    y *= 1.5F - half * y * y;
+    y *= 1.5F - half * y * y;
+    return x * y;
+}
+
+/// Natural logarithm, within 1e-7 of it or of 1, whichever is more. \pre x is normal and positive
+ISPACE_INLINE float logarithm(float x) {
+    // x = 2^e (1 + t), 1 + t between the roots of 1/2 and of 2.
+    constexpr std::int32_t kRootOfHalf = 0x3f3504f3;
+    const auto bits = std::bit_cast<std::int32_t>(x);
+    const std::int32_t exponent = (bits - kRootOfHalf) >> 23;
+    const float t = std::bit_cast<float>(bits - exponent * (1 << 23)) - 1.0F;
+    const auto e = static_cast<float>(exponent);
+    float p = 7.0376836292e-2F;
+    p = p * t - 1.1514610310e-1F;
+    p = p * t + 1.1676998740e-1F;
+    p = p * t - 1.2420140846e-1F;
+    p = p * t + 1.4249322787e-1F;
+    p = p * t - 1.6668057665e-1F;
+    p = p * t + 2.0000714765e-1F;
+    p = p * t - 2.4999993993e-1F;
+    p = p * t + 3.3333331174e-1F;
+    const float square = t * t;
+    // ln 2 in two parts, the first exact in products with e.
+    return (t + (t * square * p - 0.5F * square - 2.12194440e-4F * e)) + 0.693359375F * e;
+}
+
+/// Sine of turn * 2^-32 full turns, within 1.2e-7.
+ISPACE_INLINE float sineOfTurn(std::uint32_t turn) {
+    // The nearest quarter turn, and what is left of at most an eighth.
+    const std::uint32_t shifted = turn + 0x20000000U;
+    const std::uint32_t quarter = shifted >> 30U;
+    const auto rest = static_cast<std::int32_t>(shifted & 0x3fffffffU) - 0x20000000;
+    const float x = static_cast<float>(rest) * 1.46291807926715968e-9F;  // pi / 2^31
+    const float square = x * x;
+    float s = -1.9515295891e-4F;
+    s = s * square + 8.3321608736e-3F;
+    s = s * square - 1.6666654611e-1F;
+    s = s * square * x + x;
+    float c = 2.443315711809948e-5F;
+    c = c * square - 1.388731625493765e-3F;
+    c = c * square + 4.166664568298827e-2F;
+    c = c * square * square - 0.5F * square + 1.0F;
+    const float value = choose((quarter & 1U) != 0, c, s);
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ ((quarter & 2U) << 30U));
+}
+
+/// Arc cosine in radians, within 4e-7. \pre x in [0, 1]
+ISPACE_INLINE float arcCosine(float x) {
+    // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46.
+    float p = -0.0012624911F;
+    p = p * x + 0.0066700901F;
+    p = p * x - 0.0170881256F;
+    p = p * x + 0.0308918810F;
+    p = p * x - 0.0501743046F;
+    p = p * x + 0.0889789874F;
+    p = p * x - 0.2145988016F;
+    p = p * x + 1.5707963050F;
+    return squareRoot(1.0F - x) * p;
+}
+
+}  // namespace ispace::simd

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/history.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
-#include "base/version.h"
-#include "cli/dependencies.h"
+#include "base/program.h"
+#include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "record/schema.h"
 

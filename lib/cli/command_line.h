@@ -103,48 +103,4 @@ class CommandLine {
 /// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
 bool isStream(const std::string& operand);
 
-/// Options that every tool has.
-struct CommonOptions {
-    std::string output = "-";
-    bool quiet = false;
-    int verbose = 0;
-    int threads = 0;  ///< 0: all cores this process may use
-    std::uint64_t seed = 0;
-    std::optional<bool> progress;
-    DependencyOptions dependencies;
-};
-/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` says what the product is. Without
-/// it there is no -o, -MD and -MF: the tool writes elsewhere.
-void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
-
-/// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).
-void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
-
-/// Says each warning on stderr, unless the user wants to hear less (-q).
-void warn(const CommonOptions& options, const std::string& tool,
-          std::span<const Diagnostic> warnings);
-
-/// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
-/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants: fewer
-/// work longer, and that is all. 1 starts no thread.
-void limitThreads(int threads);
-
-/// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
-std::string shareFolder();
-
-/// The usual suffix of a format of another name: {"log", "carmen"}; "": it has none.
-struct SuffixOf {
-    std::string suffix, format;
-};
-
-/// Format of a product: `to` if given, else the one whose name or usual suffix `output` ends with,
-/// in any case, else, where that has no suffix, the first of `known`.
-/// \param to nothing for a tool without --to \throws UsageError for any other suffix
-std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
-                         const std::vector<std::string>& known,
-                         const std::vector<SuffixOf>& others = {});
-
-/// Refuses binary data for a terminal. \throws UsageError
-void refuseTerminal(const std::string& output, const std::string& what);
-
 }  // namespace ispace

@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "cli/common_options.h"
 #include "cli/run_tool.h"
-#include "cli/scene_options.h"
 
 namespace ispace {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/common_options.h"
+
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
@@ -8,17 +10,16 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "base/suggest.h"
-#include "base/utf8.h"
-#include "cli/command_line.h"
 
 namespace ispace {
 
@@ -152,6 +153,76 @@ std::string outputFormat(const std::optional<std::string>& to, const std::string
 void refuseTerminal(const std::string& output, const std::string& what) {
     if (isTerminalOutput(output))
         throw UsageError(what + " is binary and stdout a terminal: use -o FILE or a pipe");
+}
+
+namespace {
+
+CellCount readCount(const std::string& text) {
+    constexpr std::int64_t kMostASide = 10000;
+    const auto comma = text.find(',');
+    const auto p = parseInteger(text.substr(0, comma));
+    const auto q = comma == std::string::npos ? p : parseInteger(text.substr(comma + 1));
+    if (!p || !q || *p < 1 || *q < 1 || *p > kMostASide || *q > kMostASide)
+        throw UsageError('`' + text + "` is not P or P,Q with whole numbers from 1 to " +
+                         std::to_string(kMostASide));
+    return {static_cast<int>(*p), static_cast<int>(*q)};
+}
+
+}  // namespace
+
+std::optional<CellChoice> CellWords::choice() const {
+    if (grid && cell)
+        throw UsageError("--grid and --cell both say how large cells are: give one of them");
+    if (grid) return *grid;
+    if (cell) return CellSize{*cell};
+    return std::nullopt;
+}
+
+void addCellOptions(CommandLine& line, CellWords& words, const std::string& purpose) {
+    line.parsed(
+        "--grid", "P[,Q]", [&words](const std::string& text) { words.grid = readCount(text); },
+        "P x Q cells over the limits " + purpose, Enters::History);
+    line.meters("--cell", words.cell, 0.0001, 1000,
+                "square cells of this size instead, e.g. 2cm (default: at most 0.1 m, larger in "
+                "huge buildings)",
+                Enters::History);
+    line.renamed("--reso", "give cells as --grid P,Q or --cell M");
+}
+
+void addAnyEnvironmentOption(CommandLine& line, bool& any_environment) {
+    line.flag("--any-environment", any_environment,
+              "go on if LAYOUT was made for another ENV than this one", Enters::History);
+}
+
+std::uint64_t byteCount(const std::string& text) {
+    const auto end = text.find_first_not_of("0123456789.");
+    const auto number = parseDouble(text.substr(0, end));
+    std::string unit = end == std::string::npos ? "" : text.substr(end);
+    for (char& c : unit)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (unit.ends_with('B')) unit.pop_back();
+    const std::string known = "KMGT";
+    const auto power = unit.empty() ? std::string::npos : known.find(unit);
+    if (!number || *number <= 0 || (!unit.empty() && (unit.size() > 1 || power > known.size())))
+        throw UsageError('`' + text + "` is not a size like 500M or 2G");
+    double bytes = *number;
+    for (std::size_t i = 0; !unit.empty() && i <= power; ++i) bytes *= 1024;
+    constexpr double kMost = 1e15;
+    if (bytes > kMost) throw UsageError('`' + text + "` is more than any machine has");
+    return static_cast<std::uint64_t>(bytes);
+}
+
+std::string byteCountText(std::uint64_t bytes) {
+    std::string_view units = "KMGT";
+    char unit = 0;
+    while (!units.empty() && bytes != 0 && bytes % 1024 == 0) {
+        bytes /= 1024;
+        unit = units.front();
+        units.remove_prefix(1);
+    }
+    std::string text = std::to_string(bytes);
+    if (unit != 0) text += unit;
+    return text;
 }
 
 }  // namespace ispace

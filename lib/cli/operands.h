@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/import_options.h"
 #include "layout/scene.h"
 #include "record/record.h"
 
@@ -65,5 +66,26 @@ std::string readStdin();
 /// `file=` of an `environment` record in a layout written to `output`: the way from its folder to
 /// ENV, never absolute; "" if ENV came from stdin or another pipe.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
+
+/// How a tool that takes any number of environments and layouts reads them as one.
+struct InputRequest {
+    std::vector<std::string> inputs;  ///< "-" for stdin
+    ImportOptions import;
+    std::vector<Record> added;  ///< that edits will add: plans are imported in their light
+    bool compiles = true;       ///< a layout's digest must match, unless any_environment
+    bool any_environment = false;
+    bool may_be_empty = false;  ///< an empty stdin is an environment without records
+};
+
+/// All inputs as one document: environments in their order, then layouts, whose records take the
+/// place of those with the same id. Layouts alone bring the environment along that they name, if it
+/// is to be compiled. Names of files are relative to the current folder; history,
+/// notes, warnings and sources are those of all.
+/// \throws as parseDocument; FormatError for doubled ids and for a digest that differs
+Document readInputs(const InputRequest& request);
+
+/// Makes the names of files in the records, which are relative to `from`, relative to `to`; "" is
+/// the current folder. Absolute names stay.
+void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to);
 
 }  // namespace ispace

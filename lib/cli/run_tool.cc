@@ -3,8 +3,12 @@
 
 #include <fcntl.h>
 #include <gmp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -15,9 +19,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/message.h"
 #include "base/run_files.h"
-#include "base/utf8.h"
-#include "cli/last_words.h"
 
 namespace ispace {
 
@@ -117,5 +120,125 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
     }
     return kFailed;
 }
+
+namespace {
+
+constexpr std::string_view kNoMemory = ": error: not enough memory for this input";
+
+/// The first part of `text` that is fit for one line.
+std::string_view firstLine(std::string_view text) { return text.substr(0, text.find('\n')); }
+
+/// True where no piece of memory worth mentioning is to be had.
+bool isMemoryOut() {
+    constexpr std::size_t kSome = std::size_t{1} << 20U;
+    void* const some = std::malloc(kSome);
+    std::free(some);
+    return some == nullptr;
+}
+
+/// Says why, and leaves; returns where there is no reason but a mistake in the program.
+void sayWhy(std::string_view tool) {
+    if (std::current_exception()) {
+        try {
+            throw;
+        } catch (const std::bad_alloc&) {
+            return sayMemoryIsOut(tool);
+        } catch (const std::length_error&) {
+            return sayMemoryIsOut(tool);
+        } catch (const std::exception& error) {
+            return sayLine({tool, ": error: ", firstLine(error.what())});
+        } catch (...) {
+            std::abort();
+        }
+    }
+    // The runtime had no memory to throw with, or nobody threw anything.
+    if (!isMemoryOut()) std::abort();
+    sayMemoryIsOut(tool);
+}
+
+[[noreturn]] void onTerminate() {
+    static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
+    if (is_told.test_and_set())
+        while (true) ::pause();  // another thread is about to end the process
+    sayWhy(::program_invocation_short_name);
+    ::_exit(EXIT_FAILURE);
+}
+
+/// Of a program, and so run before what libraries do at their start.
+using AtStart = void (*)(int, char**, char**);
+[[gnu::used, gnu::section(".preinit_array")]] const AtStart kAtStart = [](int, char**, char**) {
+    std::set_terminate(onTerminate);
+};
+
+}  // namespace
+
+void sayLine(std::initializer_list<std::string_view> pieces) noexcept {
+    std::array<char, 4096> line;
+    std::size_t size = 0;
+    for (const std::string_view piece : pieces)
+        size += piece.copy(line.data() + size, line.size() - 1 - size);
+    line[size++] = '\n';
+    const char* rest = line.data();
+    while (size > 0) {
+        const ssize_t n = ::write(STDERR_FILENO, rest, size);
+        if (n >= 0) {
+            rest += n;
+            size -= static_cast<std::size_t>(n);
+        } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+            pollfd ready{STDERR_FILENO, POLLOUT, 0};
+            static_cast<void>(::poll(&ready, 1, -1));
+        } else if (errno != EINTR) {
+            return;
+        }
+    }
+}
+
+void sayMemoryIsOut(std::string_view tool) noexcept {
+    static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
+    if (!is_told.test_and_set()) sayLine({tool, kNoMemory});
+}
+
+namespace {
+
+constexpr int kSignals[] = {SIGTERM, SIGINT};
+/// What the handler tells; it reaches nothing but what is global.
+std::atomic<int> last_signal = 0;
+std::atomic<int> event = -1;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void handle(int signal, void (*handler)(int)) {
+    struct sigaction action = {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(signal, &action, nullptr);
+}
+
+void onSignal(int signal) {
+    const int error = errno;
+    last_signal = signal;
+    static_cast<void>(!::eventfd_write(event, 1));
+    // A person who presses the keys again does not want to wait.
+    if (signal == SIGINT) handle(signal, SIG_DFL);
+    errno = error;
+}
+
+}  // namespace
+
+StopSignals::StopSignals() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+    last_signal = 0;
+    event = descriptor_;
+    // Also where they were ignored, as shells do for INT in the background: what is asked of this
+    // process is meant.
+    for (const int signal : kSignals) handle(signal, onSignal);
+}
+
+StopSignals::~StopSignals() {
+    for (const int signal : kSignals) handle(signal, SIG_IGN);
+    event = -1;
+    ::close(descriptor_);
+}
+
+int StopSignals::signal() const { return last_signal; }
 
 }  // namespace ispace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_writer.h"
 #include "base/number.h"
-#include "base/version.h"
+#include "base/program.h"
 #include "cover/coverage.h"
 
 namespace ispace {

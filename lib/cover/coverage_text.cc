@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "cover/coverage.h"
 
 namespace ispace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "base/version.h"
+#include "base/program.h"
 #include "cover/coverage.h"
 
 namespace ispace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "cover/map_parts.h"
 #include "raster/contour.h"
 

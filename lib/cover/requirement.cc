@@ -4,9 +4,8 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
-#include "base/utf8.h"
 
 namespace ispace {
 

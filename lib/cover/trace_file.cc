@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/json_writer.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "cover/json_line.h"
 #include "sense/pose_json.h"
 

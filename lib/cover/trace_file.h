@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/history.h"
+#include "base/program.h"
 #include "geom/pose.h"
 
 namespace ispace {

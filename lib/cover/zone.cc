@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
-#include "base/utf8.h"
 #include "env/body.h"
 #include "env/crossing.h"
 #include "record/schema.h"

@@ -10,7 +10,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "draw/font.h"
 #include "draw/picture.h"
 

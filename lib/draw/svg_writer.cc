@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "draw/picture.h"
 
 namespace ispace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/utf8.h"
+#include "base/message.h"
 
 namespace ispace {
 

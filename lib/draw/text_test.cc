@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/utf8.h"
+#include "base/message.h"
 
 namespace ispace {
 namespace {

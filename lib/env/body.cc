@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "env/mesh_body.h"
+#include "env/mesh.h"
 #include "env/standing.h"
 #include "env/walls.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "env/check.h"
+#include "env/info.h"
 #include "env/texts.h"
 #include "geom/predicates.h"
 

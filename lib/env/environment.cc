@@ -6,8 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include "env/check.h"
 #include "env/enclosure.h"
+#include "env/info.h"
 #include "env/mesh_cut.h"
 #include "env/openings.h"
 #include "env/walls.h"

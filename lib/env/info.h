@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "env/body.h"
 #include "env/environment.h"
 
 namespace ispace {
@@ -27,5 +28,13 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
 /// One JSON object and a newline, schema ispace-info/1.
 std::string infoJson(const EnvironmentInfo& info);
 std::string infoText(const EnvironmentInfo& info);
+
+/// Findings about the shape of a record beyond its schema and its wall lines: zones and closed
+/// fences that cross themselves, zones without extent, bodies too small for their place, files of
+/// meshes that are not loaded or hold no body.
+void checkShape(const Record& record, const Body& body, Diagnostics& findings);
+
+/// "(4.1, 2.0)": a place as people find it on a plan, to the centimetre.
+std::string placeText(Point2 p);
 
 }  // namespace ispace

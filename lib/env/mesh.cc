@@ -2,10 +2,14 @@
 #include "env/mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "env/body.h"
+#include "geom/pose.h"
 #include "geom/triangulate.h"
 
 namespace ispace {
@@ -143,6 +147,152 @@ Mesh floorMesh(const Regions& indoor) {
         for (const Point2 p : triangles.vertices) mesh.vertices.push_back({p.x, p.y, 0});
     }
     return mesh;
+}
+
+namespace {
+
+using Index = std::uint32_t;
+using Corners = std::array<float, 3>;
+
+/// As far as `at` may be, and as much again.
+constexpr double kFarthest = 2e6;
+
+double unitOf(const std::string& unit) {
+    if (unit == "cm") return 0.01;
+    if (unit == "mm") return 0.001;
+    if (unit == "inch") return 0.0254;
+    if (unit == "foot") return 0.3048;
+    return 1;
+}
+
+/// From the file's axes to ours; all of these are turns, none a mirror.
+Vec3 upright(const Corners& v, const std::string& up) {
+    const double x = v[0], y = v[1], z = v[2];
+    if (up == "y") return {x, -z, y};
+    if (up == "x") return {y, z, x};
+    return {x, y, z};
+}
+
+bool isFinite(const Corners& v) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+/// Vertices by place.
+struct Welded {
+    std::vector<Corners> places;  ///< in the order of their first vertex
+    std::vector<Index> of;        ///< of each vertex
+};
+
+Welded weldPlaces(const std::vector<Corners>& vertices) {
+    struct Entry {
+        Corners place;
+        Index vertex;
+    };
+    std::vector<Entry> sorted;
+    sorted.reserve(vertices.size());
+    for (Index i = 0; i < vertices.size(); ++i)
+        if (isFinite(vertices[i])) sorted.push_back({vertices[i], i});
+    std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
+        return a.place != b.place ? a.place < b.place : a.vertex < b.vertex;
+    });
+    // Each takes the number of the first vertex at its place, which then is counted through.
+    std::vector<Index> first(vertices.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        const bool same = i > 0 && sorted[i].place == sorted[i - 1].place;
+        first[sorted[i].vertex] = same ? first[sorted[i - 1].vertex] : sorted[i].vertex;
+    }
+    Welded out;
+    out.of.resize(vertices.size());
+    for (Index i = 0; i < vertices.size(); ++i) {
+        if (!isFinite(vertices[i])) continue;
+        if (first[i] != i) {
+            out.of[i] = out.of[first[i]];
+            continue;
+        }
+        out.of[i] = static_cast<Index>(out.places.size());
+        out.places.push_back(vertices[i]);
+    }
+    return out;
+}
+
+bool isWhole(const std::vector<Corners>& vertices, const std::array<Index, 3>& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(), [&](Index corner) {
+        return corner < vertices.size() && isFinite(vertices[corner]);
+    });
+}
+
+/// Six times the volume within, positive if the triangles are seen from outside.
+double sixVolumes(const Mesh& mesh) {
+    const Point3 middle = mesh.vertices.front();
+    double sum = 0;
+    for (const auto& [i, j, k] : mesh.triangles)
+        sum += dot(mesh.vertices[i] - middle,
+                   cross(mesh.vertices[j] - middle, mesh.vertices[k] - middle));
+    return sum;
+}
+
+}  // namespace
+
+Body meshBody(const Record& record) {
+    if (record.mesh() == nullptr) return {};
+    const auto& [vertices, triangles, digest] = *record.mesh();
+    const Welded welded = weldPlaces(vertices);
+    const std::string& up = record.text("up");
+    const double scale = meshScale(record);
+    const Tuple& at = record.tuple("at");
+    const Pose2 world_from_file{{at[0], at[1]}, record.angle("heading")};
+    const double bottom = at.size() > 2 ? at[2] : 0;
+    Mesh mesh{Material::Mesh, {}, {}};
+    // Vertices come in the order in which triangles use them; those that none uses do not count.
+    constexpr Index kUnused = ~Index{0};
+    std::vector<Index> number(welded.places.size(), kUnused);
+    mesh.vertices.reserve(welded.places.size());
+    const auto add = [&](Index place) {
+        if (number[place] != kUnused) return number[place];
+        const Vec3 v = scale * upright(welded.places[place], up);
+        const Point2 p = world_from_file * Point2{v.x, v.y};
+        mesh.vertices.push_back({p.x, p.y, bottom + v.z});
+        return number[place] = static_cast<Index>(mesh.vertices.size() - 1);
+    };
+    mesh.triangles.reserve(triangles.size());
+    for (const auto& triangle : triangles) {
+        if (!isWhole(vertices, triangle)) continue;
+        const Index a = welded.of[triangle[0]], b = welded.of[triangle[1]],
+                    c = welded.of[triangle[2]];
+        if (a == b || b == c || c == a) continue;
+        const Index i = add(a), j = add(b), k = add(c);
+        mesh.triangles.push_back({i, j, k});
+    }
+    if (mesh.triangles.empty()) return {};
+    mesh.open = !isWatertight(mesh);
+    if (!mesh.open && sixVolumes(mesh) < 0)
+        for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    Body body;
+    body.meshes.push_back(std::move(mesh));
+    return body;
+}
+
+double meshScale(const Record& record) {
+    return unitOf(record.text("unit")) * record.number("scale");
+}
+
+void checkMesh(const Record& record, const Body& body, Diagnostics& findings) {
+    const std::string file = '`' + record.text("file") + '`';
+    if (record.mesh() == nullptr) {
+        findings.add(record.finding("file", "the mesh file " + file + " is not loaded"));
+    } else if (body.meshes.empty()) {
+        findings.add(record.finding("file", "the mesh file " + file + " has no triangle"));
+    } else {
+        const auto is_far = [](const Point3& p) {
+            return !(std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest &&
+                     std::abs(p.z) <= kFarthest);
+        };
+        const std::vector<Point3>& vertices = body.meshes.front().vertices;
+        if (std::any_of(vertices.begin(), vertices.end(), is_far))
+            findings.add(record.finding("file", "the mesh file " + file +
+                                                    " reaches further than 2000 km from the "
+                                                    "origin; check `unit` and `scale`"));
+    }
 }
 
 }  // namespace ispace

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "env/check.h"
+#include "env/info.h"
 #include "env/openings.h"
 #include "env/texts.h"
 #include "geom/spatial_index.h"

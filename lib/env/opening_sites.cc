@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "base/suggest.h"
-#include "env/check.h"
+#include "base/message.h"
+#include "env/info.h"
 #include "env/openings.h"
 #include "env/texts.h"
 #include "geom/predicates.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "io/import_records.h"

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
 #include "raster/occupancy.h"

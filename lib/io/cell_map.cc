@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "env/check.h"
+#include "env/info.h"
 #include "geom/box.h"
 #include "io/cell_report.h"
 #include "raster/cleaning.h"

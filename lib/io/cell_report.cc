@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/number.h"
-#include "env/check.h"
+#include "env/info.h"
 #include "raster/distance.h"
 #include "raster/rooms.h"
 

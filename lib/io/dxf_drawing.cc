@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "io/dxf_text.h"
 
 namespace ispace {

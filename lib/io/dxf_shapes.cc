@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "io/curves.h"
 #include "io/import_records.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "io/curves.h"
 #include "io/dxf_groups.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "env/mesh_body.h"
+#include "env/mesh.h"
 #include "io/glb.h"
 #include "io/glb_model.h"
 #include "io/model.h"

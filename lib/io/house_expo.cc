@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "geom/simplify.h"
 #include "io/import_records.h"
 #include "io/plan_rooms.h"

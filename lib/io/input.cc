@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/utf8.h"
+#include "base/message.h"
 #include "io/aria_map.h"
 #include "io/bare_map.h"
 #include "io/dxf.h"
@@ -19,7 +19,6 @@
 #include "io/ros_map.h"
 #include "io/svg.h"
 #include "raster/picture.h"
-#include "record/lexer.h"
 #include "record/text.h"
 #include "record/yaml.h"
 

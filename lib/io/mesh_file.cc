@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/utf8.h"
+#include "base/message.h"
 #include "io/import_records.h"
 #include "io/mesh_load.h"
 

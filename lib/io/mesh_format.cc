@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "base/utf8.h"
+#include "base/message.h"
 
 namespace ispace {
 

@@ -22,9 +22,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "base/utf8.h"
 #include "io/mesh_format.h"
 #include "io/side_files.h"
 

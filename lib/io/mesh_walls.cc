@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "env/crossing.h"
 #include "env/mesh_cut.h"
 #include "geom/boolean.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/number.h"
-#include "env/check.h"
+#include "env/info.h"
 #include "env/texts.h"
 #include "geom/noding.h"
 #include "geom/planar_map.h"

@@ -15,9 +15,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
-#include "base/utf8.h"
 #include "geom/pose.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/run_files.h"
-#include "base/utf8.h"
 
 namespace ispace {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 
 namespace ispace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "base/utf8.h"
+#include "base/message.h"
 
 namespace ispace {
 

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "io/svg_elements.h"
 
 namespace ispace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/carriers.h"
 
-#include "base/suggest.h"
+#include "base/message.h"
 #include "env/body.h"
 #include "layout/robot.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "env/check.h"
+#include "env/info.h"
 #include "env/openings.h"
 #include "env/texts.h"
 #include "geom/planar_map.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "env/check.h"
+#include "env/info.h"
 #include "env/walls.h"
 #include "layout/indoor_index.h"
 #include "layout/parts.h"

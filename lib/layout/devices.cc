@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "base/file.h"
-#include "base/suggest.h"
+#include "base/message.h"
 #include "layout/laser.h"
 #include "layout/ranger.h"
 #include "layout/robot.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
 
 namespace ispace {
 

@@ -6,10 +6,9 @@
 #include <initializer_list>
 #include <limits>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/suggest.h"
-#include "base/utf8.h"
-#include "net/id_list.h"
+#include "net/server_state.h"
 #include "sim/words.h"
 
 namespace ispace {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "net/hall.h"
+#include "net/server_state.h"
 
 namespace ispace {
 

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <initializer_list>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "net/conversation.h"
-#include "net/id_list.h"
+#include "net/server_state.h"
 
 namespace ispace {
 

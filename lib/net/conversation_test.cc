@@ -7,7 +7,7 @@
 #include <list>
 #include <random>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "net/test_talk.h"
 
 namespace ispace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "net/server_limits.h"
+#include "net/limits.h"
 #include "sim/simulation.h"
 
 namespace ispace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/history.h"
+#include "base/program.h"
 #include "base/progress.h"
 #include "cover/trace_file.h"
 #include "layout/scene.h"

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "place/sites.h"
 
 namespace ispace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "raster/picture.h"
 
 namespace ispace {

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "base/utf8.h"
 #include "raster/module/decoded_picture.h"
 
 namespace ispace {

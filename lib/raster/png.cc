@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "base/error.h"
-#include "base/utf8.h"
+#include "base/message.h"
 #include "raster/picture.h"
 
 namespace ispace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "record/collector.h"
 
-#include "base/suggest.h"
-#include "base/utf8.h"
-#include "record/written_ids.h"
+#include "base/message.h"
+#include "record/record.h"
 
 namespace ispace {
 

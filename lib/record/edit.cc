@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/message.h"
 #include "geom/box.h"
 #include "geom/pose.h"
 #include "record/placing.h"

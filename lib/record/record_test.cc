@@ -10,6 +10,7 @@
 #include "record/text.h"
 
 namespace ispace {
+
 namespace {
 
 Record make(const char* keyword) { return Record(*testSchemas().find(keyword)); }
@@ -164,4 +165,5 @@ TEST(Digest, IsOverTheCanonicalEnvironment) {
 }
 
 }  // namespace
+
 }  // namespace ispace

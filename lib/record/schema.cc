@@ -2,11 +2,16 @@
 #include "record/schema.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
-#include "record/scalar.h"
+#include "record/record.h"
+#include "record/text.h"
 
 namespace ispace {
 
@@ -62,6 +67,164 @@ std::vector<std::string> Schemas::keywords() const {
     names.reserve(schemas_.size());
     for (const Schema& schema : schemas_) names.push_back(schema.keyword);
     return names;
+}
+
+namespace {
+
+constexpr std::string_view kMark = "@RECORDS ";
+
+/// Text as man(7) takes it: hyphens that can be copied, no escapes, no leading control character.
+std::string roff(std::string_view text) {
+    std::string out;
+    if (text.starts_with('.') || text.starts_with('\'')) out = "\\&";
+    for (const char c : text) {
+        if (c == '-')
+            out += "\\-";
+        else if (c == '\\')
+            out += "\\e";
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::string unitName(const KeySpec& key) {
+    switch (key.unit) {
+        case Unit::Length:
+            return "M";
+        case Unit::Angle:
+            return "DEG";
+        case Unit::Area:
+            return "M2";
+        case Unit::Time:
+            return "S";
+        case Unit::Frequency:
+            return "HZ";
+        case Unit::Share:
+            return "SHARE";
+        case Unit::None:
+            break;
+    }
+    return key.whole ? "N" : "X";
+}
+
+/// "M,M[,M]"
+std::string tupleForm(const KeySpec& key) {
+    const std::string unit = unitName(key);
+    std::string form;
+    for (std::size_t i = 0; i < key.max_count; ++i) {
+        if (i >= key.min_count) form += '[';
+        if (i > 0) form += ',';
+        form += unit;
+    }
+    form.append(key.max_count - key.min_count, ']');
+    return form;
+}
+
+std::string valueForm(const KeySpec& key) {
+    switch (key.type) {
+        case KeyType::Flag:
+            return "yes|no";
+        case KeyType::Number:
+            return unitName(key);
+        case KeyType::Text:
+            return "TEXT";
+        case KeyType::Word:
+            return "WORD";
+        case KeyType::Tuple:
+            return tupleForm(key);
+        case KeyType::TupleList:
+            return tupleForm(key) + ";...";
+        case KeyType::Choice:
+            break;
+    }
+    std::string list;
+    for (const std::string& choice : key.choices) list += (list.empty() ? "" : "|") + choice;
+    return list;
+}
+
+bool isNumeric(const KeySpec& key) {
+    return key.type == KeyType::Number || key.type == KeyType::Tuple ||
+           key.type == KeyType::TupleList;
+}
+
+/// "Above 0, at most 360."; plans' own limit of a thousand kilometres goes without saying.
+std::string bounds(const KeySpec& key) {
+    constexpr double kUnsaid = 1e6;
+    if (!isNumeric(key)) return "";
+    std::string text;
+    if (std::abs(key.lower) < kUnsaid)
+        text = (key.lower_open ? "above " : "at least ") + formatNumber(key, key.lower);
+    if (std::abs(key.upper) < kUnsaid) {
+        if (!text.empty()) text += ", ";
+        text += "at most ";
+        text += formatNumber(key, key.upper);
+    }
+    if (!text.empty()) text[0] = static_cast<char>(text[0] - 'a' + 'A');
+    return text;
+}
+
+void appendKey(std::string& out, const KeySpec& key) {
+    out += ".TP\n.BR " + key.name + "= \"\\fI" + roff(valueForm(key)) + "\\fR\"\n";
+    std::string help = key.help;
+    if (!help.empty() && help[0] >= 'a' && help[0] <= 'z' && !help.starts_with("x,"))
+        help[0] = static_cast<char>(help[0] - 'a' + 'A');
+    out += roff(help) + ".\n";
+    if (const std::string limits = bounds(key); !limits.empty()) out += roff(limits) + ".\n";
+    if (key.required) out += "Must be given.\n";
+    if (key.default_value) out += "Default: " + roff(formatValue(key, *key.default_value)) + ".\n";
+}
+
+struct TypeName {
+    std::string_view name;
+    RecordType type;
+};
+
+constexpr std::array<TypeName, 7> kTypes{{{"space", RecordType::Space},
+                                          {"floor", RecordType::Floor},
+                                          {"wall", RecordType::Wall},
+                                          {"infra", RecordType::Infra},
+                                          {"other", RecordType::Other},
+                                          {"placement", RecordType::Placement},
+                                          {"meta", RecordType::Meta}}};
+
+RecordType typeOf(const std::string& name, int line) {
+    for (const TypeName& type : kTypes)
+        if (type.name == name) return type.type;
+    throw FormatError(Diagnostic{"manual", line, 0, "no record type `" + name + '`'});
+}
+
+}  // namespace
+
+std::string manualOf(const Schema& schema) {
+    std::string out = ".SS " + schema.keyword + "\n";
+    std::string help = schema.help;
+    if (!help.empty() && help[0] >= 'a' && help[0] <= 'z')
+        help[0] = static_cast<char>(help[0] - 'a' + 'A');
+    out += roff(help) + ".\n";
+    // Every record has an id; the page says so once.
+    for (std::size_t i = 1; i < schema.keys.size(); ++i) appendKey(out, schema.keys[i]);
+    return out;
+}
+
+std::string expandManual(std::string_view page, const Schemas& schemas) {
+    std::string out;
+    LineReader lines(page);
+    while (const auto line = lines.next()) {
+        if (!line->starts_with(kMark)) {
+            out += *line;
+            out += '\n';
+            continue;
+        }
+        std::istringstream names{
+            std::string(line->substr(kMark.size(), line->size() - kMark.size() - 1))};
+        for (std::string name; names >> name;) {
+            const RecordType type = typeOf(name, lines.number());
+            for (const Schema& schema : schemas.all())
+                if (schema.type == type) out += manualOf(schema);
+        }
+    }
+    return out;
 }
 
 }  // namespace ispace

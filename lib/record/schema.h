@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/record: the language of .env and .3dm: values, schemas, records, YAML, canonical form,
+// digest. Uses base, geom; yaml-cpp and OpenSSL inside.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +9,37 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
-#include "base/unit.h"
-#include "record/value.h"
+#include "base/number.h"
 
 namespace ispace {
+
+/// Numbers in the units of files: metres, degrees, square metres, fractions, hertz.
+using Tuple = std::vector<double>;
+/// A `;` list of tuples.
+using TupleList = std::vector<Tuple>;
+
+/// What a key holds; which alternative is fixed by the key's type in its schema.
+///
+/// A variant that can be copied when memory runs out: libstdc++ 12 destroys the copy that it could
+/// not make as if it had been made (std::string and std::vector are "never valueless" to it).
+class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
+  public:
+    using variant::variant;
+    using variant::operator=;
+    Value() = default;
+    Value(const Value& other) : variant() { variant::operator=(other); }  // NOLINT
+    Value(Value&&) noexcept = default;
+    Value& operator=(const Value&) = default;
+    Value& operator=(Value&&) noexcept = default;
+    ~Value() = default;
+};
+
+/// True for a plain word: one or more of ASCII letters, digits and _ - . / + : @
+bool isWord(std::string_view text);
 
 /// What a key's text means and which alternative of Value holds it.
 enum class KeyType {
@@ -102,5 +128,26 @@ void appendValue(std::string& out, const KeySpec& key, const Value& value);
 /// Checks count, bounds, choices and characters of a value however it came about.
 /// \pre the value has the key's type \throws as parseValue
 void checkValue(const KeySpec& key, const Value& value);
+
+/// A page of the manual, written for man(7): lines `@RECORDS TYPE…@` of the template give way to
+/// the keywords of these types (space, floor, wall, infra, other, placement, meta), each with its
+/// keys, their values, units, bounds and defaults.
+/// \throws FormatError for a type that is none
+std::string expandManual(std::string_view page, const Schemas& schemas);
+
+/// One keyword as a subsection.
+std::string manualOf(const Schema& schema);
+
+/// One number of the key, with the suffixes its unit allows; bounds are not checked.
+/// \throws as parseValue
+double parseNumber(const KeySpec& key, std::string_view text);
+
+/// The number as the key's canonical text has it: a share in per cent, else the shortest double.
+std::string formatNumber(const KeySpec& key, double number);
+/// Appends formatNumber(key, number).
+void appendNumber(std::string& out, const KeySpec& key, double number);
+
+/// "`key`: what": an error about a value that has no place yet.
+[[noreturn]] void refuseValue(const KeySpec& key, const std::string& what);
 
 }  // namespace ispace

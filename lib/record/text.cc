@@ -2,12 +2,179 @@
 #include "record/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "record/collector.h"
-#include "record/lexer.h"
 
 namespace ispace {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+std::string hexByte(unsigned char byte) {
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "0x%02x", static_cast<unsigned>(byte));
+    return text.data();
+}
+
+}  // namespace
+
+std::string_view withoutMark(std::string_view bytes) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+    return bytes;
+}
+
+void checkTextBytes(std::string_view bytes, const std::string& name) {
+    int line = 1;
+    std::size_t line_begin = 0;
+    for (std::size_t i = 0; i < bytes.size();) {
+        const auto byte = static_cast<unsigned char>(bytes[i]);
+        const bool line_end = byte == '\n' || (byte == '\r' && bytes.substr(i + 1, 1) == "\n");
+        const std::size_t length = utf8Length(bytes.substr(i, 4));
+        std::string what;
+        if (byte == 0)
+            what = "a NUL byte";
+        else if (length == 0)
+            what = "the byte " + hexByte(byte) + ", which is not UTF-8";
+        else if ((byte < 0x20 && byte != '\t' && !line_end) || byte == 0x7f)
+            what = "the control character " + hexByte(byte);
+        if (!what.empty())
+            throw FormatError({name, line, static_cast<int>(i - line_begin) + 1,
+                               "found " + what + ", wanted a text file in UTF-8"});
+        i += length;
+        if (byte == '\n') {
+            ++line;
+            line_begin = i;
+        }
+    }
+}
+
+std::optional<std::string_view> LineReader::next() {
+    if (rest_.empty()) return std::nullopt;
+    ++number_;
+    const auto end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+}
+
+void LineLexer::skipBlanks() {
+    while (!atEnd() && isBlank(line_[next_])) ++next_;
+}
+
+/// To the next blank; an opened quote hides blanks.
+void LineLexer::skipPiece() {
+    bool quoted = false;
+    for (; !atEnd(); ++next_) {
+        const char c = line_[next_];
+        if (c == '"') quoted = !quoted;
+        if (quoted && c == '\\' && next_ + 1 < line_.size()) ++next_;
+        if (!quoted && isBlank(c)) return;
+    }
+}
+
+std::optional<Piece> LineLexer::keyword() {
+    if (!more()) return std::nullopt;
+    const std::size_t begin = next_;
+    const auto end = line_.find_first_of(kBlanks, begin);
+    next_ = end == std::string_view::npos ? line_.size() : end;
+    return Piece{line_.substr(begin, next_ - begin), static_cast<int>(begin) + 1};
+}
+
+bool LineLexer::more() {
+    skipBlanks();
+    if (!atEnd() && line_[next_] == '#') next_ = line_.size();
+    return !atEnd();
+}
+
+Field LineLexer::field() {
+    const int key_column = column();
+    const std::size_t begin = next_;
+    const std::size_t end = std::min(line_.find_first_of(" \t=\"#", begin), line_.size());
+    const std::string_view key = line_.substr(begin, end - begin);
+    if (end == line_.size() || line_[end] != '=' || key.empty()) {
+        skipPiece();
+        const std::string found = excerpt(line_.substr(begin, next_ - begin));
+        // `key = value` and `key =value`: one error, not three.
+        std::size_t sign = line_.find_first_not_of(kBlanks, next_);
+        const bool spaced = sign != std::string_view::npos && line_[sign] == '=';
+        if (spaced) {
+            next_ = sign + 1;
+            skipBlanks();
+            skipPiece();
+        }
+        throw LexError{spaced ? "blanks around `=` after " + found + ", wanted `key=value`"
+                              : found + " found, wanted `key=value`",
+                       key_column};
+    }
+    next_ = end + 1;
+    const int value_column = column();
+    if (atEnd() || isBlank(line_[next_])) {
+        const std::string found = excerpt(line_.substr(begin, next_ - begin));
+        // `key= value`: one error, not two.
+        skipBlanks();
+        const std::size_t after = next_;
+        if (more()) skipPiece();
+        if (line_.substr(after, next_ - after).find('=') != std::string_view::npos) next_ = after;
+        throw LexError{"no value right after " + found + ", an empty text is written \"\"",
+                       key_column};
+    }
+    const Piece value = line_[next_] == '"' ? quotedValue(value_column) : plainValue(value_column);
+    return {{key, key_column}, value};
+}
+
+Piece LineLexer::plainValue(int column) {
+    const std::size_t begin = next_;
+    next_ = std::min(line_.find_first_of(" \t\"#", begin), line_.size());
+    const std::string_view value = line_.substr(begin, next_ - begin);
+    if (atEnd() || isBlank(line_[next_])) return {value, column};
+    const char found = line_[next_];
+    const int found_column = this->column();
+    skipPiece();
+    throw LexError{std::string("`") + found + "` inside a value, put the value in quotes" +
+                       (found == '#' ? " or a blank before a comment" : ""),
+                   found_column};
+}
+
+Piece LineLexer::quotedValue(int column) {
+    const std::size_t begin = next_;
+    unescaped_.clear();
+    for (++next_; !atEnd() && line_[next_] != '"'; ++next_) {
+        char c = line_[next_];
+        if (c == '\\' && next_ + 1 < line_.size()) {
+            c = line_[++next_];
+            if (c == 'n') {
+                c = '\n';
+            } else if (c == 't') {
+                c = '\t';
+            } else if (c != '"' && c != '\\') {
+                const int escape_column = this->column() - 1;
+                const std::string shown = excerpt(line_.substr(
+                    next_ - 1, 1 + std::max<std::size_t>(1, utf8Length(line_.substr(next_)))));
+                next_ = begin;
+                skipPiece();
+                throw LexError{"unknown escape " + shown + R"(, wanted \" \\ \n or \t)",
+                               escape_column};
+            }
+        }
+        unescaped_ += c;
+    }
+    if (atEnd()) throw LexError{"the quote that opens here is not closed", column};
+    ++next_;
+    if (!atEnd() && !isBlank(line_[next_])) {
+        const int after = this->column();
+        skipPiece();
+        throw LexError{"no blank after a closing quote", after};
+    }
+    return {unescaped_, column};
+}
 
 namespace {
 

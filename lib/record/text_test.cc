@@ -9,7 +9,16 @@
 #include "record/test_schemas.h"
 
 namespace ispace {
+
 namespace {
+
+TEST(ByteOrderMark, IsTakenOffTheStartOnce) {
+    EXPECT_EQ(withoutMark("\xef\xbb\xbf#env 1"), "#env 1");
+    EXPECT_EQ(withoutMark("\xef\xbb\xbf"), "");
+    EXPECT_EQ(withoutMark("\xef\xbb\xbf\xef\xbb\xbfx"), "\xef\xbb\xbfx");
+    for (const std::string_view other : {"", "#env 1", "\xef\xbb", "\xbb\xbf\xef", "x\xef\xbb\xbf"})
+        EXPECT_EQ(withoutMark(other), other);
+}
 
 Document read(std::string_view text) { return readRecordText(text, "a.env", testSchemas()); }
 
@@ -311,4 +320,5 @@ TEST(WriteText, KeepsHistoryToItsLines) {
 }
 
 }  // namespace
+
 }  // namespace ispace

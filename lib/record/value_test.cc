@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "record/value.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "record/scalar.h"
+#include "record/schema.h"
 #include "record/test_schemas.h"
 
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <variant>
 
-#include "base/utf8.h"
-#include "record/scalar.h"
+#include "base/message.h"
+#include "record/schema.h"
 #include "record/yaml.h"
-#include "record/yaml_magic.h"
+#include "record/yaml_tree.h"
 
 namespace ispace {
 

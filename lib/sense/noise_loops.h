@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "base/simd.h"
-#include "base/simd_math.h"
 
 /// The loops of addNoise(), to be compiled for one processor or another.
 namespace ispace::noise_loops {

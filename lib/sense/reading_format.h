@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/history.h"
+#include "base/program.h"
 #include "sense/point_cloud.h"
 #include "sense/reading.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "base/history.h"
+#include "base/program.h"
 #include "sense/depth.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"

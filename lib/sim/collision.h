@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/sim only.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "env/band.h"
 #include "geom/spatial_index.h"
+#include "layout/robot.h"
+#include "layout/scene.h"
 #include "sim/motion.h"
+#include "trace/moving_bodies.h"
 
 namespace ispace {
+
+/// Somebody who stands in the way: a circle on the floor that no robot may reach into.
+struct Person {
+    std::string_view id;
+    Point2 place;
+    double radius = 0;  ///< humanRadius
+};
+
+/// The people of a scene, in its order. The scene must outlive them.
+std::vector<Person> peopleOf(const Scene& scene);
 
 /// Metres by which circles may reach into things: touching is allowed, and this much is rounding.
 constexpr double kTouch = 1e-9;
@@ -71,5 +88,40 @@ std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles
 
 /// True if the move runs into another robot that moves at the same time, or stands at its start.
 bool collides(const Move& move, const Move& other, bool other_moves);
+
+/// Indices of the robots in the order in which their moves are settled: by the bytes of their ids.
+std::vector<std::size_t> settlingOrder(std::span<const PlacedRobot> robots);
+
+/// Finds the robots and people that a move runs into. Robots come first, people behind them.
+///
+/// A move is tried against the moves of those that are settled before it and against the others
+/// where they stand: whatever these do later, no two ever overlap.
+class Traffic {
+  public:
+    /// `order` as of settlingOrder; a step takes `duration` seconds.
+    Traffic(std::span<const PlacedRobot> robots, std::span<const Person> people,
+            std::span<const std::size_t> order, double duration);
+
+    /// Takes the places at which the moves begin.
+    void rebuild(std::span<const Move> moves);
+    /// The first one, in the order of settling, that this robot's move runs into.
+    /// \pre moves of those before it are settled: cancelled or not
+    [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,
+                                                 std::size_t robot) const;
+
+  private:
+    std::vector<std::size_t> rank_;  // in the order of settling
+    double reach_ = 0;               // of who gets farthest from its place in a step
+    std::vector<Point2> places_;
+    FloorGrid grid_;
+};
+
+/// What robots run into, by their heights.
+using ObstacleSets = std::map<double, Obstacles>;
+ObstacleSets obstaclesOf(const Scene& scene);
+
+/// \throws FormatError with all findings if a robot stands in something, in another robot or in
+///         somebody
+void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles);
 
 }  // namespace ispace

@@ -10,6 +10,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
+
 namespace {
 
 Polygon square(Point2 center, double half) {
@@ -196,4 +197,5 @@ TEST(Collision, ACancelledMoveStays) {
 }
 
 }  // namespace
+
 }  // namespace ispace

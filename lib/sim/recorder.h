@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/history.h"
+#include "base/program.h"
 #include "sim/world.h"
 
 namespace ispace {

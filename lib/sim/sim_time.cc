@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "base/number.h"
-#include "base/unit.h"
 
 namespace ispace {
 

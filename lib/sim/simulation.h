@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/command.h"
 #include "sim/recorder.h"
-#include "sim/script.h"
 #include "sim/world.h"
 
 namespace ispace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "record/lexer.h"
+#include "record/text.h"
 
 namespace ispace {
 

@@ -9,12 +9,8 @@
 
 #include "base/number.h"
 #include "sim/collision.h"
-#include "sim/friction.h"
 #include "sim/lasers.h"
 #include "sim/motion.h"
-#include "sim/people.h"
-#include "sim/start.h"
-#include "sim/traffic.h"
 
 namespace ispace {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/simd.h"
-#include "base/simd_math.h"
 #include "trace/rays.h"
 
 namespace ispace {

@@ -88,7 +88,7 @@ expect lib/io/a.cc '#include "trace/ray_world.h"' yes
 expect lib/cover/a.cc '#include "io/glb.h"' yes
 expect lib/cover/a.cc '#include "plan/plan.h"' no
 expect lib/sense/a.cc '#include "plan/plan.h"' yes
-expect lib/draw/a_test.cc '#include "record/value.h"' yes
+expect lib/draw/a_test.cc '#include "record/schema.h"' yes
 expect lib/base/a.cc '#include <geom/pose.h>' yes
 expect lib/place/a.cc '#include "net/server.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes

@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cli/byte_count.h"
-#include "cli/scene_options.h"
+#include "cli/common_options.h"
 #include "record/schema.h"
 
 namespace ispace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
-#include "cli/scene_options.h"
+#include "cli/common_options.h"
 #include "place/arrange_options.h"
 #include "place/strategy.h"
 

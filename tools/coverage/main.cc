@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/history.h"
 #include "base/number.h"
+#include "base/program.h"
 #include "base/run_files.h"
-#include "cli/dependencies.h"
 #include "cli/operands.h"
+#include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "cover/coverage_files.h"
 #include "cover/trace_file.h"

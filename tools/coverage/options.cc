@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "cli/scene_options.h"
+#include "cli/common_options.h"
 
 namespace ispace {
 

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "base/file.h"
-#include "base/history.h"
 #include "base/number.h"
+#include "base/program.h"
 #include "base/run_files.h"
-#include "cli/dependencies.h"
-#include "cli/inputs.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "env/info.h"
 #include "envc/options.h"
@@ -17,11 +17,11 @@
 #include "io/glb.h"
 #include "io/mesh_file.h"
 #include "io/obj.h"
-#include "plan/plan.h"
 #include "io/ros_export.h"
 #include "io/stl.h"
 #include "layout/check_scene.h"
 #include "layout/schemas.h"
+#include "plan/plan.h"
 #include "record/text.h"
 #include "record/yaml.h"
 

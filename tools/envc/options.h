@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "cli/common_options.h"
 #include "io/import_options.h"
 #include "record/edit.h"
 

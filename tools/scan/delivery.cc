@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
-#include "cli/output_set.h"
+#include "cli/outputs.h"
 
 namespace ispace {
 

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cli/scene_options.h"
+#include "cli/common_options.h"
 #include "sense/reading_format.h"
 
 namespace ispace {

@@ -2,10 +2,9 @@
 #include "simrun/options.h"
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
-#include "cli/byte_count.h"
-#include "cli/scene_options.h"
+#include "cli/common_options.h"
 
 namespace ispace {
 

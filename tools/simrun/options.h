@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/common_options.h"
 #include "net/server.h"
 #include "sim/simulation.h"
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/message.h"
 #include "base/number.h"
-#include "base/utf8.h"
 #include "io/mesh_parts.h"
 #include "io/module/node_graph.h"
 

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/utf8.h"
+#include "base/message.h"
 #include "env/material.h"
 #include "io/module/handed_files.h"
 

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cover/target.h"
+
+namespace ispace {
+
+/// Options that every tool has.
+struct CommonOptions {
+    std::string output = "-";
+    bool quiet = false;
+    int verbose = 0;
+    int threads = 0;  ///< 0: all cores this process may use
+    std::uint64_t seed = 0;
+    std::optional<bool> progress;
+    DependencyOptions dependencies;
+};
+/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` says what the product is. Without
+/// it there is no -o, -MD and -MF: the tool writes elsewhere.
+void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
+
+/// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).
+void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
+
+/// Says each warning on stderr, unless the user wants to hear less (-q).
+void warn(const CommonOptions& options, const std::string& tool,
+          std::span<const Diagnostic> warnings);
+
+/// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
+/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants: fewer
+/// work longer, and that is all. 1 starts no thread.
+void limitThreads(int threads);
+
+/// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
+std::string shareFolder();
+
+/// The usual suffix of a format of another name: {"log", "carmen"}; "": it has none.
+struct SuffixOf {
+    std::string suffix, format;
+};
+
+/// Format of a product: `to` if given, else the one whose name or usual suffix `output` ends with,
+/// in any case, else, where that has no suffix, the first of `known`.
+/// \param to nothing for a tool without --to \throws UsageError for any other suffix
+std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
+                         const std::vector<std::string>& known,
+                         const std::vector<SuffixOf>& others = {});
+
+/// Refuses binary data for a terminal. \throws UsageError
+void refuseTerminal(const std::string& output, const std::string& what);
+
+/// What --grid and --cell say.
+struct CellWords {
+    std::optional<CellCount> grid;
+    std::optional<double> cell;
+
+    /// Nothing where neither is given. \throws UsageError for both
+    [[nodiscard]] std::optional<CellChoice> choice() const;
+};
+/// Declares `--grid P[,Q]`, at most 10 000 a side, and `--cell M`; `purpose`: what cells are for.
+void addCellOptions(CommandLine& line, CellWords& words, const std::string& purpose);
+
+/// `--any-environment`: go on where the digest in LAYOUT is another than ENV's.
+void addAnyEnvironmentOption(CommandLine& line, bool& any_environment);
+
+/// `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError
+std::uint64_t byteCount(const std::string& text);
+
+/// `16G`, `512M`, or the number of bytes: the largest unit that leaves a whole number.
+std::string byteCountText(std::uint64_t bytes);
+
+}  // namespace ispace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "cli/common_options.h"
+
+namespace ispace {
+
+/// A stream into an OutputFile, for what is too large to be held in memory as a whole.
+class FileStream : private std::streambuf {
+  public:
+    /// \throws std::system_error if the file cannot be made there
+    explicit FileStream(const std::string& target);
+
+    [[nodiscard]] std::ostream& stream() { return stream_; }
+    /// Writes what is left and puts the file in its place. \throws std::system_error naming the
+    /// target, a full disk included, whenever it happened
+    void commit();
+
+  private:
+    int overflow(int c) override;
+    int sync() override;
+
+    OutputFile file_;
+    std::string buffer_;
+    std::ostream stream_;
+};
+
+/// A rule for make: `target` depends on `sources`, each named once, in their order; streams are
+/// left out. Each source also stands as a target of its own without recipe, so that make goes on
+/// when a file that is no longer used was deleted. Characters with a meaning in names are written
+/// as make wants them. \throws UsageError for names that make cannot read: with = ; control
+/// characters, two %, ~ at the beginning, or a blank, backslash or ) at the end
+std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
+
+/// Checks -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
+void checkDependencies(const DependencyOptions& options, const std::string& output);
+
+/// Claims the product and its rule, see claimOutput: a tool begins with this.
+void claimOutputs(const CommonOptions& options);
+
+/// Writes the rule of -o if it is wanted. \param files all that the product was made from
+void writeDependencies(const CommonOptions& options, std::span<const std::string> files);
+
+/// Names of files that a run writes many of: `-o` names a folder (one that exists, or with / at its
+/// end), or is a pattern with %d or %04d for the frame's number and %s for the sensor's id; %% is a
+/// percent sign. In a folder files are called ID-0000. What a
+/// file's name should not hold, a / in an id, control characters, a dot or dash at its beginning,
+/// is written _.
+class OutputSet {
+  public:
+    /// Nothing if `output` is one file or stdout.
+    static std::optional<OutputSet> of(const std::string& output);
+
+    /// Checks that no two files have the same name, and makes the folder.
+    /// \param several_frames whether frames must be told apart
+    /// \param endings of the files of one reading; all but the first stand beside it
+    /// \throws UsageError for a bad pattern, and where files would have one name; std::system_error
+    ///         if the folder cannot be made
+    void prepare(const std::vector<std::string>& ids, bool several_frames,
+                 const std::vector<std::string>& endings) const;
+    /// Name of the file of a reading: the suffix of a pattern stands in place of its format's own.
+    [[nodiscard]] std::string fileOf(const std::string& id, int frame,
+                                     const std::string& ending) const;
+    /// Name of a file that stands beside it.
+    [[nodiscard]] std::string fileBeside(const std::string& id, int frame,
+                                         const std::string& ending) const;
+
+  private:
+    [[nodiscard]] std::string stem(const std::string& id, int frame) const;
+
+    std::string folder_;   // "" for a pattern
+    std::string pattern_;  // without its suffix; "" for a folder
+    std::string suffix_;   // of the pattern, with its dot
+};
+
+/// The part of a file's name before its suffix.
+std::string withoutSuffix(const std::string& file);
+
+}  // namespace ispace

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/net only: it brings Asio.
+#pragma once
+
+#include <asio/ip/tcp.hpp>
+#include <asio/steady_timer.hpp>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "net/conversation.h"
+#include "net/server.h"
+
+namespace ispace {
+
+/// Cuts a stream of bytes into lines that end in LF or CRLF. Never holds more than a line of the
+/// greatest length and one block, if lines are taken before more is appended.
+class LineBuffer {
+  public:
+    /// `limit`: bytes of a line without its end.
+    explicit LineBuffer(std::size_t limit) : limit_(limit) {}
+
+    /// Drops the lines taken so far.
+    void append(std::string_view bytes);
+    /// True if there is a whole line.
+    [[nodiscard]] bool ready() const { return end_ != std::string::npos; }
+    /// True if the next line is longer than the limit, whole or not.
+    [[nodiscard]] bool tooLong() const;
+    [[nodiscard]] std::size_t memory() const { return bytes_.capacity(); }
+    /// The next line without its end; valid until append(). \pre ready()
+    std::string_view take();
+
+  private:
+    std::size_t limit_;
+    std::string bytes_;
+    std::size_t begin_ = 0;                // of the next line
+    std::size_t end_ = std::string::npos;  // its LF
+};
+
+/// What a connection still has to be sent: replies in order, and a scan that many connections
+/// share.
+class Outbox {
+  public:
+    void append(std::string_view text);
+    /// \pre front() is empty
+    void put(std::shared_ptr<const std::string> scan) { scan_ = std::move(scan); }
+    /// What is to be sent next, in one piece; "" if there is nothing. Valid until the next call of
+    /// another function.
+    [[nodiscard]] std::string_view front() const;
+    /// The first bytes of front() are sent.
+    void pop(std::size_t bytes);
+    /// Forgets all that is not sent yet. True if that cuts a line.
+    bool abandon();
+    /// Bytes of replies.
+    [[nodiscard]] std::size_t unsent() const { return text_.size() - (scan_ ? 0 : sent_); }
+    /// Bytes of the scan that is being sent.
+    [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
+    /// Memory that replies take.
+    [[nodiscard]] std::size_t textMemory() const { return text_.capacity(); }
+
+  private:
+    std::shared_ptr<const std::string> scan_;  // goes before the text, which came while it was sent
+    std::string text_;
+    std::size_t sent_ = 0;  // of scan_, else of text_
+    bool in_line_ = false;  // the last byte sent did not end a line
+};
+
+/// One connection. It reads, answers, writes, and at the end waits for the other side to close;
+/// handlers keep it alive until then.
+class Session : public std::enable_shared_from_this<Session> {
+  public:
+    Session(asio::ip::tcp::socket socket, const ServerLimits& limits)
+        : socket_(std::move(socket)),
+          timer_(socket_.get_executor()),
+          limits_(limits),
+          lines_(limits.line) {}
+
+    void serve(Hall& hall) {
+        conversation_.emplace(hall);
+        out_.append(Conversation::greeting());
+        heard_ = std::chrono::steady_clock::now();
+        expectRole();
+        pump();
+    }
+    /// Sends a text, a whole line, behind what is pending, and closes.
+    void refuse(std::string_view text) {
+        out_.append(text);
+        conversation_.reset();
+        pump();
+    }
+    /// The same, but what is pending is not sent.
+    void cutOff(std::string_view text);
+    /// Ends if it is still without a role though it was asked for nothing since that time.
+    void makeWay(WallTime since);
+    /// The world took a step.
+    void stepped();
+    [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
+    /// One that waits for STEP and will not ask for more takes nobody's place: it may be gone.
+    [[nodiscard]] bool serving() const { return conversation_ && !(eof_ && waiting()); }
+    [[nodiscard]] bool roleless() const { return conversation_ && !conversation_->hasRole(); }
+    /// When it was last asked for something; its begin, if it never was.
+    [[nodiscard]] WallTime heard() const { return heard_; }
+    [[nodiscard]] bool closed() const { return !socket_.is_open(); }
+    /// True if it was told of its end and waits for the other side to close.
+    [[nodiscard]] bool told() const { return discarding_; }
+
+    /// Memory of its own.
+    [[nodiscard]] std::size_t memory() const { return out_.textMemory() + lines_.memory(); }
+    /// The same with scans, which others may hold too.
+    [[nodiscard]] std::size_t holds() const {
+        return memory() + out_.scanBytes() + (conversation_ ? conversation_->scanBytes() : 0);
+    }
+    /// How long some of what it holds is waiting at least.
+    [[nodiscard]] WallTime waitingSince() const { return waiting_since_; }
+    /// Sends what is pending and closes, without waiting for the other side.
+    void end();
+    void close();
+
+  private:
+    [[nodiscard]] bool mayAnswer() const {
+        return conversation_ && !conversation_->waiting() && !conversation_->closing() &&
+               out_.unsent() <= limits_.pending;
+    }
+    void expectRole();
+    void catchUp();
+    void pump();
+    void pumpLater();
+    void answer();
+    void flush();
+    std::string_view nextPiece();
+    void listen();
+    void receive();
+    void linger();
+    void discard();
+    void closeAfter(std::chrono::nanoseconds time);
+
+    asio::ip::tcp::socket socket_;
+    asio::steady_timer timer_;  // of taking a role; then of lingering
+    ServerLimits limits_;
+    LineBuffer lines_;
+    std::optional<Conversation> conversation_;  // none: the connection is about to end
+    Outbox out_;
+    WallTime heard_{};
+    // What was to be sent at a time and is not yet: the age of the oldest byte, or a little less.
+    WallTime waiting_since_{};
+    std::size_t owed_ = 0;
+    bool reading_ = false, writing_ = false, posted_ = false;  // handlers on their way
+    bool eof_ = false;
+    bool ending_ = false;      // closes when all is sent, or after a while
+    bool discarding_ = false;  // all is sent: waits for the other side
+    bool last_ = false;        // waits no more
+};
+
+}  // namespace ispace

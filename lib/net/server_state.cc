@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/server_state.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "net/scan_text.h"
+
+namespace ispace {
+
+StepQueue::StepQueue(Simulation& simulation)
+    : simulation_(&simulation), seen_(simulation.world().steps()) {}
+
+std::shared_ptr<const StepQueue::Ticket> StepQueue::ask(std::int64_t count) {
+    settle();
+    simulation_->allow(count);
+    tickets_.push_back(std::make_shared<Ticket>(Ticket{.count = count, .left = count}));
+    return tickets_.back();
+}
+
+void StepQueue::settle() {
+    const std::int64_t steps = simulation_->world().steps();
+    std::int64_t taken = steps - std::exchange(seen_, steps);
+    while (taken > 0 && !tickets_.empty()) {
+        Ticket& ticket = *tickets_.front();
+        const std::int64_t share = std::min(taken, ticket.left);
+        ticket.left -= share;
+        taken -= share;
+        if (ticket.left > 0) break;
+        ticket.over = true;
+        tickets_.pop_front();
+    }
+    if (simulation_->finished()) end();
+}
+
+void StepQueue::cut() {
+    settle();
+    end();
+}
+
+void StepQueue::end() {
+    for (const auto& ticket : tickets_) ticket->over = true;
+    tickets_.clear();
+}
+
+void StepQueue::drop(const std::shared_ptr<const Ticket>& ticket) {
+    settle();
+    const auto found = std::find(tickets_.begin(), tickets_.end(), ticket);
+    if (found == tickets_.end()) return;
+    simulation_->forgo(ticket->left);
+    tickets_.erase(found);
+}
+
+Hall::Hall(Simulation& simulation, const ServerLimits& limits)
+    : simulation_(&simulation),
+      limits_(limits),
+      steps_(simulation),
+      held_(simulation.world().robots().size()),
+      pauses_(limits.all_pauses),
+      texts_(simulation.world().lasers().size()) {}
+
+bool Hall::hold(std::size_t robot) {
+    if (held_[robot]) return false;
+    held_[robot] = true;
+    return true;
+}
+
+void Hall::release(std::size_t robot) {
+    held_[robot] = false;
+    simulation_->world().command(robot, {Verb::Stop, 0});
+}
+
+std::shared_ptr<const std::string> Hall::scan(std::size_t laser, bool stream, bool binary) {
+    const SensorReading& reading = simulation_->world().reading(laser);
+    Text& text = texts_[laser][(stream ? 1U : 0U) + (binary ? 2U : 0U)];
+    if (text.seq == reading.seq && text.bytes) return text.bytes;
+    auto bytes = counted(scanText(reading, stream, binary));
+    keep(text, reading.seq, bytes);
+    return bytes;
+}
+
+std::shared_ptr<const std::string> Hall::counted(std::string text) const {
+    text.shrink_to_fit();
+    *alive_ += text.size();
+    return {new std::string(std::move(text)), [alive = alive_](const std::string* old) {
+                *alive -= old->size();
+                delete old;
+            }};
+}
+
+void Hall::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes) {
+    const auto size_of = [](const Text& kept) { return kept.bytes ? kept.bytes->size() : 0; };
+    kept_ += bytes->size() - size_of(text);
+    text = {seq, std::move(bytes)};
+    if (kept_ <= limits_.unread / 2) return;
+    // Many big lasers in every form: what nobody asks for again need not stay.
+    kept_ = size_of(text);
+    for (auto& forms : texts_)
+        for (Text& other : forms)
+            if (&other != &text) other = {};
+}
+
+}  // namespace ispace
