@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "cli/run_tool.h"
 #include "layout/schemas.h"
-#include "record/schema_page.h"
+#include "record/schema.h"
 
 int main(int argc, char** argv) {
     return ispace::runTool("expand_records", [&] {
