@@ -56,7 +56,7 @@ class OperandReader {
         if (!environment_) findEnvironment();
         if (layout_ && !request_.any_environment)
             checkDigest(*layout_, environment_->records, environment_operand_);
-        const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
+        const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
         Scene scene = makeScene(*environment_, layout_ ? &*layout_ : nullptr, devices);
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
@@ -164,9 +164,8 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
     if (!any_environment) checkDigest(layout, input.environment.records, input.environment_operand);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
-    return {
-        makeScene(input.environment, &layout, DeviceCatalogue::load(shareFolder() + "/devices")),
-        std::move(files)};
+    return {makeScene(input.environment, &layout, loadDevices(shareFolder() + "/devices")),
+            std::move(files)};
 }
 
 std::vector<std::string> filesOf(const SceneInput& input) {

@@ -49,7 +49,7 @@ TEST_F(Operands, AreToldApartByContent) {
         const SceneInput input = readScene({operands});
         EXPECT_EQ(input.environment_operand, "room.env");
         EXPECT_EQ(input.layout_operand, "layout.txt");
-        EXPECT_EQ(input.scene.lasers.size(), 1U);
+        EXPECT_EQ(input.scene.sensors.size(), 1U);
         EXPECT_EQ(input.named, operands);
     }
 }
@@ -57,14 +57,14 @@ TEST_F(Operands, AreToldApartByContent) {
 TEST_F(Operands, AnEnvironmentWithSensorsNeedsNoLayout) {
     const SceneInput input = readScene({{"seeing.env"}});
     EXPECT_FALSE(input.layout);
-    EXPECT_EQ(input.scene.lasers.size(), 1U);
+    EXPECT_EQ(input.scene.sensors.size(), 1U);
 }
 
 TEST_F(Operands, ASensorOnARobotIsPlaced) {
     writeAll("riding.env", "#env 1\nispace size=4,4\nrobot id=r1 at=1,1\nlaser on=r1\n");
     const SceneInput input = readScene({{"riding.env"}});
     EXPECT_FALSE(input.layout);
-    EXPECT_EQ(input.scene.lasers.size(), 1U);
+    EXPECT_EQ(input.scene.sensors.size(), 1U);
     EXPECT_EQ(input.scene.robots.size(), 1U);
 }
 

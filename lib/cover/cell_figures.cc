@@ -42,8 +42,7 @@ std::size_t countNeeding(const Coverage& coverage, const CellSet& heard_by_this,
 std::vector<std::uint16_t> timesHeard(const Coverage& coverage) {
     std::vector<std::uint16_t> heard(coverage.target.grid.size());
     for (const SensorView& view : coverage.sensors)
-        if (view.kind == ViewKind::Receiver)
-            view.cells.forEach([&heard](std::size_t cell) { ++heard[cell]; });
+        if (view.isPartial()) view.cells.forEach([&heard](std::size_t cell) { ++heard[cell]; });
     return heard;
 }
 
@@ -55,7 +54,7 @@ void addSensorFigures(Coverage& coverage, const std::vector<std::uint32_t>& time
         SensorFigures& figures = coverage.report.sensors[i];
         const std::size_t seen = view.cells.count();
         figures.area.grid = static_cast<double>(seen) * cell_area;
-        const bool is_receiver = view.kind == ViewKind::Receiver;
+        const bool is_receiver = view.isPartial();
         const std::size_t alone = is_receiver ? countNeeding(coverage, view.cells, heard, times)
                                               : countSeenOnce(view.cells, times);
         figures.marginal.grid = static_cast<double>(alone) * cell_area;

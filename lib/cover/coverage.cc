@@ -17,8 +17,8 @@ namespace {
 
 SensorFigures figuresOf(const Scene& scene, const SensorView& view) {
     SensorFigures figures{.id = view.id, .model = view.model, .kind = view.kind};
-    if (view.kind == ViewKind::Laser)
-        figures.slice_area = sliceArea(scene.lasers[view.index].laser, view.beams);
+    if (const auto* laser = std::get_if<Laser>(&scene.sensors[view.index].model))
+        figures.slice_area = sliceArea(*laser, view.beams);
     if (view.region) figures.area.exact = std::max(0.0, signedArea(*view.region));
     return figures;
 }
@@ -26,7 +26,9 @@ SensorFigures figuresOf(const Scene& scene, const SensorView& view) {
 /// Cells are a bit a sensor, twice: of its view, and of the set it is.
 void mustFit(const Scene& scene, const Grid& grid) {
     constexpr double kMostBytes = 8e9;
-    const std::size_t sensors = scene.lasers.size() + scene.rangers.size() + scene.receivers.size();
+    const auto sensors =
+        std::count_if(scene.sensors.begin(), scene.sensors.end(),
+                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
     const double bytes = static_cast<double>(sensors) * static_cast<double>(grid.size()) / 4;
     if (bytes > kMostBytes)
         throw UsageError("cells of all sensors take " + formatFixed(bytes / 1e9, 1) +
@@ -84,18 +86,6 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
 }
 
 }  // namespace
-
-std::string_view nameOf(ViewKind kind) {
-    switch (kind) {
-        case ViewKind::Ranger:
-            return "ranger";
-        case ViewKind::Receiver:
-            return "ultrasound";
-        case ViewKind::Laser:
-            break;
-    }
-    return "laser";
-}
 
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
     const Environment& environment = scene.environment;

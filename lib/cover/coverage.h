@@ -12,6 +12,7 @@
 #include "geom/overlay.h"
 #include "layout/scene.h"
 #include "raster/grid.h"
+#include "sensor/kind.h"
 #include "trace/worlds.h"
 
 namespace ispace {
@@ -36,13 +37,9 @@ struct Figure {
     std::optional<double> grid, exact;
 };
 
-/// What sees.
-enum class ViewKind { Laser, Ranger, Receiver };
-std::string_view nameOf(ViewKind kind);  ///< the keyword of its record
-
 struct SensorFigures {
     std::string id, model;  ///< model "" for a bare sensor
-    ViewKind kind = ViewKind::Laser;
+    const SensorKind* kind = nullptr;
     std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
     Figure area = {};                       ///< of its region, m2; what a receiver hears
     Figure marginal = {};                   ///< lost if this sensor is removed, m2
@@ -79,7 +76,7 @@ struct CoverageReport {
     Grid grid;
     double height = 0, plane = 0;
     double indoor_area = 0, free_area = 0;  ///< exact, m2
-    std::vector<SensorFigures> sensors;     ///< lasers, rangers, receivers
+    std::vector<SensorFigures> sensors;     ///< by kind
     Figure total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
     Figure overlap;                         ///< seen by two and more, m2; indoor or not
     Figure coverage;                        ///< eq. (4.7), fraction of the indoor region
@@ -103,8 +100,8 @@ struct CoverageReport {
 
 /// What one sensor sees.
 struct SensorView {
-    ViewKind kind = ViewKind::Laser;
-    std::size_t index = 0;  ///< in Scene::lasers, rangers or receivers
+    const SensorKind* kind = nullptr;
+    std::size_t index = 0;  ///< in Scene::sensors
     std::string id, model;
     Pose3 pose;
     double max_range = 0;
@@ -112,6 +109,9 @@ struct SensorView {
     /// Its exact region: disjoint curves, what is seen on their left; nothing if not known.
     std::optional<std::vector<Curve>> region = {};
     std::vector<float> beams = {};  ///< of a laser, as of castBeams
+
+    /// It covers floor only together with others.
+    [[nodiscard]] bool isPartial() const { return kind->together > 1; }
 };
 
 /// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four

@@ -145,7 +145,7 @@ TEST(ExactCoverage, MarginalAreaIsWhatIsLostWithoutTheSensor) {
         const CoverageReport whole = coverageOf(scene, 50, 50).report;
         for (std::size_t i = 0; i < 4; ++i) {
             Scene less = scene;
-            less.lasers.erase(less.lasers.begin() + static_cast<std::ptrdiff_t>(i));
+            less.sensors.erase(less.sensors.begin() + static_cast<std::ptrdiff_t>(i));
             const CoverageReport without = coverageOf(less, 50, 50).report;
             EXPECT_NEAR(*whole.total_effective_area.exact - *without.total_effective_area.exact,
                         *whole.sensors[i].marginal.exact, 1e-6);
@@ -295,7 +295,7 @@ TEST(ExactCoverage, OtherSensorsChangeNothingOfWhatOneSees) {
         const Coverage all = coverageOf(scene);
         for (std::size_t i = 0; i < 6; ++i) {
             Scene one = scene;
-            one.lasers = {scene.lasers[i]};
+            one.sensors = {scene.sensors[i]};
             const Coverage alone = coverageOf(one);
             EXPECT_EQ(alone.sensors[0].cells, all.sensors[i].cells) << seed;
             EXPECT_EQ(alone.report.sensors[0].area.exact, all.report.sensors[i].area.exact);

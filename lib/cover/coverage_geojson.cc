@@ -69,7 +69,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.endAsArea(pieces);
     }
     for (const SensorView& view : coverage.sensors) {
-        out.begin(view.id, nameOf(view.kind), "placement");
+        out.begin(view.id, view.kind->keyword, "placement");
         out.json().key("heading").value(tidy(view.pose.heading.degrees()));
         out.endAsPoint(view.pose.position.onFloor());
         out.begin(view.id, "view", "region");

@@ -40,7 +40,7 @@ void write(JsonWriter& json, const SensorFigures& sensor) {
     write(json, "slice_area", sensor.slice_area);
     write(json, "exact_area", sensor.area.exact);
     write(json, "marginal_area", sensor.marginal.grid);
-    json.key("kind").value(nameOf(sensor.kind));
+    json.key("kind").value(sensor.kind->keyword);
     write(json, "area", sensor.area);
     write(json, "marginal", sensor.marginal);
     write(json, "overlap", sensor.overlap);

@@ -114,7 +114,7 @@ std::string sensorTable(const std::vector<SensorFigures>& sensors) {
         const Row region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
         rows.push_back(
             {printable(sensor.id),
-             sensor.model.empty() ? std::string(nameOf(sensor.kind)) : printable(sensor.model),
+             sensor.model.empty() ? std::string(sensor.kind->keyword) : printable(sensor.model),
              cell(sensor.slice_area), region[1], region[2], region[3], alone[1], alone[2], alone[3],
              cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
     }

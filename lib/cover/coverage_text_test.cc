@@ -19,7 +19,7 @@ CoverageReport sampleReport() {
     first.area = {.grid = 3.25, .exact = 3.375};
     first.marginal = {.grid = 1.25, .exact = 1.5};
     first.overlap = {.grid = 2, .exact = 1.875};
-    SensorFigures second{.id = "t", .model = "", .kind = ViewKind::Ranger};
+    SensorFigures second{.id = "t", .model = "", .kind = &kRangerKind};
     second.area.grid = 12;
     second.marginal.grid = 0;
     second.overlap.grid = 12;

@@ -112,7 +112,7 @@ void addSensors(Coverage& coverage, const Areas& areas) {
     std::size_t set = 0;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
-        if (view.kind == ViewKind::Receiver) continue;
+        if (view.isPartial()) continue;
         SensorFigures& figures = coverage.report.sensors[i];
         const double area = *figures.area.exact;
         const double alone = std::clamp(areas.alone[set++], 0.0, area);
@@ -128,7 +128,7 @@ void addReceivers(Coverage& coverage) {
     std::vector<const SensorView*> receivers;
     std::vector<SensorFigures*> figures;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
-        if (coverage.sensors[i].kind != ViewKind::Receiver) continue;
+        if (!coverage.sensors[i].isPartial()) continue;
         receivers.push_back(&coverage.sensors[i]);
         figures.push_back(&coverage.report.sensors[i]);
     }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "geom/angle.h"
-#include "layout/laser.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 

@@ -156,14 +156,13 @@ LegendBlock comparisonBlock(const CoverageReport& report) {
 /// E.g. "2 lasers, 1 ranger".
 std::string countsOf(const std::vector<SensorView>& sensors) {
     std::string text;
-    for (const ViewKind kind : {ViewKind::Laser, ViewKind::Ranger, ViewKind::Receiver}) {
+    for (const SensorKind* kind : sensorKinds()) {
         const auto count = std::count_if(sensors.begin(), sensors.end(),
                                          [kind](const auto& s) { return s.kind == kind; });
         if (count == 0) continue;
-        const std::string name =
-            kind == ViewKind::Receiver ? "receiver" : std::string(nameOf(kind));
         if (!text.empty()) text += ", ";
-        text.append(std::to_string(count)).append(" ").append(name).append(count > 1 ? "s" : "");
+        text.append(std::to_string(count)).append(" ").append(kind->noun);
+        if (count > 1) text += "s";
     }
     return text.empty() ? "no sensor" : text;
 }
@@ -192,7 +191,7 @@ LegendBlock sensorsBlock(const MapPicture& map) {
         item.mark = markOf(map, i);
         item.mark.heading = Angle();
         if (colored) item.color = floorColor(map, setOf(map.coverage, i));
-        item.value = nameOf(sensors[i].kind);
+        item.value = sensors[i].kind->keyword;
         if (const std::string& model = sensors[i].model; !model.empty())
             item.value = mixed ? item.value + " " + model : model;
         block.items.push_back(std::move(item));
@@ -202,7 +201,7 @@ LegendBlock sensorsBlock(const MapPicture& map) {
         const std::string name =
             map.coverage.report.comparison ? map.coverage.report.comparison->name : "";
         LegendItem item{Sign::Sensor, {0, 0, 0, 0}, {}, name.empty() ? "the other" : name, ""};
-        item.mark = {SensorMark::Body::Disc, Angle(), palette::kOtherSensor, true};
+        item.mark = {SensorSign::Disc, Angle(), palette::kOtherSensor, true};
         item.value = countsOf(map.other->sensors);
         block.items.push_back(std::move(item));
     }

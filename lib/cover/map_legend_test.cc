@@ -82,9 +82,9 @@ TEST(MapLegend, NamesTheKindsOfSensors) {
     EXPECT_EQ(blocks[1].items.size(), 3U);  // none, one, more
     EXPECT_EQ(blocks[2].title, "1 laser, 1 ranger, 2 receivers");
     ASSERT_EQ(blocks[2].items.size(), 4U);
-    EXPECT_EQ(blocks[2].items[1].mark.body, SensorMark::Body::Square);
+    EXPECT_EQ(blocks[2].items[1].mark.sign, SensorSign::Square);
     EXPECT_EQ(blocks[2].items[1].value, "ranger");
-    EXPECT_EQ(blocks[2].items[3].mark.body, SensorMark::Body::Triangle);
+    EXPECT_EQ(blocks[2].items[3].mark.sign, SensorSign::Triangle);
     // Patches in the colours of the floor; all receivers make one set.
     EXPECT_EQ(blocks[2].items[1].color, floorColor(map, 1));
     EXPECT_EQ(blocks[2].items[2].color, floorColor(map, 2));

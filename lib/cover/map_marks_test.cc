@@ -22,9 +22,9 @@ std::size_t count(const Image& image, Color color) {
 constexpr Color kRed = Color::rgb(0xFF0000);
 
 TEST(MapMarks, KindsHaveTheirShapes) {
-    const Image disc = markImage({SensorMark::Body::Disc, {}, kRed});
-    const Image square = markImage({SensorMark::Body::Square, {}, kRed});
-    const Image triangle = markImage({SensorMark::Body::Triangle, {}, kRed});
+    const Image disc = markImage({SensorSign::Disc, {}, kRed});
+    const Image square = markImage({SensorSign::Square, {}, kRed});
+    const Image triangle = markImage({SensorSign::Triangle, {}, kRed});
     // Corners of the square, tip of the triangle.
     EXPECT_NE(disc.at(84, 84), pixelOf(kRed));
     EXPECT_EQ(square.at(84, 84), pixelOf(kRed));
@@ -39,13 +39,13 @@ TEST(MapMarks, KindsHaveTheirShapes) {
 }
 
 TEST(MapMarks, ArrowsShowTheHeadingIfThereIsOne) {
-    const Image none = markImage({SensorMark::Body::Disc, {}, kRed});
-    const Image up = markImage({SensorMark::Body::Disc, Angle::degrees(90), kRed});
+    const Image none = markImage({SensorSign::Disc, {}, kRed});
+    const Image up = markImage({SensorSign::Disc, Angle::degrees(90), kRed});
     EXPECT_EQ(up.at(100, 55), pixelOf(kRed));
     EXPECT_NE(none.at(100, 55), pixelOf(kRed));
     EXPECT_NE(up.at(145, 100), pixelOf(kRed));
     EXPECT_GT(count(up, kRed), count(none, kRed) + 100);
-    const Image hollow = markImage({SensorMark::Body::Disc, {}, kRed, true});
+    const Image hollow = markImage({SensorSign::Disc, {}, kRed, true});
     EXPECT_EQ(hollow.at(100, 100), 0xFFFFFFU);
     EXPECT_EQ(hollow.at(100, 85), pixelOf(kRed));
 }
@@ -63,7 +63,7 @@ TEST(MapMarks, WhoLooksStraightDownOrUpHasNoHeading) {
     EXPECT_FALSE(markOf(map, 1).heading);
     EXPECT_NEAR(markOf(map, 2).heading.value().degrees(), 40, 1e-9);
     EXPECT_FALSE(markOf(map, 3).heading);
-    EXPECT_EQ(markOf(map, 3).body, SensorMark::Body::Triangle);
+    EXPECT_EQ(markOf(map, 3).sign, SensorSign::Triangle);
 }
 
 TEST(MapMarks, SensorsAtOnePlaceAreBothSeen) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kCrowd = 40;  // marks and labels of more sensors are smaller
 /// Receivers make one set: what one of them hears counts for nothing alone.
-bool countsInSet(const SensorView& view) { return view.kind == ViewKind::Receiver; }
+bool countsInSet(const SensorView& view) { return view.isPartial(); }
 
 constexpr std::size_t kManySensors = 2 * kSeriesColors;  // lines become finer
 
@@ -48,7 +48,7 @@ void drawContours(Picture& picture, const MapPicture& map, const std::vector<Pol
 /// ends of neighbours would lie too near each other, every second one is left out, or three of
 /// four, ...
 std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
-    const Laser& laser = map.scene.lasers[view.index].laser;
+    const Laser& laser = map.scene.sensors[view.index].as<Laser>();
     const double least_gap = std::max(2.0, map.em / 6) / map.view.scale;
     const Point3 origin = view.pose.position;
     std::vector<Segment2> beams;
@@ -68,8 +68,8 @@ std::vector<Segment2> beamsOf(const MapPicture& map, const SensorView& view) {
 
 /// A sweep has the beams of many scans: they would hide all.
 bool showsBeams(const MapPicture& map, const SensorView& view) {
-    return map.options.fans == FanStyle::Beams && view.kind == ViewKind::Laser &&
-           !view.beams.empty() && map.scene.lasers[view.index].laser.sweep == SweepAxis::None;
+    return map.options.fans == FanStyle::Beams && !view.beams.empty() &&
+           map.scene.sensors[view.index].as<Laser>().sweep == SweepAxis::None;
 }
 
 void drawBeams(Picture& picture, const MapPicture& map, std::size_t sensor) {
@@ -109,7 +109,7 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
         const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
         const bool on_top = std::any_of(sensors.begin(), end, is_here);
         picture.pushGroup(hollow ? "" : sensors[i].id,
-                          sensors[i].id + ": " + std::string(nameOf(sensors[i].kind)));
+                          sensors[i].id + ": " + std::string(sensors[i].kind->keyword));
         drawSensorMark(picture, page, mark, on_top ? 0.5 * radius : radius);
         picture.pop();
         places.addMark(page, mark.heading);
@@ -207,7 +207,7 @@ void drawViews(Picture& picture, const MapPicture& map) {
 
 SensorMark markOf(const MapPicture& map, std::size_t sensor) {
     const SensorView& view = map.coverage.sensors[sensor];
-    return {bodyOfMark(nameOf(view.kind)), headingOf(view.pose), sensorColor(map, sensor)};
+    return {view.kind->sign, headingOf(view.pose), sensorColor(map, sensor)};
 }
 
 void drawSpotSign(Picture& picture, Point2 page, const std::string& number, double em) {

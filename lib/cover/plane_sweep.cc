@@ -42,16 +42,16 @@ bool BearingWindow::holds(Vec3 local) const {
     return dot(Vec2{local.x, local.y}, middle) >= (cosine - kRounding) * distance;
 }
 
-SweptScan::SweptScan(const PlacedLaser& placed)
-    : axis_(placed.laser.sweep),
+SweptScan::SweptScan(const Sensor& placed)
+    : axis_(placed.as<Laser>().sweep),
       origin_(placed.pose.position),
       turns_{cosSin(placed.pose.heading), cosSin(placed.pose.tilt), cosSin(placed.pose.roll)},
-      middle_(cosSin(angleOf(placed.laser, placed.pose) + 0.5 * sweepOf(placed.laser))),
-      cosine_(cosineOfHalf(sweepOf(placed.laser))),
-      window_(placed.laser),
+      middle_(cosSin(angleOf(placed.as<Laser>(), placed.pose) + 0.5 * sweepOf(placed.as<Laser>()))),
+      cosine_(cosineOfHalf(sweepOf(placed.as<Laser>()))),
+      window_(placed.as<Laser>()),
       // Upside down, it turns the other way in its own frame.
-      wide_(placed.laser,
-            (turns_.tilt.cos * turns_.roll.cos < 0 ? -1.0 : 1.0) * sweepOf(placed.laser)) {}
+      wide_(placed.as<Laser>(),
+            (turns_.tilt.cos * turns_.roll.cos < 0 ? -1.0 : 1.0) * sweepOf(placed.as<Laser>())) {}
 
 /// Rx(-roll) Ry(tilt) Rz(-heading).
 Vec3 SweptScan::Turns::toSensor(Vec3 way) const {

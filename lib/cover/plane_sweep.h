@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geom/pose.h"
-#include "layout/laser.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -41,8 +41,8 @@ class ScanPlane {
 /// pass, if nothing stands in the way.
 class SweptScan {
   public:
-    /// \pre placed.laser.sweep is not None
-    explicit SweptScan(const PlacedLaser& placed);
+    /// \pre placed.as<Laser>().sweep is not None
+    explicit SweptScan(const Sensor& placed);
 
     /// True if some scan of the sweep has the place between its first and last beam.
     [[nodiscard]] bool passes(Point3 place) const;

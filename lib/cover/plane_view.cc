@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "cover/plane_field.h"
 #include "cover/plane_sweep.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 
@@ -97,12 +97,12 @@ CellSet cellsInView(const Grid& grid, const RayWorld& mesh, const FieldOfView& v
                         });
 }
 
-CellSet cellsOfScan(const Grid& grid, const RayWorld& mesh, const PlacedLaser& sensor) {
+CellSet cellsOfScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor) {
     const ScanPlane plane(sensor.pose);
     if (plane.up() == 0) return CellSet(grid.size());  // seen from above, a line
     const Point3 origin = sensor.pose.position;
-    const double range = sensor.laser.max_range;
-    const BearingWindow window(sensor.laser);
+    const double range = sensor.as<Laser>().max_range;
+    const BearingWindow window(sensor.as<Laser>());
     return cellsInSight({grid, mesh, origin, range}, [&](Point2 center) -> std::optional<Point3> {
         const Point3 target{center.x, center.y, plane.heightAt(center)};
         const Vec3 way = target - origin;
@@ -113,11 +113,10 @@ CellSet cellsOfScan(const Grid& grid, const RayWorld& mesh, const PlacedLaser& s
     });
 }
 
-CellSet cellsOfSweep(const Grid& grid, const RayWorld& mesh, const PlacedLaser& sensor,
-                     double height) {
+CellSet cellsOfSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height) {
     const SweptScan scan(sensor);
     const Point3 origin = sensor.pose.position;
-    const double range = sensor.laser.max_range;
+    const double range = sensor.as<Laser>().max_range;
     const auto reach = planReach(range, height - origin.z);
     if (!reach) return CellSet(grid.size());
     return cellsInSight({grid, mesh, origin, *reach}, [&](Point2 center) -> std::optional<Point3> {
@@ -131,20 +130,10 @@ CellSet cellsOfSweep(const Grid& grid, const RayWorld& mesh, const PlacedLaser& 
 
 }  // namespace
 
-CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedLaser& sensor,
-                  double height) {
-    return sensor.laser.sweep == SweepAxis::None ? cellsOfScan(grid, mesh, sensor)
-                                                 : cellsOfSweep(grid, mesh, sensor, height);
-}
-
-CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedRanger& sensor,
-                  double height) {
-    return cellsInView(grid, mesh, FieldOfView(sensor), height);
-}
-
-CellSet cellsHeard(const Grid& grid, const RayWorld& mesh, const PlacedReceiver& sensor,
-                   double height) {
-    return cellsInView(grid, mesh, FieldOfView(sensor), height);
+CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height) {
+    if (const auto view = fieldOfView(sensor)) return cellsInView(grid, mesh, *view, height);
+    return sensor.as<Laser>().sweep == SweepAxis::None ? cellsOfScan(grid, mesh, sensor)
+                                                       : cellsOfSweep(grid, mesh, sensor, height);
 }
 
 }  // namespace ispace

@@ -8,10 +8,8 @@
 
 #include "env/environment.h"
 #include "geom/curve.h"
-#include "layout/laser.h"
-#include "layout/ranger.h"
-#include "layout/ultrasound.h"
 #include "raster/grid.h"
+#include "sensor/sensor.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -26,12 +24,8 @@ namespace ispace {
 /// A laser that scans in one tilted plane is seen to cover the floor over or under which that plane
 /// passes in sight, above the floor (`height` does not count); a swept one what its scans pass of
 /// the plane at `height` as it turns on, between scans as well.
-CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedLaser& sensor, double height);
-CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const PlacedRanger& sensor,
-                  double height);
-/// Where the receiver hears a tag that emits all around.
-CellSet cellsHeard(const Grid& grid, const RayWorld& mesh, const PlacedReceiver& sensor,
-                   double height);
+/// A receiver hears there a tag that emits all around.
+CellSet cellsSeen(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height);
 
 /// The same as exact regions, by the shadows that bodies throw. (Contact with the plane is by
 /// height here and along the ray there: where sight grazes what is less than kRayEpsilon above the
@@ -48,9 +42,8 @@ class ShadowCaster {
     /// times their height over the plane somewhat worse). Empty curves: nothing is seen; nothing:
     /// not known exactly (swept lasers).
     /// \throws FormatError for shadows that cross by the ten million
-    [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const PlacedLaser& sensor) const;
-    [[nodiscard]] std::vector<Curve> regionSeen(const PlacedRanger& sensor, double height) const;
-    [[nodiscard]] std::vector<Curve> regionHeard(const PlacedReceiver& sensor, double height) const;
+    [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const Sensor& sensor,
+                                                               double height) const;
 
   private:
     struct Data;

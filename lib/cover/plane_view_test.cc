@@ -49,7 +49,7 @@ TEST(PlaneCells, RangerLookingDownSeesARectangle) {
     const Point3 place{0.3, -0.2, 3};
     for (const double plane : {0.0, 0.7, 2.9, 3.8}) {
         // Looking down the left of the picture is +y, looking up its top is -x.
-        const PlacedRanger sensor = rangerAt(poseAt(place, 0, plane < 3 ? -90 : 90), 70, 40, 20);
+        const Sensor sensor = rangerAt(poseAt(place, 0, plane < 3 ? -90 : 90), 70, 40, 20);
         const double w = std::fabs(plane - 3) * tanOf(35), d = std::fabs(plane - 3) * tanOf(20);
         const Room fine("ispace size=12,8,4", 1200, 400);
         EXPECT_TRUE(fine.agrees(cellsSeen(fine.grid, fine.mesh, sensor, plane), [&](Point2 p) {
@@ -60,7 +60,7 @@ TEST(PlaneCells, RangerLookingDownSeesARectangle) {
 
 TEST(PlaneCells, RollTurnsThePicture) {
     const Room room("ispace size=12,8,4", 120, 80);
-    const PlacedRanger sensor = rangerAt(poseAt({0, 0, 3}, 0, -90, 90), 70, 40, 20);
+    const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -90, 90), 70, 40, 20);
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
         return std::min(3 * tanOf(35) - std::fabs(p.x), 3 * tanOf(20) - std::fabs(p.y));
     }));
@@ -68,12 +68,12 @@ TEST(PlaneCells, RollTurnsThePicture) {
 
 TEST(PlaneCells, RangeIsADistanceOrADepth) {
     const Room room("ispace size=12,8,4", 120, 80);
-    PlacedRanger sensor = rangerAt(poseAt({0, 0, 1}, 0, 0), 90, 100, 4);
+    Sensor sensor = rangerAt(poseAt({0, 0, 1}, 0, 0), 90, 100, 4);
     const auto wedge = [](Point2 p) { return std::min(p.x - std::fabs(p.y), p.x - 1 / tanOf(50)); };
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
         return std::min(wedge(p), 4 - std::hypot(p.x, p.y, 1));
     }));
-    sensor.ranger.measures_depth = true;
+    sensor.as<Ranger>().measures_depth = true;
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
                             [&](Point2 p) { return std::min(wedge(p), 4 - p.x); }));
 }
@@ -81,8 +81,8 @@ TEST(PlaneCells, RangeIsADistanceOrADepth) {
 TEST(PlaneCells, HeadSeesBearingsAndElevations) {
     const Room room("ispace size=12,8,4", 120, 80);
     for (const double span : {30.0, 180.0, 300.0, 360.0}) {
-        PlacedRanger sensor = rangerAt(poseAt({0.05, 0, 2}, 20, 0), span, 100, 4);
-        sensor.ranger.projection = Projection::Spherical;
+        Sensor sensor = rangerAt(poseAt({0.05, 0, 2}, 20, 0), span, 100, 4);
+        sensor.as<Ranger>().projection = Projection::Spherical;
         EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
             const Vec2 way = p - Point2{0.05, 0};
             const Angle off = wrapped(directionOf(way.x, way.y) - Angle::degrees(20));
@@ -97,8 +97,8 @@ TEST(PlaneCells, ReceiverHearsACone) {
     const Room room("ispace size=12,8,4", 120, 80);
     for (const double fov : {60.0, 120.0, 180.0, 240.0, 360.0}) {
         const Pose3 pose = poseAt({0.3, 0.1, 2}, 30, -50, 77);
-        const PlacedReceiver sensor = receiverAt(pose, fov, 5);
-        EXPECT_TRUE(room.agrees(cellsHeard(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
+        const Sensor sensor = receiverAt(pose, fov, 5);
+        EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
             const Vec3 way = Point3{p.x, p.y, 0.5} - pose.position;
             const double cosine = dot(way, pose.beam({})) / length(way);
             const double off = std::acos(std::min(1.0, cosine)) * (180 / std::numbers::pi);
@@ -109,9 +109,9 @@ TEST(PlaneCells, ReceiverHearsACone) {
 
 TEST(PlaneCells, ThingsAreInTheWayOnlyFromAbove) {
     const Room room("ispace size=12,8,4\ncube at=2,0 size=1,1,1\n", 61, 41);
-    const PlacedReceiver sensor = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 30);
-    const CellSet floor = cellsHeard(room.grid, room.mesh, sensor, 0);
-    const CellSet top = cellsHeard(room.grid, room.mesh, sensor, 1);
+    const Sensor sensor = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 30);
+    const CellSet floor = cellsSeen(room.grid, room.mesh, sensor, 0);
+    const CellSet top = cellsSeen(room.grid, room.mesh, sensor, 1);
     for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
         const Point2 p = room.grid.center(cell);
         const bool hidden = p.x > 1.5 && p.x < 5 && std::fabs(p.y) < std::min(1.0, p.x / 3);
@@ -122,10 +122,10 @@ TEST(PlaneCells, ThingsAreInTheWayOnlyFromAbove) {
 
 TEST(PlaneCells, PlaneOutOfRangeIsNotSeen) {
     const Room room("ispace size=12,8,4");
-    const PlacedReceiver sensor = receiverAt(poseAt({0, 0, 3}, 0, -90), 360, 2);
-    EXPECT_EQ(cellsHeard(room.grid, room.mesh, sensor, 0).count(), 0U);
-    EXPECT_GT(cellsHeard(room.grid, room.mesh, sensor, 1.1).count(), 0U);
-    EXPECT_EQ(cellsHeard(room.grid, room.mesh, receiverAt(sensor.pose, 360, 0), 0).count(), 0U);
+    const Sensor sensor = receiverAt(poseAt({0, 0, 3}, 0, -90), 360, 2);
+    EXPECT_EQ(cellsSeen(room.grid, room.mesh, sensor, 0).count(), 0U);
+    EXPECT_GT(cellsSeen(room.grid, room.mesh, sensor, 1.1).count(), 0U);
+    EXPECT_EQ(cellsSeen(room.grid, room.mesh, receiverAt(sensor.pose, 360, 0), 0).count(), 0U);
 }
 
 TEST(PlaneCells, TiltedLaserCoversTheFloorUnderItsPlane) {
@@ -138,29 +138,29 @@ TEST(PlaneCells, TiltedLaserCoversTheFloorUnderItsPlane) {
     EXPECT_TRUE(
         room.agrees(cellsSeen(room.grid, room.mesh, {"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
                     [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); }));
-    const PlacedLaser upright{"l", wide, poseAt({0, 0, 1}, 0, -90)};
+    const Sensor upright{"l", wide, poseAt({0, 0, 1}, 0, -90)};
     EXPECT_EQ(cellsSeen(room.grid, room.mesh, upright, 0).count(), 0U);
 }
 
 TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
     // Table 5.4 of the thesis: 7 m, looking down, 180 degrees, each heading.
     const Room room("ispace size=9,9,4.5", 90, 90);
-    PlacedLaser sensor{"l", laserWith(7, -90, 180), poseAt({0, 0, 4}, 0, -90)};
-    sensor.laser.sweep = SweepAxis::Heading;
+    Sensor sensor{"l", laserWith(7, -90, 180), poseAt({0, 0, 4}, 0, -90)};
+    sensor.as<Laser>().sweep = SweepAxis::Heading;
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
                             [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); }));
     // Four scans, and all between the last and the first.
-    sensor.laser.sweep_step = Angle::degrees(90);
-    sensor.laser.first = Angle::degrees(10);
-    sensor.laser.beams = 61;
+    sensor.as<Laser>().sweep_step = Angle::degrees(90);
+    sensor.as<Laser>().first = Angle::degrees(10);
+    sensor.as<Laser>().beams = 61;
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
         const double off = std::hypot(p.x, p.y) / 4;  // tangent, from straight down
         return std::min({off - tanOf(10), tanOf(60) - off, 7 - std::hypot(p.x, p.y, 4)});
     }));
-    sensor.laser = laserWith(7, -90, 180);
-    sensor.laser.sweep = SweepAxis::Heading;
+    sensor.as<Laser>() = laserWith(7, -90, 180);
+    sensor.as<Laser>().sweep = SweepAxis::Heading;
     // A quarter of the headings, of both halves of the scan.
-    sensor.laser.sweep_span = Angle::degrees(90);
+    sensor.as<Laser>().sweep_span = Angle::degrees(90);
     EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
         return std::min(7 - std::hypot(p.x, p.y, 4), -p.x * p.y);
     }));
@@ -168,8 +168,8 @@ TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
 
 /// The same by trying angle after angle: where the place changes sides of the scan plane.
 /// \return how far inside the window of bearings it then is, in degrees: the most of all
-double passesByTrying(const PlacedLaser& sensor, Point3 place) {
-    const Laser& laser = sensor.laser;
+double passesByTrying(const Sensor& sensor, Point3 place) {
+    const Laser& laser = sensor.as<Laser>();
     const Vec3 way = place - sensor.pose.position;
     const double last =
         laser.sweep_span.degrees() < 360 ? (laser.scans() - 1) * laser.sweep_step.degrees() : 360;
@@ -203,13 +203,12 @@ TEST(SweptScan, PassesWhatTryingAllAnglesFinds) {
     const std::array axes{SweepAxis::Heading, SweepAxis::Tilt, SweepAxis::Roll};
     int seen = 0, unseen = 0;
     for (int trial = 0; trial < 90; ++trial) {
-        PlacedLaser sensor{
-            "l", laserWith(30, -half(random), 2 * half(random)),
-            poseAt({place(random), place(random), place(random)}, turn(random),
-                   trial % 4 == 0 ? 0 : turn(random), trial % 5 < 2 ? 0 : turn(random))};
-        sensor.laser.sweep = axes[static_cast<std::size_t>(trial) % 3];
-        if (sensor.pose.isLevel() && sensor.laser.sweep == SweepAxis::Heading) continue;
-        if (trial % 7 != 0) sensor.laser.sweep_span = Angle::degrees(2 * half(random) + 0.5);
+        Sensor sensor{"l", laserWith(30, -half(random), 2 * half(random)),
+                      poseAt({place(random), place(random), place(random)}, turn(random),
+                             trial % 4 == 0 ? 0 : turn(random), trial % 5 < 2 ? 0 : turn(random))};
+        sensor.as<Laser>().sweep = axes[static_cast<std::size_t>(trial) % 3];
+        if (sensor.pose.isLevel() && sensor.as<Laser>().sweep == SweepAxis::Heading) continue;
+        if (trial % 7 != 0) sensor.as<Laser>().sweep_span = Angle::degrees(2 * half(random) + 0.5);
         const SweptScan scan(sensor);
         for (int i = 0; i < 12; ++i) {
             const Point3 target{place(random), place(random), place(random)};
@@ -224,18 +223,18 @@ TEST(SweptScan, PassesWhatTryingAllAnglesFinds) {
 }
 
 TEST(SweptScan, PlacesOnTheAxisAreSeenByTheirBearing) {
-    PlacedLaser sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 1}, 0, 0)};
-    sensor.laser.sweep = SweepAxis::Tilt;
-    sensor.laser.sweep_span = Angle::degrees(30);
+    Sensor sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 1}, 0, 0)};
+    sensor.as<Laser>().sweep = SweepAxis::Tilt;
+    sensor.as<Laser>().sweep_span = Angle::degrees(30);
     EXPECT_TRUE(SweptScan(sensor).passes({0, 2, 1}));
-    sensor.laser.first = Angle::degrees(-80);
-    sensor.laser.beams = 161;
+    sensor.as<Laser>().first = Angle::degrees(-80);
+    sensor.as<Laser>().beams = 161;
     EXPECT_FALSE(SweptScan(sensor).passes({0, 2, 1}));
-    sensor.laser.sweep = SweepAxis::Roll;
+    sensor.as<Laser>().sweep = SweepAxis::Roll;
     EXPECT_TRUE(SweptScan(sensor).passes({2, 0, 1}));
     EXPECT_FALSE(SweptScan(sensor).passes({-2, 0, 1}));
     // A scan that turns in its own plane.
-    sensor.laser.sweep = SweepAxis::Heading;
+    sensor.as<Laser>().sweep = SweepAxis::Heading;
     EXPECT_TRUE(SweptScan(sensor).passes({std::cos(1.8), std::sin(1.8), 1}));
     EXPECT_FALSE(SweptScan(sensor).passes({std::cos(2.0), std::sin(2.0), 1}));
     EXPECT_FALSE(SweptScan(sensor).passes({1, 0, 1.01}));
@@ -243,9 +242,9 @@ TEST(SweptScan, PlacesOnTheAxisAreSeenByTheirBearing) {
 
 TEST(SweptScan, UpsideDownBearingsRunTheOtherWay) {
     // Beams from 0 to 20 degrees to its left, which is our right; headings from 0 to 60.
-    PlacedLaser sensor{"l", laserWith(30, 0, 20), poseAt({0, 0, 1}, 0, 0, 180)};
-    sensor.laser.sweep = SweepAxis::Heading;
-    sensor.laser.sweep_span = Angle::degrees(60);
+    Sensor sensor{"l", laserWith(30, 0, 20), poseAt({0, 0, 1}, 0, 0, 180)};
+    sensor.as<Laser>().sweep = SweepAxis::Heading;
+    sensor.as<Laser>().sweep_span = Angle::degrees(60);
     const SweptScan scan(sensor);
     for (int degrees = -179; degrees < 180; ++degrees) {
         if (degrees == -20 || degrees == 60) continue;
@@ -256,9 +255,9 @@ TEST(SweptScan, UpsideDownBearingsRunTheOtherWay) {
 
 TEST(PlaneCells, SweptLaserSeesWhatNothingHides) {
     const Room room("ispace size=12,8,4\ncube at=2,0 size=1,1,1\n", 61, 41);
-    PlacedLaser sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 2}, 0, -90)};
-    sensor.laser.sweep = SweepAxis::Tilt;
-    sensor.laser.sweep_span = Angle::degrees(90);
+    Sensor sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 2}, 0, -90)};
+    sensor.as<Laser>().sweep = SweepAxis::Tilt;
+    sensor.as<Laser>().sweep_span = Angle::degrees(90);
     const CellSet floor = cellsSeen(room.grid, room.mesh, sensor, 0);
     for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
         const Point2 p = room.grid.center(cell);

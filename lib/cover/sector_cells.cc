@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 
-#include "cover/range_rule.h"
 #include "cover/sector_limits.h"
 #include "cover/sight_outline.h"
 #include "raster/grid.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 

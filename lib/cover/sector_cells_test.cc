@@ -95,8 +95,7 @@ void expectSame(const Case& c, CellParts& parts) {
     cellsBySector(c.grid, c.sight, c.place, c.laser.max_range, limits, parts);
     expectTidy(parts, limits.size(), c.grid.size());
     for (const double heading : c.headings) {
-        const PlacedLaser sensor{"l", c.laser,
-                                 poseAt({c.place.x, c.place.y, kScanHeight}, heading, 0)};
+        const Sensor sensor{"l", c.laser, poseAt({c.place.x, c.place.y, kScanHeight}, heading, 0)};
         const CellSet expected = cellsSeen(c.grid, c.sight, sensor);
         const CellSet seen = cellsOfFan(parts, limits, c.laser, heading, c.grid.size());
         ASSERT_EQ(seen, expected) << "place " << c.place.x << ',' << c.place.y << " heading "

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -19,15 +20,13 @@ namespace ispace {
 
 namespace {
 
-/// \param device the figures of a placed sensor
-template <typename Placed, typename Device>
-SensorView viewOf(ViewKind kind, const Placed& sensor, const Device& device, std::size_t index) {
-    return {.kind = kind,
+SensorView viewOf(const Sensor& sensor, std::size_t index) {
+    return {.kind = &kindOf(sensor.model),
             .index = index,
             .id = sensor.id,
-            .model = device.model,
+            .model = deviceName(sensor.model),
             .pose = sensor.pose,
-            .max_range = device.max_range};
+            .max_range = maxRange(sensor.model)};
 }
 
 /// Fills in the views of a scene's sensors.
@@ -41,7 +40,7 @@ class Viewer {
         std::vector<std::size_t> on_planes;
         std::map<double, std::vector<std::size_t>> by_height;
         for (std::size_t i = 0; i < views_.size(); ++i) {
-            if (views_[i].kind == ViewKind::Laser && scansSlice(scene_.lasers[views_[i].index]))
+            if (scansSlice(sensorOf(views_[i])))
                 by_height[views_[i].pose.position.z].push_back(i);
             else
                 on_planes.push_back(i);
@@ -55,16 +54,19 @@ class Viewer {
     using Level = std::pair<double, std::vector<std::size_t>>;
 
     void makeViews() {
-        std::size_t index = 0;
-        for (const PlacedLaser& sensor : scene_.lasers)
-            views_.push_back(viewOf(ViewKind::Laser, sensor, sensor.laser, index++));
-        index = 0;
-        for (const PlacedRanger& sensor : scene_.rangers)
-            views_.push_back(viewOf(ViewKind::Ranger, sensor, sensor.ranger, index++));
-        index = 0;
-        for (const PlacedReceiver& sensor : scene_.receivers)
-            views_.push_back(viewOf(ViewKind::Receiver, sensor, sensor.receiver, index++));
-        for (const PlacedLaser& sensor : scene_.lasers) worlds_.prepare(sensor.pose);
+        for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
+            const Sensor& sensor = scene_.sensors[i];
+            if (!kindOf(sensor.model).perceives) continue;
+            views_.push_back(viewOf(sensor, i));
+            if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
+        }
+        std::stable_sort(views_.begin(), views_.end(),
+                         [&](const SensorView& a, const SensorView& b) {
+                             return sensorOf(a).model.index() < sensorOf(b).model.index();
+                         });
+    }
+    [[nodiscard]] const Sensor& sensorOf(const SensorView& view) const {
+        return scene_.sensors[view.index];
     }
 
     /// Each thread holds one slice after another, however many heights there are. All lines of a
@@ -82,12 +84,12 @@ class Viewer {
     }
 
     /// Beams are those of one scan: of a sweep they outline nothing.
-    [[nodiscard]] bool byBeams(const PlacedLaser& sensor) const {
-        return options_.cells_by == CellRule::Beams && sensor.laser.sweep == SweepAxis::None;
+    [[nodiscard]] bool byBeams(const Sensor& sensor) const {
+        return options_.cells_by == CellRule::Beams && sensor.as<Laser>().sweep == SweepAxis::None;
     }
 
     void lookInSlice(SensorView& view, const SliceSight& sight) const {
-        const PlacedLaser& sensor = scene_.lasers[view.index];
+        const Sensor& sensor = sensorOf(view);
         view.beams = castBeams(worlds_.at(sensor.pose), sensor);
         view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
                                      : cellsSeen(grid_, sight, sensor);
@@ -96,12 +98,7 @@ class Viewer {
 
     void lookAtPlanes(const std::vector<std::size_t>& members) {
         if (members.empty()) return;
-        for (const std::size_t i : members) {
-            if (views_[i].kind == ViewKind::Receiver)
-                worlds_.prepareSound();
-            else
-                worlds_.prepareMesh();
-        }
+        for (const std::size_t i : members) worlds_.prepareMesh(views_[i].kind->stopped_by);
         std::unique_ptr<const ShadowCaster> shadows;
         if (options_.exact) shadows = std::make_unique<ShadowCaster>(scene_.environment);
         SolidJudge judge(scene_.environment);
@@ -122,27 +119,20 @@ class Viewer {
 
     void lookAtPlane(SensorView& view) const {
         const double plane = options_.plane;
-        if (view.kind == ViewKind::Ranger) {
-            view.cells = cellsSeen(grid_, worlds_.mesh(), scene_.rangers[view.index], plane);
-        } else if (view.kind == ViewKind::Receiver) {
-            view.cells = cellsHeard(grid_, worlds_.sound(), scene_.receivers[view.index], plane);
-        } else {
-            const PlacedLaser& sensor = scene_.lasers[view.index];
+        const Sensor& sensor = sensorOf(view);
+        if (sensor.is<Laser>()) {
             view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-            view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
-                                         : cellsSeen(grid_, worlds_.mesh(), sensor, plane);
+            if (byBeams(sensor)) {
+                view.cells = cellsAmongBeams(grid_, sensor, view.beams);
+                return;
+            }
         }
+        view.cells = cellsSeen(grid_, worlds_.mesh(view.kind->stopped_by), sensor, plane);
     }
 
     void addRegion(SensorView& view, const ShadowCaster& shadows) const {
-        const double plane = options_.plane;
         try {
-            if (view.kind == ViewKind::Ranger)
-                view.region = shadows.regionSeen(scene_.rangers[view.index], plane);
-            else if (view.kind == ViewKind::Receiver)
-                view.region = shadows.regionHeard(scene_.receivers[view.index], plane);
-            else
-                view.region = shadows.regionSeen(scene_.lasers[view.index]);
+            view.region = shadows.regionSeen(sensorOf(view), options_.plane);
         } catch (const FormatError&) {
             view.region.reset();  // more shadows than can be laid over each other
         }
@@ -196,7 +186,7 @@ std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& gr
     std::vector<SeenSet> sets;
     std::vector<const SensorView*> receivers;
     for (const SensorView& view : views) {
-        if (view.kind == ViewKind::Receiver)
+        if (view.isPartial())
             receivers.push_back(&view);
         else
             sets.push_back({view.cells, view.region});

@@ -10,6 +10,7 @@
 #include "cover/shadow_footprint.h"
 #include "geom/overlay.h"
 #include "geom/visibility.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -25,6 +26,7 @@ struct ShadowCaster::Data {
     /// What throws shadows of sound and of light.
     [[nodiscard]] std::span<const ShadowBody> solid() const { return bodies; }
     [[nodiscard]] std::span<const ShadowBody> opaque() const { return solid().subspan(clear); }
+    [[nodiscard]] std::optional<std::vector<Curve>> regionScanned(const Sensor& sensor) const;
 };
 
 ShadowCaster::ShadowCaster(const Environment& environment)
@@ -126,15 +128,15 @@ Curve onPlan(const Curve& curve, const ScanPlane& plane) {
 
 }  // namespace
 
-std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& sensor) const {
-    const Laser& laser = sensor.laser;
+std::optional<std::vector<Curve>> ShadowCaster::Data::regionScanned(const Sensor& sensor) const {
+    const Laser& laser = sensor.as<Laser>();
     if (laser.sweep != SweepAxis::None) return std::nullopt;
     const ScanPlane plane(sensor.pose);
     if (plane.up() == 0) return std::vector<Curve>{};
     const bool is_over_floor = sensor.pose.position.z > kRayEpsilon;
-    const std::span<const ShadowBody> opaque = data_->opaque();
-    std::vector<Segment2> lines = cutsOf(is_over_floor ? opaque.first(opaque.size() - 1) : opaque,
-                                         plane.frame(), laser.max_range);
+    const std::span<const ShadowBody> all = opaque();
+    std::vector<Segment2> lines =
+        cutsOf(is_over_floor ? all.first(all.size() - 1) : all, plane.frame(), laser.max_range);
     if (is_over_floor) addFloor(plane.frame(), laser.max_range, lines);
     const VisibilityMap map(lines);
     const VisibleRegion seen = map.query({0, 0}, laser.max_range);
@@ -152,12 +154,12 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const PlacedLaser& se
     return laid(layers, 3, foot);
 }
 
-std::vector<Curve> ShadowCaster::regionSeen(const PlacedRanger& sensor, double height) const {
-    return regionInView(data_->opaque(), FieldOfView(sensor), height);
-}
-
-std::vector<Curve> ShadowCaster::regionHeard(const PlacedReceiver& sensor, double height) const {
-    return regionInView(data_->solid(), FieldOfView(sensor), height);
+std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const Sensor& sensor,
+                                                           double height) const {
+    const auto view = fieldOfView(sensor);
+    if (!view) return data_->regionScanned(sensor);
+    const bool is_light = kindOf(sensor.model).stopped_by == Surfaces::Opaque;
+    return regionInView(is_light ? data_->opaque() : data_->solid(), *view, height);
 }
 
 }  // namespace ispace

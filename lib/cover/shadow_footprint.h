@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "cover/plane_field.h"
 #include "geom/box.h"
 #include "geom/overlay.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 

@@ -3,9 +3,7 @@
 #pragma once
 
 #include "geom/pose.h"
-#include "layout/laser.h"
-#include "layout/ranger.h"
-#include "layout/ultrasound.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -13,8 +11,8 @@ inline Pose3 poseAt(Point3 place, double heading, double tilt, double roll = 0) 
     return {place, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
 }
 
-inline PlacedRanger rangerAt(const Pose3& pose, double fov_x, double fov_y, double range,
-                             Projection projection = Projection::Pinhole) {
+inline Sensor rangerAt(const Pose3& pose, double fov_x, double fov_y, double range,
+                       Projection projection = Projection::Pinhole) {
     Ranger ranger;
     ranger.projection = projection;
     ranger.fov_x = Angle::degrees(fov_x);
@@ -23,7 +21,7 @@ inline PlacedRanger rangerAt(const Pose3& pose, double fov_x, double fov_y, doub
     return {"r", ranger, pose};
 }
 
-inline PlacedReceiver receiverAt(const Pose3& pose, double fov, double range) {
+inline Sensor receiverAt(const Pose3& pose, double fov, double range) {
     Receiver receiver;
     receiver.fov = Angle::degrees(fov);
     receiver.max_range = range;

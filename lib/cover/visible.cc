@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cover/range_rule.h"
 #include "cover/sight_outline.h"
 #include "geom/overlay.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 
@@ -70,20 +70,23 @@ class FanFilter {
 
 }  // namespace
 
-bool scansSlice(const PlacedLaser& sensor) {
-    return sensor.pose.isLevel() &&
-           (sensor.laser.sweep == SweepAxis::None || sensor.laser.sweep == SweepAxis::Heading);
+bool scansSlice(const Laser& laser, const Pose3& pose) {
+    return pose.isLevel() && (laser.sweep == SweepAxis::None || laser.sweep == SweepAxis::Heading);
+}
+
+bool scansSlice(const Sensor& sensor) {
+    return sensor.is<Laser>() && scansSlice(sensor.as<Laser>(), sensor.pose);
 }
 
 FanLimits fanLimits(const Laser& laser, Angle heading) {
     return {heading + laser.first, laser.sweptSpan()};
 }
 
-std::vector<Curve> regionSeen(const SliceSight& sight, const PlacedLaser& sensor) {
+std::vector<Curve> regionSeen(const SliceSight& sight, const Sensor& sensor) {
     const Point2 place = sensor.pose.position.onFloor();
     VisibleRegion region;
-    sight.query(place, sensor.laser.max_range, region);
-    const FanLimits limits = fanLimits(sensor.laser, sensor.pose.heading);
+    sight.query(place, sensor.as<Laser>().max_range, region);
+    const FanLimits limits = fanLimits(sensor.as<Laser>(), sensor.pose.heading);
     Curve outline = outlineOf(sectorOf(region, limits.first, limits.span));
     if (outline.empty()) return {};
     const std::vector<Polygon> solids = sight.solidsTouching(place);
@@ -117,9 +120,9 @@ CellSet cellsInFan(const Grid& grid, const VisibleCells& visible, const Laser& l
     return cells;
 }
 
-CellSet cellsSeen(const Grid& grid, const SliceSight& sight, const PlacedLaser& sensor) {
+CellSet cellsSeen(const Grid& grid, const SliceSight& sight, const Sensor& sensor) {
     const Point2 place = sensor.pose.position.onFloor();
-    const Laser& laser = sensor.laser;
+    const Laser& laser = sensor.as<Laser>();
     const FanFilter filter(laser, sensor.pose.heading);
     CellSet cells = cellsAround(grid, sight, place, laser.max_range);
     const CellSet around = cells;
@@ -134,16 +137,16 @@ CellSet cellsSeen(const Grid& grid, const SliceSight& sight, const PlacedLaser& 
     return cells;
 }
 
-CellSet cellsAmongBeams(const Grid& grid, const PlacedLaser& sensor, std::span<const float> beams) {
+CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const float> beams) {
     const Point3 origin = sensor.pose.position;
     Polygon outline;
     outline.reserve(beams.size() + 1);
     for (std::size_t k = 0; k < beams.size(); ++k) {
-        const double range = std::min(static_cast<double>(beams[k]), sensor.laser.max_range);
-        const Vec3 beam = sensor.pose.beam(sensor.laser.bearing(static_cast<int>(k)));
+        const double range = std::min(static_cast<double>(beams[k]), sensor.as<Laser>().max_range);
+        const Vec3 beam = sensor.pose.beam(sensor.as<Laser>().bearing(static_cast<int>(k)));
         outline.push_back((origin + range * beam).onFloor());
     }
-    if (sensor.laser.span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
+    if (sensor.as<Laser>().span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
     const std::vector<Polygon> curves = {std::move(outline)};
     return cellsWithin(grid, curves);
 }

@@ -18,7 +18,7 @@ struct Room {
           grid{scene.environment.limits(), columns, rows},
           mesh(RayWorld::ofEnvironment(scene.environment)) {}
 
-    CellSet seen(const PlacedLaser& sensor) {
+    CellSet seen(const Sensor& sensor) {
         if (!scansSlice(sensor)) return cellsSeen(grid, mesh, sensor, 0);
         return cellsSeen(grid, sightAt(sensor.pose), sensor);
     }
@@ -49,8 +49,7 @@ TEST(CellsSeen, EmptyRoomIsSeenByRangeAndFieldOfView) {
     std::uniform_real_distribution<double> x(-5.9, 5.9), y(-3.9, 3.9), turn(-360, 360);
     for (int trial = 0; trial < 20; ++trial) {
         const double range = trial % 3 == 0 ? 30 : 1 + trial % 5, fov = 20 + 17 * trial;
-        const PlacedLaser sensor{"l", bareLaser(range, fov),
-                                 level(x(random), y(random), turn(random))};
+        const Sensor sensor{"l", bareLaser(range, fov), level(x(random), y(random), turn(random))};
         const CellSet cells = room.seen(sensor);
         for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
             const Vec2 offset = room.grid.center(cell) - sensor.pose.position.onFloor();
@@ -153,8 +152,8 @@ TEST(CellsSeen, UprightPlaneCoversNothing) {
 
 TEST(CellsSeen, SlightTiltIsNearlyLevel) {
     Room room("ispace size=12,8\npillar at=1,1 size=0.62,0.62\n");
-    const PlacedLaser flat{"l", bareLaser(30, 180), level(-3, 0.01, 10)};
-    PlacedLaser tilted = flat;
+    const Sensor flat{"l", bareLaser(30, 180), level(-3, 0.01, 10)};
+    Sensor tilted = flat;
     tilted.pose.tilt = Angle::degrees(1e-4);
     const CellSet a = room.seen(flat), b = room.seen(tilted);
     EXPECT_GT(a.count(), 1000U);

@@ -3,8 +3,7 @@
 
 #include <utility>
 
-#include "layout/figures.h"
-#include "layout/views.h"
+#include "layout/bodies.h"
 
 namespace ispace {
 
@@ -28,7 +27,7 @@ std::vector<ModelNode> modelOf(const Scene& scene, bool with_views) {
                         &element});
     addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
     for (const Placed& placed : scene.placed) {
-        std::vector<Mesh> meshes = figureOf(scene, placed);
+        std::vector<Mesh> meshes = bodyOf(scene, placed);
         if (auto view = with_views ? viewOf(scene, placed) : std::nullopt)
             meshes.push_back(std::move(*view));
         addNode(nodes, {scene.ids[placed.record], scene.records[placed.record].keyword(),

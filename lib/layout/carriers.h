@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "layout/laser.h"
 #include "record/record.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 

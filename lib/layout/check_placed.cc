@@ -5,8 +5,8 @@
 #include "base/number.h"
 #include "env/mesh_cut.h"
 #include "geom/predicates.h"
+#include "layout/bodies.h"
 #include "layout/check_parts.h"
-#include "layout/figures.h"
 
 namespace ispace {
 

@@ -2,17 +2,17 @@
 #include "layout/devices.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include "base/file.h"
 #include "base/message.h"
-#include "layout/laser.h"
-#include "layout/ranger.h"
 #include "layout/robot.h"
 #include "layout/schemas.h"
-#include "layout/ultrasound.h"
 #include "record/text.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -27,16 +27,10 @@ const Schemas& schemasOfDevices() {
 /// Figures must fit each other.
 void checkFigures(const Record& device, Diagnostics& findings) {
     try {
-        if (device.keyword() == "robot")
-            withFigures(RobotModel(), device);
-        else if (device.keyword() == "ranger")
-            withFigures(Ranger(), device);
-        else if (device.keyword() == "ultrasound")
-            withFigures(Receiver(), device);
-        else if (device.keyword() == "tag")
-            withFigures(Tag(), device);
+        if (const SensorKind* kind = sensorKind(device.keyword()))
+            static_cast<void>(kind->read(device, &device));
         else
-            withFigures(Laser(), device);
+            withFigures(RobotModel(), device);
     } catch (const FormatError& error) {
         findings.add(error);
     }
@@ -68,27 +62,28 @@ std::vector<std::string> deviceFiles(const std::string& folder) {
 
 }  // namespace
 
-DeviceCatalogue DeviceCatalogue::load(const std::string& folder) {
-    DeviceCatalogue catalogue;
+DeviceCatalogue loadDevices(const std::string& folder) {
+    std::vector<Record> records;
+    std::set<std::string> models;
     Diagnostics findings;
     for (const std::string& file : deviceFiles(folder)) {
         try {
             Document document = readRecordText(readAll(file), file, schemasOfDevices());
             for (Record& record : document.records) {
-                const std::string model = record.text("model");
-                if (catalogue.find(model) != nullptr) {
+                const std::string& model = record.text("model");
+                if (!models.insert(model).second) {
                     findings.add(record.finding("model", "model `" + model + "` stands twice"));
                     continue;
                 }
                 checkFigures(record, findings);
-                catalogue.records_.push_back(std::move(record));
+                records.push_back(std::move(record));
             }
         } catch (const FormatError& error) {
             findings.add(error);
         }
     }
     findings.throwIfAny();
-    return catalogue;
+    return DeviceCatalogue(std::move(records));
 }
 
 const Record* DeviceCatalogue::find(std::string_view model) const {
@@ -124,6 +119,38 @@ const Record* deviceOf(const Record& record, const DeviceCatalogue& devices) {
             "model",
             "model `" + model + "` is a " + device->keyword() + ", not a " + record.keyword()));
     return device;
+}
+
+SensorModel sensorModelOf(const Record& record, const DeviceCatalogue& devices) {
+    return sensorKind(record.keyword())->read(record, deviceOf(record, devices));
+}
+
+std::string deviceTable(const DeviceCatalogue& devices) {
+    using Row = std::array<std::string, 8>;
+    std::vector<Row> rows = {
+        {"MODEL", "KIND", "NAME", "RANGE/m", "FOV/deg", "SIZE", "RATE/Hz", "CONFIDENCE"}};
+    for (const SensorKind* kind : sensorKinds())
+        for (const Record& device : devices.devices()) {
+            if (device.keyword() != kind->keyword) continue;
+            const DeviceSummary summary = kind->summary(kind->read(device, &device));
+            rows.push_back({device.text("model"), device.keyword(),
+                            device.has("name") ? device.text("name") : "-", summary.range,
+                            summary.field_of_view, summary.size, summary.rate,
+                            device.text("confidence")});
+        }
+    std::array<std::size_t, std::tuple_size_v<Row>> widths{};
+    for (const Row& row : rows)
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    std::string out;
+    for (const Row& row : rows) {
+        for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+            out += row[i];
+            out.append(widths[i] - row[i].size() + 2, ' ');
+        }
+        out += row.back();
+        out += '\n';
+    }
+    return out;
 }
 
 }  // namespace ispace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "record/record.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -15,9 +16,7 @@ namespace ispace {
 class DeviceCatalogue {
   public:
     DeviceCatalogue() = default;
-    /// Reads all `*.3dm` files of a folder in the order of their names.
-    /// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
-    static DeviceCatalogue load(const std::string& folder);
+    explicit DeviceCatalogue(std::vector<Record> records) : records_(std::move(records)) {}
 
     /// The record of a model, or null. Models are unique over all keywords.
     [[nodiscard]] const Record* find(std::string_view model) const;
@@ -32,21 +31,22 @@ class DeviceCatalogue {
     std::vector<Record> records_;
 };
 
+/// Reads all `*.3dm` files of a folder in the order of their names.
+/// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
+DeviceCatalogue loadDevices(const std::string& folder);
+
 /// The device that `model` of a record names, or null where the record has no model.
 /// \throws FormatError for an unknown model (with the nearest name of the record's kind) and for
 ///         one of another kind
 const Record* deviceOf(const Record& record, const DeviceCatalogue& devices);
 
-/// Figures of a record: its explicit keys, else its model's, else those of a bare one, put together
-/// by withFigures(Figures, const Record&). \throws FormatError as that and deviceOf
-template <typename Figures>
-Figures modelled(const Record& record, const DeviceCatalogue& devices) {
-    Figures base;
-    if (const Record* device = deviceOf(record, devices)) {
-        base = withFigures(Figures(), *device);
-        base.model = record.text("model");
-    }
-    return withFigures(std::move(base), record);
-}
+/// The model of a sensor's record. \pre its kind is simulated (SensorKind::read)
+/// \throws FormatError as the kind's and deviceOf
+SensorModel sensorModelOf(const Record& record, const DeviceCatalogue& devices);
+
+/// All devices of sensors for people: a line each with model, kind, name, range, field of view,
+/// beams or pixels, rate and confidence, in columns, with a header line; by kind, then in catalogue
+/// order.
+std::string deviceTable(const DeviceCatalogue& devices);
 
 }  // namespace ispace

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "base/file.h"
-#include "layout/laser.h"
 #include "layout/test_layout.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -29,7 +29,7 @@ class DeviceFolder : public ::testing::Test {
         writeAll(folder_ + "/" + name, "#3dm 1\n" + lines);
     }
     [[nodiscard]] std::string loadFindings() const {
-        return testing::findings([&] { return DeviceCatalogue::load(folder_); });
+        return testing::findings([&] { return loadDevices(folder_); });
     }
 
     std::string folder_;
@@ -69,7 +69,7 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
 TEST(Devices, FiguresThatWereMisreadOnce) {
     const auto laser = [](const std::string& model) {
         const Record record = readRecord("laser model=" + model, "line", sceneSchemas());
-        return laserOf(record, testing::devices());
+        return laserOf(record, deviceOf(record, testing::devices()));
     };
     // Webots tells noise as a share of the greatest range: 0.0043 of 3.5 m.
     EXPECT_NEAR(laser("lds-01").noise.sigma[0], 0.0043 * 3.5, 1e-4);
@@ -80,15 +80,16 @@ TEST_F(DeviceFolder, ReadsFilesInOrderOfNamesAndNothingElse) {
     write("b.3dm", "laser model=two" + kTail);
     write("a.3dm", "laser model=three range=2" + kTail + "laser model=one" + kTail);
     writeAll(folder_ + "/README.txt", "not a device");
-    const DeviceCatalogue catalogue = DeviceCatalogue::load(folder_);
+    const DeviceCatalogue catalogue = loadDevices(folder_);
     EXPECT_EQ(catalogue.models(), (std::vector<std::string>{"three", "one", "two"}));
     EXPECT_EQ(catalogue.find("three")->tuple("range"), Tuple{2});
-    EXPECT_EQ(laserOf(readRecord("laser model=three", "line", sceneSchemas()), catalogue).max_range,
-              2);
+    EXPECT_EQ(
+        maxRange(sensorModelOf(readRecord("laser model=three", "line", sceneSchemas()), catalogue)),
+        2);
 }
 
 TEST_F(DeviceFolder, EmptyFolderIsAnEmptyCatalogue) {
-    EXPECT_TRUE(DeviceCatalogue::load(folder_).models().empty());
+    EXPECT_TRUE(loadDevices(folder_).models().empty());
 }
 
 TEST_F(DeviceFolder, DoubledModelsAndBadFiguresAreReportedTogether) {
@@ -132,8 +133,35 @@ TEST_F(DeviceFolder, DevicesHaveModelSourceAndConfidenceButNoPlace) {
 }
 
 TEST(Devices, MissingFolderIsASystemError) {
-    EXPECT_THROW(static_cast<void>(DeviceCatalogue::load("/nonexistent/devices")),
-                 std::system_error);
+    EXPECT_THROW(static_cast<void>(loadDevices("/nonexistent/devices")), std::system_error);
+}
+
+std::string modelFindings(const std::string& line) {
+    return testing::findings([&] {
+        return sensorModelOf(readRecord(line, "line", sceneSchemas()), testing::devices());
+    });
+}
+
+TEST(SensorModelOf, AModelOfAnotherKindIsToldApart) {
+    EXPECT_NE(modelFindings("laser model=pioneer-2dx")
+                  .find("line:1:13: error: model `pioneer-2dx` is a robot, not a laser"),
+              std::string::npos);
+    EXPECT_NE(modelFindings("ranger model=urg-04lx").find("is a laser, not a ranger"),
+              std::string::npos);
+}
+
+TEST(SensorModelOf, UnknownModelNamesTheNearestAndSaysWhereTheOthersAre) {
+    const std::string text = modelFindings("laser model=urg-4lx");
+    EXPECT_NE(text.find("unknown model `urg-4lx`, did you mean `urg-04lx`?"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("(scan --list-models names all)"), std::string::npos);
+    EXPECT_EQ(text.find("pioneer"), std::string::npos) << "no laser";
+    EXPECT_EQ(text.find("line:1:"), 0U) << text;
+    EXPECT_NE(testing::findings([] {
+                  return sensorModelOf(readRecord("laser model=x", "line", sceneSchemas()),
+                                       DeviceCatalogue());
+              }).find("the device catalogue has no laser"),
+              std::string::npos);
 }
 
 }  // namespace

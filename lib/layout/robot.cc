@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number.h"
+#include "sensor/keys.h"
 
 namespace ispace {
 
@@ -61,7 +62,7 @@ RobotModel withFigures(RobotModel base, const Record& record) {
 }
 
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices) {
-    return modelled<RobotModel>(record, devices);
+    return figuresOf<RobotModel>(record, deviceOf(record, devices));
 }
 
 Pose2 floorPoseOf(const Record& record) {

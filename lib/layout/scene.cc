@@ -2,13 +2,13 @@
 #include "layout/scene.h"
 
 #include <map>
-#include <type_traits>
 #include <utility>
 
 #include "layout/carriers.h"
-#include "layout/limits.h"
 #include "record/digest.h"
 #include "record/text.h"
+#include "sensor/keys.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -18,11 +18,8 @@ bool isMeta(const Record& record) { return record.schema().type == RecordType::M
 
 /// What is placed, and the sensors that are not.
 struct Placements {
-    std::vector<PlacedLaser> lasers;
+    std::vector<Sensor> sensors;
     std::vector<PendingSensor> pending;
-    std::vector<PlacedRanger> rangers;
-    std::vector<PlacedReceiver> receivers;
-    std::vector<PlacedTag> tags;
     std::vector<PlacedRobot> robots;
     std::vector<Placed> placed;
 };
@@ -53,23 +50,13 @@ class Resolver {
   private:
     void add(std::size_t i) {
         const Record& record = records_[i];
-        if (record.keyword() == "laser") {
-            addSensor(i, out_.lasers, laserOf(record, devices_));
+        if (const SensorKind* kind = sensorKind(record.keyword())) {
+            addSensor(i, *kind);
         } else if (record.keyword() == "robot") {
             RobotModel model = robotOf(record, devices_);
             const Pose2 pose = floorPoseOf(record);
             out_.placed.push_back({i, onFloor(pose), out_.robots.size()});
             out_.robots.push_back({ids_[i], std::move(model), pose, record.place()});
-        } else if (record.keyword() == "ranger") {
-            addSensor(i, out_.rangers, rangerOf(record, devices_));
-        } else if (record.keyword() == "ultrasound") {
-            addSensor(i, out_.receivers, receiverOf(record, devices_));
-        } else if (record.keyword() == "tag") {
-            addSensor(i, out_.tags, tagOf(record, devices_));
-        } else if (record.schema().find("on") != nullptr) {
-            checkFigures(record);
-            if (auto place = placeOf(record))
-                out_.placed.push_back({i, place->pose, 0, place->mount});
         } else {
             out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }
@@ -85,16 +72,20 @@ class Resolver {
     }
 
     /// One that has its place, or waits for it.
-    template <typename Sensors, typename Figures>
-    void addSensor(std::size_t i, Sensors& sensors, Figures figures) {
-        const auto place = placeOf(records_[i]);
+    void addSensor(std::size_t i, const SensorKind& kind) {
+        const Record& record = records_[i];
+        std::optional<SensorModel> model;
+        if (kind.read != nullptr)
+            model = kind.read(record, deviceOf(record, devices_));
+        else
+            checkFigures(record);
+        const auto place = placeOf(record);
         if (!place) {
-            if constexpr (std::is_constructible_v<SensorDevice, Figures>)
-                out_.pending.push_back({ids_[i], records_[i], std::move(figures)});
+            if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(*model)});
             return;
         }
-        out_.placed.push_back({i, place->pose, sensors.size(), place->mount});
-        sensors.push_back({ids_[i], std::move(figures), place->pose, place->mount});
+        out_.placed.push_back({i, place->pose, out_.sensors.size(), place->mount});
+        if (model) out_.sensors.push_back({ids_[i], std::move(*model), place->pose, place->mount});
     }
 
     /// Of a sensor; nothing if it is still to be placed.
@@ -164,11 +155,8 @@ Scene makeScene(const Document& environment, const Document* layout,
             .ids = std::move(ids),
             .environment = std::move(room),
             .digest = environmentDigest(environment.records),
-            .lasers = std::move(placements.lasers),
+            .sensors = std::move(placements.sensors),
             .pending = std::move(placements.pending),
-            .rangers = std::move(placements.rangers),
-            .receivers = std::move(placements.receivers),
-            .tags = std::move(placements.tags),
             .robots = std::move(placements.robots),
             .placed = std::move(placements.placed)};
 }

@@ -4,34 +4,28 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "env/environment.h"
 #include "layout/devices.h"
-#include "layout/laser.h"
-#include "layout/ranger.h"
 #include "layout/robot.h"
-#include "layout/ultrasound.h"
 #include "record/record.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
-
-/// Figures of a sensor that arrange can place.
-using SensorDevice = std::variant<Laser, Ranger, Receiver>;
 
 /// A sensor that still has to be placed.
 struct PendingSensor {
     std::string id;
     Record record;
-    SensorDevice device;
+    SensorModel model;
 };
 
 /// A placement record that has its place: a sensor, a tag, a mat, a gate, a robot, a person.
 struct Placed {
     std::size_t record = 0;  ///< index in Scene::records
     Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
-    std::size_t index = 0;   ///< in the list of its kind: Scene::lasers, rangers, robots, ...
+    std::size_t index = 0;   ///< of a sensor in Scene::sensors, of a robot in Scene::robots
     std::optional<Mount> mount = {};  ///< of a sensor on a robot
 };
 
@@ -43,14 +37,20 @@ struct Scene {
     std::vector<std::string> ids;        ///< of each record
     Environment environment;             ///< of the joined records
     std::string digest;                  ///< of ENV alone, see environmentDigest
-    std::vector<PlacedLaser> lasers;     ///< with a place, or on what has one, in order
-    std::vector<PendingSensor> pending;  ///< lasers, rangers, receivers without a place, in order
-    std::vector<PlacedRanger> rangers;   ///< as lasers; likewise:
-    std::vector<PlacedReceiver> receivers;
-    std::vector<PlacedTag> tags;
-    std::vector<PlacedRobot> robots;  ///< in order
-    std::vector<Placed> placed;       ///< all of them and everything else with a place, in order
+    std::vector<Sensor> sensors;         ///< with a place, or on what has one, in order
+    std::vector<PendingSensor> pending;  ///< those without a place that arrange can place, in order
+    std::vector<PlacedRobot> robots;     ///< in order
+    std::vector<Placed> placed;          ///< all of them and everything else with a place, in order
 };
+
+/// The placed sensors whose model is of this type, in order.
+template <typename Model>
+std::vector<Sensor> sensorsOf(const Scene& scene) {
+    std::vector<Sensor> found;
+    for (const Sensor& sensor : scene.sensors)
+        if (sensor.is<Model>()) found.push_back(sensor);
+    return found;
+}
 
 /// The records of LAYOUT put in the places of those of ENV with the same written id, the others
 /// behind them. \throws FormatError for one of another keyword in the place

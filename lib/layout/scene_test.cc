@@ -29,7 +29,7 @@ TEST(MakeScene, EnvironmentAlone) {
     const Scene made = scene(kRoom);
     EXPECT_EQ(made.ids, (std::vector<std::string>{"room", "desk1", "d"}));
     EXPECT_EQ(made.environment.elements().size(), 3U);
-    EXPECT_TRUE(made.lasers.empty());
+    EXPECT_TRUE(made.sensors.empty());
     EXPECT_TRUE(made.pending.empty());
     EXPECT_EQ(made.digest, environmentDigest(roomDocument(kRoom).records));
 }
@@ -43,16 +43,16 @@ TEST(MakeScene, SensorsOfLayoutFollowPlacedAndPending) {
                              "result coverage=97.4% area=12 bound=0.99 strategy=grid\n");
     EXPECT_EQ(made.records.size(), 6U);
     EXPECT_EQ(made.ids, (std::vector<std::string>{"room", "desk1", "d", "a", "laser1", "laser2"}));
-    ASSERT_EQ(made.lasers.size(), 2U);
-    EXPECT_EQ(made.lasers[0].id, "a");
-    EXPECT_EQ(made.lasers[0].laser.model, "urg-04lx");
-    EXPECT_EQ(made.lasers[0].pose.position, (Point3{1, 2, 0.3}));
-    EXPECT_EQ(made.lasers[0].pose.heading.degrees(), -90);
-    EXPECT_EQ(made.lasers[1].id, "laser2");
-    EXPECT_EQ(made.lasers[1].pose.position.z, kScanHeight);
+    ASSERT_EQ(made.sensors.size(), 2U);
+    EXPECT_EQ(made.sensors[0].id, "a");
+    EXPECT_EQ(made.sensors[0].as<Laser>().model, "urg-04lx");
+    EXPECT_EQ(made.sensors[0].pose.position, (Point3{1, 2, 0.3}));
+    EXPECT_EQ(made.sensors[0].pose.heading.degrees(), -90);
+    EXPECT_EQ(made.sensors[1].id, "laser2");
+    EXPECT_EQ(made.sensors[1].pose.position.z, kScanHeight);
     ASSERT_EQ(made.pending.size(), 1U);
     EXPECT_EQ(made.pending[0].id, "laser1");
-    EXPECT_EQ(std::get<Laser>(made.pending[0].device).max_range, 4);
+    EXPECT_EQ(std::get<Laser>(made.pending[0].model).max_range, 4);
     EXPECT_EQ(made.pending[0].record, made.records[4]);
 }
 
@@ -79,9 +79,9 @@ TEST(MakeScene, DigestIsOfTheEnvironmentBeforeTheLayout) {
 TEST(MakeScene, SensorsOfTheEnvironmentCanBeMovedByTheLayout) {
     const Scene made =
         scene(kRoom + "laser id=l at=1,1\nlaser id=m at=2,1\n", "laser id=l at=3,3\n");
-    ASSERT_EQ(made.lasers.size(), 2U);
-    EXPECT_EQ(made.lasers[0].pose.position.x, 3);
-    EXPECT_EQ(made.lasers[1].pose.position.x, 2);
+    ASSERT_EQ(made.sensors.size(), 2U);
+    EXPECT_EQ(made.sensors[0].pose.position.x, 3);
+    EXPECT_EQ(made.sensors[1].pose.position.x, 2);
 }
 
 TEST(MakeScene, DoubledIdWithinOneFileIsAnError) {
@@ -110,7 +110,7 @@ TEST(MakeScene, RobotsInOrder) {
     EXPECT_EQ(made.robots[2].id, "robot2");
     EXPECT_EQ(made.robots[2].pose, Pose2());
     EXPECT_EQ(made.digest, scene(kRoom).digest) << "robots belong to the layout";
-    EXPECT_TRUE(made.lasers.empty());
+    EXPECT_TRUE(made.sensors.empty());
 }
 
 TEST(MakeScene, SensorsOnRobotsInAnyOrder) {
@@ -120,9 +120,9 @@ TEST(MakeScene, SensorsOnRobotsInAnyOrder) {
                              "robot id=r2 at=2,4 heading=90\n"
                              "laser id=b on=robot1\n"
                              "laser id=c on=r2 at=0,0,0.5\n");
-    ASSERT_EQ(made.lasers.size(), 3U);
+    ASSERT_EQ(made.sensors.size(), 3U);
     EXPECT_TRUE(made.pending.empty());
-    const PlacedLaser& a = made.lasers[0];
+    const Sensor& a = made.sensors[0];
     ASSERT_TRUE(a.mount);
     EXPECT_EQ(a.mount->robot, 1U);
     EXPECT_EQ(a.mount->robot_from_sensor,
@@ -131,25 +131,25 @@ TEST(MakeScene, SensorsOnRobotsInAnyOrder) {
     EXPECT_DOUBLE_EQ(a.pose.position.x, 1.9);
     EXPECT_DOUBLE_EQ(a.pose.position.y, 4.2);
     EXPECT_EQ(a.pose.heading.degrees(), 100);
-    const PlacedLaser& b = made.lasers[1];
+    const Sensor& b = made.sensors[1];
     ASSERT_TRUE(b.mount);
     EXPECT_EQ(b.mount->robot, 0U);
     EXPECT_EQ(b.pose.position, (Point3{1, 1, kScanHeight}));
-    EXPECT_EQ(made.lasers[2].pose.position, (Point3{2, 4, 0.5}));
+    EXPECT_EQ(made.sensors[2].pose.position, (Point3{2, 4, 0.5}));
 }
 
 TEST(MakeScene, SensorsOnObjectsStandOnTheirTop) {
     const Scene made =
         scene(kRoom + "cube id=c at=3,3,0.5 size=1,1,0.4 heading=90\npillar id=p at=7,1 height=2\n",
               "laser on=d\nlaser on=c at=0.25,0,0.1 heading=-90\nlaser on=p at=0,0,-0.5\n");
-    ASSERT_EQ(made.lasers.size(), 3U);
-    for (const PlacedLaser& laser : made.lasers) EXPECT_FALSE(laser.mount);
-    EXPECT_EQ(made.lasers[0].pose.position.onFloor(), (Point2{5, 4}));
-    EXPECT_DOUBLE_EQ(made.lasers[0].pose.position.z, 0.7 + kScanHeight);
-    EXPECT_EQ(made.lasers[1].pose.position.onFloor(), (Point2{3, 3.25}));
-    EXPECT_DOUBLE_EQ(made.lasers[1].pose.position.z, 1);
-    EXPECT_EQ(made.lasers[1].pose.heading.degrees(), 0);
-    EXPECT_DOUBLE_EQ(made.lasers[2].pose.position.z, 1.5);
+    ASSERT_EQ(made.sensors.size(), 3U);
+    for (const Sensor& laser : made.sensors) EXPECT_FALSE(laser.mount);
+    EXPECT_EQ(made.sensors[0].pose.position.onFloor(), (Point2{5, 4}));
+    EXPECT_DOUBLE_EQ(made.sensors[0].pose.position.z, 0.7 + kScanHeight);
+    EXPECT_EQ(made.sensors[1].pose.position.onFloor(), (Point2{3, 3.25}));
+    EXPECT_DOUBLE_EQ(made.sensors[1].pose.position.z, 1);
+    EXPECT_EQ(made.sensors[1].pose.heading.degrees(), 0);
+    EXPECT_DOUBLE_EQ(made.sensors[2].pose.position.z, 1.5);
 }
 
 TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
@@ -172,7 +172,7 @@ TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
                                              "gate1", "b"}));
     const auto& placed = made.placed;
     EXPECT_EQ(placed[0].pose, (Pose3{{3, 3, 0}, Angle::degrees(90), {}, {}}));
-    EXPECT_EQ(placed[1].pose, made.lasers[0].pose);
+    EXPECT_EQ(placed[1].pose, made.sensors[0].pose);
     EXPECT_EQ(placed[1].index, 0U);
     EXPECT_FALSE(placed[1].mount);
     // In the frame of the robot at 2,4 that faces +y.
@@ -194,8 +194,8 @@ TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
     EXPECT_EQ(placed[7].pose.position, (Point3{1, 1, 0}));
     EXPECT_EQ(placed[8].index, 1U);
     EXPECT_EQ(placed[9].pose.heading.degrees(), -90);
-    EXPECT_EQ(placed[10].index, 1U);
-    EXPECT_EQ(placed[10].pose, made.lasers[1].pose);
+    EXPECT_EQ(placed[10].index, 4U);
+    EXPECT_EQ(placed[10].pose, made.sensors[4].pose);
     EXPECT_EQ(placed[10].mount->robot, 1U);
     EXPECT_EQ(made.pending.size(), 1U) << "only lasers can be placed so far";
 }
@@ -309,9 +309,11 @@ TEST(JoinRecords, ARecordTakesThePlaceOfOneOfItsKindOnly) {
 
 TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
     std::vector<std::string> sensors;
-    for (const Schema& schema : sceneSchemas().all())
-        if (isSensor(schema)) sensors.push_back(schema.keyword);
-    EXPECT_EQ(sensors, (std::vector<std::string>{"laser", "ranger", "camera", "ultrasound"}));
+    for (const SensorKind* kind : sensorKinds())
+        if (kind->perceives) sensors.emplace_back(kind->keyword);
+    EXPECT_EQ(sensors, (std::vector<std::string>{"laser", "ranger", "ultrasound", "camera"}));
+    for (const std::string& keyword : sensors) EXPECT_NE(sceneSchemas().find(keyword), nullptr);
+    EXPECT_EQ(sensorKind("robot"), nullptr);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "env/schemas.h"
-#include "layout/schema_keys.h"
-#include "layout/sensor_schemas.h"
+#include "sensor/keys.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -212,32 +212,6 @@ Schema resultSchema() {
                  .default_value = true}}};
 }
 
-/// The schema of a device file's record: `add_figures` between what it is and who says so.
-Schema deviceSchema(std::string keyword, std::string help,
-                    void (*add_figures)(std::vector<KeySpec>&)) {
-    Schema schema{.keyword = std::move(keyword),
-                  .type = RecordType::Placement,
-                  .help = std::move(help),
-                  .keys = {}};
-    schema.keys.push_back(idKey());
-    schema.keys.push_back({.name = "model",
-                           .type = KeyType::Word,
-                           .help = "what " + schema.keyword + " records call it",
-                           .required = true});
-    schema.keys.push_back({.name = "name", .type = KeyType::Text, .help = "maker and type"});
-    add_figures(schema.keys);
-    schema.keys.push_back({.name = "source",
-                           .type = KeyType::Text,
-                           .help = "public documents the figures come from",
-                           .required = true});
-    schema.keys.push_back({.name = "confidence",
-                           .type = KeyType::Choice,
-                           .help = "A maker's document, B second source, U unsure",
-                           .choices = {"A", "B", "U"},
-                           .required = true});
-    return schema;
-}
-
 }  // namespace
 
 std::vector<Schema> layoutSchemas() {
@@ -249,17 +223,9 @@ std::vector<Schema> layoutSchemas() {
 }
 
 std::vector<Schema> deviceSchemas() {
-    return {deviceSchema("laser", "a planar laser range finder one can buy", addLaserFigures),
-            deviceSchema("ranger", "a 3-D range camera one can buy", addRangerFigures),
-            deviceSchema("ultrasound", "an ultrasonic receiver one can buy", addUltrasoundFigures),
-            deviceSchema("tag", "an ultrasonic emitter one can buy", addTagFigures),
-            deviceSchema("robot", "a robot one can buy", addRobotFigures)};
-}
-
-bool isSensor(const Schema& schema) {
-    constexpr std::string_view kSensors[] = {"laser", "ranger", "camera", "ultrasound"};
-    return std::find(std::begin(kSensors), std::end(kSensors), schema.keyword) !=
-           std::end(kSensors);
+    std::vector<Schema> schemas = sensorDeviceSchemas();
+    schemas.push_back(deviceSchema("robot", "a robot one can buy", addRobotFigures));
+    return schemas;
 }
 
 const Schemas& sceneSchemas() {

@@ -15,9 +15,6 @@ std::vector<Schema> layoutSchemas();
 /// with model, source and confidence required, and without a place.
 std::vector<Schema> deviceSchemas();
 
-/// True for the keywords of what sees or hears: laser, ranger, camera, ultrasound.
-bool isSensor(const Schema& schema);
-
 /// Every keyword of `.env` and `.3dm`: environmentSchemas() and layoutSchemas(). A constant.
 const Schemas& sceneSchemas();
 

@@ -11,8 +11,7 @@ namespace ispace {
 namespace {
 
 SensorSpec read(const std::string& text) {
-    static const DeviceCatalogue kDevices =
-        DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
+    static const DeviceCatalogue kDevices = loadDevices(ISPACE_SOURCE_DIR "/share/devices");
     constexpr std::string_view kKinds[] = {"laser"};
     return readSensorSpec(text, kKinds, sceneSchemas(), kDevices);
 }

@@ -7,13 +7,13 @@
 #include "layout/scene.h"
 #include "layout/schemas.h"
 #include "record/text.h"
+#include "sensor/test_sensors.h"
 
 namespace ispace::testing {
 
 /// The devices that come with the project.
 inline const DeviceCatalogue& devices() {
-    static const DeviceCatalogue catalogue =
-        DeviceCatalogue::load(ISPACE_SOURCE_DIR "/share/devices");
+    static const DeviceCatalogue catalogue = loadDevices(ISPACE_SOURCE_DIR "/share/devices");
     return catalogue;
 }
 
@@ -33,19 +33,6 @@ inline Scene scene(const std::string& lines) {
 inline Scene scene(const std::string& room, const std::string& layout) {
     const Document document = layoutDocument(layout);
     return makeScene(roomDocument(room), &document, devices());
-}
-
-/// What `work` throws as FormatError, a finding a line; "" if it does not.
-template <typename Work>
-std::string findings(Work work) {
-    try {
-        static_cast<void>(work());
-    } catch (const FormatError& error) {
-        std::string out;
-        for (const Diagnostic& diagnostic : error.diagnostics()) out += diagnostic.text() + '\n';
-        return out;
-    }
-    return "";
 }
 
 }  // namespace ispace::testing

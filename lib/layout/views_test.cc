@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/views.h"
+#include "layout/bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -231,7 +231,7 @@ void Conversation::sendPendingScan() {
 
 std::string Conversation::unknownLaser(std::string_view id) const {
     std::vector<std::string> known;
-    for (const PlacedLaser& laser : world().lasers())
+    for (const Sensor& laser : world().lasers())
         if (role_ != Role::Robot || (laser.mount && laser.mount->robot == subject_))
             known.push_back(laser.id);
     return unknownThing("laser", id, known, role_ == Role::Robot ? " on this robot" : "");
@@ -254,7 +254,7 @@ void Conversation::takeLaser(Words words) {
     if (!found) return error(404, {unknownLaser(words[1])});
     role_ = Role::Laser;
     subject_ = *found;
-    const Laser& laser = world().lasers()[*found].laser;
+    const Laser& laser = world().lasers()[*found].as<Laser>();
     out_.append("OK LASER ").append(words[1]);
     out_.append(" angle_min=").append(formatDouble(laser.first.degrees()));
     out_.append(" angle_max=").append(formatDouble(laser.last().degrees()));

@@ -14,7 +14,7 @@ namespace ispace {
 namespace {
 
 void appendHead(std::string& out, const SensorReading& reading, bool stream) {
-    const Laser& laser = reading.sensor.laser;
+    const Laser& laser = reading.sensor.as<Laser>();
     out.append("SCAN ").append(reading.sensor.id);
     out.append(" t=").append(formatMilliseconds(reading.time));
     out.append(" seq=").append(std::to_string(reading.seq));

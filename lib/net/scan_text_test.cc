@@ -55,9 +55,9 @@ SensorReading reading() {
     reading.time = std::chrono::milliseconds(12300);
     reading.seq = 123;
     reading.sensor.id = "l1";
-    reading.sensor.laser.first = Angle::degrees(-0.5);
-    reading.sensor.laser.step = Angle::degrees(0.25);
-    reading.sensor.laser.beams = 3;
+    reading.sensor.as<Laser>().first = Angle::degrees(-0.5);
+    reading.sensor.as<Laser>().step = Angle::degrees(0.25);
+    reading.sensor.as<Laser>().beams = 3;
     reading.scan.ranges = {1.25, kNoReturn, 4};
     return reading;
 }

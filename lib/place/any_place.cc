@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "cover/plane_field.h"
 #include "cover/visible.h"
 #include "place/sensor_group.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 
@@ -33,8 +33,7 @@ Extent extentOf(const Laser& laser) {
     return {range, span / 2 * range * range, span * range + (span < 2 * kPi ? 2 * range : 0)};
 }
 
-Extent extentOf(const Ranger& ranger) {
-    const FieldOfView view(PlacedRanger{"", ranger, {}});
+Extent extentOf(const FieldOfView& view) {
     const Extent disc = discOf(view.farthest());
     if (view.shape != FieldOfView::Shape::Pyramid) return disc;
     // Who measures distances has no greater depth than that in view, either.
@@ -44,15 +43,14 @@ Extent extentOf(const Ranger& ranger) {
     return {disc.reach, std::min(disc.area, area), std::min(disc.outline, kPi * diameter)};
 }
 
-Extent extentOf(const Receiver& receiver) { return discOf(receiver.max_range); }
-
 }  // namespace
 
-std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid) {
+std::uint64_t mostCellsInView(const SensorModel& device, const Grid& grid) {
     // Edges are in view, whatever rounding makes of them: ranges are those of float32, and of a
     // narrow fan the cosines of its sides.
     constexpr double kRounding = 2e-6;
-    const Extent most = std::visit([](const auto& figures) { return extentOf(figures); }, device);
+    const auto view = fieldOfView(Sensor{"", device, {}});
+    const Extent most = view ? extentOf(*view) : extentOf(std::get<Laser>(device));
     const double cell_x = grid.limits.width() / grid.columns,
                  cell_y = grid.limits.depth() / grid.rows;
     const double near = std::hypot(cell_x, cell_y) / 2 + kRounding * most.reach;
@@ -65,8 +63,7 @@ namespace {
 
 /// Shares of cells that sensors at any places can meet together.
 std::uint64_t mostParts(const Problem& problem, const Grid& grid,
-                        std::span<const SensorDevice> devices, std::span<const int> most,
-                        int unit) {
+                        std::span<const SensorModel> devices, std::span<const int> most, int unit) {
     struct Offer {
         double parts, cost;
         int most;
@@ -74,7 +71,7 @@ std::uint64_t mostParts(const Problem& problem, const Grid& grid,
     std::vector<Offer> offers;
     offers.reserve(devices.size());
     for (std::size_t k = 0; k < devices.size(); ++k) {
-        const int share = isReceiver(devices[k]) ? 1 : unit;
+        const int share = isPartial(devices[k]) ? 1 : unit;
         offers.push_back({share * static_cast<double>(mostCellsInView(devices[k], grid)),
                           problem.kinds[k].cost, most[k]});
     }
@@ -93,7 +90,7 @@ std::uint64_t mostParts(const Problem& problem, const Grid& grid,
 }  // namespace
 
 std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
-                               std::span<const SensorDevice> devices, std::span<const int> most,
+                               std::span<const SensorModel> devices, std::span<const int> most,
                                int unit) {
     std::uint64_t value = 0, parts = mostParts(problem, grid, devices, most, unit);
     /// What of a cell's demand is missing.
@@ -104,7 +101,7 @@ std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
     std::vector<Missing> missing;
     int together = 0;  // what a cell gets from all of them
     for (std::size_t k = 0; k < devices.size(); ++k)
-        together += most[k] * (isReceiver(devices[k]) ? 1 : unit);
+        together += most[k] * (isPartial(devices[k]) ? 1 : unit);
     for (std::size_t i = 0; i < problem.cells(); ++i) {
         const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
         if (achieved >= problem.required)

@@ -23,7 +23,7 @@ namespace ispace {
 ///   corners of the picture, beyond the range. A plane figure's area is the root of the sum of
 ///   squares of its three projections' areas, here at most the rectangle and two triangles of the
 ///   pyramid; a convex one's outline is at most pi times its diameter.
-std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid);
+std::uint64_t mostCellsInView(const SensorModel& device, const Grid& grid);
 
 /// An upper bound of the value of sensors at any places, on the grid that the problem's weights are
 /// of: with what stands already, the dearest cells that as many as they can see together might be.
@@ -31,7 +31,7 @@ std::uint64_t mostCellsInView(const SensorDevice& device, const Grid& grid);
 /// budget those that see most for their cost, the last one in part. `unit`: the share of what is no
 /// receiver.
 std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
-                               std::span<const SensorDevice> devices, std::span<const int> most,
+                               std::span<const SensorModel> devices, std::span<const int> most,
                                int unit);
 
 }  // namespace ispace

@@ -24,7 +24,7 @@ Receiver receiver(double range) {
 
 std::size_t cellsSeenFrom(Point2 place, double heading, const Laser& laser, const Grid& grid) {
     Scene scene = hall();
-    scene.lasers.push_back(
+    scene.sensors.push_back(
         {"l", laser, {{place.x, place.y, kScanHeight}, Angle::degrees(heading), {}, {}}});
     Worlds worlds(scene.environment);
     const CoverageOptions options{.cells = CellCount{grid.columns, grid.rows}, .exact = false};
@@ -130,7 +130,7 @@ TEST(MostCellsInView, HoldsForRangersThatLookAnyWay) {
         ranger.fov_x = Angle::degrees(one.fov_x);
         ranger.fov_y = Angle::degrees(one.fov_y);
         ranger.max_range = one.range;
-        const double share = fullestView<PlacedRanger>(ranger, one.range, ++seed);
+        const double share = fullestView<Sensor>(ranger, one.range, ++seed);
         EXPECT_GE(share, one.least) << seed;
     }
 }
@@ -146,7 +146,7 @@ TEST(MostCellsInView, HoldsForLasersThatTiltRollAndSweep) {
             laser.beams = static_cast<int>(fov) + 1;
             laser.sweep = axis;
             laser.sweep_span = Angle::degrees(180);
-            fullestView<PlacedLaser>(laser, 4, ++seed);
+            fullestView<Sensor>(laser, 4, ++seed);
         }
 }
 
@@ -180,12 +180,12 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     problem.weights[1] = 10;
     problem.achieved.assign(100, 0);
     problem.achieved[1] = 1;
-    const SensorDevice small = receiver(0.1);
+    const SensorModel small = receiver(0.1);
     const std::uint64_t cells = mostCellsInView(small, grid);
     ASSERT_GE(cells, 1U);
     ASSERT_LT(cells, 10U);
     const auto most_of = [&](int number) {
-        const SensorDevice devices[] = {small};
+        const SensorModel devices[] = {small};
         const int most[] = {number};
         problem.kinds = {Kind{}};
         return mostFromAnyPlace(problem, grid, devices, most, 1);
@@ -218,7 +218,7 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     Problem problem;
     problem.weights.assign(grid.size(), 1);
     problem.achieved.assign(grid.size(), 0);
-    const SensorDevice devices[] = {receiver(2), receiver(4)};
+    const SensorModel devices[] = {receiver(2), receiver(4)};
     const std::uint64_t few = mostCellsInView(devices[0], grid),
                         many = mostCellsInView(devices[1], grid);
     ASSERT_GT(many, 2 * few);

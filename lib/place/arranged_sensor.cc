@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/arranged_sensor.h"
 
-#include <variant>
-
 namespace ispace {
 
 std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
                                             const std::vector<SensorGroup>& groups,
-                                            const std::vector<SensorKind>& kinds,
+                                            const std::vector<SensorClass>& kinds,
                                             const std::vector<std::vector<Pose3>>& places) {
     std::vector<std::size_t> used(kinds.size());
     std::vector<ArrangedSensor> sensors;
@@ -42,15 +40,8 @@ Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
 Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
                    const std::vector<ArrangedSensor>& sensors) {
     Scene whole = scene;
-    for (const auto& [group, id, pose] : sensors) {
-        const SensorDevice& device = groups[group].device;
-        if (const auto* laser = std::get_if<Laser>(&device))
-            whole.lasers.push_back({id, *laser, pose});
-        else if (const auto* ranger = std::get_if<Ranger>(&device))
-            whole.rangers.push_back({id, *ranger, pose});
-        else
-            whole.receivers.push_back({id, std::get<Receiver>(device), pose});
-    }
+    for (const auto& [group, id, pose] : sensors)
+        whole.sensors.push_back({id, groups[group].model, pose});
     return whole;
 }
 

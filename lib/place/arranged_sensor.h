@@ -21,7 +21,7 @@ struct ArrangedSensor {
 /// is none are left out. New sensors get the next free ids.
 std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
                                             const std::vector<SensorGroup>& groups,
-                                            const std::vector<SensorKind>& kinds,
+                                            const std::vector<SensorClass>& kinds,
                                             const std::vector<std::vector<Pose3>>& places);
 
 /// The record of a sensor at its place: `id`, `at` with z, `heading` and, where it was chosen,

@@ -37,7 +37,7 @@ void writeModel(const SceneProblem& model, std::ostream& mps) {
     mustFitInModel(model.problem());
     std::vector<std::string> names;
     names.reserve(model.kinds().size());
-    for (const SensorKind& kind : model.kinds()) names.push_back(kind.id);
+    for (const SensorClass& kind : model.kinds()) names.push_back(kind.id);
     const auto pose_text = [&model](const Choice& choice) {
         const Pose3 pose = model.poseOf(choice);
         std::string text;

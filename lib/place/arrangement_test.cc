@@ -167,7 +167,7 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
     const Scene again = roomScene(kTestRoom, &written);
     Worlds worlds(again.environment);
     EXPECT_EQ(measureCoverage(again, worlds, {}).report.coverage.grid, arrangement.coverage);
-    ASSERT_EQ(again.lasers.size(), 3U);
+    ASSERT_EQ(again.sensors.size(), 3U);
     EXPECT_EQ(again.robots.size(), 1U);
 }
 

@@ -76,19 +76,20 @@ struct CandidatePool::Data {
         return {kScanHeight};
     }
 
-    [[nodiscard]] std::vector<Angle> tiltsOf(const SensorKind& kind) const {
+    [[nodiscard]] std::vector<Angle> tiltsOf(const SensorClass& kind) const {
         if (kind.record.has("tilt")) return {kind.record.angle("tilt")};
         if (!options.mount.tilts.empty()) return options.mount.tilts;
         const bool hangs =
             options.mount.on == MountOn::Frame || options.mount.on == MountOn::Ceiling;
-        if (hangs && !std::holds_alternative<Laser>(kind.device)) return {Angle::degrees(-90)};
+        // What has an axis looks down; what scans a plane stays level.
+        if (hangs && fieldOfView(Sensor{{}, kind.model, {}})) return {Angle::degrees(-90)};
         return {Angle()};
     }
 
     /// What the strategy proposes at one height; Random comes by itself.
-    [[nodiscard]] std::vector<Site> proposals(const SensorKind& kind, double height) const {
+    [[nodiscard]] std::vector<Site> proposals(const SensorClass& kind, double height) const {
         return onNanometres(
-            rowOf(options.strategy).propose({environment, height, maxRange(kind.device), options}));
+            rowOf(options.strategy).propose({environment, height, maxRange(kind.model), options}));
     }
 
     [[nodiscard]] std::vector<Level> frameLevels() const {
@@ -103,7 +104,7 @@ struct CandidatePool::Data {
     }
 
     /// Sites at all heights, those that are not valid left out.
-    std::vector<Level> levelsFor(const SensorKind& kind) {
+    std::vector<Level> levelsFor(const SensorClass& kind) {
         std::vector<Level> levels;
         if (options.mount.on == MountOn::Frame)
             levels = frameLevels();
@@ -120,7 +121,7 @@ struct CandidatePool::Data {
         return levels;
     }
 
-    [[nodiscard]] std::string noPlaceText(const SensorKind& kind, std::size_t proposed) const {
+    [[nodiscard]] std::string noPlaceText(const SensorClass& kind, std::size_t proposed) const {
         const MountRules& mount = options.mount;
         const bool on_frame = mount.on == MountOn::Frame;
         std::string text = "no place for " + kind.id + ": ";
@@ -150,7 +151,7 @@ struct CandidatePool::Data {
 
     /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
     /// places, shared out over all levels and tilts.
-    bool addLevels(PosedCandidates& set, const SensorKind& kind, const std::vector<Level>& levels,
+    bool addLevels(PosedCandidates& set, const SensorClass& kind, const std::vector<Level>& levels,
                    std::size_t least) {
         const std::vector<Angle> tilts = tiltsOf(kind);
         std::size_t places = 0;
@@ -162,7 +163,7 @@ struct CandidatePool::Data {
                 if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
                 const CandidateViews views(environment, worlds, target.grid, options.plane,
-                                           kind.device, mount, &worth.counted, &sights);
+                                           kind.model, mount, &worth.counted, &sights);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
                                    share))
@@ -212,7 +213,7 @@ struct CandidatePool::Data {
 
     /// Hierarchical Random: R1 places; for each sensor R2 more about the best one for it. Places
     /// found for one sensor serve the others, too. False if progress says stop.
-    bool addRandom(PosedCandidates& set, const SensorKind& kind) {
+    bool addRandom(PosedCandidates& set, const SensorClass& kind) {
         const Drawn first = randomLevels(options.first_places, true, [&](std::uint64_t k) {
             return randomPlace(environment.limits(), options.seed, kind.id, k);
         });
@@ -222,7 +223,7 @@ struct CandidatePool::Data {
                 kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
         }
         if (!addLevels(set, kind, first.levels, kLeastPlaces) || !first.is_complete) return false;
-        const double scope = options.scope.value_or(maxRange(kind.device) / kSegments);
+        const double scope = options.scope.value_or(maxRange(kind.model) / kSegments);
         std::vector<std::uint32_t> worth_left = worth.left;
         std::vector<std::uint32_t> values;
         const auto best = [&] {
@@ -255,7 +256,7 @@ CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, con
 
 CandidatePool::~CandidatePool() = default;
 
-CandidatePool::Made CandidatePool::make(const SensorKind& kind) {
+CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
     Made made{std::make_unique<PosedCandidates>(data_->target.grid.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;

@@ -37,7 +37,7 @@ class CandidatePool {
         std::unique_ptr<PosedCandidates> set;
         bool is_complete = true;
     };
-    Made make(const SensorKind& kind);
+    Made make(const SensorClass& kind);
     /// The judge of the places that a sensor of this height may take.
     const SiteJudge& judgeAt(double height);
 

@@ -22,7 +22,7 @@ struct Pooled {
     Scene scene;
     Worlds worlds;
     Target target;
-    std::vector<SensorKind> kinds;
+    std::vector<SensorClass> kinds;
     SilentProgress silent;
     std::unique_ptr<PosedCandidates> set;
 

@@ -104,19 +104,6 @@ class Counted {
     std::vector<std::uint32_t> end_;   // [i]: the end of the last counted cell before i
 };
 
-/// True if what a device sees does not change as it turns about the vertical.
-bool looksRound(const SensorDevice& device, const Pose3& mount) {
-    if (isReceiver(device)) {
-        const Frame3 frame(mount);
-        return frame.forward.x == 0 && frame.forward.y == 0;
-    }
-    if (const auto* ranger = std::get_if<Ranger>(&device))
-        return ranger->projection == Projection::Spherical &&
-               ranger->fov_x >= Angle::degrees(360) && mount.isLevel();
-    return scansSlice(PlacedLaser{"", std::get<Laser>(device), mount}) &&
-           std::get<Laser>(device).seesAround();
-}
-
 }  // namespace
 
 const SliceSight& SliceSights::at(double height) {
@@ -129,7 +116,7 @@ const SliceSight& SliceSights::at(double height) {
 struct CandidateViews::Data {
     const Grid& grid;
     double plane;
-    SensorDevice device;
+    SensorModel device;
     Pose3 mount;
     bool is_round;
     std::optional<Counted> counted = {};
@@ -145,11 +132,6 @@ struct CandidateViews::Data {
     }
     [[nodiscard]] bool looksInSlice() const { return sight != nullptr; }
 
-    [[nodiscard]] FieldOfView fieldOf(const Pose3& pose) const {
-        if (const auto* ranger = std::get_if<Ranger>(&device))
-            return FieldOfView(PlacedRanger{"", *ranger, pose});
-        return FieldOfView(PlacedReceiver{"", std::get<Receiver>(device), pose});
-    }
     [[nodiscard]] std::vector<Pose3> posesAt(const Site& site) const {
         std::vector<Pose3> poses(headingsOf(site), mount);
         for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -163,10 +145,11 @@ struct CandidateViews::Data {
         parts.runs.clear();
         parts.first.assign(headingsOf(site) + 2, 0);
         if (solids.isInside(site.place, kRayEpsilon)) return;
-        if (std::holds_alternative<Laser>(device)) return lookOneByOne(site, parts);
+        if (!fieldOfView(Sensor{{}, device, mount})) return lookOneByOne(site, parts);
         std::vector<FieldOfView> fields;
         fields.reserve(headingsOf(site));
-        for (const Pose3& pose : posesAt(site)) fields.push_back(fieldOf(pose));
+        for (const Pose3& pose : posesAt(site))
+            fields.push_back(*fieldOfView(Sensor{{}, device, pose}));
         cellsByView(grid, *mesh, fields, plane, parts);
         parts.first.push_back(parts.first.back());
     }
@@ -175,7 +158,7 @@ struct CandidateViews::Data {
         parts.runs.clear();
         parts.first.assign(1, 0);
         for (const Pose3& pose : posesAt(site)) {
-            const PlacedLaser sensor{"", std::get<Laser>(device), pose};
+            const Sensor sensor{"", device, pose};
             const CellParts seen = partOf(looksInSlice() ? cellsSeen(grid, *sight, sensor)
                                                          : cellsSeen(grid, *mesh, sensor, plane));
             parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
@@ -186,22 +169,22 @@ struct CandidateViews::Data {
 };
 
 CandidateViews::CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid,
-                               double plane, const SensorDevice& device, const Pose3& mount,
+                               double plane, const SensorModel& device, const Pose3& mount,
                                const CellSet* counted, SliceSights* sights) {
-    auto data = std::make_unique<Data>(Data{grid, plane, device, mount, looksRound(device, mount)});
+    auto data =
+        std::make_unique<Data>(Data{grid, plane, device, mount, looksAround(device, mount)});
     const double height = mount.position.z;
     if (counted != nullptr && counted->count() < counted->size()) data->counted.emplace(*counted);
-    const auto* laser = std::get_if<Laser>(&device);
-    if (laser != nullptr && scansSlice(PlacedLaser{"", *laser, mount})) {
+    if (scansSlice(Sensor{"", device, mount})) {
         if (sights == nullptr) {
             data->own_sights = std::make_unique<SliceSights>(environment);
             sights = data->own_sights.get();
         }
         data->sight = &sights->at(height);
     } else {
-        const bool hears = isReceiver(device);
-        hears ? worlds.prepareSound() : worlds.prepareMesh();
-        data->mesh = hears ? &worlds.sound() : &worlds.mesh();
+        const Surfaces surfaces = kindOf(device).stopped_by;
+        worlds.prepareMesh(surfaces);
+        data->mesh = &worlds.mesh(surfaces);
         data->solids = SolidTree(environment.slice(height).solids);
     }
     data_ = std::move(data);

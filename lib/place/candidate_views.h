@@ -42,7 +42,7 @@ class CandidateViews {
     ///        they should, and others or not as it comes, which makes them smaller
     /// \param sights shared with other views, if not null; all references are kept
     CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid, double plane,
-                   const SensorDevice& device, const Pose3& mount, const CellSet* counted = nullptr,
+                   const SensorModel& device, const Pose3& mount, const CellSet* counted = nullptr,
                    SliceSights* sights = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;

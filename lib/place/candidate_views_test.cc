@@ -56,18 +56,12 @@ std::vector<Site> randomSites(Random& random, int count) {
     return sites;
 }
 
-void place(Scene& scene, const SensorDevice& device, const Pose3& pose) {
-    const std::string id = "s" + std::to_string(scene.lasers.size());
-    if (const auto* laser = std::get_if<Laser>(&device))
-        scene.lasers.push_back({id, *laser, pose});
-    else if (const auto* ranger = std::get_if<Ranger>(&device))
-        scene.rangers.push_back({id, *ranger, pose});
-    else
-        scene.receivers.push_back({id, std::get<Receiver>(device), pose});
+void place(Scene& scene, const SensorModel& device, const Pose3& pose) {
+    scene.sensors.push_back({"s" + std::to_string(scene.sensors.size()), device, pose});
 }
 
 struct Mounted {
-    SensorDevice device;
+    SensorModel model;
     Pose3 mount;
     bool is_round = false;
 };
@@ -86,7 +80,7 @@ std::vector<Mounted> devices() {
     nodding.sweep_span = Angle::degrees(60);
     nodding.sweep_step = Angle::degrees(5);
     const auto ranger = [](double fov_x, double fov_y, Projection projection) {
-        return rangerAt({}, fov_x, fov_y, 4, projection).ranger;
+        return rangerAt({}, fov_x, fov_y, 4, projection).as<Ranger>();
     };
     return {{laserWith(3, -90, 180), at(kScanHeight, 0)},
             {laserWith(4, -135, 270), at(0.6, 0)},
@@ -100,8 +94,8 @@ std::vector<Mounted> devices() {
             {ranger(60, 45, Projection::Pinhole), at(1, -30)},
             {ranger(60, 45, Projection::Pinhole), at(2, -90)},
             {ranger(360, 120, Projection::Spherical), at(1.2, 0), true},
-            {receiverAt({}, 100, 5).receiver, at(2.4, -90), true},
-            {receiverAt({}, 100, 5).receiver, at(1, -45)}};
+            {receiverAt({}, 100, 5).as<Receiver>(), at(2.4, -90), true},
+            {receiverAt({}, 100, 5).as<Receiver>(), at(1, -45)}};
 }
 
 /// Candidates see what measureCoverage() finds for such a sensor, of the cells that are counted.
@@ -110,7 +104,7 @@ void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Si
     Worlds worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight);
     constexpr double kPlane = 0.1;
-    const CandidateViews views(scene.environment, worlds, target.grid, kPlane, mounted.device,
+    const CandidateViews views(scene.environment, worlds, target.grid, kPlane, mounted.model,
                                mounted.mount, only_free ? &target.free : nullptr, sights);
     ASSERT_EQ(views.isRound(), mounted.is_round);
     PosedCandidates set(target.grid.size());
@@ -126,7 +120,7 @@ void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Si
             pose.position = {sites[i].place.x, sites[i].place.y, pose.position.z};
             pose.heading = sites[i].headings[k];
             ASSERT_EQ(set.pose(count), pose);
-            place(placed, mounted.device, pose);
+            place(placed, mounted.model, pose);
             ++count;
         }
     }
@@ -254,7 +248,7 @@ TEST(CandidateViews, ManyHeadingsOfAReceiver) {
     const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
     std::vector<Site> sites = {{{-1.1, 0.1}, {}}, {{2.1, 2.9}, {Angle()}}};
     for (int k = 0; k < 70; ++k) sites[0].headings.push_back(Angle::degrees(5 * k + 3));
-    const Receiver receiver = receiverAt({}, 60, 4).receiver;
+    const Receiver receiver = receiverAt({}, 60, 4).as<Receiver>();
     for (const double tilt : {-40.0, -90.0, -89.0})
         ASSERT_NO_FATAL_FAILURE(expectSame(
             scene, {receiver, poseAt({0, 0, 2}, 0, tilt), tilt == -90}, sites, false, nullptr));
@@ -267,7 +261,7 @@ TEST(CandidateViews, SeeNothingFromWithinSolids) {
     SilentProgress quiet;
     for (const Mounted& mounted : devices()) {
         if (mounted.mount.position.z > 1.9) continue;
-        const CandidateViews views(scene.environment, worlds, grid, 0, mounted.device,
+        const CandidateViews views(scene.environment, worlds, grid, 0, mounted.model,
                                    mounted.mount);
         PosedCandidates set(grid.size());
         const std::vector<Site> sites = {{{0.1, 0.2}, {Angle(), Angle::degrees(-90)}}};
@@ -380,7 +374,7 @@ TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
     SilentProgress quiet;
     const std::vector<Mounted> all = devices();
     for (const std::size_t device : {0U, 3U, 9U}) {
-        const CandidateViews views(scene.environment, worlds, grid, 0.1, all[device].device,
+        const CandidateViews views(scene.environment, worlds, grid, 0.1, all[device].model,
                                    all[device].mount);
         for (const int count : {0, 1, 63, 64, 65, 700, 20000}) {
             if ((device == 9 && count > 70) || (device == 0 && count > 700)) continue;

@@ -116,9 +116,9 @@ class Sights {
     explicit Sights(const Environment& environment) : environment_(environment) {}
 
     /// To be called for each sensor before regionOf(): that may then be called from any thread.
-    void prepare(const SensorDevice& device, const Pose3& pose) {
+    void prepare(const SensorModel& device, const Pose3& pose) {
         const double height = pose.position.z;
-        if (slicing(device, pose)) {
+        if (scansSlice({{}, device, pose})) {
             slices_.try_emplace(height, environment_.slice(height));
         } else {
             solids_.try_emplace(height, environment_.slice(height).solids);
@@ -127,28 +127,16 @@ class Sights {
     }
 
     /// What it sees there; nothing if that is not known. A sensor inside a solid sees nothing.
-    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const SensorDevice& device,
+    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const SensorModel& device,
                                                              const Pose3& pose,
                                                              double plane) const {
-        if (slicing(device, pose))
-            return regionSeen(slices_.at(pose.position.z),
-                              PlacedLaser{{}, std::get<Laser>(device), pose});
-        if (const auto* laser = std::get_if<Laser>(&device)) {
-            auto region = shadows_->regionSeen(PlacedLaser{{}, *laser, pose});
-            if (region && isBuried(pose)) region->clear();
-            return region;
-        }
+        const Sensor sensor{{}, device, pose};
+        if (scansSlice(sensor)) return regionSeen(slices_.at(pose.position.z), sensor);
         if (isBuried(pose)) return std::vector<Curve>();
-        if (const auto* ranger = std::get_if<Ranger>(&device))
-            return shadows_->regionSeen(PlacedRanger{{}, *ranger, pose}, plane);
-        return shadows_->regionHeard(PlacedReceiver{{}, std::get<Receiver>(device), pose}, plane);
+        return shadows_->regionSeen(sensor, plane);
     }
 
   private:
-    static bool slicing(const SensorDevice& device, const Pose3& pose) {
-        const auto* laser = std::get_if<Laser>(&device);
-        return laser != nullptr && scansSlice({{}, *laser, pose});
-    }
     [[nodiscard]] bool isBuried(const Pose3& pose) const {
         return solids_.at(pose.position.z).isInside(pose.position.onFloor(), kRayEpsilon);
     }
@@ -191,23 +179,24 @@ struct ExactWorth::Data {
     };
     std::vector<Surroundings> around = {};
 
-    [[nodiscard]] View viewOf(const std::string& id, const SensorDevice& device,
+    [[nodiscard]] View viewOf(const std::string& id, const SensorModel& device,
                               const Pose3& pose) const {
         auto region = sights.regionOf(device, pose, options.plane);
         if (!region) throw UsageError(id + " cannot be refined: its exact region is not known");
-        return {std::move(*region), isReceiver(device)};
+        return {std::move(*region), isPartial(device)};
     }
     [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
-        return viewOf(movables[sensor].id, movables[sensor].device, pose);
+        return viewOf(movables[sensor].id, movables[sensor].model, pose);
     }
 
-    template <typename Placed, typename Device>
-    void addStanding(const std::vector<Placed>& sensors, Device Placed::*device) {
-        for (const Placed& sensor : sensors) {
+    void addStanding(const std::vector<Sensor>& sensors) {
+        for (const Sensor& sensor : sensors) {
             const auto is_same = [&](const Movable& m) { return m.id == sensor.id; };
-            if (std::any_of(movables.begin(), movables.end(), is_same)) continue;
-            sights.prepare(sensor.*device, sensor.pose);
-            standing.push_back(viewOf(sensor.id, sensor.*device, sensor.pose));
+            if (!kindOf(sensor.model).perceives ||
+                std::any_of(movables.begin(), movables.end(), is_same))
+                continue;
+            sights.prepare(sensor.model, sensor.pose);
+            standing.push_back(viewOf(sensor.id, sensor.model, sensor.pose));
         }
     }
 
@@ -265,7 +254,7 @@ struct ExactWorth::Data {
         for (std::size_t i = 0; i < moving.size(); ++i)
             if (i != in_hand && meet(moving[i].box, near)) layers.push_back(moving[i].layer);
         const Overlay overlay(layers);
-        const bool is_receiver = isReceiver(movables[in_hand].device);
+        const bool is_receiver = isPartial(movables[in_hand].model);
         for (std::size_t i = 0; i < floors.size(); ++i) {
             const std::uint64_t mark = std::uint64_t{1} << i;
             std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
@@ -303,12 +292,10 @@ ExactWorth::ExactWorth(const Scene& scene, std::span<const Movable> movables, co
         data_->floor_box.add(floor.box.low);
         data_->floor_box.add(floor.box.high);
     }
-    data_->addStanding(scene.lasers, &PlacedLaser::laser);
-    data_->addStanding(scene.rangers, &PlacedRanger::ranger);
-    data_->addStanding(scene.receivers, &PlacedReceiver::receiver);
+    data_->addStanding(scene.sensors);
     data_->moving.reserve(movables.size());
     for (std::size_t i = 0; i < movables.size(); ++i) {
-        data_->sights.prepare(movables[i].device, movables[i].pose);
+        data_->sights.prepare(movables[i].model, movables[i].pose);
         data_->moving.push_back(data_->viewOf(i, movables[i].pose));
     }
     data_->around.resize(movables.size());
@@ -370,14 +357,7 @@ void ExactWorth::put(const Pose3& pose) {
 
 bool ExactWorth::turns(std::size_t sensor) const {
     const Movable& movable = data_->movables[sensor];
-    const bool level = movable.pose.isLevel();
-    if (const auto* laser = std::get_if<Laser>(&movable.device))
-        return !level || !laser->seesAround();
-    if (const auto* ranger = std::get_if<Ranger>(&movable.device))
-        return !level || ranger->projection != Projection::Spherical ||
-               ranger->fov_x < Angle::degrees(360);
-    const Angle tilt = wrapped(movable.pose.tilt);
-    return tilt != Angle::degrees(90) && tilt != Angle::degrees(-90);
+    return !looksAround(movable.model, movable.pose);
 }
 
 }  // namespace ispace

@@ -26,7 +26,7 @@ Laser laserOfRange(double range, double fov = 180) {
     return laser;
 }
 
-Movable at(const std::string& id, const SensorDevice& device, double x, double y, double heading,
+Movable at(const std::string& id, const SensorModel& device, double x, double y, double heading,
            double z = kScanHeight, double tilt = 0) {
     return {id, device, {{x, y, z}, Angle::degrees(heading), Angle::degrees(tilt), {}}, nullptr};
 }
@@ -39,14 +39,7 @@ NamedZone box(double x, double y, double to_x, double to_y) {
 
 /// The same scene with the movables standing in it, as coverage sees it.
 CoverageReport reportOf(Scene scene, const std::vector<Movable>& movables) {
-    for (const Movable& m : movables) {
-        if (const auto* laser = std::get_if<Laser>(&m.device))
-            scene.lasers.push_back({m.id, *laser, m.pose});
-        if (const auto* ranger = std::get_if<Ranger>(&m.device))
-            scene.rangers.push_back({m.id, *ranger, m.pose});
-        if (const auto* receiver = std::get_if<Receiver>(&m.device))
-            scene.receivers.push_back({m.id, *receiver, m.pose});
-    }
+    for (const Movable& m : movables) scene.sensors.push_back({m.id, m.model, m.pose});
     return coverageOf(scene, 10, 10).report;
 }
 

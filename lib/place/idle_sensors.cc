@@ -182,7 +182,7 @@ std::vector<std::string> idleSensors(const Problem& problem, const Coverage& cov
     for (const SensorView& view : coverage.sensors) {
         if (stands(view, standing)) continue;
         own.push_back(&view);
-        views.push_back({view.cells, view.kind == ViewKind::Receiver ? 1 : unit});
+        views.push_back({view.cells, view.isPartial() ? 1 : unit});
     }
     const auto idle = idleAmong(problem, views, [&](const std::vector<bool>& left) {
         Coverage rest;

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cover/range_rule.h"
+#include "sensor/field_of_view.h"
 
 namespace ispace {
 

@@ -198,8 +198,7 @@ class Search {
 
 }  // namespace
 
-void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices,
-                     const Worth& worth) {
+void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, const Worth& worth) {
     if (worth.weights.size() > ExactWorth::kMostZones)
         throw UsageError("--refine knows at most " + std::to_string(ExactWorth::kMostZones) +
                          " weights");
@@ -207,9 +206,11 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices,
         throw UsageError("--refine: the exact region of " + whose +
                          " is not known: it sweeps, and not level about the vertical");
     };
-    for (const PlacedLaser& laser : scene.lasers)
-        if (laser.laser.sweep != SweepAxis::None && !scansSlice(laser)) refuse(laser.id);
-    for (const SensorDevice& device : devices)
+    for (const Sensor& sensor : scene.sensors)
+        if (sensor.is<Laser>() && sensor.as<Laser>().sweep != SweepAxis::None &&
+            !scansSlice(sensor))
+            refuse(sensor.id);
+    for (const SensorModel& device : devices)
         if (const auto* laser = std::get_if<Laser>(&device))
             if (laser->sweep != SweepAxis::None && laser->sweep != SweepAxis::Heading)
                 refuse(laser->model.empty() ? "a laser" : laser->model);

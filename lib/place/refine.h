@@ -17,7 +17,7 @@ namespace ispace {
 /// A sensor whose place and heading may still change a little.
 struct Movable {
     std::string id;
-    SensorDevice device;
+    SensorModel model;
     Pose3 pose;
     const SiteJudge* judge = nullptr;  ///< of the places it may take; null: all
 };
@@ -38,7 +38,7 @@ struct Refined {
 /// \throws UsageError for what refine() cannot do, before anything is searched: sweeping lasers
 /// whose
 ///         exact region is not known (among `devices` and the scene's), more weights than it knows
-void mustBeRefinable(const Scene& scene, std::span<const SensorDevice> devices, const Worth& worth);
+void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, const Worth& worth);
 
 /// Goes on from a layout in continuous x, y and heading: sensor after sensor, a pattern search
 /// (Hooke and Jeeves 1961: steps along the axes and their pattern, halved where none helps) on the

@@ -33,7 +33,7 @@ Refined refineArranged(SceneProblem& model, const std::vector<ArrangedSensor>& s
     std::vector<Movable> movables;
     movables.reserve(sensors.size());
     for (const ArrangedSensor& sensor : sensors)
-        movables.push_back({sensor.id, model.groups()[sensor.group].device, sensor.pose,
+        movables.push_back({sensor.id, model.groups()[sensor.group].model, sensor.pose,
                             &model.judgeAt(sensor.pose.position.z)});
     const auto refined = [&](const std::function<bool(const std::vector<Pose3>&)>& accept) {
         const RefineOptions refining{.demand = model.options().redundancy,

@@ -18,10 +18,10 @@ namespace ispace {
 
 namespace {
 
-std::vector<SensorDevice> devicesOf(const std::vector<SensorKind>& kinds) {
-    std::vector<SensorDevice> devices;
+std::vector<SensorModel> devicesOf(const std::vector<SensorClass>& kinds) {
+    std::vector<SensorModel> devices;
     devices.reserve(kinds.size());
-    for (const SensorKind& kind : kinds) devices.push_back(kind.device);
+    for (const SensorClass& kind : kinds) devices.push_back(kind.model);
     return devices;
 }
 
@@ -68,7 +68,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
 void SceneProblem::mustBeAffordable() const {
     if (!options_.budget) return;
     double least = kinds_.front().cost;
-    for (const SensorKind& kind : kinds_) least = std::min(least, kind.cost);
+    for (const SensorClass& kind : kinds_) least = std::min(least, kind.cost);
     if (*options_.budget < least)
         throw UnmetError("a budget of " + formatDouble(*options_.budget) +
                          " buys nothing: the cheapest sensor costs " + formatDouble(least));
@@ -76,16 +76,15 @@ void SceneProblem::mustBeAffordable() const {
 
 /// Receivers count four together; so others count as four each where there are receivers.
 void SceneProblem::setDemand(const Coverage& standing) {
-    const bool listens = !scene_.receivers.empty() ||
-                         std::any_of(kinds_.begin(), kinds_.end(), [](const SensorKind& kind) {
-                             return isReceiver(kind.device);
-                         });
+    const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
+    const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
+                         std::any_of(kinds_.begin(), kinds_.end(), is_partial);
     unit_ = listens ? static_cast<int>(kLeastReceivers) : 1;
     problem_.required = unit_ * options_.redundancy;
     problem_.achieved.assign(target_.grid.size(), 0);
     problem_.standing = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) {
-        const int part = view.kind == ViewKind::Receiver ? 1 : unit_;
+        const int part = view.isPartial() ? 1 : unit_;
         view.cells.forEach([&](std::size_t cell) {
             problem_.achieved[cell] =
                 static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
@@ -97,14 +96,14 @@ void SceneProblem::setDemand(const Coverage& standing) {
 }
 
 void SceneProblem::addKinds() {
-    for (const SensorKind& kind : kinds_) {
+    for (const SensorClass& kind : kinds_) {
         CandidatePool::Made made = pool_->make(kind);
         is_complete_ = is_complete_ && made.is_complete;
         if (made.set->size() == 0)
             throw UnmetError("stopped before there was any candidate for " + kind.id);
         sets_.push_back(std::move(made.set));
         problem_.kinds.push_back(
-            {sets_.back().get(), kind.most, kind.cost, isReceiver(kind.device) ? 1 : unit_});
+            {sets_.back().get(), kind.most, kind.cost, isPartial(kind.model) ? 1 : unit_});
     }
     if (options_.budget || options_.target) return;
     for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -169,10 +168,8 @@ std::vector<std::string> SceneProblem::idleIn(const Coverage& coverage) const {
 
 void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
     std::vector<Point3> standing;
-    for (const PlacedLaser& laser : scene_.lasers) standing.push_back(laser.pose.position);
-    for (const PlacedRanger& ranger : scene_.rangers) standing.push_back(ranger.pose.position);
-    for (const PlacedReceiver& receiver : scene_.receivers)
-        standing.push_back(receiver.pose.position);
+    for (const Sensor& sensor : scene_.sensors)
+        if (kindOf(sensor.model).perceives) standing.push_back(sensor.pose.position);
     const auto position_of = [this](const Choice& choice) { return poseOf(choice).position; };
     ispace::spreadIdle(problem_, standing, position_of, chosen);
 }

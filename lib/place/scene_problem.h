@@ -35,7 +35,7 @@ class SceneProblem {
     [[nodiscard]] const std::vector<SensorGroup>& groups() const { return groups_; }
     [[nodiscard]] const ArrangeOptions& options() const { return options_; }
     [[nodiscard]] const Problem& problem() const { return problem_; }
-    [[nodiscard]] const std::vector<SensorKind>& kinds() const { return kinds_; }
+    [[nodiscard]] const std::vector<SensorClass>& kinds() const { return kinds_; }
     [[nodiscard]] const Target& target() const { return target_; }
     Worlds& worlds() { return worlds_; }
     /// False if progress said to stop before all candidates were made.
@@ -81,7 +81,7 @@ class SceneProblem {
     const std::vector<SensorGroup>& groups_;
     const ArrangeOptions& options_;
     Worlds worlds_;
-    std::vector<SensorKind> kinds_;
+    std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< share of the demand of a sensor that sees on its own
     Target target_;
     Problem problem_;

@@ -7,15 +7,13 @@
 namespace ispace {
 
 bool stands(const SensorView& view, const Scene& standing) {
-    if (view.kind == ViewKind::Laser) return view.index < standing.lasers.size();
-    if (view.kind == ViewKind::Ranger) return view.index < standing.rangers.size();
-    return view.index < standing.receivers.size();
+    return view.index < standing.sensors.size();
 }
 
 std::uint64_t valueOf(const Problem& problem, const Coverage& coverage, int unit) {
     std::vector<int> met(problem.cells());
     for (const SensorView& view : coverage.sensors) {
-        const int part = view.kind == ViewKind::Receiver ? 1 : unit;
+        const int part = view.isPartial() ? 1 : unit;
         view.cells.forEach([&](std::size_t cell) { met[cell] += part; });
     }
     std::uint64_t value = 0;

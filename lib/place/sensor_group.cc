@@ -13,15 +13,13 @@ namespace ispace {
 namespace {
 
 bool isArranged(const Record& record) {
-    return std::find(std::begin(kArrangedKinds), std::end(kArrangedKinds), record.keyword()) !=
-           std::end(kArrangedKinds);
+    const SensorKind* kind = sensorKind(record.keyword());
+    return kind != nullptr && kind->is_arranged;
 }
 
-SensorDevice deviceFor(const Record& record, const DeviceCatalogue& devices) {
+SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
     try {
-        if (record.keyword() == "laser") return laserOf(record, devices);
-        if (record.keyword() == "ranger") return rangerOf(record, devices);
-        return receiverOf(record, devices);
+        return sensorModelOf(record, devices);
     } catch (const FormatError& error) {
         // What is wrong with the figures of --sensor is wrong on the command line.
         throw UsageError(error.diagnostics().front().message);
@@ -35,7 +33,7 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
     std::vector<SensorGroup> groups;
     groups.reserve(scene.pending.size() + added.size());
     for (const PendingSensor& sensor : scene.pending)
-        groups.push_back({sensor.record, sensor.device, sensor.id, true, 1});
+        groups.push_back({sensor.record, sensor.model, sensor.id, true, 1});
     std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
     for (const auto& [record, count] : added) {
         for (const char* key : {"at", "heading", "on"})
@@ -46,7 +44,7 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
         if (!id.empty() && !taken.insert(id).second)
             throw UsageError("the id `" + id + "` is taken in this scene");
         const int most = count.value_or(open && id.empty() ? kMostOpen : 1);
-        groups.push_back({record, deviceFor(record, devices), id, false, most});
+        groups.push_back({record, modelFor(record, devices), id, false, most});
     }
     return groups;
 }
@@ -78,17 +76,13 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     return freed;
 }
 
-double maxRange(const SensorDevice& device) {
-    return std::visit([](const auto& figures) { return figures.max_range; }, device);
-}
-
-std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
-    std::vector<SensorKind> kinds;
+std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups) {
+    std::vector<SensorClass> kinds;
     for (std::size_t i = 0; i < groups.size(); ++i) {
         const SensorGroup& group = groups[i];
         const double cost = group.record.number("cost");
-        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorKind& kind) {
-            return kind.device == group.device && kind.cost == cost &&
+        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorClass& kind) {
+            return kind.model == group.model && kind.cost == cost &&
                    kind.record.angle("tilt") == group.record.angle("tilt") &&
                    kind.record.angle("roll") == group.record.angle("roll");
         });
@@ -102,23 +96,21 @@ std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups) {
             id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
             // Kinds that are called the same differ in figures: a number tells them apart.
             const auto alike =
-                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorKind& kind) {
+                std::count_if(kinds.begin(), kinds.end(), [&id](const SensorClass& kind) {
                     return kind.id == id || kind.id.starts_with(id + '.');
                 });
             if (alike > 0) id.append(".").append(std::to_string(alike + 1));
         }
-        kinds.push_back({group.device, group.record, std::move(id), cost, group.most, {i}});
+        kinds.push_back({group.model, group.record, std::move(id), cost, group.most, {i}});
     }
     return kinds;
 }
 
-std::size_t kindOf(const std::vector<SensorKind>& kinds, std::size_t group) {
-    const auto kind = std::find_if(kinds.begin(), kinds.end(), [group](const SensorKind& one) {
+std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(), [group](const SensorClass& one) {
         return std::find(one.groups.begin(), one.groups.end(), group) != one.groups.end();
     });
     return static_cast<std::size_t>(kind - kinds.begin());
 }
-
-bool isReceiver(const SensorDevice& device) { return std::holds_alternative<Receiver>(device); }
 
 }  // namespace ispace

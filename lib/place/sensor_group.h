@@ -8,11 +8,9 @@
 
 #include "layout/scene.h"
 #include "layout/sensor_spec.h"
+#include "sensor/kind.h"
 
 namespace ispace {
-
-/// The keywords of what can be placed.
-constexpr std::string_view kArrangedKinds[] = {"laser", "ranger", "ultrasound"};
 
 /// Most sensors of a group whose number is for the search to find.
 constexpr int kMostOpen = 1000;
@@ -21,7 +19,7 @@ constexpr int kMostOpen = 1000;
 /// --sensor.
 struct SensorGroup {
     Record record;  ///< without place
-    SensorDevice device;
+    SensorModel model;
     std::string id;           ///< of one that has one; else the next free ones of its keyword
     bool is_pending = false;  ///< of the scene; else new
     int most = 1;
@@ -39,8 +37,8 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
 Document withoutPlaces(const Document& layout, std::span<const std::string> fixed);
 
 /// Sensors that choose from the same candidates: equal figures, mounted alike.
-struct SensorKind {
-    SensorDevice device;
+struct SensorClass {
+    SensorModel model;
     Record record;   ///< of the first of them
     std::string id;  ///< names it in messages and seeds its random places
     double cost = 1;
@@ -49,15 +47,12 @@ struct SensorKind {
 };
 
 /// The kinds of these groups, in the order in which they first come.
-std::vector<SensorKind> kindsOf(const std::vector<SensorGroup>& groups);
+std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups);
 
 /// The kind that a group is of. \pre it is of one
-std::size_t kindOf(const std::vector<SensorKind>& kinds, std::size_t group);
+std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group);
 
-/// True for what hears tags only together with others.
-bool isReceiver(const SensorDevice& device);
-
-/// Greatest distance at which a device sees.
-double maxRange(const SensorDevice& device);
+/// True for what covers floor only together with others: receivers.
+inline bool isPartial(const SensorModel& model) { return kindOf(model).together > 1; }
 
 }  // namespace ispace

@@ -36,7 +36,8 @@ inline std::vector<SensorSpec> specs(std::initializer_list<const char*> texts) {
     std::vector<SensorSpec> read;
     read.reserve(texts.size());
     for (const char* text : texts)
-        read.push_back(readSensorSpec(text, kArrangedKinds, sceneSchemas(), DeviceCatalogue()));
+        read.push_back(readSensorSpec(text, keywordsOf(&SensorKind::is_arranged), sceneSchemas(),
+                                      DeviceCatalogue()));
     return read;
 }
 

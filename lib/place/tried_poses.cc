@@ -15,7 +15,7 @@ namespace {
 void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> poses) {
     for (const TriedPose& tried : poses) worlds.prepare(tried.pose);
     tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
-        const PlacedLaser placed{"", laser, poses[i].pose};
+        const Sensor placed{"", laser, poses[i].pose};
         poses[i].slice_area = sliceArea(laser, castBeams(worlds.at(placed.pose), placed));
     });
 }
@@ -29,7 +29,7 @@ std::vector<TriedPose> triedPoses(SceneProblem& model, const std::vector<Choice>
     all.reserve(model.candidates());
     for (std::size_t k = 0; k < problem.kinds.size(); ++k) {
         const CandidateSet& set = *problem.kinds[k].candidates;
-        const SensorKind& kind = model.kinds()[k];
+        const SensorClass& kind = model.kinds()[k];
         std::vector<std::uint32_t> values(set.size());
         set.weighAll(prices, values);
         const double part = static_cast<double>(problem.kinds[k].multiplicity) / problem.required;
@@ -38,7 +38,7 @@ std::vector<TriedPose> triedPoses(SceneProblem& model, const std::vector<Choice>
             all.push_back({kind.id, model.poseOf({k, i}), part * model.share(values[i]), false});
         for (const Choice& choice : chosen)
             if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
-        if (const auto* laser = std::get_if<Laser>(&kind.device))
+        if (const auto* laser = std::get_if<Laser>(&kind.model))
             addSliceAreas(model.worlds(), *laser, std::span(all).subspan(first));
     }
     return all;

@@ -22,13 +22,13 @@ Box2 boxAround(Point2 p, double half_width, double half_height) {
 }
 
 /// The mark's body about the origin, y up.
-void fillBody(Picture& picture, SensorMark::Body body, double radius, Color color, double rim = 0) {
+void fillBody(Picture& picture, SensorSign sign, double radius, Color color, double rim = 0) {
     Polygon curve;
-    if (body == SensorMark::Body::Disc) {
+    if (sign == SensorSign::Disc) {
         picture.circle({}, radius + rim, {color});
         return;
     }
-    if (body == SensorMark::Body::Square) {
+    if (sign == SensorSign::Square) {
         const double half = 0.9 * radius;
         curve = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
     } else {
@@ -43,35 +43,18 @@ void fillBody(Picture& picture, SensorMark::Body body, double radius, Color colo
 
 }  // namespace
 
-SensorMark::Body bodyOfMark(std::string_view keyword) {
-    if (keyword == "ranger" || keyword == "camera") return SensorMark::Body::Square;
-    if (keyword == "ultrasound") return SensorMark::Body::Triangle;
-    return SensorMark::Body::Disc;
-}
-
-SensorGlyph glyphOf(const Scene& scene, const Placed& placed) {
+BearingSpan bearingsOf(const Scene& scene, const Placed& placed) {
     const Record& record = scene.records[placed.record];
-    const std::string& keyword = record.keyword();
-    const SensorMark::Body body = bodyOfMark(keyword);
-    const auto about = [body](Angle span, double range) {
-        return SensorGlyph{body, -0.5 * span, 0.5 * span, range};
-    };
-    if (keyword == "laser") {
-        const Laser& laser = scene.lasers[placed.index].laser;
-        return {body, laser.first, laser.first + laser.span(), laser.max_range};
+    const SensorKind* kind = sensorKind(record.keyword());
+    if (kind != nullptr && kind->bearings != nullptr)
+        return kind->bearings(scene.sensors[placed.index].model);
+    BearingSpan span{Angle::degrees(-22.5), Angle::degrees(22.5), 5};
+    if (record.has("fov")) {
+        const Angle fov = Angle::degrees(record.tuple("fov").front());
+        span = {-0.5 * fov, 0.5 * fov, 5};
     }
-    if (keyword == "ranger") {
-        const Ranger& ranger = scene.rangers[placed.index].ranger;
-        return about(ranger.fov_x, ranger.max_range);
-    }
-    if (keyword == "ultrasound") {
-        const Receiver& receiver = scene.receivers[placed.index].receiver;
-        return about(receiver.fov, receiver.max_range);
-    }
-    SensorGlyph glyph = about(Angle::degrees(45), 5);
-    if (record.has("fov")) glyph = about(Angle::degrees(record.tuple("fov").front()), 5);
-    if (record.has("range")) glyph.range = record.tuple("range").back();
-    return glyph;
+    if (record.has("range")) span.range = record.tuple("range").back();
+    return span;
 }
 
 std::optional<Angle> headingOf(const Pose3& pose) {
@@ -94,9 +77,9 @@ void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, doubl
         picture.line(center, neck, {mark.color, 0.5 * radius});
         picture.area(head, {mark.color});
     }
-    fillBody(picture, mark.body, radius, kWhite, 0.3 * radius);
-    fillBody(picture, mark.body, radius, mark.color);
-    if (mark.hollow) fillBody(picture, mark.body, 0.5 * radius, kWhite);
+    fillBody(picture, mark.sign, radius, kWhite, 0.3 * radius);
+    fillBody(picture, mark.sign, radius, mark.color);
+    if (mark.hollow) fillBody(picture, mark.sign, 0.5 * radius, kWhite);
     picture.pop();
 }
 

@@ -3,34 +3,26 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "draw/palette.h"
 #include "draw/picture.h"
 #include "geom/box.h"
 #include "layout/scene.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
 /// Mark of a sensor: a body by its kind, and an arrow where it looks aside.
 struct SensorMark {
-    enum class Body { Disc, Square, Triangle };
-    Body body = Body::Disc;
+    SensorSign sign = SensorSign::Disc;
     std::optional<Angle> heading = {};  ///< as seen, y up; none: it looks straight up or down
     Color color = palette::kInk;
     bool hollow = false;
 };
 
-/// How a kind of sensors shows on plans: the only place that tells kinds apart for pictures.
-struct SensorGlyph {
-    SensorMark::Body body = SensorMark::Body::Disc;
-    Angle from, to;  ///< bearings that it faces
-    double range = 5;
-};
-SensorGlyph glyphOf(const Scene& scene, const Placed& placed);
-/// By the keyword of its record.
-SensorMark::Body bodyOfMark(std::string_view keyword);
+/// The bearings that a placed sensor shows on a plan.
+BearingSpan bearingsOf(const Scene& scene, const Placed& placed);
 
 /// The level part of where a pose looks, if there is one.
 std::optional<Angle> headingOf(const Pose3& pose);

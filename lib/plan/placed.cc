@@ -7,6 +7,7 @@
 #include "env/body.h"
 #include "layout/schemas.h"
 #include "plan/drawing.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -18,7 +19,8 @@ using namespace palette;
 constexpr double kMark = 0.3;
 
 bool looksAside(const Record& record, const Pose3& pose) {
-    return isSensor(record.schema()) && std::abs(pose.tilt.degrees()) < 70;
+    const SensorKind* kind = sensorKind(record.keyword());
+    return kind != nullptr && kind->perceives && std::abs(pose.tilt.degrees()) < 70;
 }
 
 bool isPerson(const Record& record) { return record.keyword() == "human"; }
@@ -62,7 +64,7 @@ void PlanDrawing::drawFieldsOfView() {
     for (const Placed& placed : scene_.placed) {
         if (!looksAside(scene_.records[placed.record], placed.pose)) continue;
         const Point2 place = placed.pose.position.onFloor();
-        const SensorGlyph glyph = glyphOf(scene_, placed);
+        const BearingSpan glyph = bearingsOf(scene_, placed);
         picture_.pushGroup("", "field of view of " + scene_.ids[placed.record]);
         picture_.sector(place, std::min(metres(4.5), glyph.range), placed.pose.heading + glyph.from,
                         placed.pose.heading + glyph.to, {kSensor.faded(0.2), pen(kSensor, 0.05)});
@@ -101,7 +103,8 @@ void PlanDrawing::drawSensors() {
         const std::string& keyword = record.keyword();
         const Pose2 pose = levelPose(placed);
         std::string title = id + ": " + keyword;
-        if (isSensor(record.schema()))
+        const SensorKind* kind = sensorKind(keyword);
+        if (kind != nullptr && kind->perceives)
             title += " at height " +
                      formatDouble(std::round(placed.pose.position.z * 1000) / 1000) + " m";
         picture_.pushGroup(id, title);
@@ -115,20 +118,20 @@ void PlanDrawing::drawSensors() {
             picture_.line(left, right, pen(kSensor, 0.08, {0.25, 0.2}));
             for (const Point2 p : {left, right})
                 picture_.circle(p, metres(0.25), {kSensor, pen(kWhite, 0.06)});
-        } else if (keyword == "tag") {
+        } else if (kind != nullptr && kind->sign == SensorSign::Diamond) {
             const double size = metres(0.4);
             const Point2 p = pose.position;
             picture_.area(
                 Polygon{{p.x + size, p.y}, {p.x, p.y + size}, {p.x - size, p.y}, {p.x, p.y - size}},
                 {kMat, pen(kWhite, 0.08)});
         } else {
-            const SensorGlyph glyph = glyphOf(scene_, placed);
             const bool aside = looksAside(record, placed.pose);
             if (!aside)  // upwards or downwards
                 picture_.circle(pose.position, metres(2 * kMark),
                                 {pen(kSensor, 0.08, {0.25, 0.2})});
             drawSensorMark(picture_, picture_.toPage(pose.position),
-                           {glyph.body, aside ? headingOf(placed.pose) : std::nullopt, kSensor},
+                           {kind == nullptr ? SensorSign::Disc : kind->sign,
+                            aside ? headingOf(placed.pose) : std::nullopt, kSensor},
                            kMark * style_.em);
         }
         picture_.pop();

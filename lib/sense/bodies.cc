@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/bodies.h"
 
-#include "layout/figures.h"
+#include "layout/bodies.h"
 
 namespace ispace {
 
@@ -21,7 +21,7 @@ MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t o
 
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner) {
     std::vector<MovingBody> bodies;
-    for (const Upright& part : uprightsOfHuman(height))
+    for (const Upright& part : humanUprights(height))
         bodies.push_back({.pose = {pose * part.center, pose.heading},
                           .half_length = part.half_length,
                           .half_width = part.half_width,

@@ -37,9 +37,9 @@ std::string carmenHeader() {
            "# a reading of maximum_range is no return\n";
 }
 
-void appendCarmenLine(std::string& out, std::size_t number, const PlacedLaser& sensor,
-                      const Scan& scan, const Pose2& robot) {
-    const Laser& laser = sensor.laser;
+void appendCarmenLine(std::string& out, std::size_t number, const Sensor& sensor, const Scan& scan,
+                      const Pose2& robot) {
+    const Laser& laser = sensor.as<Laser>();
     const Angle fov = laser.last() - laser.first;
     const Angle middle = laser.first + 0.5 * fov;
     out.append("ROBOTLASER").append(std::to_string(number)).append(" ");

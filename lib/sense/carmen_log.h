@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
-#include "layout/laser.h"
 #include "sense/scan.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -16,7 +16,7 @@ std::string carmenHeader();
 /// the number of remissions, 0), in metres and radians; no return is max_range. `robot` is where
 /// its carrier stands; that of a sensor that stands still is the sensor's own place. \pre the
 /// sensor is level
-void appendCarmenLine(std::string& out, std::size_t number, const PlacedLaser& sensor,
-                      const Scan& scan, const Pose2& robot);
+void appendCarmenLine(std::string& out, std::size_t number, const Sensor& sensor, const Scan& scan,
+                      const Pose2& robot);
 
 }  // namespace ispace

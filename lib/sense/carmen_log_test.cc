@@ -21,8 +21,8 @@ TEST(CarmenLog, HeaderIsComments) {
 }
 
 TEST(CarmenLog, FieldsInOrder) {
-    PlacedLaser sensor = threeBeams();
-    sensor.laser.noise.sigma[0] = 0.01;
+    Sensor sensor = threeBeams();
+    sensor.as<Laser>().noise.sigma[0] = 0.01;
     Scan scan = scanOf({{1, -2, 0.15}, Angle::degrees(180), {}, {}}, {0.1F, kNone, 3.999F});
     scan.time = 0.25;
     std::string out = "before\n";
@@ -38,7 +38,7 @@ TEST(CarmenLog, FieldsInOrder) {
 struct Beam {
     double by_start, by_fov;
 };
-Beam beamOf(const PlacedLaser& sensor, const Scan& scan, int beam) {
+Beam beamOf(const Sensor& sensor, const Scan& scan, int beam) {
     std::string line;
     appendCarmenLine(line, 1, sensor, scan, {});
     std::istringstream words(line);
@@ -56,8 +56,8 @@ Beam beamOf(const PlacedLaser& sensor, const Scan& scan, int beam) {
 }
 
 TEST(CarmenLog, ReadersAgreeOnBeamsOfAFanThatIsNotSymmetric) {
-    PlacedLaser sensor;
-    Laser& laser = sensor.laser;
+    Sensor sensor;
+    Laser& laser = sensor.as<Laser>();
     laser.step = Angle::degrees(360.0 / 1024);
     laser.first = (44.0 - 384) * laser.step;
     laser.beams = 682;

@@ -32,16 +32,16 @@ Point3 toWorld(const Pose3& pose, Point3 local) {
 }
 
 TEST(LaserCloud, RightAnglesAreExact) {
-    const PlacedLaser sensor = threeBeams();
+    const Sensor sensor = threeBeams();
     const Scan scan = scanOf({{1, 2, 0.5}, Angle::degrees(90), {}, {}}, {1.5F, kNone, 2});
-    const PointCloud world = cloudOf(sensor.laser, std::span(&scan, 1), Coordinates::World);
+    const PointCloud world = cloudOf(sensor.as<Laser>(), std::span(&scan, 1), Coordinates::World);
     EXPECT_EQ(world.width, 3U);
     EXPECT_EQ(world.height, 1U);
     EXPECT_EQ(world.viewpoint, Pose3());
     EXPECT_EQ(pointAt(world, 0), (Point3{2.5, 2, 0.5}));
     EXPECT_TRUE(isMissing(world, 1));
     EXPECT_EQ(pointAt(world, 2), (Point3{-1, 2, 0.5}));
-    const PointCloud own = cloudOf(sensor.laser, std::span(&scan, 1), Coordinates::Sensor);
+    const PointCloud own = cloudOf(sensor.as<Laser>(), std::span(&scan, 1), Coordinates::Sensor);
     EXPECT_EQ(own.viewpoint, scan.pose);
     EXPECT_EQ(pointAt(own, 0), (Point3{0, -1.5, 0}));
     EXPECT_TRUE(isMissing(own, 1));
@@ -68,15 +68,15 @@ TEST(LaserCloud, AnyPose) {
 
 TEST(LaserCloud, ScansOfASweepComeIntoTheFrameOfTheFirst) {
     std::mt19937 random(2);
-    const PlacedLaser sensor = threeBeams();
+    const Sensor sensor = threeBeams();
     std::vector<Scan> scans;
     scans.reserve(5);
     for (int j = 0; j < 5; ++j)
         scans.push_back(scanOf(randomPose(random), randomRanges(random, 3)));
     // One that moves while it scans.
     for (int k = 0; k < 3; ++k) scans[3].beam_poses.push_back(randomPose(random));
-    const PointCloud world = cloudOf(sensor.laser, scans, Coordinates::World);
-    const PointCloud own = cloudOf(sensor.laser, scans, Coordinates::Sensor);
+    const PointCloud world = cloudOf(sensor.as<Laser>(), scans, Coordinates::World);
+    const PointCloud own = cloudOf(sensor.as<Laser>(), scans, Coordinates::Sensor);
     EXPECT_EQ(own.width, 3U);
     EXPECT_EQ(own.height, 5U);
     EXPECT_EQ(own.viewpoint, scans.front().pose);
@@ -87,7 +87,7 @@ TEST(LaserCloud, ScansOfASweepComeIntoTheFrameOfTheFirst) {
         if (isMissing(own, i)) continue;
         expectNear(toWorld(scans.front().pose, pointAt(own, i)), pointAt(world, i), 1e-5);
         const Pose3& pose = scan.poseAt(i % 3);
-        const Vec3 beam = pose.beam(sensor.laser.bearing(static_cast<int>(i % 3)));
+        const Vec3 beam = pose.beam(sensor.as<Laser>().bearing(static_cast<int>(i % 3)));
         expectNear(pointAt(world, i), pose.position + double{scan.ranges[i % 3]} * beam, 2e-6);
     }
 }
@@ -102,16 +102,16 @@ TEST(RangerCloud, IsTheRaysTimesTheDepths) {
     std::mt19937 random(3);
     for (const Projection projection : {Projection::Pinhole, Projection::Spherical}) {
         for (const auto& [columns, rows] : {std::pair{31, 22}, std::pair{8, 1}, std::pair{1, 5}}) {
-            PlacedRanger sensor = smallRanger(projection, columns, rows);
+            Sensor sensor = smallRanger(projection, columns, rows);
             if (projection == Projection::Spherical) {
-                sensor.ranger.fov_x = Angle::degrees(360);
-                sensor.ranger.fov_y = Angle::degrees(170);
+                sensor.as<Ranger>().fov_x = Angle::degrees(360);
+                sensor.as<Ranger>().fov_y = Angle::degrees(170);
             }
             DepthFrame frame;
             frame.pose = randomPose(random);
-            frame.depths = randomRanges(random, sensor.ranger.pixels());
-            const PointCloud own = cloudOf(sensor.ranger, frame, Coordinates::Sensor);
-            const PointCloud world = cloudOf(sensor.ranger, frame, Coordinates::World);
+            frame.depths = randomRanges(random, sensor.as<Ranger>().pixels());
+            const PointCloud own = cloudOf(sensor.as<Ranger>(), frame, Coordinates::Sensor);
+            const PointCloud world = cloudOf(sensor.as<Ranger>(), frame, Coordinates::World);
             EXPECT_EQ(own.width, static_cast<std::size_t>(columns));
             EXPECT_EQ(own.height, static_cast<std::size_t>(rows));
             EXPECT_EQ(own.viewpoint, frame.pose);
@@ -121,7 +121,7 @@ TEST(RangerCloud, IsTheRaysTimesTheDepths) {
                 for (int column = 0; column < columns; ++column, ++i) {
                     ASSERT_EQ(isMissing(own, i), std::isinf(frame.depths[i]));
                     if (isMissing(own, i)) continue;
-                    const Vec3 ray = double{frame.depths[i]} * sensor.ranger.ray(column, row);
+                    const Vec3 ray = double{frame.depths[i]} * sensor.as<Ranger>().ray(column, row);
                     expectNear(pointAt(own, i), Point3{} + ray, 2e-6);
                     expectNear(pointAt(world, i), toWorld(frame.pose, Point3{} + ray), 4e-6);
                 }

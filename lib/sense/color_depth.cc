@@ -153,8 +153,8 @@ void drawLegend(Picture& picture, const Scale& scale, double left, double top, d
 
 }  // namespace
 
-std::string colorDepthPng(const PlacedRanger& sensor, const DepthFrame& frame) {
-    const Ranger& ranger = sensor.ranger;
+std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame) {
+    const Ranger& ranger = sensor.as<Ranger>();
     const Scale scale(ranger);
     const Zoom zoom(ranger);
     Image image = colored(ranger, frame, scale, zoom.stride);

@@ -109,12 +109,12 @@ struct Phase {
 /// One picture in the making.
 class Exposure {
   public:
-    Exposure(const RayWorld& environment, const MovingBodies& bodies, const PlacedRanger& sensor,
+    Exposure(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
              const ReadingOptions& options, DepthFrame& frame)
         : environment_(environment),
           bodies_(bodies),
           sensor_(sensor),
-          ranger_(sensor.ranger),
+          ranger_(sensor.as<Ranger>()),
           noisy_(options.noise_seed.has_value()),
           key_{.seed = options.noise_seed.value_or(0),
                .sensor = hashOf(sensor.id),
@@ -204,7 +204,7 @@ class Exposure {
 
     const RayWorld& environment_;
     const MovingBodies& bodies_;
-    const PlacedRanger& sensor_;
+    const Sensor& sensor_;
     const Ranger& ranger_;
     bool noisy_;
     NoiseKey key_;
@@ -214,9 +214,8 @@ class Exposure {
 
 }  // namespace
 
-DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies,
-                     const PlacedRanger& sensor, const Pose3& pose, int frame,
-                     const ReadingOptions& options) {
+DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
+                     const Pose3& pose, int frame, const ReadingOptions& options) {
     DepthFrame picture;
     picture.frame = frame;
     picture.pose = pose;

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "layout/ranger.h"
 #include "sense/point_cloud.h"
 #include "sense/scan.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -24,9 +24,8 @@ struct DepthFrame {
 
 /// What a ranger sees at `pose`, with its limits, its ambiguity and, if wanted, its noise.
 /// `environment` is that of the mesh.
-DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies,
-                     const PlacedRanger& sensor, const Pose3& pose, int frame,
-                     const ReadingOptions& options);
+DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
+                     const Pose3& pose, int frame, const ReadingOptions& options);
 
 /// Which frame the points of a cloud are in.
 enum class Coordinates { World, Sensor };

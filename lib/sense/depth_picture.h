@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "layout/ranger.h"
 #include "sense/depth.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -16,7 +16,7 @@ std::string depthPng(const Ranger& ranger, const DepthFrame& frame, double per_m
 /// The same in colours for people, with a legend: near is warm, far is cold, no return is black.
 /// The scale goes from the ranger's least to its greatest range (of an ambiguous one: 0 to that),
 /// so that pictures of one device compare. PNG; equal input gives equal bytes.
-std::string colorDepthPng(const PlacedRanger& sensor, const DepthFrame& frame);
+std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame);
 
 /// camera_info of ROS as YAML: size, matrices, no distortion; pixel centres are whole numbers, so
 /// cx = (columns - 1) / 2. \pre a pinhole

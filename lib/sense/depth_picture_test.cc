@@ -39,26 +39,26 @@ std::string chunkNames(std::string_view png) {
 }
 
 TEST(DepthPng, MillimetresAndZeroForNoReturn) {
-    const PlacedRanger sensor = smallRanger(Projection::Pinhole, 4, 2);
+    const Sensor sensor = smallRanger(Projection::Pinhole, 4, 2);
     DepthFrame frame;
     frame.depths = {1.2344F, 1.2346F, kNone, 0.0004F, 65.535F, 65.536F, 100, 3};
-    EXPECT_EQ(samplesOf(depthPng(sensor.ranger, frame, 1000)),
+    EXPECT_EQ(samplesOf(depthPng(sensor.as<Ranger>(), frame, 1000)),
               (std::vector<std::uint16_t>{1234, 1235, 0, 0, 65535, 0, 0, 3000}));
-    EXPECT_EQ(samplesOf(depthPng(sensor.ranger, frame, 5000)),
+    EXPECT_EQ(samplesOf(depthPng(sensor.as<Ranger>(), frame, 5000)),
               (std::vector<std::uint16_t>{6172, 6173, 0, 2, 0, 0, 0, 15000}));
 }
 
 TEST(DepthPng, HoldsNothingButThePicture) {
     std::mt19937 random(4);
-    const PlacedRanger sensor = smallRanger(Projection::Spherical, 176, 144);
+    const Sensor sensor = smallRanger(Projection::Spherical, 176, 144);
     DepthFrame frame;
-    frame.depths = randomRanges(random, sensor.ranger.pixels());
-    const std::string png = depthPng(sensor.ranger, frame, 1000);
+    frame.depths = randomRanges(random, sensor.as<Ranger>().pixels());
+    const std::string png = depthPng(sensor.as<Ranger>(), frame, 1000);
     std::string names = chunkNames(png);
     EXPECT_TRUE(names.starts_with("IHDR IDAT ")) << names;
     EXPECT_TRUE(names.ends_with("IDAT IEND ")) << names;
     EXPECT_EQ(names.find_first_not_of("IDATEHNR "), std::string::npos) << names;
-    EXPECT_EQ(png, depthPng(sensor.ranger, frame, 1000));
+    EXPECT_EQ(png, depthPng(sensor.as<Ranger>(), frame, 1000));
     const std::vector<std::uint16_t> samples = samplesOf(png);
     ASSERT_EQ(samples.size(), frame.depths.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -77,9 +77,9 @@ Rgb rgbAt(const Image& image, int x, int y) {
 }
 
 TEST(ColorDepth, NearIsWarmFarIsColdNoReturnIsBlack) {
-    PlacedRanger sensor = smallRanger(Projection::Pinhole, 176, 144);
+    Sensor sensor = smallRanger(Projection::Pinhole, 176, 144);
     DepthFrame frame;
-    frame.depths.assign(sensor.ranger.pixels(), kNone);
+    frame.depths.assign(sensor.as<Ranger>().pixels(), kNone);
     for (std::size_t i = 0; i < frame.depths.size(); ++i) {
         if (i % 176 < 60) frame.depths[i] = 0.3F;
         if (i % 176 > 115) frame.depths[i] = 4.8F;
@@ -105,13 +105,13 @@ TEST(ColorDepth, OddRangersAreDrawn) {
     for (const Projection projection : {Projection::Pinhole, Projection::Spherical}) {
         for (const auto& [columns, rows] :
              {std::pair{1, 1}, std::pair{5000, 2}, std::pair{3, 5000}}) {
-            PlacedRanger sensor = smallRanger(projection, columns, rows);
+            Sensor sensor = smallRanger(projection, columns, rows);
             sensor.id = std::string(300, 'x');
-            sensor.ranger.min_range = sensor.ranger.max_range = 0;
+            sensor.as<Ranger>().min_range = sensor.as<Ranger>().max_range = 0;
             DepthFrame frame;
-            frame.depths.assign(sensor.ranger.pixels(), 0.0F);
+            frame.depths.assign(sensor.as<Ranger>().pixels(), 0.0F);
             EXPECT_GT(decodePng(colorDepthPng(sensor, frame)).height, 100);
-            sensor.ranger.max_range = 1e4;
+            sensor.as<Ranger>().max_range = 1e4;
             frame.depths.front() = 1e4F;
             EXPECT_GT(decodePng(colorDepthPng(sensor, frame)).height, 100);
         }

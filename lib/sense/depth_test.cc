@@ -48,12 +48,12 @@ TEST(Depth, OfPlanesAtAnyPoseWithinAMillimetre) {
                                          {" fov=", fov(random)}})
             line += key + formatDouble(value);
         const Scene scene = testing::scene(kRoom, line + "\n");
-        const PlacedRanger& sensor = scene.rangers.front();
+        const Sensor& sensor = scene.sensors.front();
         const DepthFrame frame = frameOf(scene);
         ASSERT_EQ(frame.depths.size(), 21U * 17U);
         for (int row = 0; row < 17; ++row)
             for (int column = 0; column < 21; ++column) {
-                const Vec3 ray = sensor.ranger.ray(column, row);
+                const Vec3 ray = sensor.as<Ranger>().ray(column, row);
                 const double exact =
                     multipleInRoom(sensor.pose.position, Frame3(sensor.pose) * ray);
                 const double found = frame.depths[static_cast<std::size_t>(row * 21 + column)];
@@ -66,7 +66,7 @@ TEST(Depth, OfPlanesAtAnyPoseWithinAMillimetre) {
 TEST(Depth, OfATiltedPlaneFollowsItsEquation) {
     // The wall x = 8 seen from x = 5 at an angle: n . p = 3 with p = depth * ray.
     const Scene scene = testing::scene(kRoom, "ranger at=5,3,1.2 heading=25 fov=40,30 range=9\n");
-    const Ranger& ranger = scene.rangers.front().ranger;
+    const Ranger& ranger = scene.sensors.front().as<Ranger>();
     const DepthFrame frame = frameOf(scene);
     const double c = std::cos(25 * std::acos(-1) / 180), s = std::sin(25 * std::acos(-1) / 180);
     const Vec3 normal{c, -s, 0};  // of the wall, in the sensor's frame
@@ -116,7 +116,7 @@ TEST(Depth, WhatIsBeyondTheAmbiguityWraps) {
 TEST(Depth, WholeUnitsAreWhatTheDeviceSays) {
     const Scene scene = testing::scene(
         kRoom, "ranger at=5,3,1.25 fov=30,20 pixels=20,15 ambiguity=1.0001 resolution=0.01\n");
-    const Ranger& ranger = scene.rangers.front().ranger;
+    const Ranger& ranger = scene.sensors.front().as<Ranger>();
     const DepthFrame noisy = frameOf(scene, 0, {.noise_seed = 1});
     for (std::size_t i = 0; i < noisy.depths.size(); ++i) {
         const Vec3 ray = ranger.ray(static_cast<double>(i % 20), static_cast<double>(i / 20));
@@ -135,8 +135,8 @@ TEST(Depth, LimitsHoldBeforeNoise) {
         const DepthFrame frame = frameOf(scene, 0, {.noise_seed = 1});
         for (const float depth : frame.depths) {
             if (!std::isfinite(depth)) continue;
-            EXPECT_GE(depth, static_cast<float>(scene.rangers[0].ranger.min_range));
-            EXPECT_LE(depth, static_cast<float>(scene.rangers[0].ranger.max_range));
+            EXPECT_GE(depth, static_cast<float>(scene.sensors[0].as<Ranger>().min_range));
+            EXPECT_LE(depth, static_cast<float>(scene.sensors[0].as<Ranger>().max_range));
         }
         return std::count_if(frame.depths.begin(), frame.depths.end(),
                              [](float depth) { return std::isfinite(depth); });
@@ -192,7 +192,7 @@ TEST(Depth, NoiseIsOfTheDepthOrOfTheDistance) {
             kRoom,
             "ranger at=5,3,1.25 fov=30,20 pixels=200,150 range=9 bias=0.1 sigma=0.02 measures=" +
                 measured + "\n");
-        const Ranger& ranger = scene.rangers.front().ranger;
+        const Ranger& ranger = scene.sensors.front().as<Ranger>();
         const DepthFrame clean = frameOf(scene), noisy = frameOf(scene, 0, {.noise_seed = 1});
         double sum = 0, squares = 0;
         const auto n = static_cast<double>(clean.depths.size());

@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "env/solid_tree.h"
+#include "sensor/kind.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -37,19 +38,22 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
     std::vector<std::string> doubts;
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
-        if (!isReadable(record.keyword()) || record.has("at") || record.has("on") ||
+        const SensorKind* kind = sensorKind(record.keyword());
+        if (kind == nullptr || !kind->is_read || record.has("at") || record.has("on") ||
             !isSelected(scene.ids[i], globs))
             continue;
         doubts.push_back(scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
                          (record.keyword() == "laser" ? ", or let arrange place it" : ""));
     }
     SolidJudge judge(scene.environment);
-    const auto check = [&](const std::string& id, const Point3& place) {
+    bool listens = with_receivers;
+    const auto check = [&](const Sensor& sensor) {
+        const Point3 place = sensor.pose.position;
         const bool inside = judge.isInside(place);
         if (!inside && place.z >= 0 &&
             scene.environment.indoor().locate(place.onFloor()) != Side::Outside)
             return;
-        std::string phrase = id;
+        std::string phrase = sensor.id;
         phrase.append(inside ? " stands inside something solid at "
                              : " stands outside the room at ");
         for (const double part : {place.x, place.y, place.z})
@@ -57,11 +61,12 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
         phrase.pop_back();
         doubts.push_back(std::move(phrase));
     };
-    for (const Sensors::Entry& entry : sensors.order)
-        check(sensors.id(entry), sensors.pose(entry).position);
-    if (with_receivers || !sensors.tags.empty())
-        for (const PlacedReceiver& receiver : sensors.receivers)
-            check(receiver.id, receiver.pose.position);
+    for (const Sensor& sensor : sensors.read) {
+        check(sensor);
+        listens = listens || sensor.is<Tag>();
+    }
+    if (listens)
+        for (const Sensor& receiver : sensors.receivers) check(receiver);
     return doubts;
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/random.h"
-#include "layout/noise.h"
+#include "sensor/noise.h"
 
 namespace ispace {
 

@@ -132,8 +132,8 @@ std::string subtitle(const Laser& laser, const Scan& scan) {
 
 }  // namespace
 
-std::string obstacleMapPng(const PlacedLaser& sensor, const Scan& scan, int pixels) {
-    const Laser& laser = sensor.laser;
+std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels) {
+    const Laser& laser = sensor.as<Laser>();
     Picture picture(pixels, pixels);
     const Layout layout(laser, scan, pixels);
     const double margin = layout.em, room = layout.size - 2 * margin;

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "layout/laser.h"
 #include "sense/scan.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
@@ -12,6 +12,6 @@ namespace ispace {
 /// the middle, bearing 0 upwards, rings at round distances with their labels, spokes each 30
 /// degrees, the field of view shaded up to max_range. PNG, `pixels` wide and high; equal input
 /// gives equal bytes.
-std::string obstacleMapPng(const PlacedLaser& sensor, const Scan& scan, int pixels);
+std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels);
 
 }  // namespace ispace

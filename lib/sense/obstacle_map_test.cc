@@ -33,7 +33,7 @@ Returns returnsOf(const Image& image) {
 
 constexpr int kPixels = 600;
 
-Returns returnsOf(const PlacedLaser& sensor, std::vector<float> ranges) {
+Returns returnsOf(const Sensor& sensor, std::vector<float> ranges) {
     const std::string png = obstacleMapPng(sensor, scanOf(sensor.pose, std::move(ranges)), kPixels);
     const Image image = decodePng(png);
     EXPECT_EQ(image.width, kPixels);
@@ -42,7 +42,7 @@ Returns returnsOf(const PlacedLaser& sensor, std::vector<float> ranges) {
 }
 
 TEST(ObstacleMap, BearingZeroIsUpAndPositiveOnesAreLeft) {
-    PlacedLaser sensor = threeBeams();
+    Sensor sensor = threeBeams();
     const Returns up = returnsOf(sensor, {kNone, 3, kNone});
     const Returns left = returnsOf(sensor, {kNone, kNone, 3});
     const Returns right = returnsOf(sensor, {3, kNone, kNone});
@@ -60,8 +60,8 @@ TEST(ObstacleMap, BearingZeroIsUpAndPositiveOnesAreLeft) {
 }
 
 TEST(ObstacleMap, RangesAreToScale) {
-    PlacedLaser sensor = threeBeams();
-    sensor.laser.max_range = 30;
+    Sensor sensor = threeBeams();
+    sensor.as<Laser>().max_range = 30;
     // Beam 0 sets the scale; beam 2 is measured.
     const auto reach = [&](float range) {
         const Returns all = returnsOf(sensor, {3.9F, kNone, range});
@@ -74,15 +74,15 @@ TEST(ObstacleMap, RangesAreToScale) {
 }
 
 TEST(ObstacleMap, EqualInputGivesEqualBytes) {
-    const PlacedLaser sensor = threeBeams();
+    const Sensor sensor = threeBeams();
     const Scan scan = scanOf(sensor.pose, {1, 2, 3});
     EXPECT_EQ(obstacleMapPng(sensor, scan, 300), obstacleMapPng(sensor, scan, 300));
 }
 
 TEST(ObstacleMap, OddScansAreDrawn) {
-    PlacedLaser sensor = threeBeams();
+    Sensor sensor = threeBeams();
     for (const double limit : {0.0, 0.02, 4.0, 1e5}) {
-        sensor.laser.max_range = limit;
+        sensor.as<Laser>().max_range = limit;
         for (const int pixels : {1, 20, 300}) {
             for (const std::vector<float>& ranges :
                  {std::vector<float>{kNone, kNone, kNone}, {}, {0, 0, static_cast<float>(limit)}})

@@ -48,12 +48,12 @@ struct ReadingTaker::Data {
     using Casters = std::vector<std::unique_ptr<LaserCaster>>;
     tbb::enumerable_thread_specific<Casters> casters;
 
-    LaserCaster& casterOf(std::size_t laser) {
+    LaserCaster& casterOf(std::size_t index) {
         Casters& mine = casters.local();
-        mine.resize(sensors.lasers.size());
-        std::unique_ptr<LaserCaster>& caster = mine[laser];
+        mine.resize(sensors.read.size());
+        std::unique_ptr<LaserCaster>& caster = mine[index];
         if (!caster) {
-            const PlacedLaser& sensor = sensors.lasers[laser];
+            const Sensor& sensor = sensors.read[index];
             const bool turns = options.follows_poses || sensor.mount.has_value();
             caster = std::make_unique<LaserCaster>(worlds, bodies, sensor, turns,
                                                    ReadingOptions{options.noise_seed});
@@ -68,10 +68,10 @@ ReadingTaker::ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingB
 ReadingTaker::~ReadingTaker() = default;
 
 void ReadingTaker::prepare(const ReadingJob& job) {
-    const Sensors::Entry& entry = data_->sensors.order[job.sensor];
-    if (entry.kind == SensorKind::Tag) return data_->worlds.prepareSound();
-    if (entry.kind == SensorKind::Ranger) return data_->worlds.prepareMesh();
-    const Laser& laser = data_->sensors.lasers[entry.index].laser;
+    const Sensor& sensor = data_->sensors.read[job.sensor];
+    if (sensor.is<Tag>()) return data_->worlds.prepareMesh(Surfaces::Solid);
+    if (sensor.is<Ranger>()) return data_->worlds.prepareMesh();
+    const Laser& laser = sensor.as<Laser>();
     if (laser.sweep == SweepAxis::Tilt || laser.sweep == SweepAxis::Roll) {
         // One of its scans may be level.
         data_->worlds.prepare({job.pose.position, {}, {}, {}});
@@ -86,26 +86,22 @@ void ReadingTaker::prepare(const ReadingJob& job) {
 
 Reading ReadingTaker::take(const ReadingJob& job) {
     Data& d = *data_;
-    const Sensors::Entry& entry = d.sensors.order[job.sensor];
-    switch (entry.kind) {
-        case SensorKind::Laser: {
-            std::vector<Scan> scans = scansOf(d.sensors.lasers[entry.index].laser, job);
-            LaserCaster& caster = d.casterOf(entry.index);
-            for (Scan& scan : scans) caster.cast(scan);
-            return scans;
-        }
-        case SensorKind::Ranger: {
-            const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
-            DepthFrame frame = castDepth(d.worlds.mesh(), d.bodies, d.sensors.rangers[entry.index],
-                                         pose, job.frame, {d.options.noise_seed});
-            frame.time = job.time;
-            return frame;
-        }
-        case SensorKind::Tag:
-            break;
+    const Sensor& sensor = d.sensors.read[job.sensor];
+    if (sensor.is<Laser>()) {
+        std::vector<Scan> scans = scansOf(sensor.as<Laser>(), job);
+        LaserCaster& caster = d.casterOf(job.sensor);
+        for (Scan& scan : scans) caster.cast(scan);
+        return scans;
+    }
+    if (sensor.is<Ranger>()) {
+        const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
+        DepthFrame frame =
+            castDepth(d.worlds.mesh(), d.bodies, sensor, pose, job.frame, {d.options.noise_seed});
+        frame.time = job.time;
+        return frame;
     }
     const UltrasoundOptions options{d.options.celsius, d.options.noise_seed};
-    return castBurst(d.worlds.sound(), d.bodies, d.sensors.tags[entry.index], d.sensors.receivers,
+    return castBurst(d.worlds.mesh(Surfaces::Solid), d.bodies, sensor, d.sensors.receivers,
                      job.frame, job.time, options);
 }
 

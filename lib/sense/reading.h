@@ -18,7 +18,7 @@ namespace ispace {
 
 /// A reading to be taken.
 struct ReadingJob {
-    std::size_t sensor = 0;  ///< in Sensors::order
+    std::size_t sensor = 0;  ///< in Sensors::read
     int frame = 0;
     double time = 0;  ///< seconds
     Pose3 pose;

@@ -59,9 +59,9 @@ void appendCsvField(std::string& out, std::string_view text) {
 
 std::string laserCsvHeader() { return "sensor,frame,scan,t,beam,bearing_deg,range,x,y,z\n"; }
 
-void appendLaserRows(std::string& out, const PlacedLaser& sensor, std::span<const Scan> scans,
+void appendLaserRows(std::string& out, const Sensor& sensor, std::span<const Scan> scans,
                      Coordinates in) {
-    const Laser& laser = sensor.laser;
+    const Laser& laser = sensor.as<Laser>();
     const PointCloud cloud = cloudOf(laser, scans, in);
     std::size_t point = 0;
     for (const Scan& scan : scans) {
@@ -86,9 +86,9 @@ void appendLaserRows(std::string& out, const PlacedLaser& sensor, std::span<cons
 
 std::string rangerCsvHeader() { return "sensor,frame,t,column,row,depth,x,y,z\n"; }
 
-void appendRangerRows(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame,
+void appendRangerRows(std::string& out, const Sensor& sensor, const DepthFrame& frame,
                       Coordinates in) {
-    const PointCloud cloud = cloudOf(sensor.ranger, frame, in);
+    const PointCloud cloud = cloudOf(sensor.as<Ranger>(), frame, in);
     std::string prefix;
     appendCsvField(prefix, sensor.id);
     prefix.append(",").append(std::to_string(frame.frame)).append(",");
@@ -113,8 +113,8 @@ std::string ultrasoundCsvHeader() {
     return "sensor,frame,t,x,y,z,residual,pdop,hdop,vdop,heard,times\n";
 }
 
-void appendBurstRow(std::string& out, const PlacedTag& tag, const Burst& burst,
-                    std::span<const PlacedReceiver> receivers) {
+void appendBurstRow(std::string& out, const Sensor& tag, const Burst& burst,
+                    std::span<const Sensor> receivers) {
     appendCsvField(out, tag.id);
     out.append(",").append(std::to_string(burst.frame)).append(",");
     appendTime(out, burst.time);

@@ -16,20 +16,20 @@ namespace ispace {
 /// fig. 3.24).
 std::string laserCsvHeader();
 /// Of all scans of a reading; in the sensor's frame that of the first.
-void appendLaserRows(std::string& out, const PlacedLaser& sensor, std::span<const Scan> scans,
+void appendLaserRows(std::string& out, const Sensor& sensor, std::span<const Scan> scans,
                      Coordinates in);
 
 /// sensor,frame,t,column,row,depth,x,y,z: a row a pixel.
 std::string rangerCsvHeader();
-void appendRangerRows(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame,
+void appendRangerRows(std::string& out, const Sensor& sensor, const DepthFrame& frame,
                       Coordinates in);
 
 /// sensor,frame,t,x,y,z,residual,pdop,hdop,vdop,heard,times: a row a burst; `times` are
 /// RECEIVER=SECONDS separated by blanks. x,y,z is the place computed; of the simple model z is
 /// empty.
 std::string ultrasoundCsvHeader();
-void appendBurstRow(std::string& out, const PlacedTag& tag, const Burst& burst,
-                    std::span<const PlacedReceiver> receivers);
+void appendBurstRow(std::string& out, const Sensor& tag, const Burst& burst,
+                    std::span<const Sensor> receivers);
 
 /// A field, in quotes if it needs them.
 void appendCsvField(std::string& out, std::string_view text);

@@ -27,7 +27,7 @@ TEST(ReadingCsv, FieldsAreQuotedIfNeeded) {
 
 TEST(ReadingCsv, LaserRows) {
     EXPECT_EQ(laserCsvHeader(), "sensor,frame,scan,t,beam,bearing_deg,range,x,y,z\n");
-    PlacedLaser sensor = threeBeams();
+    Sensor sensor = threeBeams();
     sensor.id = "a,b";
     Scan scan = scanOf({{1, 2, 0.15}, Angle::degrees(90), {}, {}}, {0.1F, kNone, 2.5F});
     scan.frame = 3;
@@ -46,8 +46,8 @@ TEST(ReadingCsv, LaserRows) {
 }
 
 TEST(ReadingCsv, BeamsOfATurningLaserHaveTheirOwnTimes) {
-    PlacedLaser sensor = threeBeams();
-    sensor.laser.spin = 10;
+    Sensor sensor = threeBeams();
+    sensor.as<Laser>().spin = 10;
     Scan scan = scanOf({}, {1, 1, kNone});
     scan.time = 0.3;
     std::string out;
@@ -56,11 +56,11 @@ TEST(ReadingCsv, BeamsOfATurningLaserHaveTheirOwnTimes) {
 }
 
 TEST(ReadingCsv, LongIdsFit) {
-    PlacedLaser sensor;
+    Sensor sensor;
     sensor.id = std::string(1000, 'x');
-    sensor.laser.spin = 7;
-    sensor.laser.step = Angle::degrees(1.0 / 3);
-    sensor.laser.beams = 500;
+    sensor.as<Laser>().spin = 7;
+    sensor.as<Laser>().step = Angle::degrees(1.0 / 3);
+    sensor.as<Laser>().beams = 500;
     std::mt19937 random(8);
     Scan scan = scanOf(randomPose(random), randomRanges(random, 500));
     scan.time = 123456.789;
@@ -72,8 +72,8 @@ TEST(ReadingCsv, LongIdsFit) {
 
 TEST(ReadingCsv, RangerRows) {
     EXPECT_EQ(rangerCsvHeader(), "sensor,frame,t,column,row,depth,x,y,z\n");
-    PlacedRanger sensor = smallRanger(Projection::Pinhole, 3, 1);
-    sensor.ranger.fov_x = sensor.ranger.fov_y = Angle::degrees(90);
+    Sensor sensor = smallRanger(Projection::Pinhole, 3, 1);
+    sensor.as<Ranger>().fov_x = sensor.as<Ranger>().fov_y = Angle::degrees(90);
     DepthFrame frame;
     frame.time = 0.5;
     frame.frame = 2;
@@ -87,14 +87,14 @@ TEST(ReadingCsv, RangerRows) {
               "r1,2,0.5,2,0,1.5,-1.5,1,1\n");
 }
 
-std::vector<PlacedReceiver> fourReceivers() {
-    std::vector<PlacedReceiver> receivers(4);
+std::vector<Sensor> fourReceivers() {
+    std::vector<Sensor> receivers(4);
     for (std::size_t i = 0; i < 4; ++i) receivers[i].id = "u" + std::to_string(i + 1);
     return receivers;
 }
 
 std::string rowOf(const Burst& burst) {
-    PlacedTag tag;
+    Sensor tag;
     tag.id = "t1";
     std::string out;
     appendBurstRow(out, tag, burst, fourReceivers());

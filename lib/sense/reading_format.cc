@@ -14,16 +14,11 @@
 #include "sense/obstacle_map.h"
 #include "sense/reading_csv.h"
 #include "sense/reading_jsonl.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
 namespace {
-
-using Kind = SensorKind;
-
-constexpr std::string_view nameOf(Kind kind) {
-    return kind == Kind::Laser ? "laser" : kind == Kind::Ranger ? "ranger" : "tag";
-}
 
 /// What formats have in common: the sensors, and one file a reading.
 class Base : public ReadingFormat {
@@ -31,10 +26,10 @@ class Base : public ReadingFormat {
     Base(const Sensors& sensors, FormatOptions options, std::string ending)
         : sensors_(sensors), options_(std::move(options)), ending_(std::move(ending)) {}
 
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
         std::string bytes = header();
-        append(bytes, sensor, reading);
+        append(bytes, index, reading);
         std::vector<ReadingFile> files;
         files.push_back({ending_, std::move(bytes)});
         return files;
@@ -43,25 +38,20 @@ class Base : public ReadingFormat {
     [[nodiscard]] std::vector<std::string> endings() const override { return {ending_}; }
 
   protected:
-    [[nodiscard]] const PlacedLaser& laser(std::size_t sensor) const {
-        return sensors_.lasers[sensors_.order[sensor].index];
-    }
-    [[nodiscard]] const PlacedRanger& ranger(std::size_t sensor) const {
-        return sensors_.rangers[sensors_.order[sensor].index];
-    }
-    [[nodiscard]] const PlacedTag& tag(std::size_t sensor) const {
-        return sensors_.tags[sensors_.order[sensor].index];
-    }
-    /// \throws UsageError for the first sensor that is of another kind
+    [[nodiscard]] const Sensor& sensor(std::size_t index) const { return sensors_.read[index]; }
+    /// \throws UsageError for the first sensor that is none of these
     void accept(std::string_view format, std::string_view what,
-                std::initializer_list<Kind> kinds) const {
-        for (const Sensors::Entry& entry : sensors_.order) {
-            if (std::find(kinds.begin(), kinds.end(), entry.kind) != kinds.end()) continue;
-            throw UsageError(std::string(format) + " holds " + std::string(what) + ", and " +
-                             sensors_.id(entry) + " is a " + std::string(nameOf(entry.kind)) +
-                             "; choose sensors with --select, or another format with --to");
-        }
+                bool (*is_held)(const Sensor&)) const {
+        for (const Sensor& one : sensors_.read)
+            if (!is_held(one)) refuse(format, what, one);
     }
+    [[noreturn]] static void refuse(std::string_view format, std::string_view what,
+                                    const Sensor& one) {
+        throw UsageError(std::string(format) + " holds " + std::string(what) + ", and " + one.id +
+                         " is a " + std::string(kindOf(one.model).keyword) +
+                         "; choose sensors with --select, or another format with --to");
+    }
+    static bool hasRanges(const Sensor& one) { return !one.is<Tag>(); }
 
     const Sensors& sensors_;
     const FormatOptions options_;
@@ -77,13 +67,13 @@ class Jsonl final : public Base {
     [[nodiscard]] std::string header() const override {
         return scanHeaderLine(options_.history, options_.seed);
     }
-    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            for (const Scan& scan : *scans) appendScanLine(out, laser(sensor), scan);
+            for (const Scan& scan : *scans) appendScanLine(out, sensor(index), scan);
         } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            appendDepthLine(out, ranger(sensor), *frame);
+            appendDepthLine(out, sensor(index), *frame);
         } else {
-            appendBurstLine(out, tag(sensor), std::get<Burst>(reading), sensors_.receivers);
+            appendBurstLine(out, sensor(index), std::get<Burst>(reading), sensors_.receivers);
         }
     }
 };
@@ -92,35 +82,35 @@ class Csv final : public Base {
   public:
     Csv(const Sensors& sensors, FormatOptions options)
         : Base(sensors, std::move(options), ".csv") {}
-    [[nodiscard]] std::string header() const override {
-        return headerOf(sensors_.order.front().kind);
-    }
+    [[nodiscard]] std::string header() const override { return headerOf(sensors_.read.front()); }
     void checkStream() const override {
-        accept("csv", "sensors of one kind", {sensors_.order.front().kind});
+        for (const Sensor& one : sensors_.read)
+            if (one.model.index() != sensors_.read.front().model.index())
+                refuse("csv", "sensors of one kind", one);
     }
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
-        std::string bytes = headerOf(sensors_.order[sensor].kind);
-        append(bytes, sensor, reading);
+        std::string bytes = headerOf(sensor(index));
+        append(bytes, index, reading);
         std::vector<ReadingFile> files;
         files.push_back({endings().front(), std::move(bytes)});
         return files;
     }
-    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            appendLaserRows(out, laser(sensor), *scans, options_.coordinates);
+            appendLaserRows(out, sensor(index), *scans, options_.coordinates);
         } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            appendRangerRows(out, ranger(sensor), *frame, options_.coordinates);
+            appendRangerRows(out, sensor(index), *frame, options_.coordinates);
         } else {
-            appendBurstRow(out, tag(sensor), std::get<Burst>(reading), sensors_.receivers);
+            appendBurstRow(out, sensor(index), std::get<Burst>(reading), sensors_.receivers);
         }
     }
 
   private:
-    static std::string headerOf(Kind kind) {
-        return kind == Kind::Laser    ? laserCsvHeader()
-               : kind == Kind::Ranger ? rangerCsvHeader()
-                                      : ultrasoundCsvHeader();
+    static std::string headerOf(const Sensor& one) {
+        return one.is<Laser>()    ? laserCsvHeader()
+               : one.is<Ranger>() ? rangerCsvHeader()
+                                  : ultrasoundCsvHeader();
     }
 };
 
@@ -128,9 +118,9 @@ class Csv final : public Base {
 class Raw final : public Base {
   public:
     Raw(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".raw") {
-        accept("raw", "ranges", {Kind::Laser, Kind::Ranger});
+        accept("raw", "ranges", hasRanges);
     }
-    void append(std::string& out, std::size_t /*sensor*/, const Reading& reading) const override {
+    void append(std::string& out, std::size_t /*index*/, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
             for (const Scan& scan : *scans) append(out, scan.ranges);
         } else {
@@ -152,10 +142,10 @@ class Cloud final : public Base {
   public:
     Cloud(const Sensors& sensors, FormatOptions options, bool is_pcd)
         : Base(sensors, std::move(options), is_pcd ? ".pcd" : ".ply"), is_pcd_(is_pcd) {
-        accept(is_pcd ? "pcd" : "ply", "points", {Kind::Laser, Kind::Ranger});
+        accept(is_pcd ? "pcd" : "ply", "points", hasRanges);
     }
-    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
-        const PointCloud cloud = cloudOf(sensors_, sensor, reading, options_.coordinates);
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
+        const PointCloud cloud = cloudOf(sensors_, index, reading, options_.coordinates);
         out += is_pcd_ ? pcdOf(cloud, options_.encoding) : plyOf(cloud, options_.encoding);
     }
     [[nodiscard]] bool isStream() const override { return false; }
@@ -169,22 +159,23 @@ class Carmen final : public Base {
   public:
     Carmen(const Sensors& sensors, FormatOptions options)
         : Base(sensors, std::move(options), ".log") {
-        accept("carmen", "scans of level lasers", {Kind::Laser});
-        for (const PlacedLaser& laser : sensors.lasers)
-            if (!laser.pose.isLevel() || laser.laser.sweep == SweepAxis::Tilt ||
-                laser.laser.sweep == SweepAxis::Roll)
+        accept("carmen", "scans of level lasers",
+               [](const Sensor& one) { return one.is<Laser>(); });
+        for (const Sensor& laser : sensors.read)
+            if (!laser.pose.isLevel() || laser.as<Laser>().sweep == SweepAxis::Tilt ||
+                laser.as<Laser>().sweep == SweepAxis::Roll)
                 throw UsageError("carmen holds scans of level lasers, and " + laser.id +
                                  " is tilted or rolled; choose sensors with --select, or another "
                                  "format with --to");
     }
     [[nodiscard]] std::string header() const override { return carmenHeader(); }
-    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
-        append(out, sensor + 1, laser(sensor), std::get<std::vector<Scan>>(reading));
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
+        append(out, index + 1, sensor(index), std::get<std::vector<Scan>>(reading));
     }
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
         std::string bytes = header();
-        append(bytes, 1, laser(sensor), std::get<std::vector<Scan>>(reading));
+        append(bytes, 1, sensor(index), std::get<std::vector<Scan>>(reading));
         std::vector<ReadingFile> files;
         files.push_back({endings().front(), std::move(bytes)});
         return files;
@@ -192,14 +183,14 @@ class Carmen final : public Base {
     void checkStream() const override {
         // ROBOTLASER1 and ROBOTLASER2: readers know no more.
         constexpr std::size_t kMost = 2;
-        if (sensors_.lasers.size() > kMost)
+        if (sensors_.read.size() > kMost)
             throw UsageError("a CARMEN log tells two lasers apart, and these are " +
-                             std::to_string(sensors_.lasers.size()) +
+                             std::to_string(sensors_.read.size()) +
                              ": name a folder (-o DIR/), or choose some with --select");
     }
 
   private:
-    static void append(std::string& out, std::size_t number, const PlacedLaser& laser,
+    static void append(std::string& out, std::size_t number, const Sensor& laser,
                        const std::vector<Scan>& scans) {
         for (const Scan& scan : scans) {
             if (!scan.pose.isLevel())
@@ -210,7 +201,7 @@ class Carmen final : public Base {
             appendCarmenLine(out, number, laser, scan, carrierOf(laser, scan));
         }
     }
-    static Pose2 carrierOf(const PlacedLaser& sensor, const Scan& scan) {
+    static Pose2 carrierOf(const Sensor& sensor, const Scan& scan) {
         const Pose2 own{scan.pose.position.onFloor(), scan.pose.heading};
         if (!sensor.mount) return own;
         const Pose3& mount = sensor.mount->robot_from_sensor;
@@ -225,36 +216,37 @@ class Carmen final : public Base {
 class Png final : public Base {
   public:
     Png(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".png") {
-        accept("png", "depths and obstacle maps", {Kind::Laser, Kind::Ranger});
-        for (const PlacedLaser& laser : sensors.lasers)
-            if (laser.laser.scans() > 1)
-                throw UsageError("an obstacle map shows one scan, and " + laser.id +
+        accept("png", "depths and obstacle maps", hasRanges);
+        for (const Sensor& one : sensors.read)
+            if (one.is<Laser>() && one.as<Laser>().scans() > 1)
+                throw UsageError("an obstacle map shows one scan, and " + one.id +
                                  " sweeps; take pcd or ply");
     }
-    void append(std::string& out, std::size_t sensor, const Reading& reading) const override {
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            out += obstacleMapPng(laser(sensor), scans->front(), options_.map_pixels);
+            out += obstacleMapPng(sensor(index), scans->front(), options_.map_pixels);
         } else {
-            out += depthPng(ranger(sensor).ranger, std::get<DepthFrame>(reading),
+            out += depthPng(sensor(index).as<Ranger>(), std::get<DepthFrame>(reading),
                             options_.depth_per_metre);
         }
     }
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t sensor,
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
-        std::vector<ReadingFile> files = Base::files(sensor, reading);
+        std::vector<ReadingFile> files = Base::files(index, reading);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            const PlacedRanger& placed = ranger(sensor);
+            const Sensor& placed = sensor(index);
             if (options_.color) files.push_back({kColor, colorDepthPng(placed, *frame)});
-            if (placed.ranger.projection == Projection::Pinhole)
-                files.push_back({kCameraInfo, cameraInfoYaml(placed.ranger, placed.id)});
+            if (placed.as<Ranger>().projection == Projection::Pinhole)
+                files.push_back({kCameraInfo, cameraInfoYaml(placed.as<Ranger>(), placed.id)});
         }
         return files;
     }
     [[nodiscard]] std::vector<std::string> doubts() const override {
         std::vector<std::string> doubts;
         const double farthest = kMostDepth / options_.depth_per_metre;
-        for (const PlacedRanger& placed : sensors_.rangers) {
-            const Ranger& ranger = placed.ranger;
+        for (const Sensor& placed : sensors_.read) {
+            if (!placed.is<Ranger>()) continue;
+            const Ranger& ranger = placed.as<Ranger>();
             const double most = ranger.ambiguity > 0 ? std::min(ranger.ambiguity, ranger.max_range)
                                                      : ranger.max_range;
             if (most > farthest)
@@ -266,7 +258,8 @@ class Png final : public Base {
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
         std::vector<std::string> endings = Base::endings();
-        if (!sensors_.rangers.empty()) {
+        if (std::any_of(sensors_.read.begin(), sensors_.read.end(),
+                        [](const Sensor& one) { return one.is<Ranger>(); })) {
             if (options_.color) endings.emplace_back(kColor);
             endings.emplace_back(kCameraInfo);
         }
@@ -301,11 +294,11 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
 
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
                    Coordinates in) {
-    const std::size_t index = sensors.order[sensor].index;
+    const Sensor& one = sensors.read[sensor];
     if (const auto* scans = std::get_if<std::vector<Scan>>(&reading))
-        return cloudOf(sensors.lasers[index].laser, *scans, in);
+        return cloudOf(one.as<Laser>(), *scans, in);
     if (const auto* frame = std::get_if<DepthFrame>(&reading))
-        return cloudOf(sensors.rangers[index].ranger, *frame, in);
+        return cloudOf(one.as<Ranger>(), *frame, in);
     return {};
 }
 

@@ -26,7 +26,7 @@ class ReadingFormat {
     virtual ~ReadingFormat() = default;
     /// What stands before all readings.
     [[nodiscard]] virtual std::string header() const { return ""; }
-    /// Appends a reading of a sensor (in Sensors::order).
+    /// Appends a reading of a sensor (in Sensors::read).
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
     /// A reading as files of its own.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,

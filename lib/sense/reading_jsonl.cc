@@ -58,8 +58,8 @@ std::string scanHeaderLine(const History& history, std::uint64_t seed) {
     return json.take() + std::to_string(seed) + "}\n";
 }
 
-void appendScanLine(std::string& out, const PlacedLaser& sensor, const Scan& scan) {
-    const Laser& laser = sensor.laser;
+void appendScanLine(std::string& out, const Sensor& sensor, const Scan& scan) {
+    const Laser& laser = sensor.as<Laser>();
     JsonWriter json;
     json.beginObject().key("sensor").value(sensor.id);
     json.key("t").value(scan.time).key("frame").value(scan.frame);
@@ -73,8 +73,8 @@ void appendScanLine(std::string& out, const PlacedLaser& sensor, const Scan& sca
     appendWithRanges(out, json, "ranges", scan.ranges);
 }
 
-void appendDepthLine(std::string& out, const PlacedRanger& sensor, const DepthFrame& frame) {
-    const Ranger& ranger = sensor.ranger;
+void appendDepthLine(std::string& out, const Sensor& sensor, const DepthFrame& frame) {
+    const Ranger& ranger = sensor.as<Ranger>();
     JsonWriter json;
     json.beginObject().key("sensor").value(sensor.id);
     json.key("t").value(frame.time).key("frame").value(frame.frame);
@@ -97,8 +97,8 @@ void appendDepthLine(std::string& out, const PlacedRanger& sensor, const DepthFr
     appendWithRanges(out, json, "depths", frame.depths);
 }
 
-void appendBurstLine(std::string& out, const PlacedTag& tag, const Burst& burst,
-                     std::span<const PlacedReceiver> receivers) {
+void appendBurstLine(std::string& out, const Sensor& tag, const Burst& burst,
+                     std::span<const Sensor> receivers) {
     JsonWriter json;
     json.beginObject().key("sensor").value(tag.id);
     json.key("t").value(burst.time).key("frame").value(burst.frame);

@@ -19,11 +19,11 @@ TEST(ScanJsonl, HeaderLine) {
 }
 
 TEST(ScanJsonl, ScanLine) {
-    PlacedLaser sensor;
+    Sensor sensor;
     sensor.id = "l\"1";
-    sensor.laser.min_range = 0.06;
-    sensor.laser.max_range = 4.095;
-    sensor.laser.beams = 3;
+    sensor.as<Laser>().min_range = 0.06;
+    sensor.as<Laser>().max_range = 4.095;
+    sensor.as<Laser>().beams = 3;
     Scan scan;
     scan.pose = {{1, -2.5, 0.15}, Angle::degrees(180), {}, {}};
     scan.time = 0.25;
@@ -40,8 +40,8 @@ TEST(ScanJsonl, ScanLine) {
 }
 
 TEST(ScanJsonl, ScansOfASweepAreNumbered) {
-    PlacedLaser sensor = threeBeams();
-    sensor.laser.sweep = SweepAxis::Tilt;
+    Sensor sensor = threeBeams();
+    sensor.as<Laser>().sweep = SweepAxis::Tilt;
     Scan scan = scanOf({}, {kNone, -0.0F, 1});
     scan.frame = 2;
     scan.number = 5;
@@ -52,9 +52,9 @@ TEST(ScanJsonl, ScansOfASweepAreNumbered) {
 }
 
 TEST(DepthJsonl, Pinhole) {
-    PlacedRanger sensor = smallRanger(Projection::Pinhole, 2, 1);
-    sensor.ranger.fov_x = sensor.ranger.fov_y = Angle::degrees(90);
-    sensor.ranger.min_range = 0.5;
+    Sensor sensor = smallRanger(Projection::Pinhole, 2, 1);
+    sensor.as<Ranger>().fov_x = sensor.as<Ranger>().fov_y = Angle::degrees(90);
+    sensor.as<Ranger>().min_range = 0.5;
     DepthFrame frame;
     frame.time = 0.04;
     frame.frame = 1;
@@ -69,9 +69,9 @@ TEST(DepthJsonl, Pinhole) {
 }
 
 TEST(DepthJsonl, Spherical) {
-    PlacedRanger sensor = smallRanger(Projection::Spherical, 1, 1);
-    sensor.ranger.fov_x = Angle::degrees(360);
-    sensor.ranger.fov_y = Angle::degrees(90);
+    Sensor sensor = smallRanger(Projection::Spherical, 1, 1);
+    sensor.as<Ranger>().fov_x = Angle::degrees(360);
+    sensor.as<Ranger>().fov_y = Angle::degrees(90);
     DepthFrame frame;
     frame.depths = {2};
     std::string out;
@@ -84,9 +84,9 @@ TEST(DepthJsonl, Spherical) {
 }
 
 std::string burstLine(const Burst& burst) {
-    PlacedTag tag;
+    Sensor tag;
     tag.id = "t1";
-    std::vector<PlacedReceiver> receivers(2);
+    std::vector<Sensor> receivers(2);
     receivers[0].id = "u1";
     receivers[1].id = "u2";
     std::string out;

@@ -16,24 +16,10 @@ namespace {
 /// Rays of one batch: enough to hide what a batch costs, few enough for the cache.
 constexpr std::size_t kBatchRays = 1 << 15;
 
-std::size_t raysOf(const Sensors& sensors, const Sensors::Entry& entry) {
-    switch (entry.kind) {
-        case SensorKind::Laser: {
-            const Laser& laser = sensors.lasers[entry.index].laser;
-            return static_cast<std::size_t>(laser.beams) * static_cast<std::size_t>(laser.scans());
-        }
-        case SensorKind::Ranger:
-            return sensors.rangers[entry.index].ranger.pixels();
-        case SensorKind::Tag:
-            break;
-    }
-    return 64;
-}
-
 /// Jobs of a batch, by the sensor with the most rays.
 std::size_t jobsOf(const Sensors& sensors) {
     std::size_t most = 1;
-    for (const Sensors::Entry& entry : sensors.order) most = std::max(most, raysOf(sensors, entry));
+    for (const Sensor& sensor : sensors.read) most = std::max(most, raysOf(sensor.model));
     return std::max<std::size_t>(1, kBatchRays / most);
 }
 

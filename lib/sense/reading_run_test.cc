@@ -131,11 +131,11 @@ TEST(Sensors, AChoiceOfTagsIsNoChoiceOfReceivers) {
                                        "ultrasound id=u1 at=1,1,2\nultrasound id=u2 at=2,1,2\ntag "
                                        "id=t1 at=1,2\ntag id=t2 at=2,2\n");
     const Sensors tag = sensorsOf(scene, {"t2"});
-    EXPECT_EQ(tag.order.size(), 1U);
-    EXPECT_EQ(tag.id(tag.order[0]), "t2");
+    ASSERT_EQ(tag.read.size(), 1U);
+    EXPECT_EQ(tag.read[0].id, "t2");
     EXPECT_EQ(tag.receivers.size(), 2U);
     EXPECT_EQ(sensorsOf(scene, {"t1", "u2"}).receivers.size(), 1U);
-    EXPECT_TRUE(sensorsOf(scene, {"u*"}).order.empty());
+    EXPECT_TRUE(sensorsOf(scene, {"u*"}).read.empty());
     EXPECT_THROW(sensorsOf(scene, {"x*"}), UsageError);
 }
 

@@ -19,19 +19,19 @@ constexpr int kLastFrame = std::numeric_limits<int>::max();
 }  // namespace
 
 std::int64_t StillSource::count() const {
-    return static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(sensors_->order.size());
+    return static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(sensors_->read.size());
 }
 
 void StillSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     batch.clear();
-    while (batch.size() < most && frame_ < frames_ && !sensors_->order.empty()) {
-        const Sensors::Entry& entry = sensors_->order[sensor_];
+    while (batch.size() < most && frame_ < frames_ && !sensors_->read.empty()) {
+        const Sensor& sensor = sensors_->read[sensor_];
         batch.push_back({.sensor = sensor_,
                          .frame = frame_,
-                         .time = wholeNanoseconds(frame_ / sensors_->rate(entry)),
-                         .pose = sensors_->pose(entry),
+                         .time = wholeNanoseconds(frame_ / readingRate(sensor.model)),
+                         .pose = sensor.pose,
                          .way = {}});
-        if (++sensor_ == sensors_->order.size()) {
+        if (++sensor_ == sensors_->read.size()) {
             sensor_ = 0;
             ++frame_;
         }

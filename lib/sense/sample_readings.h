@@ -16,12 +16,12 @@ namespace ispace {
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// Three beams, at -90, 0 and 90 degrees.
-inline PlacedLaser threeBeams() {
-    PlacedLaser sensor;
+inline Sensor threeBeams() {
+    Sensor sensor;
     sensor.id = "l1";
-    sensor.laser.max_range = 4;
-    sensor.laser.step = Angle::degrees(90);
-    sensor.laser.beams = 3;
+    sensor.as<Laser>().max_range = 4;
+    sensor.as<Laser>().step = Angle::degrees(90);
+    sensor.as<Laser>().beams = 3;
     return sensor;
 }
 
@@ -32,12 +32,12 @@ inline Scan scanOf(const Pose3& pose, std::vector<float> ranges) {
     return scan;
 }
 
-inline PlacedRanger smallRanger(Projection projection, int columns, int rows) {
-    PlacedRanger sensor;
+inline Sensor smallRanger(Projection projection, int columns, int rows) {
+    Sensor sensor;
     sensor.id = "r1";
-    sensor.ranger.projection = projection;
-    sensor.ranger.columns = columns;
-    sensor.ranger.rows = rows;
+    sensor.as<Ranger>().projection = projection;
+    sensor.as<Ranger>().columns = columns;
+    sensor.as<Ranger>().rows = rows;
     return sensor;
 }
 

@@ -60,26 +60,26 @@ void Beams::point(const Pose3& pose) {
          directions_.x.data(), directions_.y.data(), directions_.z.data());
 }
 
-std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor) {
-    Beams beams(sensor.laser, false);
+std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor) {
+    Beams beams(sensor.as<Laser>(), false);
     const Directions& directions = beams.at(sensor.pose);
     std::vector<float> ranges(directions.size());
-    world.cast(sensor.pose.position, directions, sensor.laser.max_range, ranges);
+    world.cast(sensor.pose.position, directions, sensor.as<Laser>().max_range, ranges);
     return ranges;
 }
 
-LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies,
-                         const PlacedLaser& sensor, bool turns, const ReadingOptions& options)
+LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor,
+                         bool turns, const ReadingOptions& options)
     : worlds_(&worlds),
       bodies_(&bodies),
       sensor_(&sensor),
       options_(options),
       id_hash_(hashOf(sensor.id)),
       own_(sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody),
-      beams_(sensor.laser, turns) {}
+      beams_(sensor.as<Laser>(), turns) {}
 
 void LaserCaster::cast(Scan& scan) {
-    const Laser& laser = sensor_->laser;
+    const Laser& laser = sensor_->as<Laser>();
     const auto count = static_cast<std::size_t>(laser.beams);
     scan.ranges.resize(count);
     const bool noisy = options_.noise_seed.has_value();
@@ -102,14 +102,14 @@ void LaserCaster::cast(Scan& scan) {
 
 void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges) {
     const Directions& directions = beams_.at(pose);
-    const double far = sensor_->laser.max_range;
+    const double far = sensor_->as<Laser>().max_range;
     worlds_->at(pose).cast(pose.position, directions, far, ranges, cosines_);
     bodies_->shorten(pose.position, directions, far, own_, ranges, cosines_);
 }
 
 /// Each beam by itself: it has a place or an error of its own.
 void LaserCaster::castApart(Scan& scan) {
-    const Laser& laser = sensor_->laser;
+    const Laser& laser = sensor_->as<Laser>();
     const std::size_t count = scan.ranges.size();
     apart_.resize(count);
     origins_.resize(count);

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "layout/laser.h"
+#include "sensor/sensor.h"
 #include "trace/moving_bodies.h"
 #include "trace/worlds.h"
 
@@ -65,8 +65,8 @@ struct ReadingOptions {
 class LaserCaster {
   public:
     /// `turns`: as Beams has it. \pre all outlive it
-    LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const PlacedLaser& sensor,
-                bool turns, const ReadingOptions& options);
+    LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor, bool turns,
+                const ReadingOptions& options);
     /// Sets the ranges of a scan whose frame, number, pose and beam_poses are given: what the
     /// device reads there, the blind zone and, if wanted, its noise applied. \pre the pose is
     /// prepared in the worlds, and their mesh if beam_poses are not all level and at its height
@@ -78,7 +78,7 @@ class LaserCaster {
 
     const Worlds* worlds_;
     const MovingBodies* bodies_;
-    const PlacedLaser* sensor_;
+    const Sensor* sensor_;
     ReadingOptions options_;
     std::uint64_t id_hash_;
     std::uint32_t own_;
@@ -90,7 +90,7 @@ class LaserCaster {
 
 /// Distance to the first surface of every beam up to max_range, whatever min_range is; +infinity
 /// if there is none. What figures are computed from.
-std::vector<float> castBeams(const RayWorld& world, const PlacedLaser& sensor);
+std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor);
 
 /// Eq. (4.4) of the thesis over all beams: sum of step * pi * dist^2 / 360 with no return counted
 /// as max_range. `ranges` as of castBeams.

@@ -84,7 +84,7 @@ TEST(ScanOfRobots, TheBlindZoneIsAppliedLast) {
 
 TEST(ScanOfRobots, WithoutBodiesNothingChanges) {
     const Scene scene = testing::scene(kRoom + "desk at=3,3\n", "laser at=1,3\nrobot at=2,3\n");
-    const std::vector<float> plain = testing::scan(scene, scene.lasers[0]).ranges;
+    const std::vector<float> plain = testing::scan(scene, scene.sensors[0]).ranges;
     EXPECT_EQ(plain,
               testing::scans(testing::scene(kRoom + "desk at=3,3\n", "laser at=1,3\n"))[0].ranges);
     EXPECT_NE(plain, scansOf(scene)[0].ranges);
@@ -110,11 +110,11 @@ TEST(ScanOfPeople, LegsTrunkAndHeadAreMet) {
 }
 
 /// Largest distance of the directions of a sensor's beams to those of Pose3::beam.
-double worstDirection(Beams& beams, const PlacedLaser& sensor) {
+double worstDirection(Beams& beams, const Sensor& sensor) {
     double worst = 0;
     const Directions& directions = beams.at(sensor.pose);
-    for (int k = 0; k < sensor.laser.beams; ++k) {
-        const Vec3 wanted = sensor.pose.beam(sensor.laser.bearing(k));
+    for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
+        const Vec3 wanted = sensor.pose.beam(sensor.as<Laser>().bearing(k));
         const Vec3 found = directions[static_cast<std::size_t>(k)];
         worst = std::max({worst, std::abs(wanted.x - found.x), std::abs(wanted.y - found.y),
                           std::abs(wanted.z - found.z)});
@@ -125,9 +125,9 @@ double worstDirection(Beams& beams, const PlacedLaser& sensor) {
 TEST(Beams, FollowThePose) {
     for (const double tilt : {0.0, 20.0}) {
         for (const bool rides : {false, true}) {
-            PlacedLaser sensor;
+            Sensor sensor;
             sensor.pose = {{1, 2, 0.5}, {}, Angle::degrees(tilt), {}};
-            Beams beams(sensor.laser, rides);
+            Beams beams(sensor.as<Laser>(), rides);
             for (const double heading : {0.0, 33.0, 33.0, -170.5, 90.0}) {
                 sensor.pose.heading = Angle::degrees(heading);
                 EXPECT_LT(worstDirection(beams, sensor), 1e-15) << tilt << rides << heading;
@@ -137,9 +137,9 @@ TEST(Beams, FollowThePose) {
 }
 
 TEST(Beams, DegreesOfASensorThatStandsAddUpExactly) {
-    PlacedLaser sensor;
+    Sensor sensor;
     sensor.pose.heading = Angle::degrees(30);
-    Beams beams(sensor.laser, false);
+    Beams beams(sensor.as<Laser>(), false);
     EXPECT_EQ(beams.at(sensor.pose)[150], (Vec3{0, 1, 0}));  // bearing 60
 }
 

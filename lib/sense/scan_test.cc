@@ -21,7 +21,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
 
-PlacedLaser placed(Laser laser, Pose3 pose) { return {"l", std::move(laser), pose}; }
+Sensor placed(Laser laser, Pose3 pose) { return {"l", std::move(laser), pose}; }
 
 Laser laserWithRange(double min_range, double max_range) {
     Laser laser;
@@ -104,12 +104,12 @@ TEST(Scan, ExactlyMaximumRange) {
 
 TEST(Scan, BlindZone) {
     const Scene scene = testing::scene(kRoom);
-    const PlacedLaser sensor = placed(laserWithRange(0.5, 5), at(7.5, 3, 0.15));
+    const Sensor sensor = placed(laserWithRange(0.5, 5), at(7.5, 3, 0.15));
     Worlds worlds(scene.environment);
     worlds.prepare(sensor.pose);
     const RayWorld& world = worlds.at(sensor.pose);
     EXPECT_EQ(testing::scan(scene, sensor).ranges[90], 0.5F);  // exactly at its edge
-    const PlacedLaser near = placed(laserWithRange(0.5, 5), at(7.6, 3, 0.15));
+    const Sensor near = placed(laserWithRange(0.5, 5), at(7.6, 3, 0.15));
     EXPECT_TRUE(std::isinf(testing::scan(scene, near).ranges[90]));
     EXPECT_NEAR(castBeams(world, near)[90], 0.4, 1e-6);
     // What the blind zone hides does not uncover what lies behind.
@@ -204,10 +204,10 @@ TEST_F(Rooms, RectangularAtAnyPoseWithinAMillimetre) {
             testing::scene(box.record() + "inside at=" + formatDouble(box.pose.position.x) + ',' +
                            formatDouble(box.pose.position.y) + "\n");
         Point3 local;
-        const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 3 == 0));
+        const Sensor sensor = placed(fullTurn(), anywhere(box, local, i % 3 == 0));
         const Scan scan = testing::scan(scene, sensor);
-        for (int k = 0; k < sensor.laser.beams; ++k) {
-            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
+        for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
+            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.as<Laser>().bearing(k)));
             bool doubt = false;
             const double exact = box.range(local, direction, doubt);
             const double found = scan.ranges[static_cast<std::size_t>(k)];
@@ -231,10 +231,10 @@ TEST_F(Rooms, FarFromTheOriginWithinAMillimetre) {
         box.pose.position = {1e5 + uniform(0, 1), -1e5 + uniform(0, 1)};
         const Scene scene = testing::scene(box.record());
         Point3 local;
-        const PlacedLaser sensor = placed(fullTurn(), anywhere(box, local, i % 2 == 0));
+        const Sensor sensor = placed(fullTurn(), anywhere(box, local, i % 2 == 0));
         const Scan scan = testing::scan(scene, sensor);
-        for (int k = 0; k < sensor.laser.beams; ++k) {
-            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.laser.bearing(k)));
+        for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
+            const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.as<Laser>().bearing(k)));
             bool doubt = false;
             const double exact = box.range(local, direction, doubt);
             const double found = scan.ranges[static_cast<std::size_t>(k)];
@@ -279,10 +279,10 @@ TEST_F(Rooms, AroundCylinders) {
         Pose3 pose;
         do pose = anywhere(box, local, i % 3 == 0);
         while (std::hypot(local.x, local.y) < radius + 0.05);
-        const PlacedLaser sensor = placed(fullTurn(), pose);
+        const Sensor sensor = placed(fullTurn(), pose);
         const Scan scan = testing::scan(scene, sensor);
-        for (int k = 0; k < sensor.laser.beams; ++k) {
-            const Vec3 direction = pose.beam(sensor.laser.bearing(k));
+        for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
+            const Vec3 direction = pose.beam(sensor.as<Laser>().bearing(k));
             bool doubt = false;
             const double walls = box.range(local, direction, doubt);
             const double exact = cylinderRange(local, direction, radius, height);
@@ -315,8 +315,8 @@ TEST(Scan, LimitsHoldBeforeNoise) {
             const float found = std::get<std::vector<Scan>>(reading.at(0)).at(0).ranges.at(0);
             if (!std::isfinite(found)) continue;
             ++count;
-            EXPECT_GE(found, static_cast<float>(scene.lasers[0].laser.min_range));
-            EXPECT_LE(found, static_cast<float>(scene.lasers[0].laser.max_range));
+            EXPECT_GE(found, static_cast<float>(scene.sensors[0].as<Laser>().min_range));
+            EXPECT_LE(found, static_cast<float>(scene.sensors[0].as<Laser>().max_range));
         }
         return count;
     };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -16,19 +17,11 @@ bool isSelected(const std::string& id, const std::vector<std::string>& globs) {
            });
 }
 
-bool isReadable(std::string_view keyword) {
-    return keyword == "laser" || keyword == "ranger" || keyword == "tag" || keyword == "ultrasound";
-}
-
 namespace {
 
-/// Copies the sensors of one kind that are wanted.
-template <typename Sensor>
-std::vector<Sensor> chosen(const std::vector<Sensor>& all, const std::vector<std::string>& globs) {
-    std::vector<Sensor> out;
-    for (const Sensor& sensor : all)
-        if (isSelected(sensor.id, globs)) out.push_back(sensor);
-    return out;
+bool isRead(const Record& record) {
+    const SensorKind* kind = sensorKind(record.keyword());
+    return kind != nullptr && kind->is_read;
 }
 
 void checkGlobs(const Scene& scene, const std::vector<std::string>& globs) {
@@ -36,7 +29,7 @@ void checkGlobs(const Scene& scene, const std::vector<std::string>& globs) {
         bool known = false;
         std::string ids;
         for (std::size_t i = 0; i < scene.records.size(); ++i) {
-            if (!isReadable(scene.records[i].keyword())) continue;
+            if (!isRead(scene.records[i])) continue;
             known = known || isSelected(scene.ids[i], {glob});
             ids.append(ids.empty() ? "" : ", ").append(scene.ids[i]);
         }
@@ -48,66 +41,14 @@ void checkGlobs(const Scene& scene, const std::vector<std::string>& globs) {
 
 }  // namespace
 
-const std::string& Sensors::id(const Entry& entry) const {
-    switch (entry.kind) {
-        case SensorKind::Laser:
-            return lasers[entry.index].id;
-        case SensorKind::Ranger:
-            return rangers[entry.index].id;
-        case SensorKind::Tag:
-            break;
-    }
-    return tags[entry.index].id;
-}
-
-const Pose3& Sensors::pose(const Entry& entry) const {
-    switch (entry.kind) {
-        case SensorKind::Laser:
-            return lasers[entry.index].pose;
-        case SensorKind::Ranger:
-            return rangers[entry.index].pose;
-        case SensorKind::Tag:
-            break;
-    }
-    return tags[entry.index].pose;
-}
-
-double Sensors::rate(const Entry& entry) const {
-    switch (entry.kind) {
-        case SensorKind::Laser: {
-            const Laser& laser = lasers[entry.index].laser;
-            return laser.rate / laser.scans();
-        }
-        case SensorKind::Ranger:
-            return rangers[entry.index].ranger.rate;
-        case SensorKind::Tag:
-            break;
-    }
-    return tags[entry.index].tag.rate;
-}
-
 Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs) {
     checkGlobs(scene, globs);
     Sensors sensors;
-    sensors.lasers = chosen(scene.lasers, globs);
-    sensors.rangers = chosen(scene.rangers, globs);
-    sensors.tags = chosen(scene.tags, globs);
-    sensors.receivers = chosen(scene.receivers, globs);
+    for (const Sensor& sensor : scene.sensors)
+        if (isSelected(sensor.id, globs))
+            (sensor.is<Receiver>() ? sensors.receivers : sensors.read).push_back(sensor);
     // A choice of tags alone is not a choice of receivers.
-    if (sensors.receivers.empty()) sensors.receivers = scene.receivers;
-    Sensors::Entry laser{SensorKind::Laser, 0}, ranger{SensorKind::Ranger, 0},
-        tag{SensorKind::Tag, 0};
-    for (const Placed& placed : scene.placed) {
-        if (!isSelected(scene.ids[placed.record], globs)) continue;
-        const std::string& keyword = scene.records[placed.record].keyword();
-        Sensors::Entry* const next = keyword == "laser"    ? &laser
-                                     : keyword == "ranger" ? &ranger
-                                     : keyword == "tag"    ? &tag
-                                                           : nullptr;
-        if (next == nullptr) continue;
-        sensors.order.push_back(*next);
-        ++next->index;
-    }
+    if (sensors.receivers.empty()) sensors.receivers = sensorsOf<Receiver>(scene);
     return sensors;
 }
 
@@ -124,12 +65,6 @@ std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::
 double wholeNanoseconds(double seconds) {
     constexpr double kNano = 1e9, kMost = 9e6;  // whole numbers of doubles end at 9e15
     return std::fabs(seconds) < kMost ? std::round(seconds * kNano) / kNano : seconds;
-}
-
-double durationOf(const Sensors& sensors, const Sensors::Entry& entry) {
-    if (entry.kind != SensorKind::Laser) return 0;
-    const Laser& laser = sensors.lasers[entry.index].laser;
-    return laser.duration() + (laser.scans() - 1) / laser.rate;
 }
 
 }  // namespace ispace

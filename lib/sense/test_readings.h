@@ -19,8 +19,8 @@ inline std::vector<Reading> readings(const Scene& scene, const TakerOptions& opt
     const MovingBodies bodies(bodiesOf(scene));
     ReadingTaker taker(sensors, worlds, bodies, options);
     std::vector<Reading> out;
-    for (std::size_t i = 0; i < sensors.order.size(); ++i) {
-        const ReadingJob job{i, frame, 0, sensors.pose(sensors.order[i]), {}};
+    for (std::size_t i = 0; i < sensors.read.size(); ++i) {
+        const ReadingJob job{i, frame, 0, sensors.read[i].pose, {}};
         taker.prepare(job);
         out.push_back(taker.take(job));
     }
@@ -37,7 +37,7 @@ inline std::vector<Scan> scans(const Scene& scene, const TakerOptions& options =
 }
 
 /// What one sensor reads in a scene without anything in the way.
-inline Scan scan(const Scene& scene, const PlacedLaser& sensor) {
+inline Scan scan(const Scene& scene, const Sensor& sensor) {
     Worlds worlds(scene.environment);
     worlds.prepare(sensor.pose);
     const MovingBodies nobody;

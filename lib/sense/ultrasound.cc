@@ -46,8 +46,8 @@ bool isBodyBetween(const MovingBodies& bodies, Point3 a, Point3 b, std::uint32_t
     });
 }
 
-bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
-               const PlacedReceiver& receiver) {
+bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const Sensor& tag,
+               const Sensor& receiver) {
     const Point3 from = receiver.pose.position;
     const Point3 to = tag.pose.position;
     if (from == to) return true;
@@ -58,15 +58,15 @@ bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const Pl
 }
 
 /// Of the pair, in this order.
-std::uint64_t hashOfPair(const PlacedTag& tag, const PlacedReceiver& receiver) {
+std::uint64_t hashOfPair(const Sensor& tag, const Sensor& receiver) {
     return (std::rotl(hashOf(tag.id), 29) ^ hashOf(receiver.id)) * 0x9e3779b97f4a7c15U;
 }
 
 /// The distance that is measured, if the burst is heard.
 std::optional<double> distanceHeard(const RayWorld& environment, const MovingBodies& bodies,
-                                    const PlacedTag& tag, const PlacedReceiver& placed, int frame,
+                                    const Sensor& tag, const Sensor& placed, int frame,
                                     std::optional<std::uint64_t> noise_seed) {
-    const Receiver& receiver = placed.receiver;
+    const Receiver& receiver = placed.as<Receiver>();
     const double distance = length(tag.pose.position - placed.pose.position);
     auto range = static_cast<float>(distance);
     if (range < static_cast<float>(receiver.min_range) ||
@@ -74,7 +74,8 @@ std::optional<double> distanceHeard(const RayWorld& environment, const MovingBod
         return std::nullopt;
     const double axis_cosine = axisCosine(placed.pose, tag.pose.position);
     if (!isWithinCone(receiver.fov, axis_cosine)) return std::nullopt;
-    if (!isWithinCone(tag.tag.fov, axisCosine(tag.pose, placed.pose.position))) return std::nullopt;
+    if (!isWithinCone(tag.as<Tag>().fov, axisCosine(tag.pose, placed.pose.position)))
+        return std::nullopt;
     if (!isInSight(environment, bodies, tag, placed)) return std::nullopt;
     if (!noise_seed || receiver.noise.isNone()) return distance;
 
@@ -94,21 +95,21 @@ double errorOf(const RangeNoise& noise, double distance) {
     return std::hypot(sigma, noise.bias, noise.resolution);
 }
 
-std::optional<Fix> fixOf(std::span<const TimeOfFlight> heard,
-                         std::span<const PlacedReceiver> receivers, bool has_noise) {
+std::optional<Fix> fixOf(std::span<const TimeOfFlight> heard, std::span<const Sensor> receivers,
+                         bool has_noise) {
     std::vector<Hearing> hearings;
     hearings.reserve(heard.size());
     for (const TimeOfFlight& flight : heard) {
-        const PlacedReceiver& placed = receivers[flight.receiver];
-        const double error = has_noise ? errorOf(placed.receiver.noise, flight.distance) : 0;
-        hearings.push_back({placed.pose.position, placed.pose.beam({}), placed.receiver.fov,
+        const Sensor& placed = receivers[flight.receiver];
+        const double error = has_noise ? errorOf(placed.as<Receiver>().noise, flight.distance) : 0;
+        hearings.push_back({placed.pose.position, placed.pose.beam({}), placed.as<Receiver>().fov,
                             flight.distance, error});
     }
     return locate(hearings);
 }
 
 /// Eq. (3.7)-(3.10) of the thesis, whose floor is x-z.
-Point2 simplePlace(const PlacedTag& tag, int frame, std::optional<std::uint64_t> noise_seed) {
+Point2 simplePlace(const Sensor& tag, int frame, std::optional<std::uint64_t> noise_seed) {
     const Point2 place = tag.pose.position.onFloor();
     if (!noise_seed) return place;
     const RandomKey key{*noise_seed, Purpose::Ultrasound, hashOf(tag.id),
@@ -116,7 +117,7 @@ Point2 simplePlace(const PlacedTag& tag, int frame, std::optional<std::uint64_t>
     std::array<float, 1> along_x{};
     std::array<float, 1> along_y{};
     draw(key, 0, {.normal = along_x, .other = along_y});
-    const double sigma = tag.tag.simple_sigma;
+    const double sigma = tag.as<Tag>().simple_sigma;
     return place +
            Vec2{sigma * static_cast<double>(along_x[0]), sigma * static_cast<double>(along_y[0])};
 }
@@ -125,8 +126,8 @@ Point2 simplePlace(const PlacedTag& tag, int frame, std::optional<std::uint64_t>
 
 double speedOfSound(double celsius) { return 331.3 + 0.606 * celsius; }
 
-Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
-                std::span<const PlacedReceiver> receivers, int frame, double time,
+Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const Sensor& tag,
+                std::span<const Sensor> receivers, int frame, double time,
                 const UltrasoundOptions& options) {
     Burst burst{
         .time = time, .frame = frame, .pose = tag.pose, .heard = {}, .fix = {}, .simple = {}};
@@ -136,7 +137,7 @@ Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const P
             distanceHeard(environment, bodies, tag, receivers[i], frame, options.noise_seed);
         if (distance) burst.heard.push_back({i, *distance / speed, *distance});
     }
-    if (tag.tag.is_simple) {
+    if (tag.as<Tag>().is_simple) {
         burst.simple = simplePlace(tag, frame, options.noise_seed);
     } else {
         burst.fix = fixOf(burst.heard, receivers, options.noise_seed.has_value());

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "layout/ultrasound.h"
+#include "sensor/sensor.h"
 #include "trace/moving_bodies.h"
 #include "trace/ray_world.h"
 
@@ -33,9 +33,6 @@ struct Fix {
     /// distances to the two differ by, squared and added: +infinity where they do not differ.
     double pdop = 0, hdop = 0, vdop = 0;
 };
-
-/// Least receivers for a fix (thesis 3.4.3).
-constexpr std::size_t kLeastReceivers = 4;
 
 /// What a receiver knows that heard a burst.
 struct Hearing {
@@ -85,8 +82,8 @@ struct UltrasoundOptions {
 /// given as its limit. Noise of a distance depends on seed, tag, receiver and frame alone, not on
 /// what else hears; the angle that incidence is about is that between the sound and the receiver's
 /// axis.
-Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const PlacedTag& tag,
-                std::span<const PlacedReceiver> receivers, int frame, double time,
+Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const Sensor& tag,
+                std::span<const Sensor> receivers, int frame, double time,
                 const UltrasoundOptions& options);
 
 }  // namespace ispace

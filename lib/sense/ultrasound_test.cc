@@ -22,27 +22,27 @@ RayWorld room(const std::string& lines = "") {
         testing::scene("ispace at=4,3 size=8,6,2.5\n" + lines).environment);
 }
 
-PlacedReceiver receiverAt(const std::string& id, Point3 place, Angle tilt = kStraightDown,
-                          Angle heading = {}) {
-    PlacedReceiver placed;
+Sensor receiverAt(const std::string& id, Point3 place, Angle tilt = kStraightDown,
+                  Angle heading = {}) {
+    Sensor placed;
     placed.id = id;
     placed.pose = {place, heading, tilt, {}};
     return placed;
 }
 
 /// Rows of receivers below the ceiling, 1 m apart, u0, u1, ...
-std::vector<PlacedReceiver> ceiling(double sigma = 0) {
-    std::vector<PlacedReceiver> receivers;
+std::vector<Sensor> ceiling(double sigma = 0) {
+    std::vector<Sensor> receivers;
     for (int i = 0; i < 12; ++i) {
         receivers.push_back(
             receiverAt("u" + std::to_string(i), {2.0 + i % 4, 2.0 + i / 4, 2.4}));  // NOLINT: floor
-        receivers.back().receiver.noise.sigma = {sigma, 0, 0};
+        receivers.back().as<Receiver>().noise.sigma = {sigma, 0, 0};
     }
     return receivers;
 }
 
-PlacedTag tagAt(Point3 place) {
-    PlacedTag placed;
+Sensor tagAt(Point3 place) {
+    Sensor placed;
     placed.id = "t1";
     placed.pose.position = place;
     return placed;
@@ -55,13 +55,12 @@ std::vector<std::size_t> namesOf(const Burst& burst) {
     return names;
 }
 
-Burst burstOf(const RayWorld& world, const PlacedTag& tag,
-              const std::vector<PlacedReceiver>& receivers, const UltrasoundOptions& options = {},
-              int frame = 0) {
+Burst burstOf(const RayWorld& world, const Sensor& tag, const std::vector<Sensor>& receivers,
+              const UltrasoundOptions& options = {}, int frame = 0) {
     return castBurst(world, MovingBodies(), tag, receivers, frame, 0, options);
 }
 
-bool hears(const RayWorld& world, const PlacedReceiver& receiver, const PlacedTag& tag,
+bool hears(const RayWorld& world, const Sensor& receiver, const Sensor& tag,
            const MovingBodies& bodies = {}) {
     return !castBurst(world, bodies, tag, std::span(&receiver, 1), 0, 0, {}).heard.empty();
 }
@@ -73,7 +72,7 @@ TEST(SpeedOfSound, RisesWithTheTemperature) {
 
 TEST(Burst, TimesAndPlaceInClosedForm) {
     const RayWorld world = room();
-    const PlacedTag tag = tagAt({3.2, 2.7, 0.9});
+    const Sensor tag = tagAt({3.2, 2.7, 0.9});
     const auto receivers = ceiling();
     for (const double celsius : {20.0, -5.0, 35.0}) {
         const Burst burst =
@@ -97,7 +96,7 @@ TEST(Burst, TimesAndPlaceInClosedForm) {
 TEST(Burst, ANoiseFreeTagIsFoundAnywhereInTheRoom) {
     const RayWorld world = room();
     auto receivers = ceiling();
-    for (PlacedReceiver& receiver : receivers) receiver.receiver.fov = Angle::degrees(178);
+    for (Sensor& receiver : receivers) receiver.as<Receiver>().fov = Angle::degrees(178);
     int found = 0;
     for (int column = 0; column < 16; ++column) {
         for (int row = 0; row < 12; ++row) {
@@ -118,31 +117,31 @@ TEST(Burst, ANoiseFreeTagIsFoundAnywhereInTheRoom) {
 
 TEST(Burst, RangesCountWithTheirEnds) {
     const RayWorld world = room();
-    PlacedReceiver receiver = receiverAt("u", {4, 3, 2.4});
-    receiver.receiver.min_range = 0.3;
-    receiver.receiver.max_range = 2.1;
+    Sensor receiver = receiverAt("u", {4, 3, 2.4});
+    receiver.as<Receiver>().min_range = 0.3;
+    receiver.as<Receiver>().max_range = 2.1;
     EXPECT_TRUE(hears(world, receiver, tagAt({4, 3, 2.4 - 2.1})));
     EXPECT_FALSE(hears(world, receiver, tagAt({4, 3, 2.4 - 2.1001})));
     EXPECT_TRUE(hears(world, receiver, tagAt({4, 3, 2.4 - 0.3})));
     EXPECT_FALSE(hears(world, receiver, tagAt({4, 3, 2.4 - 0.2999})));
     // At the same place, if that is in range.
     EXPECT_FALSE(hears(world, receiver, tagAt({4, 3, 2.4})));
-    receiver.receiver.min_range = 0;
+    receiver.as<Receiver>().min_range = 0;
     EXPECT_TRUE(hears(world, receiver, tagAt({4, 3, 2.4})));
 }
 
 TEST(Burst, ConesOfBothCount) {
     const RayWorld world = room();
-    PlacedReceiver receiver = receiverAt("u", {4, 3, 2.4});
-    receiver.receiver.fov = Angle::degrees(90);
+    Sensor receiver = receiverAt("u", {4, 3, 2.4});
+    receiver.as<Receiver>().fov = Angle::degrees(90);
     EXPECT_TRUE(hears(world, receiver, tagAt({5.99, 3, 0.4})));
     EXPECT_TRUE(hears(world, receiver, tagAt({6, 3, 0.4})));
     EXPECT_TRUE(hears(world, receiver, tagAt({4, 1, 0.4})));
     EXPECT_FALSE(hears(world, receiver, tagAt({6.01, 3, 0.4})));
     EXPECT_FALSE(hears(world, receiver, tagAt({4, 0.99, 0.4})));
 
-    PlacedTag tag = tagAt({4, 3, 0.4});
-    tag.tag.fov = Angle::degrees(60);
+    Sensor tag = tagAt({4, 3, 0.4});
+    tag.as<Tag>().fov = Angle::degrees(60);
     EXPECT_FALSE(hears(world, receiver, tag));  // it emits along x
     tag.pose.tilt = Angle::degrees(90);
     EXPECT_TRUE(hears(world, receiver, tag));
@@ -152,8 +151,8 @@ TEST(Burst, ConesOfBothCount) {
     EXPECT_FALSE(hears(world, receiver, tag));
 
     // All around is all around, also straight behind.
-    receiver.receiver.fov = Angle::degrees(360);
-    tag.tag.fov = Angle::degrees(360);
+    receiver.as<Receiver>().fov = Angle::degrees(360);
+    tag.as<Tag>().fov = Angle::degrees(360);
     receiver.pose.tilt = Angle::degrees(90);
     tag.pose.tilt = kStraightDown;
     EXPECT_TRUE(hears(world, receiver, tag));
@@ -202,7 +201,7 @@ TEST(Burst, FewerThanFourFixNothing) {
 
 TEST(Burst, ReceiversOnAWallLookIntoTheRoom) {
     const RayWorld world = room();
-    std::vector<PlacedReceiver> receivers;
+    std::vector<Sensor> receivers;
     for (int i = 0; i < 6; ++i) {
         receivers.push_back(receiverAt("u" + std::to_string(i), {8, 2.0 + i % 3, i < 3 ? 1.0 : 2.0},
                                        {}, Angle::degrees(180)));
@@ -223,8 +222,8 @@ TEST(Burst, BodiesAreInTheWayButThoseOfTheCarriers) {
         body.owner = owner;
         return body;
     };
-    PlacedReceiver receiver = receiverAt("u", {6, 3, 1}, {}, Angle::degrees(180));
-    PlacedTag tag = tagAt({2, 3, 1});
+    Sensor receiver = receiverAt("u", {6, 3, 1}, {}, Angle::degrees(180));
+    Sensor tag = tagAt({2, 3, 1});
     EXPECT_TRUE(hears(world, receiver, tag));
     const MovingBodies between({cylinder(4, 2)});
     EXPECT_FALSE(hears(world, receiver, tag, between));
@@ -252,7 +251,7 @@ TEST(Burst, BodiesAreInTheWayButThoseOfTheCarriers) {
 
 TEST(Burst, NoiseOfAPairIsItsOwn) {
     const RayWorld world = room();
-    const PlacedTag tag = tagAt({3.2, 2.7, 0.9});
+    const Sensor tag = tagAt({3.2, 2.7, 0.9});
     const UltrasoundOptions options{.celsius = 20, .noise_seed = 5};
     const auto receivers = ceiling(0.01);
     const Burst all = burstOf(world, tag, receivers, options);
@@ -268,7 +267,7 @@ TEST(Burst, NoiseOfAPairIsItsOwn) {
         EXPECT_NE(all.heard[i].distance, exact.heard[i].distance);
         EXPECT_DOUBLE_EQ(all.heard[i].time, all.heard[i].distance / 343.42);
     }
-    const auto first_of = [&](const PlacedTag& some, int frame, std::uint64_t seed) {
+    const auto first_of = [&](const Sensor& some, int frame, std::uint64_t seed) {
         return castBurst(world, MovingBodies(), some, receivers, frame, 0,
                          {.celsius = 20, .noise_seed = seed})
             .heard[0]
@@ -277,18 +276,18 @@ TEST(Burst, NoiseOfAPairIsItsOwn) {
     EXPECT_EQ(first_of(tag, 0, 5), all.heard[0].distance);
     EXPECT_NE(first_of(tag, 1, 5), all.heard[0].distance);
     EXPECT_NE(first_of(tag, 0, 6), all.heard[0].distance);
-    PlacedTag other = tag;
+    Sensor other = tag;
     other.id = "t2";
     EXPECT_NE(first_of(other, 0, 5), all.heard[0].distance);
 }
 
 TEST(Burst, NoiseIsThatOfTheReceiver) {
     const RayWorld world = room();
-    const PlacedTag tag = tagAt({4, 3, 0.4});
-    PlacedReceiver receiver = receiverAt("u", {4, 3, 2.4});
-    receiver.receiver.noise.bias = 0.05;
-    receiver.receiver.noise.sigma = {0.01, 0.005, 0};
-    receiver.receiver.noise.dropout = 0.2;
+    const Sensor tag = tagAt({4, 3, 0.4});
+    Sensor receiver = receiverAt("u", {4, 3, 2.4});
+    receiver.as<Receiver>().noise.bias = 0.05;
+    receiver.as<Receiver>().noise.sigma = {0.01, 0.005, 0};
+    receiver.as<Receiver>().noise.dropout = 0.2;
     constexpr int kFrames = 20000;
     double sum = 0, squares = 0;
     int heard = 0;
@@ -305,16 +304,16 @@ TEST(Burst, NoiseIsThatOfTheReceiver) {
     EXPECT_NEAR(mean, 0.05, 5 * 0.02 / std::sqrt(heard));
     EXPECT_NEAR(std::sqrt(squares / heard - mean * mean), 0.02, 5 * 0.02 / std::sqrt(2.0 * heard));
     // Measured beyond its range it is at its end; what is out of range no noise brings back.
-    receiver.receiver.noise = {};
-    receiver.receiver.noise.bias = 0.05;
-    receiver.receiver.max_range = 2.04;
+    receiver.as<Receiver>().noise = {};
+    receiver.as<Receiver>().noise.bias = 0.05;
+    receiver.as<Receiver>().max_range = 2.04;
     EXPECT_EQ(burstOf(world, tag, {receiver}, {.noise_seed = 3}).heard.at(0).distance,
               static_cast<double>(2.04F));
     EXPECT_EQ(burstOf(world, tag, {receiver}).heard.size(), 1U);
-    receiver.receiver.noise.sigma = {0.1, 0, 0};
+    receiver.as<Receiver>().noise.sigma = {0.1, 0, 0};
     for (const auto& [least, greatest] : {std::pair{2.01, 8.0}, std::pair{0.0, 1.99}}) {
-        receiver.receiver.min_range = least;
-        receiver.receiver.max_range = greatest;
+        receiver.as<Receiver>().min_range = least;
+        receiver.as<Receiver>().max_range = greatest;
         for (int frame = 0; frame < 2000; ++frame)
             EXPECT_TRUE(burstOf(world, tag, {receiver}, {.noise_seed = 3}, frame).heard.empty());
     }
@@ -322,9 +321,10 @@ TEST(Burst, NoiseIsThatOfTheReceiver) {
 
 TEST(Burst, NoiseIsLostFarFromTheAxis) {
     const RayWorld world = room();
-    PlacedReceiver receiver = receiverAt("u", {4, 3, 2.4});
-    receiver.receiver.fov = Angle::degrees(170);
-    receiver.receiver.noise.graze_from = receiver.receiver.noise.graze_to = Angle::degrees(40);
+    Sensor receiver = receiverAt("u", {4, 3, 2.4});
+    receiver.as<Receiver>().fov = Angle::degrees(170);
+    receiver.as<Receiver>().noise.graze_from = receiver.as<Receiver>().noise.graze_to =
+        Angle::degrees(40);
     const UltrasoundOptions options{.noise_seed = 1};
     EXPECT_EQ(burstOf(world, tagAt({4.5, 3, 0.4}), {receiver}, options).heard.size(), 1U);
     EXPECT_EQ(burstOf(world, tagAt({6, 3, 0.4}), {receiver}, options).heard.size(), 0U);
@@ -336,7 +336,7 @@ TEST(Burst, PlacesErrBySigmaTimesDilution) {
     constexpr int kFrames = 3000;
     const RayWorld world = room();
     const auto receivers = ceiling(kSigma);
-    const PlacedTag tag = tagAt({3.2, 2.7, 0.9});
+    const Sensor tag = tagAt({3.2, 2.7, 0.9});
     const Fix exact = burstOf(world, tag, receivers).fix.value();
     double across = 0, up = 0;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -351,8 +351,8 @@ TEST(Burst, PlacesErrBySigmaTimesDilution) {
 }
 
 TEST(SimpleModel, IsTheTruePlaceWithoutNoise) {
-    PlacedTag tag = tagAt({3, 2, 1});
-    tag.tag.is_simple = true;
+    Sensor tag = tagAt({3, 2, 1});
+    tag.as<Tag>().is_simple = true;
     const Burst burst = burstOf(room(), tag, {});
     EXPECT_EQ(burst.simple, (Point2{3, 2}));
     EXPECT_FALSE(burst.fix);
@@ -365,8 +365,8 @@ TEST(SimpleModel, IsTheTruePlaceWithoutNoise) {
 
 TEST(SimpleModel, HasIndependentNoiseOfTheThesis) {
     const RayWorld world = room();
-    PlacedTag tag = tagAt({3, 2, 1});
-    tag.tag.is_simple = true;
+    Sensor tag = tagAt({3, 2, 1});
+    tag.as<Tag>().is_simple = true;
     constexpr int kFrames = 40000;
     double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
     for (int frame = 0; frame < kFrames; ++frame) {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "geom/predicates.h"
-#include "layout/figures.h"
+#include "layout/bodies.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {

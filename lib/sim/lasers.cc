@@ -50,20 +50,23 @@ SimTime Periods::begin(std::int64_t k) const {
 }
 
 LaserReader::LaserReader(const Scene& scene)
-    : scene_(&scene), worlds_(scene.environment), due_(scene.lasers.size()) {
-    periods_.reserve(scene.lasers.size());
-    readings_.reserve(scene.lasers.size());
-    casters_.reserve(scene.lasers.size());
-    for (const PlacedLaser& laser : scene.lasers) {
-        periods_.emplace_back(laser.laser.rate);
+    : scene_(&scene),
+      lasers_(sensorsOf<Laser>(scene)),
+      worlds_(scene.environment),
+      due_(lasers_.size()) {
+    periods_.reserve(lasers_.size());
+    readings_.reserve(lasers_.size());
+    casters_.reserve(lasers_.size());
+    for (const Sensor& laser : lasers_) {
+        periods_.emplace_back(laser.as<Laser>().rate);
         readings_.push_back({.sensor = laser, .scan = {}});
         worlds_.prepare(laser.pose);
-        if (laser.laser.sweep != SweepAxis::None) worlds_.prepareMesh();
+        if (laser.as<Laser>().sweep != SweepAxis::None) worlds_.prepareMesh();
     }
     for (const SensorReading& reading : readings_)
         casters_.emplace_back(worlds_, bodies_, reading.sensor, reading.sensor.mount.has_value(),
                               ReadingOptions());
-    latest_.reserve(scene.lasers.size());
+    latest_.reserve(lasers_.size());
     // Robots first, as they move; people behind them.
     places_ = bodiesOf(scene);
 }
@@ -81,7 +84,7 @@ void LaserReader::read(SimTime time, std::span<const Motion> robots) {
         casters_[latest_[k]].cast(reading.scan);
         reading.scan.time = seconds(time);
         constexpr std::int64_t kLast = std::numeric_limits<int>::max();
-        const std::int64_t sweep = reading.seq / reading.sensor.laser.scans();
+        const std::int64_t sweep = reading.seq / reading.sensor.as<Laser>().scans();
         reading.scan.frame = static_cast<int>(std::min(sweep, kLast));
     });
 }
@@ -95,11 +98,11 @@ void LaserReader::update(SimTime time, std::span<const Motion> robots) {
         due_[i] = periods_[i].begin(reading.seq + 1);
         if (const auto& mount = reading.sensor.mount)
             reading.sensor.pose = mountedPose(robots[mount->robot].pose, mount->robot_from_sensor);
-        const Laser& laser = reading.sensor.laser;
+        const Laser& laser = reading.sensor.as<Laser>();
         if (laser.sweep == SweepAxis::None) continue;
         const std::int64_t number = reading.seq % laser.scans();
         reading.scan.number = static_cast<int>(number);
-        if (!reading.sensor.mount) reading.sensor.pose = scene_->lasers[i].pose;
+        if (!reading.sensor.mount) reading.sensor.pose = lasers_[i].pose;
         reading.sensor.pose = sweptPose(laser, reading.sensor.pose, static_cast<double>(number));
     }
     if (!std::exchange(moved_, false)) return;

@@ -38,6 +38,8 @@ class LaserReader {
     /// Robots are not where they were.
     void robotsMoved() { moved_ = true; }
 
+    /// In the order of the scene, where they start.
+    [[nodiscard]] const std::vector<Sensor>& lasers() const { return lasers_; }
     [[nodiscard]] const SensorReading& reading(std::size_t laser) const { return readings_[laser]; }
     /// Those read last, ascending.
     [[nodiscard]] std::span<const std::size_t> latest() const { return latest_; }
@@ -46,6 +48,7 @@ class LaserReader {
     void update(SimTime time, std::span<const Motion> robots);
 
     const Scene* scene_;
+    std::vector<Sensor> lasers_;  // as they start
     Worlds worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;

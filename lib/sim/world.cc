@@ -71,7 +71,7 @@ struct World::Data {
     SimTime step_length, time{};
     std::int64_t steps = 0;
 
-    std::map<std::string_view, std::size_t> robot_index, laser_index;
+    std::map<std::string_view, std::size_t> robot_index;
     std::vector<Person> people;
     ObstacleSets obstacles;
     FrictionMap friction;
@@ -83,6 +83,7 @@ struct World::Data {
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
     LaserReader lasers;
+    std::map<std::string_view, std::size_t> laser_index;
 
     std::vector<CommandEnd> ends;
     std::vector<Collision> collisions;
@@ -92,7 +93,6 @@ World::Data::Data(const Scene& room, SimTime length)
     : scene(&room),
       step_length(length),
       robot_index(indexById(room.robots)),
-      laser_index(indexById(room.lasers)),
       people(peopleOf(room)),
       obstacles(obstaclesOf(room)),
       friction(room.environment),
@@ -102,7 +102,8 @@ World::Data::Data(const Scene& room, SimTime length)
       movers(room.robots.size()),
       moves(room.robots.size() + people.size()),
       traffic(room.robots, people, order, seconds(length)),
-      lasers(room) {
+      lasers(room),
+      laser_index(indexById(lasers.lasers())) {
     checkStart(room, people, obstacles);
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const PlacedRobot& robot = room.robots[i];
@@ -214,7 +215,7 @@ SimTime World::time() const { return data_->time; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
 std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
-std::span<const PlacedLaser> World::lasers() const { return data_->scene->lasers; }
+std::span<const Sensor> World::lasers() const { return data_->lasers.lasers(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
 std::span<const std::size_t> World::read() const { return data_->lasers.latest(); }

@@ -50,7 +50,7 @@ struct Collision {
 struct SensorReading {
     SimTime time{};
     std::int64_t seq = 0;
-    PlacedLaser sensor;  ///< with its pose at that time
+    Sensor sensor;  ///< with its pose at that time
     Scan scan;
 };
 
@@ -85,7 +85,7 @@ class World {
 
     /// Robots and lasers keep the order of the scene.
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
-    [[nodiscard]] std::span<const PlacedLaser> lasers() const;
+    [[nodiscard]] std::span<const Sensor> lasers() const;
     [[nodiscard]] std::optional<std::size_t> robotNamed(std::string_view id) const;
     [[nodiscard]] std::optional<std::size_t> laserNamed(std::string_view id) const;
 

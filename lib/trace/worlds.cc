@@ -38,19 +38,12 @@ void Worlds::prepare(const Pose3& pose) {
     slices_.emplace(height, std::move(slice));
 }
 
-void Worlds::prepareMesh() {
-    if (mesh_) return;
-    RayWorld mesh = RayWorld::ofEnvironment(*environment_);
+void Worlds::prepareMesh(Surfaces surfaces) {
+    std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
+    if (mesh) return;
+    RayWorld made = RayWorld::ofEnvironment(*environment_, surfaces);
     const std::unique_lock lock(mutex_);
-    mesh_.emplace(std::move(mesh));
-}
-
-void Worlds::prepareSound() {
-    if (!has_clear_) return prepareMesh();
-    if (solid_) return;
-    RayWorld solid = RayWorld::ofEnvironment(*environment_, Surfaces::Solid);
-    const std::unique_lock lock(mutex_);
-    solid_.emplace(std::move(solid));
+    mesh.emplace(std::move(made));
 }
 
 const RayWorld& Worlds::at(const Pose3& pose) const {
@@ -62,17 +55,11 @@ const RayWorld& Worlds::at(const Pose3& pose) const {
     return mesh();
 }
 
-const RayWorld& Worlds::mesh() const {
+const RayWorld& Worlds::mesh(Surfaces surfaces) const {
     const std::shared_lock lock(mutex_);
-    assert(mesh_);
-    return *mesh_;
-}
-
-const RayWorld& Worlds::sound() const {
-    if (!has_clear_) return mesh();
-    const std::shared_lock lock(mutex_);
-    assert(solid_);
-    return *solid_;
+    const std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
+    assert(mesh);
+    return *mesh;
 }
 
 }  // namespace ispace

@@ -23,21 +23,22 @@ class Worlds {
 
     explicit Worlds(const Environment& environment);
     void prepare(const Pose3& pose);
-    /// For sensors that look in all directions.
-    void prepareMesh();
-    /// For those that listen.
-    void prepareSound();
+    /// For sensors that look in all directions: what stops light, or (Solid) sound.
+    void prepareMesh(Surfaces surfaces = Surfaces::Opaque);
     /// The slice of a level pose's height if one is kept, else the mesh.
     /// \pre one of them was prepared: the slice by prepare() for a pose of this height, the mesh by
     ///      prepareMesh() or by prepare() for a pose that is not level or beyond kMaxSlices
     [[nodiscard]] const RayWorld& at(const Pose3& pose) const;
+    /// The mesh as light meets it, or (Solid) sound, which clear glass stops.
     /// \pre it was prepared, see at()
-    [[nodiscard]] const RayWorld& mesh() const;
-    /// The mesh as sound meets it: clear glass stops it. Without such glass it is mesh().
-    /// \pre prepareSound()
-    [[nodiscard]] const RayWorld& sound() const;
+    [[nodiscard]] const RayWorld& mesh(Surfaces surfaces = Surfaces::Opaque) const;
 
   private:
+    /// True where these surfaces stop more than opaque ones do.
+    [[nodiscard]] bool hearsMore(Surfaces surfaces) const {
+        return has_clear_ && surfaces == Surfaces::Solid;
+    }
+
     const Environment* environment_;
     mutable std::shared_mutex mutex_;  // of what follows; only prepare() adds to it
     std::map<double, RayWorld> slices_;

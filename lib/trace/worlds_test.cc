@@ -60,18 +60,19 @@ TEST(Worlds, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
 TEST(Worlds, SoundIsStoppedByClearGlassToo) {
     const Scene plain = furnishedRoom();
     Worlds of_plain(plain.environment);
-    of_plain.prepareSound();
-    EXPECT_EQ(&of_plain.sound(), &of_plain.mesh()) << "one world is enough without clear glass";
+    of_plain.prepareMesh(Surfaces::Solid);
+    EXPECT_EQ(&of_plain.mesh(Surfaces::Solid), &of_plain.mesh())
+        << "one world is enough without clear glass";
     const Scene scene = testing::scene(
         "ispace size=8,6,2.5\ninside at=-3,0\nwall id=w from=1,-2.9 to=1,2.9 height=2.5\n"
         "window wall=w offset=2.9 size=3,0.1,2 sill=0.1\n");
     Worlds worlds(scene.environment);
     worlds.prepareMesh();
-    worlds.prepareSound();
+    worlds.prepareMesh(Surfaces::Solid);
     const Point3 from{-2, 0, 1};
     float light = 0, sound = 0;
     worlds.mesh().cast(from, along({1, 0, 0}), 100, {&light, 1});
-    worlds.sound().cast(from, along({1, 0, 0}), 100, {&sound, 1});
+    worlds.mesh(Surfaces::Solid).cast(from, along({1, 0, 0}), 100, {&sound, 1});
     EXPECT_EQ(light, 6);
     EXPECT_EQ(sound, 3);
 }

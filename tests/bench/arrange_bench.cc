@@ -15,6 +15,7 @@
 #include "layout/schemas.h"
 #include "place/arrangement.h"
 #include "random_plan.h"
+#include "sensor/kind.h"
 
 namespace {
 
@@ -61,8 +62,8 @@ struct Result {
 };
 
 std::vector<SensorGroup> groupsOf(const Job& job) {
-    const std::vector<SensorSpec> added = {
-        readSensorSpec(job.sensors, kArrangedKinds, sceneSchemas(), bench::devices())};
+    const std::vector<SensorSpec> added = {readSensorSpec(
+        job.sensors, keywordsOf(&SensorKind::is_arranged), sceneSchemas(), bench::devices())};
     return groupsToPlace(*job.scene, added, bench::devices(), job.how.target.has_value());
 }
 

@@ -59,9 +59,7 @@ std::string roomWithDoor(double x, double y, int number, Building& out) {
 
 }  // namespace
 
-DeviceCatalogue devices() {
-    return DeviceCatalogue::load(std::string(ISPACE_SOURCE_DIR) + "/share/devices");
-}
+DeviceCatalogue devices() { return loadDevices(std::string(ISPACE_SOURCE_DIR) + "/share/devices"); }
 
 std::string sceneFile(const std::string& name) {
     return std::string(ISPACE_SOURCE_DIR) + "/share/scenes/" + name;
@@ -109,11 +107,11 @@ Record recordOfModel(std::string_view keyword, const std::string& model) {
 }  // namespace
 
 Laser laserOfModel(const std::string& model) {
-    return laserOf(recordOfModel("laser", model), devices());
+    return std::get<Laser>(sensorModelOf(recordOfModel("laser", model), devices()));
 }
 
 Ranger rangerOfModel(const std::string& model) {
-    return rangerOf(recordOfModel("ranger", model), devices());
+    return std::get<Ranger>(sensorModelOf(recordOfModel("ranger", model), devices()));
 }
 
 Building building(std::size_t walls) {
@@ -174,7 +172,7 @@ std::string willowMap() {
     return !map.empty() && std::filesystem::exists(map) ? map : "";
 }
 
-std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level) {
+std::vector<Sensor> fans(const Scene& scene, std::size_t count, bool level) {
     // No furniture ends there: a beam along its top is a matter of the last bit.
     constexpr double kHigh = 1.55;
     const double height = level ? kScanHeight : kHigh;
@@ -186,16 +184,16 @@ std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level)
     std::uniform_real_distribution<double> x(limits.low.x, limits.high.x);
     std::uniform_real_distribution<double> y(limits.low.y, limits.high.y);
     std::uniform_real_distribution<double> heading(-180, 180);
-    std::vector<PlacedLaser> sensors;
+    std::vector<Sensor> sensors;
     while (sensors.size() < count) {
         const Point2 place{x(random), y(random)};
         if (!judge.isValid(place)) continue;
-        PlacedLaser sensor;
+        Sensor sensor;
         sensor.id = "l" + std::to_string(sensors.size() + 1);
-        sensor.laser.max_range = 30;
-        sensor.laser.first = Angle::degrees(-135);
-        sensor.laser.step = Angle::degrees(0.25);
-        sensor.laser.beams = 1081;
+        sensor.as<Laser>().max_range = 30;
+        sensor.as<Laser>().first = Angle::degrees(-135);
+        sensor.as<Laser>().step = Angle::degrees(0.25);
+        sensor.as<Laser>().beams = 1081;
         sensor.pose.position = {place.x, place.y, height};
         sensor.pose.heading = Angle::degrees(heading(random));
         if (!level) sensor.pose.tilt = Angle::degrees(-20);

@@ -50,6 +50,6 @@ std::string willowMap();
 
 /// Places in the free floor, drawn from a fixed seed: `count` lasers with 1081 beams over 270
 /// degrees and 30 m, level at 0.15 m, or at 1.55 m and tilted down by 20 degrees.
-std::vector<PlacedLaser> fans(const Scene& scene, std::size_t count, bool level);
+std::vector<Sensor> fans(const Scene& scene, std::size_t count, bool level);
 
 }  // namespace ispace::bench

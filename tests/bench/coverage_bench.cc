@@ -29,9 +29,9 @@ struct Case {
     std::size_t lines = 0;
 };
 
-std::string layoutText(const std::vector<PlacedLaser>& places) {
+std::string layoutText(const std::vector<Sensor>& places) {
     std::string text = "#3dm 1\n";
-    for (const PlacedLaser& place : places) {
+    for (const Sensor& place : places) {
         text += "laser model=" + std::string(kModel);
         text += " at=" + formatDouble(place.pose.position.x) + ',';
         text += formatDouble(place.pose.position.y);

@@ -20,7 +20,7 @@ struct Case {
     std::string name;
     Scene scene;
     std::size_t triangles;
-    PlacedRanger ranger{"r1", bench::rangerOfModel("kinect-v1"), {}};
+    Sensor ranger{"r1", bench::rangerOfModel("kinect-v1"), {}};
     std::vector<Pose3> poses;
     std::vector<RayGrid> grids;
     bench::RawEmbree raw;
@@ -34,19 +34,19 @@ struct Case {
           raw(bench::RawEmbree::ofEnvironment(scene.environment)),
           world(RayWorld::ofEnvironment(scene.environment)) {
         std::vector<Point3> origins;
-        for (const PlacedLaser& laser : bench::fans(scene, kPictures, false)) {
+        for (const Sensor& laser : bench::fans(scene, kPictures, false)) {
             poses.push_back(laser.pose);
             origins.push_back(laser.pose.position);
             grids.push_back(gridAt(laser.pose));
         }
-        raw.prepare(origins, grids, ranger.ranger.max_range);
+        raw.prepare(origins, grids, ranger.as<Ranger>().max_range);
     }
     Case(const Case&) = delete;
     Case& operator=(const Case&) = delete;
 
     /// The rays that castDepth casts.
     [[nodiscard]] RayGrid gridAt(const Pose3& pose) const {
-        const Ranger& r = ranger.ranger;
+        const Ranger& r = ranger.as<Ranger>();
         const Vec3 forward = pose.beam({}), left = pose.beam(Angle::degrees(90));
         const Vec3 up = cross(forward, left);
         const auto in_world = [&](Vec3 v) {
@@ -61,7 +61,7 @@ struct Case {
                 .rows = r.rows};
     }
     void cast(std::size_t i, std::span<float> depths) const {
-        world.cast(poses[i].position, grids[i], ranger.ranger.max_range, depths);
+        world.cast(poses[i].position, grids[i], ranger.as<Ranger>().max_range, depths);
     }
     [[nodiscard]] DepthFrame picture(std::size_t i, const ReadingOptions& options) const {
         return castDepth(world, nobody, ranger, poses[i], static_cast<int>(i), options);
@@ -69,8 +69,8 @@ struct Case {
 };
 
 void verify(const Case& test) {
-    std::vector<float> depths(test.ranger.ranger.pixels());
-    const auto least = static_cast<float>(test.ranger.ranger.min_range);
+    std::vector<float> depths(test.ranger.as<Ranger>().pixels());
+    const auto least = static_cast<float>(test.ranger.as<Ranger>().min_range);
     const std::vector<float> raw = test.raw.ranges();
     for (std::size_t i = 0; i < test.poses.size(); ++i) {
         test.cast(i, depths);
@@ -88,7 +88,7 @@ void measure(benchmark::State& state, Case& test, int threads) {
         contest.add([&test, threads, way] { bench::shareOut(threads, test.poses.size(), way); });
     };
     std::vector<std::vector<float>> depths(kPictures,
-                                           std::vector<float>(test.ranger.ranger.pixels()));
+                                           std::vector<float>(test.ranger.as<Ranger>().pixels()));
     const std::size_t each = test.raw.packetsPerSensor();
     add([&test, each](std::size_t i) { test.raw.trace(i * each, (i + 1) * each); });
     add([&test, &depths](std::size_t i) { test.cast(i, depths[i]); });

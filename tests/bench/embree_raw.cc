@@ -139,16 +139,16 @@ void RawEmbree::reserve(std::size_t sensors, std::size_t beams) {
     d.lanes.resize(packets);
 }
 
-void RawEmbree::prepare(std::span<const PlacedLaser> sensors) {
-    reserve(sensors.size(), static_cast<std::size_t>(sensors.front().laser.beams));
+void RawEmbree::prepare(std::span<const Sensor> sensors) {
+    reserve(sensors.size(), static_cast<std::size_t>(sensors.front().as<Laser>().beams));
     std::size_t packet = 0;
-    for (const PlacedLaser& sensor : sensors) {
+    for (const Sensor& sensor : sensors) {
         for (std::size_t begin = 0; begin < data_->beams; begin += kWidth, ++packet) {
-            data_->set(packet, sensor.pose.position, sensor.laser.max_range);
+            data_->set(packet, sensor.pose.position, sensor.as<Laser>().max_range);
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
                 // The last packet is filled up with its last beam.
                 const auto beam = static_cast<int>(std::min(begin + lane, data_->beams - 1));
-                data_->point(packet, lane, sensor.pose.beam(sensor.laser.bearing(beam)));
+                data_->point(packet, lane, sensor.pose.beam(sensor.as<Laser>().bearing(beam)));
                 data_->lanes[packet][lane] = static_cast<std::uint32_t>(begin + lane);
             }
         }

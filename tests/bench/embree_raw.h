@@ -11,7 +11,8 @@
 
 #include "env/environment.h"
 #include "env/slice.h"
-#include "layout/laser.h"
+#include "sensor/laser.h"
+#include "sensor/sensor.h"
 #include "trace/rays.h"
 
 namespace ispace::bench {
@@ -27,7 +28,7 @@ class RawEmbree {
     ~RawEmbree();
 
     /// Packs every beam of these sensors, each sensor in packets of its own.
-    void prepare(std::span<const PlacedLaser> sensors);
+    void prepare(std::span<const Sensor> sensors);
     /// Packs pictures of one size in tiles of 4 x 4; a picture counts as a sensor.
     /// \pre columns and rows are multiples of 4
     void prepare(std::span<const Point3> origins, std::span<const RayGrid> grids, double most);

@@ -23,7 +23,7 @@ struct Case {
     bool level;
     Scene scene;
     std::size_t primitives = 0;
-    std::vector<PlacedLaser> sensors;
+    std::vector<Sensor> sensors;
     bench::RawEmbree raw;
     Worlds worlds;
     MovingBodies nobody;
@@ -40,10 +40,10 @@ struct Case {
         const RangeNoise noise = bench::laserOfModel("utm-30lx").noise;
         raw.prepare(sensors);
         directions.reserve(sensors.size());
-        for (PlacedLaser& sensor : sensors) {
+        for (Sensor& sensor : sensors) {
             worlds.prepare(sensor.pose);
-            directions.push_back(Beams(sensor.laser, true).at(sensor.pose));
-            sensor.laser.noise = noise;
+            directions.push_back(Beams(sensor.as<Laser>(), true).at(sensor.pose));
+            sensor.as<Laser>().noise = noise;
         }
         primitives = level ? bench::linesOf(scene) : bench::RawTriangles(scene.environment).size();
     }
@@ -51,7 +51,7 @@ struct Case {
     Case& operator=(const Case&) = delete;
 
     [[nodiscard]] double beams() const {
-        return static_cast<double>(sensors.size()) * sensors.front().laser.beams;
+        return static_cast<double>(sensors.size()) * sensors.front().as<Laser>().beams;
     }
 };
 
@@ -70,9 +70,9 @@ class Ways {
     }
     std::span<const float> cast(std::size_t i) {
         std::vector<float>& ranges = ranges_.local();
-        const PlacedLaser& sensor = test_.sensors[i];
+        const Sensor& sensor = test_.sensors[i];
         test_.worlds.at(sensor.pose)
-            .cast(sensor.pose.position, test_.directions[i], sensor.laser.max_range, ranges);
+            .cast(sensor.pose.position, test_.directions[i], sensor.as<Laser>().max_range, ranges);
         return ranges;
     }
     std::span<const float> scan(std::size_t i) { return read(plain_.local(), i); }

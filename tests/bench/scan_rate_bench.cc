@@ -53,7 +53,7 @@ class Case {
         std::string file_name =
             prefix_ + (level ? "-level-" : "-tilted-") + std::to_string(count) + ".tum";
         if (std::filesystem::exists(file_name)) return file_name;
-        const std::vector<PlacedLaser>& places = level ? level_ : tilted_;
+        const std::vector<Sensor>& places = level ? level_ : tilted_;
         std::mt19937_64 random(7);
         std::uniform_real_distribution<double> heading(-180, 180);
         std::string text;
@@ -76,7 +76,7 @@ class Case {
 
   private:
     std::string prefix_;
-    std::vector<PlacedLaser> level_, tilted_;
+    std::vector<Sensor> level_, tilted_;
 };
 
 /// One way to use the tool.
@@ -103,7 +103,7 @@ void verify(const Case& test, const std::string& folder) {
         runScan(use.words(test, kChecked, 2), output);
         const std::string bytes = readAll(output);
         const Scene scene = bench::loadScene(test.file);
-        const PlacedLaser sensor{"laser1", bench::laserOfModel(use.model), {}};
+        const Sensor sensor{"laser1", bench::laserOfModel(use.model), {}};
         Worlds worlds(scene.environment);
         const MovingBodies nobody;
         ReadingOptions options;

@@ -137,7 +137,7 @@ struct Plan {
     std::string name;
     std::vector<Segment2> lines;
     std::vector<Ellipse> rounds;
-    std::vector<PlacedLaser> places;
+    std::vector<Sensor> places;
     std::optional<FlatWorld> world;
     std::optional<VisibilityMap> sight;
     double world_bytes = 0, sight_bytes = 0;
@@ -173,11 +173,11 @@ class Reader {
           ranges_(static_cast<std::size_t>(laser.beams)),
           tree_(plan.lines, plan.rounds),
           sampler_(plan.lines, plan.rounds) {
-        for (PlacedLaser sensor : plan.places) {
-            sensor.laser.beams = laser.beams;
-            sensor.laser.first = Angle::degrees(laser.first);
-            sensor.laser.step = Angle::degrees(laser.step);
-            Directions directions = Beams(sensor.laser, true).at(sensor.pose);
+        for (Sensor sensor : plan.places) {
+            sensor.as<Laser>().beams = laser.beams;
+            sensor.as<Laser>().first = Angle::degrees(laser.first);
+            sensor.as<Laser>().step = Angle::degrees(laser.step);
+            Directions directions = Beams(sensor.as<Laser>(), true).at(sensor.pose);
             for (auto* part : {&directions.x, &directions.y, &directions.z})
                 part->reserve(part->size() + kLanes);
             directions_.push_back(std::move(directions));

@@ -42,7 +42,7 @@ Case makeCase(const std::string& name, const Scene& scene, std::size_t count) {
         lines.push_back(s);
     });
     const VisibilityMap map(lines);
-    for (const PlacedLaser& sensor : bench::fans(scene, count, true)) {
+    for (const Sensor& sensor : bench::fans(scene, count, true)) {
         const VisibleRegion whole = map.query(sensor.pose.position.onFloor(), kRange);
         const Angle first = sensor.pose.heading - Angle::degrees(90);
         const Curve curve = outlineOf(sectorOf(whole, first, Angle::degrees(180)));

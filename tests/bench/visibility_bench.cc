@@ -84,7 +84,7 @@ std::unique_ptr<Case> loaded(const std::string& name, const std::string& file) {
     const Scene scene = bench::loadScene(file);
     std::vector<Point2> viewpoints;
     viewpoints.reserve(kViewpoints);
-    for (const PlacedLaser& sensor : bench::fans(scene, kViewpoints, true))
+    for (const Sensor& sensor : bench::fans(scene, kViewpoints, true))
         viewpoints.push_back(sensor.pose.position.onFloor());
     return std::make_unique<Case>(name, linesOf(scene), std::move(viewpoints), true);
 }

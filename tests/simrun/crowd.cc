@@ -62,8 +62,8 @@ std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel&
 void mountLasers(Scene& scene, const Laser& laser) {
     for (std::size_t i = 0; i < scene.robots.size(); ++i) {
         const Pose3 mount{{0, 0, kScanHeight}, {}, {}, {}};
-        scene.lasers.push_back({"l" + std::to_string(i + 1), laser,
-                                mountedPose(scene.robots[i].pose, mount), Mount{i, mount}});
+        scene.sensors.push_back({"l" + std::to_string(i + 1), laser,
+                                 mountedPose(scene.robots[i].pose, mount), Mount{i, mount}});
     }
 }
 

@@ -69,11 +69,12 @@ Work read(const ArrangeToolOptions& options) {
     const bool lists_stdin = options.places_file == "-";
     if (lists_stdin && std::any_of(options.operands.begin(), options.operands.end(), isStream))
         throw UsageError("stdin cannot be read twice: only one operand can be -");
-    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
+    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
+    const std::vector<std::string_view> kinds = keywordsOf(&SensorKind::is_arranged);
     std::vector<SensorSpec> added;
     added.reserve(options.sensors.size());
     for (const std::string& spec : options.sensors)
-        added.push_back(readSensorSpec(spec, kArrangedKinds, sceneSchemas(), devices));
+        added.push_back(readSensorSpec(spec, kinds, sceneSchemas(), devices));
     Work work{readScene({options.operands, options.any_environment, false}), {}, options.how, {}};
     SceneInput& input = work.input;
     ispace::warn(options.common, "arrange", input.environment.warnings);
@@ -126,12 +127,15 @@ struct Numbers {
 
 Numbers numbersOf(const Work& work) {
     const Scene& scene = work.input.scene;
-    Numbers numbers{scene.receivers.size(), scene.lasers.size() + scene.rangers.size()};
+    Numbers numbers;
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).perceives)
+            ++(isPartial(sensor.model) ? numbers.receivers : numbers.others);
     for (const SensorGroup& group : work.groups) {
         auto most = static_cast<std::size_t>(group.most);
         if (work.how.budget)
             most = affordableCount(*work.how.budget, 0, group.record.number("cost"), most);
-        (isReceiver(group.device) ? numbers.receivers : numbers.others) += most;
+        (isPartial(group.model) ? numbers.receivers : numbers.others) += most;
     }
     return numbers;
 }

@@ -38,7 +38,8 @@ void warn(const CoverageToolOptions& options, const std::string& text) {
 void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
     for (const std::string& doubt : doubtsAbout(scene, sensorsOf(scene, {}), {}, true))
         warn(options, doubt);
-    if (const std::size_t count = scene.receivers.size(); count > 0 && count < kLeastReceivers)
+    if (const std::size_t count = sensorsOf<Receiver>(scene).size();
+        count > 0 && count < kLeastReceivers)
         warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
                           " receivers have to hear a tag, here are " + std::to_string(count));
     constexpr std::string_view kUnmeasured[] = {"camera"};

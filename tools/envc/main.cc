@@ -127,7 +127,7 @@ void compile(const EnvcOptions& options, Document document) {
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;
     if (options.format == "glb") rebaseTo(options.common.output, document);
-    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
+    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
     if (options.check) {
         check(document, devices);
         talk(options.common, "envc", "nothing found");

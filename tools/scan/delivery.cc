@@ -33,7 +33,7 @@ class Files final : public Delivery {
     void write(Readings& readings) override {
         for (std::size_t i = 0; i < readings.jobs.size(); ++i) {
             const ReadingJob& job = readings.jobs[i];
-            const std::string& id = sensors_.id(sensors_.order[job.sensor]);
+            const std::string& id = sensors_.read[job.sensor].id;
             std::vector<NamedBytes> together;
             for (const ReadingFile& file : readings.files[i])
                 together.push_back({together.empty()
@@ -133,8 +133,8 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     const std::string& output = options.common.output;
     if (auto names = OutputSet::of(output)) {
         std::vector<std::string> ids;
-        ids.reserve(sensors.order.size());
-        for (const Sensors::Entry& entry : sensors.order) ids.push_back(sensors.id(entry));
+        ids.reserve(sensors.read.size());
+        for (const Sensor& sensor : sensors.read) ids.push_back(sensor.id);
         if (options.common.dependencies.wanted)
             throw UsageError("-MD writes a rule for one product, and a set is many files");
         names->prepare(ids, options.frames.value_or(1) > 1 || count < 0, format.endings());
@@ -145,7 +145,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     if (count == 1) return std::make_unique<OneFile>(output, format.endings());
     const bool is_cloud = options.format == "pcd" || options.format == "ply";
     if (is_cloud && options.coordinates == Coordinates::World)
-        return std::make_unique<OneCloud>(options, sensors.order.size(), count);
+        return std::make_unique<OneCloud>(options, sensors.read.size(), count);
     const std::string many = count < 0 ? "poses" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +

@@ -10,7 +10,6 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
-#include "layout/device_table.h"
 #include "layout/left_out.h"
 #include "scan/delivery.h"
 #include "scan/options.h"
@@ -22,13 +21,12 @@ namespace {
 
 using namespace ispace;
 
-constexpr std::string_view kKinds[] = {"laser", "ranger", "ultrasound", "tag"};
 /// What a scene may hold and nobody reads.
 constexpr std::string_view kUnread[] = {"camera"};
 
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     Sensors sensors = sensorsOf(input.scene, options.select);
-    if (!sensors.order.empty()) return sensors;
+    if (!sensors.read.empty()) return sensors;
     if (!options.select.empty())
         throw UsageError(
             "--select chooses nothing that is read: receivers hear tags, and sensors "
@@ -80,9 +78,9 @@ std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const S
     PoseLines poses([file](std::string& bytes) { return file->read(bytes); },
                     displayName(options.poses));
     if (!options.motion) return std::make_unique<PoseSource>(std::move(poses));
-    const Sensors::Entry& sensor = sensors.order.front();
-    return std::make_unique<MotionSource>(std::move(poses), sensors.rate(sensor),
-                                          durationOf(sensors, sensor), options.frames);
+    const SensorModel& model = sensors.read.front().model;
+    return std::make_unique<MotionSource>(std::move(poses), readingRate(model), readingTime(model),
+                                          options.frames);
 }
 
 FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {
@@ -113,8 +111,8 @@ SceneRequest requestOf(const ScanToolOptions& options) {
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     claimOutputs(options.common);
-    const DeviceCatalogue devices = DeviceCatalogue::load(shareFolder() + "/devices");
-    if (options.list_models) return writeAll(options.common.output, deviceTable(devices, kKinds));
+    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
+    if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
     limitThreads(options.common.threads);
     const SceneInput input = readScene(requestOf(options));
     ispace::warn(options.common, "scan", input.environment.warnings);

@@ -6,23 +6,21 @@
 #include "base/error.h"
 #include "layout/schemas.h"
 #include "layout/sensor_spec.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
 namespace {
 
-/// What may follow poses.
-constexpr std::string_view kMovable[] = {"laser", "ranger"};
+/// Keywords of what may follow poses.
+std::vector<std::string_view> movable() { return keywordsOf(&SensorKind::follows_poses); }
 
 Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
-    const SensorSpec spec = readSensorSpec(model, kMovable, sceneSchemas(), devices);
+    const SensorSpec spec = readSensorSpec(model, movable(), sceneSchemas(), devices);
     const Record& record = spec.record;
     // What is wrong with its figures is wrong on the command line.
     try {
-        if (record.keyword() == "laser")
-            static_cast<void>(laserOf(record, devices));
-        else
-            static_cast<void>(rangerOf(record, devices));
+        static_cast<void>(sensorModelOf(record, devices));
     } catch (const FormatError& error) {
         throw UsageError(error.diagnostics().front().message);
     }
@@ -34,18 +32,17 @@ Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
 }
 
 std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs) {
-    const std::vector<std::size_t> found = sensorRecords(scene, kMovable, globs);
+    const std::vector<std::size_t> found = sensorRecords(scene, movable(), globs);
     if (found.size() == 1) return found.front();
     throw UsageError("--poses: " + std::to_string(found.size()) +
                      " sensors could take them; say which with --model or --select");
 }
 
 /// The mount of a sensor that the scene has placed.
-template <typename Placed>
-std::optional<Mount> mountOf(const std::vector<Placed>& placed, const std::string& id) {
-    const auto found = std::find_if(placed.begin(), placed.end(),
-                                    [&id](const Placed& sensor) { return sensor.id == id; });
-    return found == placed.end() ? std::nullopt : found->mount;
+std::optional<Mount> mountOf(const Scene& scene, const std::string& id) {
+    const auto found = std::find_if(scene.sensors.begin(), scene.sensors.end(),
+                                    [&id](const Sensor& sensor) { return sensor.id == id; });
+    return found == scene.sensors.end() ? std::nullopt : found->mount;
 }
 
 }  // namespace
@@ -67,16 +64,10 @@ Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
     if (!of_model) id = scene.ids[only];
 
     Sensors sensors;
-    if (record.keyword() == "ranger") {
-        const auto mount = of_model ? std::nullopt : mountOf(scene.rangers, id);
-        sensors.rangers.push_back({id, rangerOf(record, devices), {}, mount});
-        sensors.order.push_back({SensorKind::Ranger, 0});
-        return sensors;
-    }
-    const auto mount = of_model ? std::nullopt : mountOf(scene.lasers, id);
-    sensors.lasers.push_back({id, laserOf(record, devices), {}, mount});
-    sensors.order.push_back({SensorKind::Laser, 0});
-    if (options.motion && sensors.lasers.front().laser.sweep != SweepAxis::None)
+    const auto mount = of_model ? std::nullopt : mountOf(scene, id);
+    sensors.read.push_back({id, sensorModelOf(record, devices), {}, mount});
+    const Sensor& sensor = sensors.read.front();
+    if (options.motion && sensor.is<Laser>() && sensor.as<Laser>().sweep != SweepAxis::None)
         throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");
     return sensors;
 }

@@ -36,7 +36,7 @@ void CollisionLog::tell() {
 void warnOfLeftOut(const Scene& scene, bool quiet) {
     if (quiet) return;
     for (const PendingSensor& sensor : scene.pending)
-        if (std::holds_alternative<Laser>(sensor.device))
+        if (std::holds_alternative<Laser>(sensor.model))
             std::cerr << kWarning << sensor.id
                       << " has no place and is left out: give it `at` or `on`, or let arrange "
                          "place it\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/noise.h"
+#include "sensor/noise.h"
 
 #include <algorithm>
 

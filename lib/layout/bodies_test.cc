@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/figures.h"
+#include "layout/bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 
 #include "env/mesh_cut.h"
 #include "layout/test_layout.h"
+#include "sensor/drawing.h"
 
 namespace ispace {
 
@@ -51,7 +52,7 @@ Box3 boundsOf(const std::vector<Mesh>& figure) {
 
 std::vector<Mesh> figure(const std::string& line) {
     const Scene made = scene("ispace size=8,6\n" + line + "\n");
-    return figureOf(made, made.placed.at(0));
+    return bodyOf(made, made.placed.at(0));
 }
 
 TEST(Figures, AreClosedAndFaceOutwards) {
@@ -87,13 +88,13 @@ TEST(Figures, EachRobotHasItsOwnModel) {
     const Scene made =
         scene("ispace size=8,6\n", "robot at=1,1 height=0.5\nlaser on=robot1\nrobot height=0.9\n");
     ASSERT_EQ(made.placed.size(), 3U);
-    EXPECT_EQ(boundsOf(figureOf(made, made.placed[0])).high.z, 0.5);
-    EXPECT_EQ(boundsOf(figureOf(made, made.placed[2])).high.z, 0.9);
+    EXPECT_EQ(boundsOf(bodyOf(made, made.placed[0])).high.z, 0.5);
+    EXPECT_EQ(boundsOf(bodyOf(made, made.placed[2])).high.z, 0.9);
 }
 
 TEST(Figures, SensorsShowWhereTheyFace) {
-    expectSolid(sensorMesh(), "laser");
-    EXPECT_EQ(sensorMesh().material, Material::Sensor);
+    expectSolid(noseBox(), "laser");
+    EXPECT_EQ(noseBox().material, Material::Sensor);
     for (const char* line : {"ranger at=0,0", "camera at=0,0", "ultrasound at=0,0"}) {
         // The front is at the optical centre, and smaller than what lies behind.
         const auto meshes = figure(line);
@@ -127,15 +128,15 @@ TEST(Figures, MatAndGateHaveTheirMeasures) {
 
 TEST(Figures, HumanIsAsHighAsWritten) {
     for (const double height : {0.5, 1.2, 1.7, 2.1}) {
-        const Box3 box = boundsOf(figureOfHuman(height));
+        const Box3 box = boundsOf(humanBodyOf(height));
         EXPECT_EQ(box.low.z, 0);
         EXPECT_NEAR(box.high.z, height, 1e-12);
         EXPECT_NEAR(box.high.y, humanRadius(height), 1e-12);
         EXPECT_NEAR(box.low.y, -humanRadius(height), 1e-12);
         EXPECT_LT(box.high.x, humanRadius(height));
-        for (const Mesh& mesh : figureOfHuman(height)) expectSolid(mesh, "human");
+        for (const Mesh& mesh : humanBodyOf(height)) expectSolid(mesh, "human");
     }
-    EXPECT_EQ(boundsOf(figure("human height=1.2")).high.z, boundsOf(figureOfHuman(1.2)).high.z);
+    EXPECT_EQ(boundsOf(figure("human height=1.2")).high.z, boundsOf(humanBodyOf(1.2)).high.z);
     EXPECT_NEAR(2 * humanRadius(1.7), 0.51, 1e-9);
 }
 
@@ -151,7 +152,7 @@ TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
     }
     // The figure has them there, too.
     Body body;
-    body.meshes = figureOfHuman(1.7);
+    body.meshes = humanBodyOf(1.7);
     Slice slice;
     cutMeshes(body, kScanHeight, slice);
     ASSERT_EQ(slice.solids.size(), 2U);
@@ -164,7 +165,7 @@ TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
 TEST(Figures, NothingForWhatHasNone) {
     const Scene made = scene("ispace size=8,6\n");
     Placed wrong;
-    EXPECT_TRUE(figureOf(made, wrong).empty());
+    EXPECT_TRUE(bodyOf(made, wrong).empty());
 }
 
 }  // namespace

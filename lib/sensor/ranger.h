@@ -2,14 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 
 #include "geom/pose.h"
-#include "layout/devices.h"
-#include "layout/laser.h"
-#include "layout/noise.h"
 #include "record/record.h"
+#include "sensor/field_of_view.h"
+#include "sensor/noise.h"
 
 namespace ispace {
 
@@ -57,23 +55,28 @@ struct Ranger {
     /// Where a pixel looks, in the sensor's frame: with forward component 1 of a pinhole (times a
     /// depth it is a place), of unit length of a spherical one (times a distance it is one).
     [[nodiscard]] Vec3 ray(double column, double row) const;
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] std::size_t rays() const { return pixels(); }
+    [[nodiscard]] bool looksAround(const Pose3& mount) const {
+        return projection == Projection::Spherical && fov_x >= Angle::degrees(360) &&
+               mount.isLevel();
+    }
     friend bool operator==(const Ranger&, const Ranger&) = default;
-};
-
-/// A ranger at its place; one on a robot where the robot starts.
-struct PlacedRanger {
-    std::string id;
-    Ranger ranger;
-    Pose3 pose;
-    std::optional<Mount> mount = {};
 };
 
 /// Figures of a `ranger` record: its explicit keys, else its model's, else the bare ranger's. A
 /// `fov` of one number gives the other by square pixels; one number in `range` is the maximum.
 /// \throws FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees
-///         or more, more than kMostPixels
-Ranger rangerOf(const Record& record, const DeviceCatalogue& devices);
+///         or more, more than kMaxPixels
+Ranger rangerOf(const Record& record, const Record* device = nullptr);
 Ranger withFigures(Ranger base, const Record& record);
-constexpr std::size_t kMostPixels = 1U << 26U;
+constexpr std::size_t kMaxPixels = 1U << 26U;
+
+/// All that it sees at a pose if nothing stands in its way.
+FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose);
+
+struct SensorKind;
+extern const SensorKind kRangerKind;
 
 }  // namespace ispace

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <limits>
 #include <string>
 
 #include "geom/pose.h"
-#include "layout/devices.h"
-#include "layout/laser.h"
-#include "layout/noise.h"
 #include "record/record.h"
+#include "sensor/field_of_view.h"
+#include "sensor/noise.h"
 
 namespace ispace {
+
+/// Least receivers that together locate a tag (thesis 3.4.3): where so many hear, floor is covered.
+constexpr std::size_t kLeastReceivers = 4;
 
 /// An ultrasonic receiver: hears a tag that is in reach, within a cone about its axis, and in
 /// sight.
@@ -20,6 +23,11 @@ struct Receiver {
     Angle fov = Angle::degrees(120);  ///< full angle of the cone
     double rate = 10;                 ///< measurements a second
     RangeNoise noise;                 ///< of the distance that the time of flight means
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] static bool looksAround(const Pose3& mount);
     friend bool operator==(const Receiver&, const Receiver&) = default;
 };
 
@@ -32,28 +40,27 @@ struct Tag {
     /// noise of this standard deviation. Else from times of flight.
     bool is_simple = false;
     double simple_sigma = 0.1;
-    friend bool operator==(const Tag&, const Tag&) = default;
-};
 
-struct PlacedReceiver {
-    std::string id;
-    Receiver receiver;
-    Pose3 pose;
-    std::optional<Mount> mount = {};
-};
-struct PlacedTag {
-    std::string id;
-    Tag tag;
-    Pose3 pose;
-    std::optional<Mount> mount = {};
+    static constexpr double max_range = std::numeric_limits<double>::infinity();
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
+    [[nodiscard]] static bool looksAround(const Pose3& /*mount*/) { return false; }
+    friend bool operator==(const Tag&, const Tag&) = default;
 };
 
 /// Figures of an `ultrasound` record: its explicit keys, else its model's, else the bare one's.
 /// \throws FormatError with all findings
-Receiver receiverOf(const Record& record, const DeviceCatalogue& devices);
+Receiver receiverOf(const Record& record, const Record* device = nullptr);
 Receiver withFigures(Receiver base, const Record& record);
 /// The same of a `tag` record.
-Tag tagOf(const Record& record, const DeviceCatalogue& devices);
+Tag tagOf(const Record& record, const Record* device = nullptr);
 Tag withFigures(Tag base, const Record& record);
+
+/// All that it hears at a pose if nothing stands in its way.
+FieldOfView fieldOfView(const Receiver& receiver, const Pose3& pose);
+
+struct SensorKind;
+extern const SensorKind kUltrasoundKind, kTagKind;
 
 }  // namespace ispace

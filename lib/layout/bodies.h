@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "env/mesh.h"
@@ -13,14 +14,14 @@ namespace ispace {
 /// at its pose (a sensor's optical centre, on the floor for the others). All are closed and seen
 /// from outside only. They are drawn, but stop neither rays nor robots.
 ///
-/// A laser is a small box with a nose where it faces; a ranger and a camera are boxes with lenses;
-/// an ultrasonic receiver is a disc across its axis, a tag a ball; a mat is a thin plate; a gate
-/// two posts across its heading with a head each at the beam's height; a robot is what sensors see
-/// of it, with a nose; a human is figureOfHuman().
-std::vector<Mesh> figureOf(const Scene& scene, const Placed& placed);
+/// A sensor's is that of its kind; a mat is a thin plate; a gate two posts across its heading with
+/// a head each at the beam's height; a robot is what sensors see of it, with a nose; a human is
+/// humanBodyOf().
+std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed);
 
-/// Body of a laser: a box with a nose that shows where it faces. Size of a URG-04LX.
-Mesh sensorMesh();
+/// What a placed sensor looks at, as a translucent sheet in its frame, see SensorKind::view; no
+/// farther than the plan is wide, so that a model stays in scale. Nothing for everything else.
+std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed);
 
 /// Body of a robot, centre of rotation on the floor at the origin: the box or cylinder that sensors
 /// see, with a nose.
@@ -29,7 +30,7 @@ Mesh robotMesh(const RobotModel& model);
 /// A person as in the thesis (fig. 5.10): a ball for the head, boxes for body and arms, legs as
 /// upright cylinders, so that a level laser at kScanHeight meets two circles. Facing +x, standing
 /// on the floor at the origin; proportions do not change with `height`.
-std::vector<Mesh> figureOfHuman(double height);
+std::vector<Mesh> humanBodyOf(double height);
 
 /// An upright box or cylinder, as part of something that stands on the floor.
 struct Upright {
@@ -38,8 +39,8 @@ struct Upright {
     double radius = 0;                       ///< of a cylinder; 0: a box
     double bottom = 0, top = 0;
 };
-/// figureOfHuman() as rays see it: its boxes and cylinders, the head as a cylinder around it.
-std::vector<Upright> uprightsOfHuman(double height);
+/// humanBodyOf() as rays see it: its boxes and cylinders, the head as a cylinder around it.
+std::vector<Upright> humanUprights(double height);
 
 /// What a level laser at kScanHeight meets of a person of that height, in the person's frame.
 std::vector<Polygon> legCircles(double height);

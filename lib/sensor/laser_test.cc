@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/laser.h"
+#include "sensor/laser.h"
 
 #include <gtest/gtest.h>
 
@@ -7,18 +7,21 @@
 #include <random>
 
 #include "env/environment.h"
-#include "layout/test_layout.h"
+#include "sensor/test_sensors.h"
 
 namespace ispace {
 
-using testing::devices;
 using testing::findings;
 
 namespace {
 
-Record record(const std::string& line) { return readRecord(line, "line", sceneSchemas()); }
+using testing::deviceFor;
+using testing::sensorRecord;
 
-Laser laser(const std::string& keys) { return laserOf(record("laser " + keys), devices()); }
+Laser laser(const std::string& keys) {
+    const Record record = sensorRecord("laser " + keys);
+    return laserOf(record, deviceFor(record));
+}
 
 std::string laserFindings(const std::string& keys) {
     return findings([&] { return laser(keys); });
@@ -82,12 +85,12 @@ TEST(LaserOf, DivisionByStepIsNotLostToRounding) {
     for (int beams = 2; beams < 2000; ++beams) {
         const double step = 0.1;
         const Record made = [&] {
-            Record out = record("laser");
+            Record out = sensorRecord("laser");
             out.set("fov", step * (beams - 1) > 360 ? 360 : step * (beams - 1));
             out.set("step", step);
             return out;
         }();
-        EXPECT_EQ(laserOf(made, devices()).beams, beams);
+        EXPECT_EQ(laserOf(made).beams, beams);
     }
 }
 
@@ -223,25 +226,6 @@ TEST(LaserOf, SweepsAreBounded) {
     EXPECT_NE(laserFindings("incidence=80,70"), "");
 }
 
-TEST(LaserOf, AModelOfAnotherKindIsToldApart) {
-    EXPECT_NE(laserFindings("model=pioneer-2dx")
-                  .find("line:1:13: error: model `pioneer-2dx` is a robot, not a laser"),
-              std::string::npos);
-}
-
-TEST(LaserOf, UnknownModelNamesTheNearestAndSaysWhereTheOthersAre) {
-    const std::string text = laserFindings("model=urg-4lx");
-    EXPECT_NE(text.find("unknown model `urg-4lx`, did you mean `urg-04lx`?"), std::string::npos)
-        << text;
-    EXPECT_NE(text.find("(scan --list-models names all)"), std::string::npos);
-    EXPECT_EQ(text.find("pioneer"), std::string::npos) << "no laser";
-    EXPECT_EQ(text.find("line:1:"), 0U) << text;
-    EXPECT_NE(findings([] {
-                  return laserOf(record("laser model=x"), DeviceCatalogue());
-              }).find("the device catalogue has no laser"),
-              std::string::npos);
-}
-
 TEST(Laser, SeesBetweenFirstAndLastBeamAtAnyTurn) {
     const Laser half;  // -90 .. 90
     for (const double turn : {-720.0, -360.0, 0.0, 360.0, 1080.0}) {
@@ -269,16 +253,16 @@ TEST(Laser, SeesBetweenFirstAndLastBeamAtAnyTurn) {
 }
 
 TEST(PoseOf, HeightIsThatOfAStandingSensorIfNotGiven) {
-    const Pose3 pose = poseOf(record("laser at=1,2 heading=30"));
+    const Pose3 pose = poseOf(sensorRecord("laser at=1,2 heading=30"));
     EXPECT_EQ(pose.position, (Point3{1, 2, kScanHeight}));
     EXPECT_EQ(pose.heading.degrees(), 30);
     EXPECT_TRUE(pose.isLevel());
-    const Pose3 tilted = poseOf(record("laser at=1,2,1.5 tilt=-30 roll=5"));
+    const Pose3 tilted = poseOf(sensorRecord("laser at=1,2,1.5 tilt=-30 roll=5"));
     EXPECT_EQ(tilted.position.z, 1.5);
     EXPECT_EQ(tilted.tilt.degrees(), -30);
     EXPECT_EQ(tilted.roll.degrees(), 5);
     EXPECT_FALSE(tilted.isLevel());
-    EXPECT_EQ(poseOf(record("laser on=r1 heading=5")),
+    EXPECT_EQ(poseOf(sensorRecord("laser on=r1 heading=5")),
               (Pose3{{0, 0, kScanHeight}, Angle::degrees(5), {}, {}}));
 }
 

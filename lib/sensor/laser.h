@@ -2,20 +2,18 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 
 #include "geom/pose.h"
-#include "layout/devices.h"
-#include "layout/noise.h"
 #include "record/record.h"
+#include "sensor/noise.h"
 
 namespace ispace {
 
 /// More beams than this are refused: no scanner has them, and a slip of the unit may ask for them.
-constexpr int kMostBeams = 1'000'000;
+constexpr int kMaxBeams = 1'000'000;
 /// The same for all beams of a sweep: they are one reading.
-constexpr double kMostSwept = 1e8;
+constexpr double kMaxSwept = 1e8;
 
 /// Which angle of its pose a laser changes from scan to scan of a sweep.
 enum class SweepAxis {
@@ -62,28 +60,20 @@ struct Laser {
     /// Seconds from the first measurement of a scan to that of a beam, and to its last.
     [[nodiscard]] double timeOf(int beam) const;
     [[nodiscard]] double duration() const;
+    /// Readings a second, how long one takes and its rays; a reading is a sweep or else a scan.
+    [[nodiscard]] double readingRate() const { return rate / scans(); }
+    [[nodiscard]] double readingTime() const { return duration() + (scans() - 1) / rate; }
+    [[nodiscard]] std::size_t rays() const {
+        return static_cast<std::size_t>(beams) * static_cast<std::size_t>(scans());
+    }
+    [[nodiscard]] bool looksAround(const Pose3& mount) const {
+        return mount.isLevel() && seesAround();
+    }
     friend bool operator==(const Laser&, const Laser&) = default;
-};
-
-/// What carries a sensor that moves.
-struct Mount {
-    std::size_t robot = 0;    ///< index in Scene::robots
-    Pose3 robot_from_sensor;  ///< z counts from the floor, as the robot's frame lies there
-};
-
-/// A laser at its place; one on a robot where the robot starts.
-struct PlacedLaser {
-    std::string id;
-    Laser laser;
-    Pose3 pose;
-    std::optional<Mount> mount = {};
 };
 
 /// A pose of a laser when it is `scans` scans (whole or not) into its sweep.
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
-
-/// World pose of a sensor on a robot, its heading within (-180, 180].
-Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor);
 
 /// Figures of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
@@ -94,14 +84,13 @@ Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor)
 /// (with the nearest name), min above max,
 ///         a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
 ///         a scan that takes longer than the next is due
-Laser laserOf(const Record& record, const DeviceCatalogue& devices);
+Laser laserOf(const Record& record, const Record* device = nullptr);
 
 /// `base` with the figures written in a record put in place of its own; the model stays.
 /// \throws FormatError as laserOf
 Laser withFigures(Laser base, const Record& record);
 
-/// Pose that a `laser` record writes; without `at` at 0,0, without z at kScanHeight. With `on` it
-/// is a pose in the frame of what carries the sensor.
-Pose3 poseOf(const Record& record);
+struct SensorKind;
+extern const SensorKind kLaserKind;
 
 }  // namespace ispace

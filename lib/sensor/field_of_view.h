@@ -3,14 +3,17 @@
 
 #include <cmath>
 
-#include "cover/range_rule.h"
 #include "geom/pose.h"
-#include "layout/ranger.h"
-#include "layout/ultrasound.h"
 
 namespace ispace {
 
-/// All that a ranger or a receiver would see if nothing stood in its way. Its edges are in it,
+/// The rule of all range tests: as float32, end included. A place looked at with a longer range,
+/// its distances kept as floats, then gives the same answer.
+inline bool withinRange(double distance, double max_range) {
+    return static_cast<float>(distance) <= static_cast<float>(max_range);
+}
+
+/// All that a sensor with an axis would see if nothing stood in its way. Its edges are in it,
 /// whatever rounding makes of them.
 struct FieldOfView {
     enum class Shape {
@@ -27,8 +30,12 @@ struct FieldOfView {
     /// half_y; of the cone its cosine, once.
     double across = 0, upright = 0;
 
-    explicit FieldOfView(const PlacedRanger& placed);
-    explicit FieldOfView(const PlacedReceiver& placed);
+    /// Half the fields of view across and upright, less than 90 degrees each.
+    static FieldOfView pyramid(const Pose3& pose, Angle half_x, Angle half_y, double max_range,
+                               bool is_by_depth);
+    static FieldOfView window(const Pose3& pose, Angle half_x, Angle half_y, double max_range);
+    /// `half`: between the axis and the edge.
+    static FieldOfView cone(const Pose3& pose, Angle half, double max_range);
 
     /// True if a place is in view and in range.
     [[nodiscard]] bool holds(Point3 place) const;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/laser.h"
+#include "sensor/laser.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/number.h"
-#include "env/environment.h"
-#include "layout/limits.h"
+#include "sensor/drawing.h"
+#include "sensor/keys.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -59,9 +60,9 @@ void applyBeams(Laser& laser, const Record& record, Diagnostics& findings) {
         count = written;
     }
     const std::string cause = beams ? "beams" : step ? "step" : "fov";
-    if (count > kMostBeams) {
+    if (count > kMaxBeams) {
         findings.add(record.finding(cause, formatDouble(count) + " beams, at most " +
-                                               std::to_string(kMostBeams) + " are possible"));
+                                               std::to_string(kMaxBeams) + " are possible"));
         return;
     }
     laser.beams = static_cast<int>(count);
@@ -82,10 +83,10 @@ void applySweep(Laser& laser, const Record& record, Diagnostics& findings) {
     if (record.has("sweep_span")) laser.sweep_span = record.angle("sweep_span");
     if (record.has("sweep_step")) laser.sweep_step = record.angle("sweep_step");
     const double beams = scansWithin(laser) * laser.beams;
-    if (laser.sweep != SweepAxis::None && beams > kMostSwept)
+    if (laser.sweep != SweepAxis::None && beams > kMaxSwept)
         findings.add(record.finding("sweep_step", "a sweep of " + formatDouble(beams) +
                                                       " beams, at most " +
-                                                      formatDouble(kMostSwept) + " are possible"));
+                                                      formatDouble(kMaxSwept) + " are possible"));
 }
 
 void applyTimes(Laser& laser, const Record& record, Diagnostics& findings) {
@@ -151,17 +152,8 @@ Laser withFigures(Laser base, const Record& record) {
     return base;
 }
 
-Laser laserOf(const Record& record, const DeviceCatalogue& devices) {
-    return modelled<Laser>(record, devices);
-}
-
-Pose3 poseOf(const Record& record) {
-    const bool placed = record.has("at");
-    const Tuple at = placed ? record.tuple("at") : Tuple{0, 0};
-    return {{at[0], at[1], at.size() > 2 ? at[2] : kScanHeight},
-            record.angle("heading"),
-            record.angle("tilt"),
-            record.angle("roll")};
+Laser laserOf(const Record& record, const Record* device) {
+    return figuresOf<Laser>(record, device);
 }
 
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans) {
@@ -182,14 +174,128 @@ Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans) {
     return pose;
 }
 
-Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {
-    const Point2 place = world_from_robot * robot_from_sensor.position.onFloor();
-    // Adding 0 makes -0 plain 0.
-    const Angle heading = wrapped(world_from_robot.heading + robot_from_sensor.heading) + Angle();
-    return {{place.x, place.y, robot_from_sensor.position.z},
-            heading,
-            robot_from_sensor.tilt,
-            robot_from_sensor.roll};
+namespace {
+
+void addSweepKeys(std::vector<KeySpec>& keys) {
+    keys.push_back({.name = "sweep",
+                    .type = KeyType::Choice,
+                    .help = "which of its angles changes from scan to scan, for a picture of the "
+                            "whole space",
+                    .choices = {"none", "heading", "tilt", "roll"}});
+    keys.push_back({.name = "sweep_span",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "by how much it changes in a sweep, from the angle written on; 360 "
+                            "without it",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
+    keys.push_back({.name = "sweep_step",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "by how much from scan to scan; 1 without it",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
 }
+
+void addLaserKeys(std::vector<KeySpec>& keys) {
+    keys.push_back(rangeKey("least and greatest distance measured, or the greatest alone"));
+    keys.push_back({.name = "fov",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "field of view, half of it to each side",
+                    .lower = 0,
+                    .upper = 360});
+    keys.push_back({.name = "step",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "angle between neighbouring beams",
+                    .lower = 0,
+                    .upper = 360,
+                    .lower_open = true});
+    keys.push_back({.name = "first",
+                    .type = KeyType::Number,
+                    .unit = Unit::Angle,
+                    .help = "bearing of the first beam",
+                    .lower = -360,
+                    .upper = 360});
+    keys.push_back({.name = "beams",
+                    .type = KeyType::Number,
+                    .help = "number of beams",
+                    .lower = 1,
+                    .upper = kMaxBeams});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "scans a second", kMaxRate));
+    keys.push_back({.name = "spin",
+                    .type = KeyType::Number,
+                    .unit = Unit::Frequency,
+                    .help = "turns a second of its beam, which give each beam its own time; below "
+                            "0 clockwise, 0: all beams at once",
+                    .lower = -kMaxRate,
+                    .upper = kMaxRate});
+    addSweepKeys(keys);
+    addNoiseKeys(keys);
+}
+
+Mesh fanOf(const Laser& laser, ViewLimits limits) {
+    Mesh mesh{Material::View, {}, {}, true};
+    const Angle span = laser.span();
+    addSheet(mesh, piecesOf(span), 1, [&](double u, double v) {
+        return (limits.near + v * (limits.far - limits.near)) *
+               directionOf(laser.first + u * span, {});
+    });
+    return mesh;
+}
+
+/// The ends of all beams of a sweep, in the frame of its first scan.
+Mesh sweptOf(const Sensor& sensor, ViewLimits limits) {
+    const Laser& laser = sensor.as<Laser>();
+    Mesh mesh{Material::View, {}, {}, true};
+    const Angle span = laser.span();
+    const Frame3 frame(sensor.pose);
+    addSheet(mesh, piecesOf(span), piecesOf(laser.sweep_span), [&](double u, double v) {
+        const double scans = v * (laser.sweep_span.degrees() / laser.sweep_step.degrees());
+        const Pose3 pose = sweptPose(laser, sensor.pose, scans);
+        return limits.far * frame.toLocal(frame.origin + pose.beam(laser.first + u * span));
+    });
+    return mesh;
+}
+
+Mesh viewOf(const Sensor& sensor, double reach) {
+    const Laser& laser = sensor.as<Laser>();
+    const ViewLimits range = viewLimits(laser.min_range, laser.max_range, reach);
+    return laser.sweep == SweepAxis::None ? fanOf(laser, range) : sweptOf(sensor, range);
+}
+
+std::vector<Mesh> body() { return {noseBox()}; }
+
+DeviceSummary summaryOf(const SensorModel& model) {
+    const Laser& laser = std::get<Laser>(model);
+    return {rangeText(laser.min_range, laser.max_range), degreesText(laser.span()),
+            std::to_string(laser.beams), formatDouble(laser.rate)};
+}
+
+}  // namespace
+
+const SensorKind kLaserKind = {
+    .keyword = "laser",
+    .noun = "laser",
+    .help = "planar laser range finder; bare: range=0,5 fov=180 step=1",
+    .heading_help = "direction of bearing 0, from +x",
+    .device_help = "a planar laser range finder one can buy",
+    .add_keys = addLaserKeys,
+    .body = body,
+    .read = [](const Record& record, const Record* device) -> SensorModel {
+        return laserOf(record, device);
+    },
+    .summary = summaryOf,
+    .view = viewOf,
+    .bearings = [](const SensorModel& model) -> BearingSpan {
+        const Laser& laser = std::get<Laser>(model);
+        return {laser.first, laser.first + laser.span(), laser.max_range};
+    },
+    .is_read = true,
+    .is_arranged = true,
+    .follows_poses = true};
 
 }  // namespace ispace

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace ispace {
+
+struct SensorKind;
+/// Cameras are read and drawn; nothing simulates them yet.
+extern const SensorKind kCameraKind;
+
+}  // namespace ispace

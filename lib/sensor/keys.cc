@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sensor/keys.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/number.h"
+#include "env/environment.h"
+
+namespace ispace {
+
+KeySpec idKey() { return {.name = "id", .type = KeyType::Word, .help = "name of the record"}; }
+
+KeySpec angleKey(std::string name, std::string help, double lower, double upper, Role role) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = Unit::Angle,
+            .help = std::move(help),
+            .default_value = 0.0,
+            .lower = lower,
+            .upper = upper,
+            .role = role};
+}
+
+KeySpec headingKey(std::string help) {
+    return angleKey("heading", std::move(help), -kFarthest, kFarthest, Role::Heading);
+}
+
+KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = unit,
+            .help = std::move(help),
+            .lower = 0,
+            .upper = upper,
+            .lower_open = true};
+}
+
+KeySpec modelKey() {
+    return {.name = "model",
+            .type = KeyType::Word,
+            .help = "device of the catalogue that gives the figures not written"};
+}
+
+KeySpec rangeKey(std::string help) {
+    return {.name = "range",
+            .type = KeyType::Tuple,
+            .unit = Unit::Length,
+            .help = std::move(help),
+            .min_count = 1,
+            .max_count = 2,
+            .lower = 0,
+            .upper = kFarthest};
+}
+
+void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help) {
+    keys.push_back({.name = "at",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "optical centre; height 0.15 without z; left out: to be placed, or "
+                            "with `on` 0,0",
+                    .min_count = 2,
+                    .max_count = 3,
+                    .lower = -kFarthest,
+                    .upper = kFarthest,
+                    .role = Role::Place,
+                    .standard_z = kScanHeight});
+    keys.push_back(headingKey(std::move(heading_help)));
+    keys.push_back(angleKey("tilt", "above level, negative looks down", -90, 90, Role::Tilt));
+    keys.push_back(angleKey("roll", "left side up", -180, 180));
+}
+
+KeySpec onKey() {
+    return {.name = "on",
+            .type = KeyType::Word,
+            .help =
+                "id of the robot or object that carries it: `at` and `heading` are in its "
+                "frame, z counts from the floor or from the object's top",
+            .role = Role::Carrier};
+}
+
+KeySpec costKey() {
+    KeySpec key =
+        positiveKey("cost", Unit::None, "of one, in any currency; for arrange --budget", kFarthest);
+    key.default_value = 1.0;
+    return key;
+}
+
+void addPictureKeys(std::vector<KeySpec>& keys, double widest) {
+    keys.push_back(rangeKey("least and greatest distance seen, or the greatest alone"));
+    keys.push_back({.name = "fov",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Angle,
+                    .help = "field of view across and upright; square pixels without the second",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = widest,
+                    .lower_open = true});
+    keys.push_back({.name = "pixels",
+                    .type = KeyType::Tuple,
+                    .help = "columns,rows of its picture",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = 1,
+                    .upper = 16384,
+                    .whole = true});
+    keys.push_back(positiveKey("rate", Unit::Frequency, "pictures a second", kMaxRate));
+}
+
+void applyRange(const Record& record, double& min_range, double& max_range, Diagnostics& findings) {
+    if (!record.has("range")) return;
+    const Tuple& range = record.tuple("range");
+    if (range.size() == 2) min_range = range.front();
+    max_range = range.back();
+    if (max_range <= 0)
+        findings.add(record.finding("range", "the greatest range is 0, it must be above 0"));
+    else if (min_range > max_range)
+        findings.add(record.finding("range", "the least range " + formatDouble(min_range) +
+                                                 " m is above the greatest, " +
+                                                 formatDouble(max_range) + " m"));
+}
+
+std::string rangeText(double least, double greatest) {
+    return formatDouble(least) + ".." + formatDouble(greatest);
+}
+
+std::string degreesText(Angle angle) {
+    return formatDouble(std::round(angle.degrees() * 100) / 100);
+}
+
+}  // namespace ispace

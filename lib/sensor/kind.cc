@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sensor/kind.h"
+
+#include <algorithm>
+#include <array>
+
+#include "sensor/camera.h"
+#include "sensor/keys.h"
+
+namespace ispace {
+
+namespace {
+
+/// The table. The first ones are the alternatives of SensorModel, in its order.
+constexpr std::array<const SensorKind*, 5> kKinds = {&kLaserKind, &kRangerKind, &kUltrasoundKind,
+                                                     &kTagKind, &kCameraKind};
+/// The order in which manuals list their records.
+constexpr std::array<const SensorKind*, 5> kSchemaOrder = {&kLaserKind, &kRangerKind, &kCameraKind,
+                                                           &kUltrasoundKind, &kTagKind};
+
+Schema schemaOf(const SensorKind& kind) {
+    Schema schema{.keyword = std::string(kind.keyword),
+                  .type = RecordType::Placement,
+                  .help = std::string(kind.help),
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back(modelKey());
+    addSensorPose(schema.keys, std::string(kind.heading_help));
+    kind.add_keys(schema.keys);
+    schema.keys.push_back(onKey());
+    schema.keys.push_back(costKey());
+    return schema;
+}
+
+}  // namespace
+
+std::span<const SensorKind* const> sensorKinds() { return kKinds; }
+
+const SensorKind* sensorKind(std::string_view keyword) {
+    const auto* const found =
+        std::find_if(kKinds.begin(), kKinds.end(),
+                     [&](const SensorKind* kind) { return kind->keyword == keyword; });
+    return found == kKinds.end() ? nullptr : *found;
+}
+
+const SensorKind& kindOf(const SensorModel& model) { return *kKinds[model.index()]; }
+
+std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
+    std::vector<std::string_view> keywords;
+    for (const SensorKind* kind : kKinds)
+        if (kind->*flag) keywords.push_back(kind->keyword);
+    return keywords;
+}
+
+std::vector<Schema> sensorSchemas() {
+    std::vector<Schema> schemas;
+    for (const SensorKind* kind : kSchemaOrder) schemas.push_back(schemaOf(*kind));
+    return schemas;
+}
+
+std::vector<Schema> sensorDeviceSchemas() {
+    std::vector<Schema> schemas;
+    for (const SensorKind* kind : kSchemaOrder)
+        if (!kind->device_help.empty())
+            schemas.push_back(deviceSchema(std::string(kind->keyword),
+                                           std::string(kind->device_help), kind->add_keys));
+    return schemas;
+}
+
+Schema deviceSchema(std::string keyword, std::string help,
+                    void (*add_keys)(std::vector<KeySpec>&)) {
+    Schema schema{.keyword = std::move(keyword),
+                  .type = RecordType::Placement,
+                  .help = std::move(help),
+                  .keys = {}};
+    schema.keys.push_back(idKey());
+    schema.keys.push_back({.name = "model",
+                           .type = KeyType::Word,
+                           .help = "what " + schema.keyword + " records call it",
+                           .required = true});
+    schema.keys.push_back({.name = "name", .type = KeyType::Text, .help = "maker and type"});
+    add_keys(schema.keys);
+    schema.keys.push_back({.name = "source",
+                           .type = KeyType::Text,
+                           .help = "public documents the figures come from",
+                           .required = true});
+    schema.keys.push_back({.name = "confidence",
+                           .type = KeyType::Choice,
+                           .help = "A maker's document, B second source, U unsure",
+                           .choices = {"A", "B", "U"},
+                           .required = true});
+    return schema;
+}
+
+}  // namespace ispace
