@@ -39,7 +39,7 @@ struct Figure {
 
 struct SensorFigures {
     std::string id, model;  ///< model "" for a bare sensor
-    const SensorKind* kind = nullptr;
+    const SensorKind* kind = &kLaserKind;
     std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
     Figure area = {};                       ///< of its region, m2; what a receiver hears
     Figure marginal = {};                   ///< lost if this sensor is removed, m2
@@ -100,7 +100,7 @@ struct CoverageReport {
 
 /// What one sensor sees.
 struct SensorView {
-    const SensorKind* kind = nullptr;
+    const SensorKind* kind = &kLaserKind;
     std::size_t index = 0;  ///< in Scene::sensors
     std::string id, model;
     Pose3 pose;

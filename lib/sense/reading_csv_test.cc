@@ -88,14 +88,13 @@ TEST(ReadingCsv, RangerRows) {
 }
 
 std::vector<Sensor> fourReceivers() {
-    std::vector<Sensor> receivers(4);
+    std::vector<Sensor> receivers(4, {"", Receiver(), {}});
     for (std::size_t i = 0; i < 4; ++i) receivers[i].id = "u" + std::to_string(i + 1);
     return receivers;
 }
 
 std::string rowOf(const Burst& burst) {
-    Sensor tag;
-    tag.id = "t1";
+    const Sensor tag{"t1", Tag(), {}};
     std::string out;
     appendBurstRow(out, tag, burst, fourReceivers());
     return out;

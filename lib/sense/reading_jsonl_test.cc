@@ -84,11 +84,8 @@ TEST(DepthJsonl, Spherical) {
 }
 
 std::string burstLine(const Burst& burst) {
-    Sensor tag;
-    tag.id = "t1";
-    std::vector<Sensor> receivers(2);
-    receivers[0].id = "u1";
-    receivers[1].id = "u2";
+    const Sensor tag{"t1", Tag(), {}};
+    const std::vector<Sensor> receivers = {{"u1", Receiver(), {}}, {"u2", Receiver(), {}}};
     std::string out;
     appendBurstLine(out, tag, burst, receivers);
     return out;

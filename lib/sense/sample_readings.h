@@ -17,8 +17,7 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// Three beams, at -90, 0 and 90 degrees.
 inline Sensor threeBeams() {
-    Sensor sensor;
-    sensor.id = "l1";
+    Sensor sensor{"l1", Laser(), {}};
     sensor.as<Laser>().max_range = 4;
     sensor.as<Laser>().step = Angle::degrees(90);
     sensor.as<Laser>().beams = 3;
@@ -33,8 +32,7 @@ inline Scan scanOf(const Pose3& pose, std::vector<float> ranges) {
 }
 
 inline Sensor smallRanger(Projection projection, int columns, int rows) {
-    Sensor sensor;
-    sensor.id = "r1";
+    Sensor sensor{"r1", Ranger(), {}};
     sensor.as<Ranger>().projection = projection;
     sensor.as<Ranger>().columns = columns;
     sensor.as<Ranger>().rows = rows;

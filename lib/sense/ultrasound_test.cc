@@ -24,10 +24,7 @@ RayWorld room(const std::string& lines = "") {
 
 Sensor receiverAt(const std::string& id, Point3 place, Angle tilt = kStraightDown,
                   Angle heading = {}) {
-    Sensor placed;
-    placed.id = id;
-    placed.pose = {place, heading, tilt, {}};
-    return placed;
+    return {id, Receiver(), {place, heading, tilt, {}}};
 }
 
 /// Rows of receivers below the ceiling, 1 m apart, u0, u1, ...
@@ -41,12 +38,7 @@ std::vector<Sensor> ceiling(double sigma = 0) {
     return receivers;
 }
 
-Sensor tagAt(Point3 place) {
-    Sensor placed;
-    placed.id = "t1";
-    placed.pose.position = place;
-    return placed;
-}
+Sensor tagAt(Point3 place) { return {"t1", Tag(), {place, {}, {}, {}}}; }
 
 std::vector<std::size_t> namesOf(const Burst& burst) {
     std::vector<std::size_t> names;
