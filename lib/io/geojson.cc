@@ -15,7 +15,6 @@
 #include "geom/boolean.h"
 #include "plan/elements.h"
 #include "plan/footprint.h"
-#include "plan/elements.h"
 
 namespace ispace {
 

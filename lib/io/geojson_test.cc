@@ -8,8 +8,8 @@
 #include <set>
 
 #include "geom/boolean.h"
-#include "plan/elements.h"
 #include "layout/test_layout.h"
+#include "plan/elements.h"
 
 namespace ispace {
 namespace {

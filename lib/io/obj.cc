@@ -12,9 +12,9 @@
 
 #include "base/number.h"
 #include "env/material.h"
-#include "plan/elements.h"
 #include "io/model.h"
 #include "io/model_triangles.h"
+#include "plan/elements.h"
 
 namespace ispace {
 

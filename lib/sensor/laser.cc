@@ -85,8 +85,8 @@ void applySweep(Laser& laser, const Record& record, Diagnostics& findings) {
     const double beams = scansWithin(laser) * laser.beams;
     if (laser.sweep != SweepAxis::None && beams > kMaxSwept)
         findings.add(record.finding("sweep_step", "a sweep of " + formatDouble(beams) +
-                                                      " beams, at most " +
-                                                      formatDouble(kMaxSwept) + " are possible"));
+                                                      " beams, at most " + formatDouble(kMaxSwept) +
+                                                      " are possible"));
 }
 
 void applyTimes(Laser& laser, const Record& record, Diagnostics& findings) {

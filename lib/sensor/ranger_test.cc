@@ -87,9 +87,7 @@ TEST(UltrasoundOf, ReceiversAndTags) {
     EXPECT_EQ(receiver("model=zps-3d").rate, 20);
     EXPECT_EQ(receiver("range=0.2,4").min_range, 0.2);
     EXPECT_NE(testing::findings([&] { return receiver("range=4,1"); }), "");
-    const auto tag = [](const std::string& keys) {
-        return figures("tag " + keys, tagOf);
-    };
+    const auto tag = [](const std::string& keys) { return figures("tag " + keys, tagOf); };
     EXPECT_EQ(tag(""), Tag());
     EXPECT_FALSE(tag("model=zps-3d-tag").is_simple);
     EXPECT_TRUE(tag("locate=simple sigma=0.2").is_simple);
