@@ -41,7 +41,9 @@ struct Tag {
     bool is_simple = false;
     double simple_sigma = 0.1;
 
-    static constexpr double max_range = std::numeric_limits<double>::infinity();
+    /// Those who hear it have a range, it has none.
+    double max_range = std::numeric_limits<double>::infinity();
+
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] static std::size_t rays() { return 64; }  ///< one for each of some receivers
