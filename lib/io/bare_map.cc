@@ -24,7 +24,7 @@ constexpr std::uint8_t kOpaque = 128;
 constexpr int kUnknown = 205;
 
 /// Transparent pixels as unknown ones, and no opacity any more.
-Picture onUnknown(Picture image) {
+GreyPicture onUnknown(GreyPicture image) {
     const auto unknown = static_cast<std::uint16_t>(image.max_value * kUnknown / 255);
     for (std::size_t i = 0; i < image.opacity.size(); ++i)
         if (image.opacity[i] < kOpaque) image.samples[i] = unknown;
@@ -144,7 +144,7 @@ Document readBarePicture(std::string_view bytes, const std::string& name,
             "a picture does not say how large its pixels are: say it with `envc --resolution M` "
             "(metres a pixel), or name the map.yaml that goes with it");
     const auto read_cells = [&]() -> CellMap {
-        const Picture image = onUnknown(parsePicture(bytes, name));
+        const GreyPicture image = onUnknown(parsePicture(bytes, name));
         checkCellMap(image.width, image.height, *options.resolution, name);
         return {freeCells(image, {}), occupiedCells(image, {}), *options.resolution,
                 options.origin};

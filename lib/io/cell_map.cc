@@ -166,7 +166,7 @@ class CellMapImport {
     }
 
     void keepRoom(const CellPieces& pieces, std::size_t piece, Cleaning& cleaning) {
-        RoomCells room = cutOut(pieces, piece);
+        MapRoom room = cutOut(pieces, piece);
         std::vector<Choice> choices;
         std::vector<CellPlace> keep;
         for (const Choice& choice : choices_) {
@@ -215,13 +215,13 @@ class CellMapImport {
 
     /// Cells of a room's grid within two of walls that were added. Nothing moves there, so that
     /// these reach the walls of the map as they were drawn to.
-    [[nodiscard]] std::optional<MapCells> besideBarriers(const RoomCells& room) const {
+    [[nodiscard]] std::optional<MapCells> besideBarriers(const MapRoom& room) const {
         if (!barrier_) return std::nullopt;
         return grown(cutOf(*barrier_, room.floor, room.offset), 2);
     }
 
     /// With a rim for what is given back.
-    [[nodiscard]] RoomCells cutOut(const CellPieces& pieces, std::size_t piece) const {
+    [[nodiscard]] MapRoom cutOut(const CellPieces& pieces, std::size_t piece) const {
         constexpr int kRim = 3;
         const CellPiece& box = pieces[piece];
         const CellPlace offset{box.lowest.x - kRim, box.lowest.y - kRim};
@@ -234,7 +234,7 @@ class CellMapImport {
         return {std::move(floor), std::move(occupied), offset};
     }
 
-    void keepReachable(RoomCells& room, const std::vector<CellPlace>& from) {
+    void keepReachable(MapRoom& room, const std::vector<CellPlace>& from) {
         const std::size_t before = room.floor.count();
         const std::string radius = formatDouble(*options_.reachable) + " m";
         room.floor = reachedByDisc(room.floor, *options_.reachable / map_.resolution, from);
@@ -248,7 +248,7 @@ class CellMapImport {
     }
 
     /// The floor under walls that were added, and a cell beyond, so that they are the border.
-    void giveBack(RoomCells& room) const {
+    void giveBack(MapRoom& room) const {
         const MapCells free = cutOf(map_.free, room.floor, room.offset);
         const MapCells near = grown(room.floor, 1);
         MapCells under(near.width(), near.height());
@@ -268,7 +268,7 @@ class CellMapImport {
     }
 
     /// \param tolerance in cells
-    void write(const RoomCells& room, double tolerance, const std::optional<MapCells>& rigid,
+    void write(const MapRoom& room, double tolerance, const std::optional<MapCells>& rigid,
                const std::vector<Choice>& choices) {
         Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
         const CellPlace widest = widestPlace(room.floor);

@@ -34,7 +34,7 @@ struct Opening {
     Point2 middle;  ///< in cells
 };
 
-std::vector<Opening> openingsOf(const CellMap& map, const RoomCells& room) {
+std::vector<Opening> openingsOf(const CellMap& map, const MapRoom& room) {
     std::vector<Opening> openings;
     const auto follow = [&](CellPlace at, CellPlace step, int count) {
         int length = 0;
@@ -67,7 +67,7 @@ struct BehindDoor {
     CellPlace place;
 };
 
-BehindDoor behindDoors(const CellMap& map, const RoomCells& room) {
+BehindDoor behindDoors(const CellMap& map, const MapRoom& room) {
     // In a grid that ends where the picture does.
     MapCells floor(map.free.width(), map.free.height());
     for (int y = 0; y < room.floor.height(); ++y)
@@ -84,7 +84,7 @@ BehindDoor behindDoors(const CellMap& map, const RoomCells& room) {
     return result;
 }
 
-void warnOfOpenings(const CellMap& map, const RoomCells& room, ImportRecords& out) {
+void warnOfOpenings(const CellMap& map, const MapRoom& room, ImportRecords& out) {
     std::vector<Opening> openings = openingsOf(map, room);
     std::erase_if(openings, [&map](const Opening& opening) {
         return opening.length * map.resolution < kLeastOpening;
@@ -132,7 +132,7 @@ void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<st
              (options.rooms == RoomChoice::All ? "" : ", and --rooms all keeps every closed room"));
 }
 
-void warnOfBorder(const CellMap& map, const RoomCells& room, double border_share,
+void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share,
                   ImportRecords& out) {
     if (border_share <= kOutsideShare) return warnOfOpenings(map, room, out);
     const BehindDoor inner = behindDoors(map, room);

@@ -19,8 +19,7 @@ void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<st
 /// Warns of a room that leaves the picture by an opening of 0.5 m or more. A room along most of the
 /// border, whose walls the picture's edges may well be, is warned of only where closing its doors
 /// would part a room from it.
-void warnOfBorder(const CellMap& map, const RoomCells& room, double border_share,
-                  ImportRecords& out);
+void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share, ImportRecords& out);
 
 /// Notes what was cleaned out of all rooms.
 void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& out);

@@ -182,7 +182,7 @@ std::string readImage(const MapHeader& header, const std::string& path, const st
 }
 
 /// Warns where the thresholds turn much of the picture from unknown to free.
-void warnOfUnknown(const Picture& image, const OccupancyRule& rule, ImportRecords& out) {
+void warnOfUnknown(const GreyPicture& image, const OccupancyRule& rule, ImportRecords& out) {
     if (const std::size_t count = unknownCountedFree(image, rule); count > 0)
         out.warn(countText(count, "pixel") +
                  " of shade 205, which map_server writes for unknown, count as free because "
@@ -192,7 +192,7 @@ void warnOfUnknown(const Picture& image, const OccupancyRule& rule, ImportRecord
 
 CellMap readCells(const MapHeader& header, const std::string& path, const std::string& name,
                   ImportRecords& out) {
-    const Picture image = parsePicture(readImage(header, path, name), path);
+    const GreyPicture image = parsePicture(readImage(header, path, name), path);
     checkCellMap(image.width, image.height, header.resolution, path);
     warnOfUnknown(image, header.rule, out);
     return {freeCells(image, header.rule), occupiedCells(image, header.rule), header.resolution,

@@ -20,7 +20,7 @@ constexpr int kFlank = 6;    ///< cells
 /// sides and what else is around it hangs together. So no line that parts floor opens.
 class SlitFilling {
   public:
-    explicit SlitFilling(RoomCells& room) : room_(room) {}
+    explicit SlitFilling(MapRoom& room) : room_(room) {}
 
     /// \return how many cells became floor
     std::size_t run() {
@@ -63,7 +63,7 @@ class SlitFilling {
         return sides >= 3 && groups == 1;
     }
 
-    RoomCells& room_;
+    MapRoom& room_;
     std::size_t filled_ = 0;
 };
 
@@ -170,7 +170,7 @@ struct Island {
 };
 
 /// Islands that are small enough to be noise at all.
-std::vector<Island> smallIslands(const RoomCells& room, const CellPieces& others, double resolution,
+std::vector<Island> smallIslands(const MapRoom& room, const CellPieces& others, double resolution,
                                  double widest) {
     std::vector<bool> is_occupied(others.size());
     others.forEachRun([&](const RowRun& run, std::size_t piece) {
@@ -204,7 +204,7 @@ std::size_t largestSpeckByChance(const std::vector<Island>& islands, std::size_t
     return largest;
 }
 
-void fillSpecks(RoomCells& room, double resolution, double widest, Cleaning& done) {
+void fillSpecks(MapRoom& room, double resolution, double widest, Cleaning& done) {
     const CellPieces others(complement(room.floor), CellPieces::Joined::ByCorners);
     const std::vector<Island> islands = smallIslands(room, others, resolution, widest);
     if (islands.empty()) return;
@@ -235,7 +235,7 @@ Cleaning& Cleaning::operator+=(const Cleaning& other) {
     return *this;
 }
 
-Cleaning cleanRoom(RoomCells& room, double resolution, double width,
+Cleaning cleanRoom(MapRoom& room, double resolution, double width,
                    const std::vector<CellPlace>& keep) {
     Cleaning done;
     if (resolution >= kCoarse * width) return done;

@@ -9,7 +9,7 @@
 namespace ispace {
 
 /// A room of a map, cut out with at least one row and column of other cells around it.
-struct RoomCells {
+struct MapRoom {
     MapCells floor, occupied;
     CellPlace offset;  ///< of the cut in the map
 };
@@ -45,7 +45,7 @@ struct Cleaning {
 /// Cells of 0.3 times the width and more mean something, and nothing is done. What is left is
 /// connected by sides. O(cells). \param resolution, width metres: of a cell, and below which
 /// features are noise
-Cleaning cleanRoom(RoomCells& room, double resolution, double width,
+Cleaning cleanRoom(MapRoom& room, double resolution, double width,
                    const std::vector<CellPlace>& keep);
 
 }  // namespace ispace

@@ -16,10 +16,10 @@ using testing::rowsOf;
 constexpr double kFine = 0.05;
 
 /// '.' floor, '#' occupied, ' ' unknown.
-RoomCells roomOf(const std::vector<std::string>& rows) {
+MapRoom roomOf(const std::vector<std::string>& rows) {
     const auto width = static_cast<int>(rows.front().size());
     const auto height = static_cast<int>(rows.size());
-    RoomCells room{MapCells(width, height), MapCells(width, height), {}};
+    MapRoom room{MapCells(width, height), MapCells(width, height), {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const char c =
@@ -31,16 +31,16 @@ RoomCells roomOf(const std::vector<std::string>& rows) {
 }
 
 TEST(CleanRoom, SpecksBecomeFloorAndLegsOfTablesStay) {
-    RoomCells room = roomOf({"####################",  //
-                             "#..................#",  //
-                             "#..#.....##........#",  //
-                             "#.............##...#",  //
-                             "#....    .....#....#",  //
-                             "#.... #  ..........#",  //
-                             "#....    ...    ...#",  //
-                             "#...........    ...#",  //
-                             "#..................#",  //
-                             "####################"});
+    MapRoom room = roomOf({"####################",  //
+                           "#..................#",  //
+                           "#..#.....##........#",  //
+                           "#.............##...#",  //
+                           "#....    .....#....#",  //
+                           "#.... #  ..........#",  //
+                           "#....    ...    ...#",  //
+                           "#...........    ...#",  //
+                           "#..................#",  //
+                           "####################"});
     const Cleaning done = cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), (std::vector<std::string>{"####################",  //
                                                             "#..................#",  //
@@ -65,7 +65,7 @@ TEST(CleanRoom, CoarseCellsMeanSomething) {
                                         "###.#####",  //
                                         "###.#####",  //
                                         "###.#####"};
-    RoomCells room = roomOf(rows);
+    MapRoom room = roomOf(rows);
     cleanRoom(room, 0.5, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), rows);
 }
@@ -79,13 +79,13 @@ TEST(CleanRoom, RaysThroughWindowsGoAndDoorsOfOneCellStay) {
         for (std::size_t x = 5; x < 35; ++x) rows[y][x] = '.';
     for (std::size_t y = 35; y < 38; ++y) rows[y][20] = '.';
     for (std::size_t x = 35; x < 58; ++x) rows[10][x] = '.';
-    RoomCells room = roomOf(rows);
+    MapRoom room = roomOf(rows);
     const Cleaning done = cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(room.floor.count(), 2U * 900 + 3);
     EXPECT_EQ(done.spikes, 1U);
     EXPECT_EQ(done.spike_cells, 23U);
     // A point on the ray keeps it.
-    RoomCells kept = roomOf(rows);
+    MapRoom kept = roomOf(rows);
     cleanRoom(kept, kFine, kNoiseWidth, {{50, 59}});
     EXPECT_EQ(kept.floor.count(), 2U * 900 + 3 + 23);
 }
@@ -98,7 +98,7 @@ TEST(CleanRoom, WhatHangsOnAStripGoesUnlessItIsARoom) {
         for (std::size_t x = 35; x < 40; ++x) rows[10][x] = '.';
         for (std::size_t y = 5; y < 5 + side; ++y)
             for (std::size_t x = 40; x < 40 + side; ++x) rows[y][x] = '.';
-        RoomCells room = roomOf(rows);
+        MapRoom room = roomOf(rows);
         cleanRoom(room, kFine, kNoiseWidth, {});
         return room.floor.count();
     };
@@ -107,18 +107,18 @@ TEST(CleanRoom, WhatHangsOnAStripGoesUnlessItIsARoom) {
 }
 
 TEST(CleanRoom, SlitsOfUnknownCloseAndThinWallsStay) {
-    RoomCells room = roomOf({"                              ",  //
-                             " ........ ........ .......... ",  //
-                             " ........ ........ .......... ",  //
-                             " ........ ........ .....#.... ",  //
-                             " ........ ........ .....#.... ",  //
-                             " ........ ..............#.... ",  //
-                             " ........ ..............#.... ",  //
-                             " ........ ........ .....#.... ",  //
-                             " ........ ........ .....#.... ",  //
-                             " .................#.....#.... ",  //
-                             " ........ ........#.....#.... ",  //
-                             "         ###      #     #     "});
+    MapRoom room = roomOf({"                              ",  //
+                           " ........ ........ .......... ",  //
+                           " ........ ........ .......... ",  //
+                           " ........ ........ .....#.... ",  //
+                           " ........ ........ .....#.... ",  //
+                           " ........ ..............#.... ",  //
+                           " ........ ..............#.... ",  //
+                           " ........ ........ .....#.... ",  //
+                           " ........ ........ .....#.... ",  //
+                           " .................#.....#.... ",  //
+                           " ........ ........#.....#.... ",  //
+                           "         ###      #     #     "});
     cleanRoom(room, 0.14, kNoiseWidth, {});
     // Dead ends of unknown became floor, above and below the door …
     EXPECT_TRUE(room.floor.contains(9, 9));
@@ -131,15 +131,15 @@ TEST(CleanRoom, SlitsOfUnknownCloseAndThinWallsStay) {
     EXPECT_FALSE(room.floor.contains(9, 0));
     EXPECT_FALSE(room.floor.contains(18, 11));
     // A line of unknown that parts two rooms stays, though the rooms hang together elsewhere.
-    RoomCells rooms = roomOf({"            ",  //
-                              " .......... ",  //
-                              " .......... ",  //
-                              " .......... ",  //
-                              "            ",  //
-                              " .......... ",  //
-                              " .......... ",  //
-                              " .......... ",  //
-                              "            "});
+    MapRoom rooms = roomOf({"            ",  //
+                            " .......... ",  //
+                            " .......... ",  //
+                            " .......... ",  //
+                            "            ",  //
+                            " .......... ",  //
+                            " .......... ",  //
+                            " .......... ",  //
+                            "            "});
     const auto before = rowsOf(rooms.floor);
     EXPECT_EQ(cleanRoom(rooms, kFine, kNoiseWidth, {{2, 2}, {2, 6}}).slit_cells, 0U);
     EXPECT_EQ(rowsOf(rooms.floor), before);
@@ -165,7 +165,7 @@ TEST(CleanRoom, BumpsOfWallsBecomeFlatAndCornersStay) {
     };
     stays(rough);
     stays(flat);
-    RoomCells room = roomOf(rough);
+    MapRoom room = roomOf(rough);
     cleanRoom(room, kFine, kNoiseWidth, {});
     EXPECT_EQ(rowsOf(room.floor), flat);
 }
@@ -173,7 +173,7 @@ TEST(CleanRoom, BumpsOfWallsBecomeFlatAndCornersStay) {
 TEST(CleanRoom, NoiseOverARectangleComesOutAsTheRectangle) {
     std::mt19937_64 random(2022);
     for (const unsigned percent : {1U, 2U, 4U}) {
-        RoomCells room{MapCells(206, 156), MapCells(206, 156), {}};
+        MapRoom room{MapCells(206, 156), MapCells(206, 156), {}};
         for (int y = 3; y < 153; ++y)
             for (int x = 3; x < 203; ++x)
                 (random() % 100 < percent ? room.occupied : room.floor).insert(x, y);
@@ -189,7 +189,7 @@ TEST(CleanRoom, NoiseOverARectangleComesOutAsTheRectangle) {
 // places: painting it on each would take hours.
 TEST(CleanRoom, FineCellsCostNoMoreThanCoarseOnes) {
     constexpr int kSide = 3000;
-    RoomCells room{MapCells(kSide, kSide), MapCells(kSide, kSide), {}};
+    MapRoom room{MapCells(kSide, kSide), MapCells(kSide, kSide), {}};
     for (int y = 1; y + 1 < kSide; ++y) room.floor.insertRun(y, 1, kSide - 2);
     room.floor.erase(kSide / 2, kSide / 2);
     const Cleaning done = cleanRoom(room, 0.0005, kNoiseWidth, {});
@@ -200,7 +200,7 @@ TEST(CleanRoom, FineCellsCostNoMoreThanCoarseOnes) {
 // 500 000 rooms along a lane: looking each up in a list of all took as many steps again.
 TEST(CleanRoom, LanesWithManyRooms) {
     constexpr int kLength = 2'000'001;
-    RoomCells room{MapCells(kLength, 5), MapCells(kLength, 5), {}};
+    MapRoom room{MapCells(kLength, 5), MapCells(kLength, 5), {}};
     room.floor.insertRun(0, 0, kLength - 1);
     for (int x = 0; x + 3 < kLength; x += 4)
         for (int y = 1; y < 4; ++y) room.floor.insertRun(y, x, x + 2);

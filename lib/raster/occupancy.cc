@@ -21,7 +21,7 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
 
 namespace {
 
-MapCells cellsThatAre(Cell kind, const Picture& image, const OccupancyRule& rule) {
+MapCells cellsThatAre(Cell kind, const GreyPicture& image, const OccupancyRule& rule) {
     using Mode = OccupancyRule::Mode;
     const bool averaged = rule.mode == Mode::Trinary && !image.opacity.empty();
     const bool wants_opaque = rule.mode == Mode::Scale && !image.opacity.empty();
@@ -42,15 +42,15 @@ MapCells cellsThatAre(Cell kind, const Picture& image, const OccupancyRule& rule
 
 }  // namespace
 
-MapCells freeCells(const Picture& image, const OccupancyRule& rule) {
+MapCells freeCells(const GreyPicture& image, const OccupancyRule& rule) {
     return cellsThatAre(Cell::Free, image, rule);
 }
 
-MapCells occupiedCells(const Picture& image, const OccupancyRule& rule) {
+MapCells occupiedCells(const GreyPicture& image, const OccupancyRule& rule) {
     return cellsThatAre(Cell::Occupied, image, rule);
 }
 
-std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule) {
+std::size_t unknownCountedFree(const GreyPicture& image, const OccupancyRule& rule) {
     constexpr int kUnknown = 205;
     const int grey = kUnknown * (image.max_value / 255);
     if (image.max_value % 255 != 0 || rule.negate || rule.mode == OccupancyRule::Mode::Raw ||

@@ -30,11 +30,11 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule);
 /// The free and the occupied cells of a map; the picture's top row becomes the highest row. Opacity
 /// is treated as map_server does: Trinary averages it with the colours; with Scale, pixels that
 /// are not opaque are unknown.
-MapCells freeCells(const Picture& image, const OccupancyRule& rule);
-MapCells occupiedCells(const Picture& image, const OccupancyRule& rule);
+MapCells freeCells(const GreyPicture& image, const OccupancyRule& rule);
+MapCells occupiedCells(const GreyPicture& image, const OccupancyRule& rule);
 
 /// How many samples of the shade that map_server writes for unknown (205 of 255, a darkness of
 /// 0.196) count as free. Nav2 writes a free_thresh of 0.25.
-std::size_t unknownCountedFree(const Picture& image, const OccupancyRule& rule);
+std::size_t unknownCountedFree(const GreyPicture& image, const OccupancyRule& rule);
 
 }  // namespace ispace

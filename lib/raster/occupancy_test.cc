@@ -59,7 +59,7 @@ TEST(Occupancy, RawTakesThePixelAsValue) {
 }
 
 TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
-    Picture image;
+    GreyPicture image;
     image.width = 2;
     image.height = 2;
     image.samples = {254, 0, 205, 254};

@@ -19,9 +19,9 @@ class PgmParser {
   public:
     PgmParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-    Picture parse() {
+    GreyPicture parse() {
         const bool plain = readMagic();
-        Picture image;
+        GreyPicture image;
         image.width = headerNumber("width", kMaxPgmPixels);
         image.height = headerNumber("height", kMaxPgmPixels);
         const std::int64_t pixels = std::int64_t{image.width} * image.height;
@@ -72,7 +72,7 @@ class PgmParser {
         return static_cast<int>(*number);
     }
 
-    void readPlain(Picture& image, std::size_t count) {
+    void readPlain(GreyPicture& image, std::size_t count) {
         // A sample takes a digit and a blank, so the file bounds what is allocated.
         image.samples.reserve(std::min(count, (bytes_.size() - at_) / 2 + 1));
         for (std::size_t i = 0; i < count; ++i) {
@@ -91,7 +91,7 @@ class PgmParser {
                  " behind the last one");
     }
 
-    void readRaw(Picture& image, std::size_t count) {
+    void readRaw(GreyPicture& image, std::size_t count) {
         const std::size_t width = image.max_value > 255 ? 2 : 1;
         // Exactly one blank ends the header: the next byte may be a sample that looks like one.
         if (at_ < bytes_.size() && !isBlank(bytes_[at_]))
@@ -106,7 +106,7 @@ class PgmParser {
             addSample(image, width == 1 ? byte(i) : byte(i) * 256 + byte(i + 1));
     }
 
-    void addSample(Picture& image, std::int64_t sample) const {
+    void addSample(GreyPicture& image, std::int64_t sample) const {
         if (sample > image.max_value)
             fail("sample " + std::to_string(sample) + " is above the maximum " +
                  std::to_string(image.max_value));
@@ -120,7 +120,7 @@ class PgmParser {
 
 }  // namespace
 
-Picture parsePgm(std::string_view bytes, const std::string& name) {
+GreyPicture parsePgm(std::string_view bytes, const std::string& name) {
     return PgmParser(bytes, name).parse();
 }
 

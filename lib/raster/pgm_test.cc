@@ -22,7 +22,7 @@ std::string errorOf(const std::string& bytes) {
 }
 
 TEST(Pgm, ReadsBinary) {
-    const Picture image =
+    const GreyPicture image =
         parsePgm("P5\n# by hand\n3 2 # of these\n255\n\x00\x01\x02\n\xfe\xff"s, "x");
     EXPECT_EQ(image.width, 3);
     EXPECT_EQ(image.height, 2);
@@ -32,13 +32,13 @@ TEST(Pgm, ReadsBinary) {
 }
 
 TEST(Pgm, ReadsSixteenBitsBigEndian) {
-    const Picture image = parsePgm("P5 2 1 65535\n\x01\x02\xff\xff"s, "x");
+    const GreyPicture image = parsePgm("P5 2 1 65535\n\x01\x02\xff\xff"s, "x");
     EXPECT_EQ(image.samples, (std::vector<std::uint16_t>{0x0102, 0xffff}));
     EXPECT_EQ(image.max_value, 65535);
 }
 
 TEST(Pgm, ReadsText) {
-    const Picture image = parsePgm("P2\n2 2\n1000\n0 7\n# rows\n1000\t999", "x");
+    const GreyPicture image = parsePgm("P2\n2 2\n1000\n0 7\n# rows\n1000\t999", "x");
     EXPECT_EQ(image.samples, (std::vector<std::uint16_t>{0, 7, 1000, 999}));
     EXPECT_EQ(image.max_value, 1000);
 }
@@ -91,7 +91,7 @@ TEST(Pgm, SurvivesEveryTruncationAndRandomBytes) {
         for (int flips = 0; flips < 3; ++flips)
             bytes[2 + random() % (bytes.size() - 2)] = static_cast<char>(random());
         try {
-            const Picture image = parsePgm(bytes, "x");
+            const GreyPicture image = parsePgm(bytes, "x");
             EXPECT_EQ(image.samples.size(), static_cast<std::size_t>(image.width * image.height));
         } catch (const FormatError&) {
             // Most of them are bad; none may do worse.

@@ -197,8 +197,8 @@ PictureDecoder& decoder(const std::string& format, const std::string& name) {
     return *reinterpret_cast<PictureDecoder*>(function);
 }
 
-Picture pictureOf(const DecodedPicture& decoded) {
-    Picture picture;
+GreyPicture pictureOf(const DecodedPicture& decoded) {
+    GreyPicture picture;
     picture.width = decoded.width;
     picture.height = decoded.height;
     picture.max_value = 3 * 255;
@@ -222,7 +222,7 @@ std::string foreignPicture(std::string_view bytes) {
     return format == nullptr ? "" : format->name;
 }
 
-Picture decodePicture(std::string_view bytes, const std::string& name) {
+GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
     const auto fail = [&name](const std::string& message) {
         throw FormatError(Diagnostic{displayName(name), 0, 0, message});
     };
@@ -253,7 +253,7 @@ bool isPicture(std::string_view bytes) {
     return is_pgm || isPng(bytes) || !foreignPicture(bytes).empty();
 }
 
-Picture parsePicture(std::string_view bytes, const std::string& name) {
+GreyPicture parsePicture(std::string_view bytes, const std::string& name) {
     if (isPng(bytes)) return parsePng(bytes, name);
     if (!foreignPicture(bytes).empty()) return decodePicture(bytes, name);
     if (bytes.starts_with("GIF8"))

@@ -9,7 +9,7 @@
 namespace ispace {
 
 /// A picture in shades of grey; row 0 is the top row, as in the file.
-struct Picture {
+struct GreyPicture {
     int width = 0, height = 0;
     int max_value = 255;                 ///< white; 1 .. 65535
     std::vector<std::uint16_t> samples;  ///< width * height, row by row, none above max_value.
@@ -24,7 +24,7 @@ bool isPicture(std::string_view bytes);
 /// and PPM.
 /// \param name the picture's file, for messages
 /// \throws FormatError
-Picture parsePicture(std::string_view bytes, const std::string& name);
+GreyPicture parsePicture(std::string_view bytes, const std::string& name);
 
 /// Pictures with more pixels are refused before anything is allocated.
 constexpr std::int64_t kMaxPgmPixels = 400'000'000;
@@ -33,7 +33,7 @@ constexpr std::int64_t kMaxPgmPixels = 400'000'000;
 /// is above 255), with comments in the header, and nothing after the last sample.
 /// \param name the picture's file, for messages
 /// \throws FormatError
-Picture parsePgm(std::string_view bytes, const std::string& name);
+GreyPicture parsePgm(std::string_view bytes, const std::string& name);
 
 /// Larger PNG pictures are refused before anything is allocated: they compress a thousandfold.
 constexpr std::int64_t kMaxPngPixels = 100'000'000;
@@ -44,7 +44,7 @@ bool isPng(std::string_view bytes);
 /// information (gAMA, iCCP, …) is ignored: maps store values, not colours.
 /// The result's max_value is 765 = 3 * 255.
 /// \throws FormatError: no PNG, damaged, too large
-Picture parsePng(std::string_view bytes, const std::string& name);
+GreyPicture parsePng(std::string_view bytes, const std::string& name);
 
 /// Pictures with more pixels are refused before they are decoded.
 constexpr std::int64_t kMaxDecodedPixels = 100'000'000;
@@ -57,6 +57,6 @@ std::string foreignPicture(std::string_view bytes);
 /// demand because OpenCV's imgcodecs loads 140 more libraries. Grey becomes
 /// three equal colours, 16 bits become 8.
 /// \throws FormatError: damaged, too large, or the module cannot be opened (with what to install)
-Picture decodePicture(std::string_view bytes, const std::string& name);
+GreyPicture decodePicture(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

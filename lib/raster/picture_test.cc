@@ -43,9 +43,9 @@ TEST(PictureModule, KnowsFormats) {
 }
 
 TEST(PictureModule, SameRoomInAllFormats) {
-    const Picture wanted = parsePicture(fileOf("pgm"), "room.pgm");
+    const GreyPicture wanted = parsePicture(fileOf("pgm"), "room.pgm");
     for (const char* suffix : {"jpg", "bmp", "tif", "webp"}) {
-        const Picture found = decodePicture(fileOf(suffix), suffix);
+        const GreyPicture found = decodePicture(fileOf(suffix), suffix);
         ASSERT_EQ(found.width, 160) << suffix;
         ASSERT_EQ(found.height, 120) << suffix;
         EXPECT_EQ(found.max_value, 765) << suffix;
@@ -57,7 +57,7 @@ TEST(PictureModule, SameRoomInAllFormats) {
 }
 
 TEST(PictureModule, TextOfPixels) {
-    const Picture picture = decodePicture("P3\n# by hand\n2 1 255\n255 0 0  1 2 3\n", "p.ppm");
+    const GreyPicture picture = decodePicture("P3\n# by hand\n2 1 255\n255 0 0  1 2 3\n", "p.ppm");
     EXPECT_EQ(picture.samples, (std::vector<std::uint16_t>{255, 6}));
 }
 

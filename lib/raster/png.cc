@@ -96,7 +96,7 @@ class PngImage {
 
 bool isPng(std::string_view bytes) { return bytes.starts_with(kSignature); }
 
-Picture parsePng(std::string_view bytes, const std::string& name) {
+GreyPicture parsePng(std::string_view bytes, const std::string& name) {
     if (!isPng(bytes)) fail(name, "not a PNG picture");
     const Chunks chunks = plainChunks(bytes, name);
     checkSize(chunks, name);
@@ -114,7 +114,7 @@ Picture parsePng(std::string_view bytes, const std::string& name) {
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(*image.get()));
     if (png_image_finish_read(image.get(), nullptr, pixels.data(), 0, nullptr) == 0) bad();
 
-    Picture picture;
+    GreyPicture picture;
     picture.width = static_cast<int>(image->width);
     picture.height = static_cast<int>(image->height);
     picture.max_value = 3 * 255;

@@ -26,7 +26,7 @@ std::string errorOf(const std::string& bytes) {
 }
 
 TEST(PngPicture, Grey) {
-    const Picture picture = parsePng(pngFile(3, 8, 0, {"\x00\x01\x02"s, "\xcd\xfe\xff"}), "x");
+    const GreyPicture picture = parsePng(pngFile(3, 8, 0, {"\x00\x01\x02"s, "\xcd\xfe\xff"}), "x");
     EXPECT_EQ(picture.width, 3);
     EXPECT_EQ(picture.height, 2);
     EXPECT_EQ(picture.max_value, 765);
@@ -45,10 +45,10 @@ TEST(PngPicture, BitsPaletteAndColours) {
 }
 
 TEST(PngPicture, Opacity) {
-    const Picture grey = parsePng(pngFile(2, 8, 4, {"\x80\xff\x20\x40"}), "x");
+    const GreyPicture grey = parsePng(pngFile(2, 8, 4, {"\x80\xff\x20\x40"}), "x");
     EXPECT_EQ(grey.samples, (Samples{384, 96}));
     EXPECT_EQ(grey.opacity, (Opacity{255, 64}));
-    const Picture color = parsePng(pngFile(1, 8, 6, {"\x01\x02\x03\x04"}), "x");
+    const GreyPicture color = parsePng(pngFile(1, 8, 6, {"\x01\x02\x03\x04"}), "x");
     EXPECT_EQ(color.samples, (Samples{6}));
     EXPECT_EQ(color.opacity, (Opacity{4}));
     // One entry of the palette is transparent.
@@ -58,7 +58,8 @@ TEST(PngPicture, Opacity) {
 }
 
 TEST(PngPicture, SixteenBitsAreRoundedAndNotBent) {
-    const Picture picture = parsePng(pngFile(4, 16, 0, {"\x00\x00\x80\x80\xcd\xcd\xff\xff"s}), "x");
+    const GreyPicture picture =
+        parsePng(pngFile(4, 16, 0, {"\x00\x00\x80\x80\xcd\xcd\xff\xff"s}), "x");
     EXPECT_EQ(picture.samples, (Samples{0, 3 * 128, 3 * 205, 765}));
 }
 
@@ -110,7 +111,8 @@ TEST(PngPicture, SurvivesEveryTruncationAndFlippedBits) {
 TEST(PngPicture, OpacityInMaps) {
     using Mode = OccupancyRule::Mode;
     // White and black, opaque and clear.
-    const Picture picture = parsePng(pngFile(4, 8, 4, {"\xff\xff\xff\x00\x00\xff\x00\x00"s}), "x");
+    const GreyPicture picture =
+        parsePng(pngFile(4, 8, 4, {"\xff\xff\xff\x00\x00\xff\x00\x00"s}), "x");
     const auto free = [&](Mode mode, double free_thresh) {
         OccupancyRule rule;
         rule.mode = mode;

@@ -18,7 +18,7 @@ constexpr std::size_t kMinSpike = 3;  ///< cells; smaller ones are bumps
 constexpr int kMinNear = 5;           ///< cells to a wall that is near
 
 /// The floor that is no strip: wider than a cell, and than `widest` cells where no wall is near.
-MapCells broadFloor(const RoomCells& room, int widest) {
+MapCells broadFloor(const MapRoom& room, int widest) {
     MapCells broad = opened(room.floor, widest + 1);
     const MapCells two = opened(room.floor, 2);
     const MapCells near = grown(room.occupied, std::max(kMinNear, widest));
@@ -150,7 +150,7 @@ class Strips {
 
 }  // namespace
 
-void removeSpikes(RoomCells& room, double resolution, double width,
+void removeSpikes(MapRoom& room, double resolution, double width,
                   const std::vector<CellPlace>& keep, Cleaning& done) {
     const MapCells broad =
         broadFloor(room, std::max(2, static_cast<int>(width / resolution * 1.001)));

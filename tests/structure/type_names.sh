@@ -82,8 +82,6 @@ expect 'class Other {\n    struct Look {' 'struct Look {' no
 expect 'using std::min;' 'using std::min;' no
 expect 'struct VisibilityMap {' 'struct VisibilityMap::Data {' no
 
-# Known ones, to be gone soon: nothing is added here.
-known='ispace::(Picture|RoomCells|CellRun|SensorKind) '
-found=$(doubled "$root" | grep -Ev "$known" || true)
+found=$(doubled "$root")
 [ -z "$found" ] || fail "$(printf 'names of types stand for two things\n%s' "$found")"
 [ -n "$(ls "$root"/lib/base/*.cc)" ] || fail "no sources in $root"
