@@ -102,7 +102,8 @@ void PlanDrawing::drawSensors() {
         const std::string& id = scene_.ids[placed.record];
         const std::string& keyword = record.keyword();
         const Pose2 pose = levelPose(placed);
-        std::string title = id + ": " + keyword;
+        std::string title = id;
+        title.append(": ").append(keyword);
         const SensorKind* kind = sensorKind(keyword);
         if (kind != nullptr && kind->perceives)
             title += " at height " +
