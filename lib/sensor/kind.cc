@@ -54,6 +54,7 @@ std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
 
 std::vector<Schema> sensorSchemas() {
     std::vector<Schema> schemas;
+    schemas.reserve(kSchemaOrder.size());
     for (const SensorKind* kind : kSchemaOrder) schemas.push_back(schemaOf(*kind));
     return schemas;
 }
