@@ -133,6 +133,7 @@ TEST(Picture, SectorsTurnCounterClockwiseAsSeen) {
         if (world) picture.pushView({10, {0, 0}, {50, 50}});
         picture.sector(world ? Point2{0, 0} : Point2{50, 50}, world ? 4 : 40, Angle::degrees(0),
                        Angle::degrees(90), {kRed});
+        if (world) picture.pop();
         const Pixels pixels(picture.write(PictureFormat::Png));
         EXPECT_EQ(pixels.at(70, 30), 0xFF0000U);
         EXPECT_EQ(pixels.at(70, 70), 0xFFFFFFU);
@@ -157,6 +158,7 @@ TEST(Picture, PlacesFarOffThePageDoNoHarm) {
     Picture picture(20, 20);
     picture.pushView({1e6, {0, 0}, {10, 10}});
     picture.area(Polygon{{-1e12, -1e12}, {1e12, -1e12}, {1e12, 1e12}, {-1e12, 1e12}}, {kRed});
+    picture.pop();
     EXPECT_EQ(Pixels(picture.write(PictureFormat::Png)).countOf(0xFF0000), 400);
 }
 
@@ -189,6 +191,7 @@ TEST(Picture, ImagesHaveSharpPixelsOfAnySize) {
     Picture world(20, 20);
     world.pushView({10, {0, 0}, {10, 10}});
     world.image({0, 0.5}, Image{1, 1, {0xFF0000}}, 0.5, 0.2);
+    world.pop();
     const Pixels seen(world.write(PictureFormat::Png));
     EXPECT_EQ(seen.countOf(0xFF0000), 10);
     EXPECT_EQ(seen.at(10, 5), 0xFF0000U);
@@ -324,6 +327,7 @@ TEST(Picture, HatchesFitTogetherByTheirOffset) {
     const Polygon all = {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}};
     picture.area(std::span(&all, 1), {Hatch{kRed, 12, 6, 0}});
     picture.area(std::span(&all, 1), {Hatch{kBlue, 12, 6, 6}});
+    picture.pop();
     const Pixels pixels(picture.write(PictureFormat::Png));
     // 45 degrees as seen: the same colour along a way up and right, the other one beside.
     EXPECT_EQ(pixels.at(31, 28), 0x0000FFU);
