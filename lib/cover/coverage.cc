@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cover/figures.h"
+#include "cover/metrics.h"
 #include "cover/sensor_views.h"
 #include "geom/boolean.h"
 #include "sense/scan.h"
@@ -15,12 +15,12 @@ namespace ispace {
 
 namespace {
 
-SensorFigures figuresOf(const Scene& scene, const SensorView& view) {
-    SensorFigures figures{.id = view.id, .model = view.model, .kind = view.kind};
+SensorMetrics metricsOf(const Scene& scene, const SensorView& view) {
+    SensorMetrics metrics{.id = view.id, .model = view.model, .kind = view.kind};
     if (const auto* laser = std::get_if<Laser>(&scene.sensors[view.index].model))
-        figures.slice_area = sliceArea(*laser, view.beams);
-    if (view.region) figures.area.exact = std::max(0.0, signedArea(*view.region));
-    return figures;
+        metrics.slice_area = sliceArea(*laser, view.beams);
+    if (view.region) metrics.area.exact = std::max(0.0, signedArea(*view.region));
+    return metrics;
 }
 
 /// Cells are a bit a sensor, twice: of its view, and of the set it is.
@@ -35,8 +35,8 @@ void mustFit(const Scene& scene, const Grid& grid) {
                          " GB: use fewer cells");
 }
 
-/// Exact figures, or the reason why there are none.
-void tryExactFigures(Coverage& coverage, const Environment& environment,
+/// Exact metrics, or the reason why there are none.
+void tryExactMetrics(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
     std::string& missing = coverage.report.exact_missing;
     for (const SensorView& view : coverage.sensors)
@@ -50,7 +50,7 @@ void tryExactFigures(Coverage& coverage, const Environment& environment,
             return;
         }
     try {
-        addExactFigures(coverage, environment, free_floor, zones);
+        addExactMetrics(coverage, environment, free_floor, zones);
     } catch (const FormatError& error) {
         missing = error.diagnostics().front().message;
     }
@@ -107,11 +107,11 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     report.free_area = totalArea(free_floor);
     report.sensors.reserve(coverage.sensors.size());
     for (const SensorView& view : coverage.sensors)
-        report.sensors.push_back(figuresOf(scene, view));
+        report.sensors.push_back(metricsOf(scene, view));
     const std::vector<Zone> zones = zonesOf(environment);
-    report.zones = zoneFiguresOf(environment, zones);
-    if (options.exact) tryExactFigures(coverage, environment, free_floor, zones);
-    addCellFigures(coverage, zones);
+    report.zones = zoneMetricsOf(environment, zones);
+    if (options.exact) tryExactMetrics(coverage, environment, free_floor, zones);
+    addCellMetrics(coverage, zones);
     return coverage;
 }
 

@@ -31,25 +31,25 @@ struct CoverageOptions {
     bool exact = true;  ///< closed forms beside the cells
 };
 
-/// A figure by cells and in closed form; one that is not known is empty (null in JSON), as a share
+/// A metric by cells and in closed form; one that is not known is empty (null in JSON), as a share
 /// by cells of what holds no centre of any.
-struct Figure {
+struct Metric {
     std::optional<double> grid, exact;
 };
 
-struct SensorFigures {
+struct SensorMetrics {
     std::string id, model;  ///< model "" for a bare sensor
     const SensorKind* kind = &kLaserKind;
     std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
-    Figure area = {};                       ///< of its region, m2; what a receiver hears
-    Figure marginal = {};                   ///< lost if this sensor is removed, m2
-    Figure overlap = {};                    ///< that others see, too, m2; not of receivers
+    Metric area = {};                       ///< of its region, m2; what a receiver hears
+    Metric marginal = {};                   ///< lost if this sensor is removed, m2
+    Metric overlap = {};                    ///< that others see, too, m2; not of receivers
 };
 
-struct ZoneFigures {
+struct ZoneMetrics {
     std::string id;
     double area = 0;       ///< of its indoor part, exact, m2
-    Figure coverage = {};  ///< of that part; exact is 0 where there is none
+    Metric coverage = {};  ///< of that part; exact is 0 where there is none
 };
 
 /// A connected piece of floor that no sensor sees.
@@ -64,28 +64,28 @@ constexpr double kLeastPiece = 1e-4;
 /// What another layout of the same room sees, beside this one.
 struct Comparison {
     std::string name;
-    Figure coverage;  ///< of the other one
-    Figure gained = {},
+    Metric coverage;  ///< of the other one
+    Metric gained = {},
            lost = {};  ///< indoor area seen by this layout alone, by the other alone, m2
 };
 
-/// The figures of DESIGN's `coverage --json`, and more.
+/// The metrics of DESIGN's `coverage --json`, and more.
 struct CoverageReport {
     std::string digest;
     Box2 limits;  ///< of the room; square cells may reach beyond
     Grid grid;
     double height = 0, plane = 0;
     double indoor_area = 0, free_area = 0;  ///< exact, m2
-    std::vector<SensorFigures> sensors;     ///< by kind
-    Figure total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
-    Figure overlap;                         ///< seen by two and more, m2; indoor or not
-    Figure coverage;                        ///< eq. (4.7), fraction of the indoor region
-    Figure free_coverage;                   ///< fraction of the free floor
+    std::vector<SensorMetrics> sensors;     ///< by kind
+    Metric total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
+    Metric overlap;                         ///< seen by two and more, m2; indoor or not
+    Metric coverage;                        ///< eq. (4.7), fraction of the indoor region
+    Metric free_coverage;                   ///< fraction of the free floor
     std::vector<double> redundancy;  ///< [k]: share of indoor cells seen by exactly k sensors (all
                                      ///< ultrasonic receivers count as one); all 0 where no cell
                                      ///< is indoor
     std::optional<std::vector<double>> redundancy_exact;
-    std::vector<ZoneFigures> zones;  ///< in the order of their records
+    std::vector<ZoneMetrics> zones;  ///< in the order of their records
     /// Connected pieces of the covered indoor floor (thesis 4.1 f) and the share of the largest in
     /// it, 0 without any; walls part them. Where that is not known exactly, of cells, which walls
     /// do not part.
@@ -94,7 +94,7 @@ struct CoverageReport {
     /// Pieces of the free floor that no sensor sees, the largest first. Likewise.
     std::vector<UnseenSpot> unseen;
     std::optional<Comparison> comparison;
-    /// Why exact figures of all together are missing; "" where they are there or nobody asked.
+    /// Why exact metrics of all together are missing; "" where they are there or nobody asked.
     std::string exact_missing;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures in closed form, against cells, against each other, and against what is known.
+// Metrics in closed form, against cells, against each other, and against what is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST(ExactCoverage, CellsConvergeToIt) {
                         2 * (bound + rim) / report.indoor_area);
             EXPECT_NEAR(*report.free_coverage.grid, *report.free_coverage.exact,
                         4 * (bound + rim) / report.free_area);
-            for (const SensorFigures& sensor : report.sensors) {
+            for (const SensorMetrics& sensor : report.sensors) {
                 EXPECT_NEAR(*sensor.area.grid, *sensor.area.exact, bound);
                 EXPECT_NEAR(*sensor.marginal.grid, *sensor.marginal.exact, bound);
             }
@@ -106,7 +106,7 @@ TEST(ExactCoverage, UnionIsThatOfInclusionAndExclusion) {
     }
 }
 
-TEST(ExactCoverage, FiguresFitTogether) {
+TEST(ExactCoverage, MetricsFitTogether) {
     for (unsigned seed = 60; seed < 80; ++seed) {
         const Scene scene = sceneOf(randomScene(seed, 5, {}));
         const CoverageReport report = coverageOf(scene, 10, 10).report;
@@ -120,7 +120,7 @@ TEST(ExactCoverage, FiguresFitTogether) {
         EXPECT_NEAR(*report.total_effective_area.exact,
                     *report.free_coverage.exact * report.free_area, 1e-5);
         double alone = 0;
-        for (const SensorFigures& sensor : report.sensors) {
+        for (const SensorMetrics& sensor : report.sensors) {
             seen += *sensor.area.exact;
             alone += *sensor.marginal.exact;
             EXPECT_NEAR(*sensor.marginal.exact + *sensor.overlap.exact, *sensor.area.exact, 1e-9);
@@ -303,7 +303,7 @@ TEST(ExactCoverage, OtherSensorsChangeNothingOfWhatOneSees) {
     }
 }
 
-TEST(ExactCoverage, ZonesHaveAreasWithoutExactFigures) {
+TEST(ExactCoverage, ZonesHaveAreasWithoutExactMetrics) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=8,8\nzone id=door at=1,0 size=1,1\n"
                            "laser at=0,0,1 sweep=tilt tilt=-30 sweep_span=20\n"))

@@ -118,7 +118,7 @@ TEST(CoveragePlaces, RangersInASolidSeeNothing) {
         coverageOf(sceneOf("ispace size=8,8\ncube at=1,1 size=1,1,1\n"
                            "ranger at=1,1,0.5 tilt=-60\nlaser at=1,1,0.9 tilt=-45 range=4\n"))
             .report;
-    for (const SensorFigures& sensor : report.sensors) {
+    for (const SensorMetrics& sensor : report.sensors) {
         EXPECT_EQ(sensor.area.grid, 0.0);
         EXPECT_EQ(sensor.area.exact, 0.0);
     }

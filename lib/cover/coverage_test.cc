@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "cover/coverage_files.h"
+#include "cover/coverage_formats.h"
 #include "cover/test_scenes.h"
 
 namespace ispace {
@@ -63,7 +63,7 @@ const char* const kOffice =
     "laser id=c at=3.5,5.9 heading=-90 fov=240\n"
     "laser id=d at=7,0.3,1.5 heading=120 fov=90 tilt=-20\n";
 
-TEST(Coverage, FiguresFitTogether) {
+TEST(Coverage, MetricsFitTogether) {
     const Coverage coverage = coverageOf(sceneOf(kOffice), 80, 60);
     const CoverageReport& report = coverage.report;
     ASSERT_EQ(report.redundancy.size(), 5U);
@@ -177,7 +177,7 @@ TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     EXPECT_EQ(makeTarget(scene.environment, CellCount{60, 40}, 1.01).free.count(), 2400U);
 }
 
-TEST(CoverageJson, FiguresHaveNoDigitsThatRoundingMade) {
+TEST(CoverageJson, MetricsHaveNoDigitsThatRoundingMade) {
     const Scene scene =
         sceneOf("ispace size=6,4\nlaser id=l1 at=-1,0.3 range=3 fov=123\nlaser at=1.1,0 fov=77\n");
     const std::string json = coverageJson(coverageOf(scene).report);

@@ -83,7 +83,7 @@ Page layOut(const MapPicture& map) {
     return page;
 }
 
-/// Title and main figures, of which as many as fit.
+/// Title and main metrics, of which as many as fit.
 void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     if (map.options.title.empty()) return;
     const double width = page.width - 2 * page.margin;
@@ -91,7 +91,7 @@ void drawHead(Picture& picture, const MapPicture& map, const Page& page) {
     picture.text({page.margin, page.title_base}, fitText(map.options.title, width, title), title);
     const TextStyle style{page.em, false, Align::Left, palette::kFaintInk, {}};
     std::string line;
-    for (const std::string& part : mainFigures(map)) {
+    for (const std::string& part : mainMetrics(map)) {
         std::string longer = line;
         if (!line.empty()) longer += " · ";
         longer += part;

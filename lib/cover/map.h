@@ -34,7 +34,7 @@ struct MapOptions {
 };
 
 /// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
-/// heading and view, the largest unseen spots, legend, scale bar, the figures. Returns the bytes of
+/// heading and view, the largest unseen spots, legend, scale bar, the metrics. Returns the bytes of
 /// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, whatever
 /// the size of the picture sharp, or from cells where there is none.
 ///

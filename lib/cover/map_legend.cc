@@ -22,29 +22,29 @@ std::string area(double value) {
 
 using Format = std::string (*)(double);
 
-/// A block whose first column holds exact figures and the second those by cells, if any is exact.
-LegendBlock figureBlock(std::string title, bool exact) {
+/// A block whose first column holds exact metrics and the second those by cells, if any is exact.
+LegendBlock metricBlock(std::string title, bool exact) {
     LegendBlock block{std::move(title), {}};
     if (exact) block.columns = {"exact", "cells"};
     return block;
 }
 
 /// Sets the values of an item of such a block.
-void setFigure(LegendItem& item, const LegendBlock& block, const Figure& figure, Format format) {
+void setMetric(LegendItem& item, const LegendBlock& block, const Metric& metric, Format format) {
     const bool columns = !block.columns[0].empty();
     const auto text = [format](const std::optional<double>& value) {
         return value ? format(*value) : std::string("–");
     };
-    item.value = text(columns || !figure.grid ? figure.exact : figure.grid);
-    if (columns) item.second = text(figure.grid);
+    item.value = text(columns || !metric.grid ? metric.exact : metric.grid);
+    if (columns) item.second = text(metric.grid);
 }
 
-LegendBlock figuresBlock(const CoverageReport& report, bool terse) {
-    LegendBlock block = figureBlock(report.coverage.exact ? "Figures" : "Figures by cells",
+LegendBlock metricsBlock(const CoverageReport& report, bool terse) {
+    LegendBlock block = metricBlock(report.coverage.exact ? "Figures" : "Figures by cells",
                                     report.coverage.exact.has_value());
-    const auto add = [&block](std::string text, const Figure& figure, Format format) {
+    const auto add = [&block](std::string text, const Metric& metric, Format format) {
         LegendItem item{Sign::None, {}, {}, std::move(text), ""};
-        setFigure(item, block, figure, format);
+        setMetric(item, block, metric, format);
         block.items.push_back(std::move(item));
     };
     const auto add_area = [&block](std::string text, double value) {
@@ -74,18 +74,18 @@ double shareOf(const std::vector<double>& shares, std::size_t first, std::size_t
 }
 
 /// How much of the indoor floor is seen by first .. end - 1 sensors.
-Figure shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t end) {
-    Figure figure;
-    if (report.coverage.grid) figure.grid = shareOf(report.redundancy, first, end);
-    if (report.redundancy_exact) figure.exact = shareOf(*report.redundancy_exact, first, end);
-    return figure;
+Metric shareSeenBy(const CoverageReport& report, std::size_t first, std::size_t end) {
+    Metric metric;
+    if (report.coverage.grid) metric.grid = shareOf(report.redundancy, first, end);
+    if (report.redundancy_exact) metric.exact = shareOf(*report.redundancy_exact, first, end);
+    return metric;
 }
 
 LegendBlock shadesBlock(const CoverageReport& report) {
-    LegendBlock block = figureBlock("Floor seen by", report.redundancy_exact.has_value());
+    LegendBlock block = metricBlock("Floor seen by", report.redundancy_exact.has_value());
     const auto add = [&](Color color, std::string text, std::size_t first, std::size_t end) {
         LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
-        setFigure(item, block, shareSeenBy(report, first, end), percent);
+        setMetric(item, block, shareSeenBy(report, first, end), percent);
         block.items.push_back(std::move(item));
     };
     add(palette::kFloor, "no sensor", 0, 1);
@@ -104,10 +104,10 @@ LegendBlock shadesBlock(const CoverageReport& report) {
 }
 
 LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
-    LegendBlock block = figureBlock("Floor seen by", report.redundancy_exact.has_value());
+    LegendBlock block = metricBlock("Floor seen by", report.redundancy_exact.has_value());
     const std::size_t all = report.redundancy.size();
     const auto add = [&](LegendItem item, std::size_t first, std::size_t end) {
-        setFigure(item, block, shareSeenBy(report, first, end), percent);
+        setMetric(item, block, shareSeenBy(report, first, end), percent);
         block.items.push_back(std::move(item));
     };
     using namespace palette;
@@ -119,14 +119,14 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
     return block;
 }
 
-Figure sum(const Figure& a, const Figure& b, double factor) {
+Metric sum(const Metric& a, const Metric& b, double factor) {
     const auto add = [factor](std::optional<double> x, std::optional<double> y) {
         return x && y ? std::optional(std::max(0.0, *x + factor * *y)) : std::nullopt;
     };
     return {add(a.grid, b.grid), add(a.exact, b.exact)};
 }
 
-Figure areaOf(const Figure& share, double whole) {
+Metric areaOf(const Metric& share, double whole) {
     const auto times = [whole](std::optional<double> x) {
         return x ? std::optional(whole * *x) : std::nullopt;
     };
@@ -136,19 +136,19 @@ Figure areaOf(const Figure& share, double whole) {
 /// The four kinds of floor of a comparison, m2.
 LegendBlock comparisonBlock(const CoverageReport& report) {
     const Comparison comparison = report.comparison.value_or(Comparison{});
-    LegendBlock block = figureBlock("Indoor floor", comparison.gained.exact.has_value());
-    const auto add = [&](Sign sign, Color color, Color edge, std::string text, Figure figure) {
+    LegendBlock block = metricBlock("Indoor floor", comparison.gained.exact.has_value());
+    const auto add = [&](Sign sign, Color color, Color edge, std::string text, Metric metric) {
         LegendItem item{sign, color, edge, std::move(text), ""};
-        setFigure(item, block, figure, area);
+        setMetric(item, block, metric, area);
         block.items.push_back(std::move(item));
     };
-    const Figure now = areaOf(report.coverage, report.indoor_area);
-    const Figure any = sum(now, comparison.lost, 1);
+    const Metric now = areaOf(report.coverage, report.indoor_area);
+    const Metric any = sum(now, comparison.lost, 1);
     using namespace palette;
     add(Sign::Patch, kBoth, kObjectEdge, "kept", sum(now, comparison.gained, -1));
     add(Sign::Patch, kGained, kObjectEdge, "gained", comparison.gained);
     add(Sign::Hatched, kLost, kLostHatch, "lost", comparison.lost);
-    const Figure whole{report.indoor_area, report.indoor_area};
+    const Metric whole{report.indoor_area, report.indoor_area};
     add(Sign::Patch, kFloor, kObjectEdge, "unseen", sum(whole, any, -1));
     return block;
 }
@@ -228,12 +228,12 @@ LegendBlock zonesBlock(const CoverageReport& report, bool terse) {
     const bool exact = std::any_of(report.zones.begin(), report.zones.end(), [](const auto& zone) {
         return zone.coverage.exact.has_value();
     });
-    LegendBlock block = figureBlock("Zones", exact);
+    LegendBlock block = metricBlock("Zones", exact);
     const std::size_t listed = listedOf(report.zones.size(), terse ? 3 : 7);
     for (std::size_t i = 0; i < listed; ++i) {
         LegendItem item{Sign::None, {}, {}, report.zones[i].id, ""};
         if (report.zones[i].area > 0)
-            setFigure(item, block, report.zones[i].coverage, percent);
+            setMetric(item, block, report.zones[i].coverage, percent);
         else
             item.value = "outside";
         block.items.push_back(std::move(item));
@@ -306,10 +306,10 @@ MapContents contentsOf(const Scene& scene, const Coverage& coverage) {
     return contents;
 }
 
-std::vector<std::string> mainFigures(const MapPicture& map) {
+std::vector<std::string> mainMetrics(const MapPicture& map) {
     const CoverageReport& report = map.coverage.report;
-    const auto best = [](const Figure& figure) {
-        return figure.exact ? figure.exact : figure.grid;
+    const auto best = [](const Metric& metric) {
+        return metric.exact ? metric.exact : metric.grid;
     };
     std::vector<std::string> parts;
     if (const auto share = best(report.coverage)) {
@@ -336,7 +336,7 @@ std::vector<std::string> mainFigures(const MapPicture& map) {
 std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
     const CoverageReport& report = map.coverage.report;
     const MapContents contents = contentsOf(map.scene, map.coverage);
-    std::vector<LegendBlock> blocks = {figuresBlock(report, map.terse)};
+    std::vector<LegendBlock> blocks = {metricsBlock(report, map.terse)};
     if (map.other != nullptr)
         blocks.push_back(comparisonBlock(report));
     else if (map.options.color == MapColor::Sensor)

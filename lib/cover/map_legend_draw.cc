@@ -11,7 +11,7 @@ namespace {
 
 // Of the size of text: from one line to the next, and between blocks.
 constexpr double kLine = 1.5, kBlockGap = 0.9;
-// Likewise: between columns of figures, and the place of a sign.
+// Likewise: between columns of metrics, and the place of a sign.
 constexpr double kColumnGap = 0.7, kSignWidth = 1.6;
 
 using Sign = LegendItem::Sign;
@@ -75,7 +75,7 @@ void drawSign(Picture& picture, const LegendItem& item, double left, double y, d
     }
 }
 
-/// How far the columns of a block's figures reach from its right side.
+/// How far the columns of a block's metrics reach from its right side.
 struct ColumnWidths {
     double second = 0;  ///< without its gap; 0: there is one column only
     double first = 0;   ///< of the first alone
@@ -88,7 +88,7 @@ ColumnWidths columnsOf(const LegendBlock& block, double em) {
     widths = {textWidth(block.columns[1], style), textWidth(block.columns[0], style)};
     for (const LegendItem& item : block.items) {
         widths.second = std::max(widths.second, textWidth(item.second, style));
-        // A figure alone may take more than its column.
+        // A metric alone may take more than its column.
         if (!item.second.empty())
             widths.first = std::max(widths.first, textWidth(item.value, style));
     }

@@ -46,7 +46,7 @@ TEST(MapLegend, SharesOfTheClassesAreThoseOfTheReport) {
     EXPECT_EQ(many[5].value, "75.0%");
 }
 
-TEST(MapLegend, ExactFiguresStandBesideThoseByCells) {
+TEST(MapLegend, ExactMetricsStandBesideThoseByCells) {
     const Scene scene = sceneOf("ispace size=8,8\nlaser at=0,0 fov=90 range=3\n");
     Coverage coverage = coverageOf(scene);
     const MapOptions options;
@@ -59,14 +59,14 @@ TEST(MapLegend, ExactFiguresStandBesideThoseByCells) {
     EXPECT_EQ(blocks[0].items[0].second, "57.7%");
     EXPECT_EQ(blocks[1].items[0].value, "41.0%");
     EXPECT_EQ(blocks[1].items[0].second, "40.0%");
-    EXPECT_EQ(mainFigures({scene, coverage, options})[0], "Coverage 57.8% (cells 57.7%)");
+    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.8% (cells 57.7%)");
 
     coverage.report.coverage.exact.reset();
     blocks = legendBlocks({scene, coverage, options});
     EXPECT_EQ(blocks[0].title, "Figures by cells");
     EXPECT_EQ(blocks[0].columns[0], "");
     EXPECT_EQ(blocks[0].items[0].value, "57.7%");
-    EXPECT_EQ(mainFigures({scene, coverage, options})[0], "Coverage 57.7% by cells");
+    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.7% by cells");
 }
 
 TEST(MapLegend, NamesTheKindsOfSensors) {
@@ -157,7 +157,7 @@ TEST(MapLegend, ComparisonsAddUp) {
     EXPECT_EQ(sensors.back().text, "old.3dm");
     EXPECT_EQ(sensors.back().value, "1 laser");
     EXPECT_TRUE(sensors.back().mark.hollow);
-    EXPECT_EQ(mainFigures(map),
+    EXPECT_EQ(mainMetrics(map),
               (std::vector<std::string>{"Coverage 50.0% (cells 50.0%)", "gained 20.0 m²",
                                         "lost 4.00 m²", "old.3dm 25.0%"}));
 }

@@ -161,8 +161,8 @@ struct LegendBlock {
 };
 
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
-/// The main figures, the most important first, for a line below the title.
-std::vector<std::string> mainFigures(const MapPicture& map);
+/// The main metrics, the most important first, for a line below the title.
+std::vector<std::string> mainMetrics(const MapPicture& map);
 
 /// Blocks shared out over columns, in order.
 struct LegendLayout {

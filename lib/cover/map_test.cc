@@ -104,7 +104,7 @@ TEST(Map, SvgHasLayersWithTheRecordsIds) {
     EXPECT_NE(svg.find(">door</text>"), std::string::npos);
 }
 
-TEST(Map, SvgHoldsTitleIdsAndFiguresAsText) {
+TEST(Map, SvgHoldsTitleIdsAndMetricsAsText) {
     const std::string svg =
         mapOf("ispace size=8,8\nlaser id=left-one at=0,0 heading=45 fov=90 range=20\n",
               {PictureFormat::Svg, 1200, "a <b> & \"c\""});
@@ -132,7 +132,7 @@ TEST(Map, HostileNamesAreOnlyText) {
     }
 }
 
-TEST(Map, HeadShowsAsManyFiguresAsFit) {
+TEST(Map, HeadShowsAsManyMetricsAsFit) {
     const std::string wide = mapOf(kOffice, {PictureFormat::Svg, 1200, "office"});
     EXPECT_NE(wide.find("· 4 lasers</text>"), std::string::npos);
     const std::string narrow = mapOf(kOffice, {PictureFormat::Svg, 250, "office"});

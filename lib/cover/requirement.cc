@@ -26,7 +26,7 @@ std::string percent(double share, double required) {
 /// What a requirement is about.
 struct Subject {
     std::string what;
-    Figure share;
+    Metric share;
     double area = 0;
 };
 
@@ -35,9 +35,9 @@ Subject subjectOf(const Requirement& requirement, const CoverageReport& report) 
         case Requirement::Of::Free:
             return {"free coverage", report.free_coverage, report.free_area};
         case Requirement::Of::Zone: {
-            const ZoneFigures& zone = *std::find_if(
+            const ZoneMetrics& zone = *std::find_if(
                 report.zones.begin(), report.zones.end(),
-                [&requirement](const ZoneFigures& one) { return one.id == requirement.zone; });
+                [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
             return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
         }
         case Requirement::Of::Indoor:
@@ -76,16 +76,16 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
 
 Verdict judge(const Requirement& requirement, const CoverageReport& report) {
     constexpr double kExactError = 1e-7;
-    const auto [what, figure, area] = subjectOf(requirement, report);
-    if (!figure.exact && !figure.grid)
+    const auto [what, metric, area] = subjectOf(requirement, report);
+    if (!metric.exact && !metric.grid)
         return {false, what +
                            " is not known: no centre of a cell lies there, and exact figures are "
                            "missing; use smaller cells (--cell)"};
-    const double share = figure.exact ? *figure.exact : *figure.grid;
+    const double share = metric.exact ? *metric.exact : *metric.grid;
     std::string text = what + " is " + percent(share, requirement.share) +
-                       (figure.exact ? " (exact)" : " (by cells)");
+                       (metric.exact ? " (exact)" : " (by cells)");
     const std::string required = formatPercent(requirement.share);
-    if (share >= requirement.share - (figure.exact ? kExactError : 0))
+    if (share >= requirement.share - (metric.exact ? kExactError : 0))
         return {true, text + ", as required (" + required + ")"};
     text += ", below the required " + required;
     if (area <= 0) return {false, text + ": it has no floor in the room"};

@@ -24,7 +24,7 @@ Requirement parseRequirement(std::string_view text);
 /// \throws UsageError if it is about a zone that the room does not have, with the nearest name
 void mustHaveZone(const Requirement& requirement, const Environment& environment);
 
-/// Whether it is met, and a sentence without end that says by which figure: "coverage is 50.00%
+/// Whether it is met, and a sentence without end that says by which metric: "coverage is 50.00%
 /// (exact), as required (40%)", or with what is missing: "coverage is 50.00% (by cells), below the
 /// required 95%: 7.20 m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".
 struct Verdict {
@@ -32,7 +32,7 @@ struct Verdict {
     std::string text;
 };
 
-/// The exact figure decides where it is known, else that by cells; a share of which neither is
+/// The exact metric decides where it is known, else that by cells; a share of which neither is
 /// known is not met. An exact one may be short by what rounding takes, 1e-7.
 /// \pre mustHaveZone()
 Verdict judge(const Requirement& requirement, const CoverageReport& report);

@@ -67,7 +67,7 @@ TEST(Judge, ShowsDifferencesBelowTheSecondDecimal) {
     EXPECT_EQ(verdict("95%", report).text.substr(0, 20), "coverage is 94.9999%");
 }
 
-TEST(Judge, ExactFiguresDecideWhereTheyAreKnown) {
+TEST(Judge, ExactMetricsDecideWhereTheyAreKnown) {
     CoverageReport report = sampleReport();
     report.coverage = {.grid = 0.1515, .exact = 0.1416};
     EXPECT_FALSE(verdict("15%", report).is_met);

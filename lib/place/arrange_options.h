@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cover/worth.h"
+#include "cover/target.h"
 #include "place/sites.h"
 #include "solve/search.h"
 
@@ -69,7 +69,7 @@ struct ArrangeOptions {
 
     SearchOptions search;
     bool refine = false;
-    Worth worth;
+    FloorWeights worth;
     int redundancy = 1;  ///< floor counts if so many sensors see it
     bool is_connected = false;
     std::optional<double> target;  ///< share that is to be reached with the fewest sensors

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/visible.h"
-#include "place/exact_worth.h"
+#include "place/exact_gain.h"
 
 namespace ispace {
 
@@ -74,7 +74,7 @@ Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
 
 class Search {
   public:
-    Search(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
+    Search(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& worth,
            const RefineOptions& options,
            const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress)
         : sensors_(sensors),
@@ -189,7 +189,7 @@ class Search {
     const std::function<bool(const std::vector<Pose3>&)>& accept_;
     Progress& progress_;
     std::vector<Stride> strides_;
-    ExactWorth worth_;
+    ExactGain worth_;
     double total_;
     double value_ = 0;
     std::vector<Pose3> poses_;
@@ -198,9 +198,10 @@ class Search {
 
 }  // namespace
 
-void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, const Worth& worth) {
-    if (worth.weights.size() > ExactWorth::kMostZones)
-        throw UsageError("--refine knows at most " + std::to_string(ExactWorth::kMostZones) +
+void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
+                     const FloorWeights& worth) {
+    if (worth.weights.size() > ExactGain::kMostZones)
+        throw UsageError("--refine knows at most " + std::to_string(ExactGain::kMostZones) +
                          " weights");
     const auto refuse = [](const std::string& whose) {
         throw UsageError("--refine: the exact region of " + whose +
@@ -216,7 +217,7 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, c
                 refuse(laser->model.empty() ? "a laser" : laser->model);
 }
 
-Refined refine(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
+Refined refine(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& worth,
                const RefineOptions& options,
                const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress) {
     return Search(scene, sensors, worth, options, accept, progress).run();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "cover/worth.h"
+#include "cover/target.h"
 #include "layout/scene.h"
 #include "place/sites.h"
 
@@ -38,7 +38,8 @@ struct Refined {
 /// \throws UsageError for what refine() cannot do, before anything is searched: sweeping lasers
 /// whose
 ///         exact region is not known (among `devices` and the scene's), more weights than it knows
-void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, const Worth& worth);
+void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
+                     const FloorWeights& worth);
 
 /// Goes on from a layout in continuous x, y and heading: sensor after sensor, a pattern search
 /// (Hooke and Jeeves 1961: steps along the axes and their pattern, halved where none helps) on the
@@ -52,7 +53,7 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices, c
 /// with the best so far, where progress says so.
 /// \throws UsageError for sensors, also standing ones, whose exact region is not known (lasers that
 ///         nod or roll), and for more than 60 weighted zones
-Refined refine(const Scene& scene, std::span<const Movable> sensors, const Worth& worth,
+Refined refine(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& worth,
                const RefineOptions& options,
                const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress);
 

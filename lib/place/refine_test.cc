@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "cover/test_scenes.h"
-#include "place/exact_worth.h"
+#include "place/exact_gain.h"
 #include "solve/test_progress.h"
 
 namespace ispace {
@@ -29,8 +29,8 @@ Pose3 poseAt(double x, double y, double heading = 0) {
     return {{x, y, kScanHeight}, Angle::degrees(heading), {}, {}};
 }
 
-Refined refined(const Scene& scene, const std::vector<Movable>& movables, const Worth& worth = {},
-                const RefineOptions& options = {},
+Refined refined(const Scene& scene, const std::vector<Movable>& movables,
+                const FloorWeights& worth = {}, const RefineOptions& options = {},
                 const std::function<bool(const std::vector<Pose3>&)>& accept = {}) {
     SilentProgress progress;
     return refine(scene, movables, worth, options, accept, progress);
@@ -99,13 +99,13 @@ TEST(Refine, NeverWorseAndEachStepHelped) {
         }
         const Refined result = refined(scene, movables);
         EXPECT_GE(result.after, result.before);
-        EXPECT_NEAR(result.before, ExactWorth(scene, movables, {}, {}).value(), 1e-9);
+        EXPECT_NEAR(result.before, ExactGain(scene, movables, {}, {}).value(), 1e-9);
         for (std::size_t i = 0; i < movables.size(); ++i) {
             movables[i].pose = result.poses[i];
             EXPECT_TRUE(judge.isValid(result.poses[i].position.onFloor()));
             EXPECT_LE(std::abs(result.poses[i].heading.degrees()), 180);
         }
-        EXPECT_NEAR(result.after, ExactWorth(scene, movables, {}, {}).value(), 1e-9);
+        EXPECT_NEAR(result.after, ExactGain(scene, movables, {}, {}).value(), 1e-9);
         // From there on next to nothing is left.
         EXPECT_NEAR(
             refined(scene, movables, {}, {.step = 0.001, .turn = Angle::degrees(0.05)}).after,
@@ -170,7 +170,7 @@ TEST(Refine, InvalidPlacesAreNeverTaken) {
 TEST(Refine, GoesWhereItIsWorthMore) {
     const Scene scene = sceneOf("ispace size=12,6\n");
     const std::vector<Movable> one = {{"a", laserOfRange(1, 360), poseAt(0.5, 0), nullptr}};
-    Worth worth;
+    FloorWeights worth;
     worth.weights = {{box(1, -2, 5, 2), 3}};
     const Refined weighted = refined(scene, one, worth);
     EXPECT_NEAR(weighted.after, 3 * std::numbers::pi, 1e-4);

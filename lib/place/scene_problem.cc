@@ -30,9 +30,9 @@ CoverageOptions searching(const ArrangeOptions& options) {
 }
 
 /// Why nothing counts. \pre all cells are worth 0
-std::string nothingText(const Target& target, Worth worth) {
+std::string nothingText(const Target& target, FloorWeights worth) {
     worth.weights.clear();
-    const std::vector<double> unweighted = worthOfCells(target, worth);
+    const std::vector<double> unweighted = weightsOfCells(target, worth);
     const bool is_weight =
         std::any_of(unweighted.begin(), unweighted.end(), [](double cell) { return cell > 0; });
     return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
@@ -53,7 +53,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.worth);
     const Coverage standing = coverageOf({});
     target_ = standing.target;
-    problem_.weights = integerWeights(worthOfCells(target_, options.worth));
+    problem_.weights = integerWeights(weightsOfCells(target_, options.worth));
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.worth));
     setDemand(standing);

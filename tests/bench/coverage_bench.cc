@@ -64,7 +64,7 @@ void verify(const Case& test) {
     for (const SensorView& view : coverage.sensors) boundary += perimeter(*view.region);
     const Grid& grid = coverage.target.grid;
     const double cell = std::hypot(grid.limits.width(), grid.limits.depth()) / 1000;
-    const Figure& area = coverage.report.total_effective_area;
+    const Metric& area = coverage.report.total_effective_area;
     if (area.grid && area.exact && std::abs(*area.grid - *area.exact) <= boundary * cell) return;
     std::fprintf(stderr, "%s: cells and closed forms differ\n", test.name.c_str());
     std::exit(1);

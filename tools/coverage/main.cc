@@ -13,7 +13,7 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
-#include "cover/coverage_files.h"
+#include "cover/coverage_formats.h"
 #include "cover/trace_file.h"
 #include "coverage/options.h"
 #include "layout/left_out.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "place/exact_worth.h"
+#include "place/exact_gain.h"
 
 #include <gtest/gtest.h>
 
@@ -55,65 +55,65 @@ std::vector<Movable> threeLasers() {
             at("c", laserOfRange(5, 360), 3, 2.5, 0)};
 }
 
-TEST(ExactWorth, IsWhatCoverageMeasures) {
+TEST(ExactGain, IsWhatCoverageMeasures) {
     const Scene scene = sceneOf(kRoom);
     const std::vector<Movable> movables = threeLasers();
     const CoverageReport report = reportOf(scene, movables);
     for (const int demand : {1, 2, 3}) {
-        const ExactWorth worth(scene, movables, {}, {.demand = demand});
+        const ExactGain worth(scene, movables, {}, {.demand = demand});
         EXPECT_NEAR(worth.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
         EXPECT_NEAR(worth.total(), 48, 1e-9);
     }
     EXPECT_GT(seenByAtLeast(report, 3), 0.5);
 }
 
-TEST(ExactWorth, SensorsThatStandCountUnlessTheyMove) {
+TEST(ExactGain, SensorsThatStandCountUnlessTheyMove) {
     const Scene scene = sceneOf(std::string(kRoom) + "laser id=b at=1,-1 heading=70 range=3\n");
     const std::vector<Movable> one = {at("a", laserOfRange(4), -3, 2, -40)};
-    EXPECT_NEAR(ExactWorth(scene, one, {}, {}).value(), seenByAtLeast(reportOf(scene, one), 1),
+    EXPECT_NEAR(ExactGain(scene, one, {}, {}).value(), seenByAtLeast(reportOf(scene, one), 1),
                 1e-5);
     std::vector<Movable> both = one;
     both.push_back(at("b", laserOfRange(3), 1, -1, -70));
-    EXPECT_NEAR(ExactWorth(scene, both, {}, {}).value(),
+    EXPECT_NEAR(ExactGain(scene, both, {}, {}).value(),
                 seenByAtLeast(reportOf(sceneOf(kRoom), both), 1), 1e-5);
 }
 
-TEST(ExactWorth, TargetsAndWeightsOfWhichTheLastDecides) {
+TEST(ExactGain, TargetsAndWeightsOfWhichTheLastDecides) {
     const Scene scene = sceneOf("ispace size=8,8\n");
     const std::vector<Movable> whole = {at("a", laserOfRange(20, 360), 0, 0, 0),
                                         at("b", laserOfRange(20, 360), 1, 0, 180)};
-    Worth worth;
+    FloorWeights worth;
     worth.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
     // 64 of which 4 weigh 5, 3 weigh 3, 1 nothing.
-    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).total(), 56 + 20 + 9, 1e-5);
-    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).total(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 56 + 20 + 9, 1e-5);
     worth.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1
-    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 3 + 9 + 5, 1e-5);
+    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 3 + 9 + 5, 1e-5);
     worth.weights.clear();
-    EXPECT_NEAR(ExactWorth(scene, whole, worth, {}).value(), 7, 1e-5);
+    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 7, 1e-5);
     worth.targets = {box(7, 7, 8, 8)};  // outside
-    EXPECT_EQ(ExactWorth(scene, whole, worth, {}).value(), 0);
-    EXPECT_EQ(ExactWorth(scene, whole, worth, {}).total(), 0);
+    EXPECT_EQ(ExactGain(scene, whole, worth, {}).value(), 0);
+    EXPECT_EQ(ExactGain(scene, whole, worth, {}).total(), 0);
 }
 
-TEST(ExactWorth, SixtyWeightsAndNoMore) {
+TEST(ExactGain, SixtyWeightsAndNoMore) {
     const Scene scene = sceneOf("ispace size=80,8\n");
     const std::vector<Movable> one = {at("a", laserOfRange(100, 360), 0, 0, 0),
                                       at("b", laserOfRange(100, 360), 1, 0, 180)};
-    Worth worth;
+    FloorWeights worth;
     double wanted = 640;
     for (int i = 0; i < 60; ++i) {
         worth.weights.emplace_back(box(-39 + i, -1, -38 + i, 1), 2 + i);
         wanted += 2 * (1 + i);
     }
-    EXPECT_NEAR(ExactWorth(scene, one, worth, {}).value(), wanted, 1e-3);
+    EXPECT_NEAR(ExactGain(scene, one, worth, {}).value(), wanted, 1e-3);
     worth.weights.emplace_back(box(-39, -1, -38, 1), 2);
-    EXPECT_THROW(ExactWorth(scene, one, worth, {}), UsageError);
+    EXPECT_THROW(ExactGain(scene, one, worth, {}), UsageError);
 }
 
-TEST(ExactWorth, GainsAreDifferencesOfValues) {
+TEST(ExactGain, GainsAreDifferencesOfValues) {
     const Scene scene = sceneOf(std::string(kRoom) + "laser at=3.5,-2.5 heading=120 range=2\n");
-    Worth worth;
+    FloorWeights worth;
     worth.weights = {{box(-2, -2, 3, 1), 4}, {box(0, 0, 4, 3), 0.5}};
     std::mt19937 random(7);
     std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
@@ -123,14 +123,14 @@ TEST(ExactWorth, GainsAreDifferencesOfValues) {
             const auto which = static_cast<std::size_t>(i) % 3;
             std::vector<double> values, gains;
             std::vector<Pose3> poses;
-            ExactWorth moving(scene, movables, worth, {.demand = demand});
+            ExactGain moving(scene, movables, worth, {.demand = demand});
             for (int k = 0; k < 2; ++k) {
                 Movable& own = movables[which];
                 own.pose.position.x = x(random);
                 own.pose.position.y = y(random);
                 own.pose.heading = Angle::degrees(h(random));
                 poses.push_back(own.pose);
-                values.push_back(ExactWorth(scene, movables, worth, {.demand = demand}).value());
+                values.push_back(ExactGain(scene, movables, worth, {.demand = demand}).value());
             }
             moving.take(which);
             gains = moving.gains(poses);
@@ -141,7 +141,7 @@ TEST(ExactWorth, GainsAreDifferencesOfValues) {
     }
 }
 
-TEST(ExactWorth, FourReceiversAreOneSensor) {
+TEST(ExactGain, FourReceiversAreOneSensor) {
     const Scene scene = sceneOf("ispace size=8,8 height=3\n");
     Receiver receiver;
     std::vector<Movable> movables;
@@ -153,9 +153,9 @@ TEST(ExactWorth, FourReceiversAreOneSensor) {
     movables.push_back(at("a", laserOfRange(3), 2, 0, 30));
     const CoverageReport report = reportOf(scene, movables);
     for (const int demand : {1, 2})
-        EXPECT_NEAR(ExactWorth(scene, movables, {}, {.demand = demand}).value(),
+        EXPECT_NEAR(ExactGain(scene, movables, {}, {.demand = demand}).value(),
                     seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
-    ExactWorth worth(scene, movables, {}, {});
+    ExactGain worth(scene, movables, {}, {});
     const double before = worth.value();
     Pose3 moved = movables[1].pose;
     moved.position.y = 0.3;
@@ -168,30 +168,30 @@ TEST(ExactWorth, FourReceiversAreOneSensor) {
     EXPECT_TRUE(worth.turns(5));
 }
 
-TEST(ExactWorth, RangersAndTiltedLasersCoverThePlane) {
+TEST(ExactGain, RangersAndTiltedLasersCoverThePlane) {
     const Scene scene = sceneOf(kRoom);
     const std::vector<Movable> movables = {at("r", Ranger(), -3, 0, 10, 1.5, -30),
                                            at("t", laserOfRange(6), 3, -2, 140, 1.2, -20),
                                            at("buried", Ranger(), -2, -1, 0, 0.5, -30)};
-    const double value = ExactWorth(scene, movables, {}, {}).value();
+    const double value = ExactGain(scene, movables, {}, {}).value();
     EXPECT_NEAR(value, seenByAtLeast(reportOf(scene, movables), 1), 1e-5);
     EXPECT_GT(value, 2);
 }
 
-TEST(ExactWorth, UnknownRegionsAreRefused) {
+TEST(ExactGain, UnknownRegionsAreRefused) {
     Laser sweeping = laserOfRange(4);
     sweeping.sweep = SweepAxis::Tilt;
     sweeping.sweep_span = Angle::degrees(30);
     const std::vector<Movable> movables = {at("n", sweeping, 0, 0, 0, 1, -20)};
     try {
-        const ExactWorth worth(sceneOf(kRoom), movables, {}, {});
+        const ExactGain worth(sceneOf(kRoom), movables, {}, {});
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(), "n cannot be refined: its exact region is not known");
     }
 }
 
-TEST(ExactWorth, WholeTurnsDoNotTurn) {
+TEST(ExactGain, WholeTurnsDoNotTurn) {
     Laser whole = laserOfRange(4, 360);
     Ranger head;
     head.projection = Projection::Spherical;
@@ -202,7 +202,7 @@ TEST(ExactWorth, WholeTurnsDoNotTurn) {
                                            at("c", laserOfRange(4, 359), 0, 0, 0),
                                            at("r", head, 1, 1, 0, 1),
                                            at("p", Ranger(), 1, 1, 0, 2, -90)};
-    const ExactWorth worth(sceneOf(kRoom), movables, {}, {});
+    const ExactGain worth(sceneOf(kRoom), movables, {}, {});
     const std::vector<bool> turns = {false, true, true, false, false, true};
     for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(worth.turns(i), turns[i]) << i;
 }

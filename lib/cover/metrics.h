@@ -16,14 +16,14 @@ struct Zone {
 };
 std::vector<Zone> zonesOf(const Environment& environment);
 /// Their indoor areas, exact.
-std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
+std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
                                        const std::vector<Zone>& zones);
 
 /// Sets what the report says by cells, of a Coverage whose target, sensors and sets are there.
-void addCellFigures(Coverage& coverage, const std::vector<Zone>& zones);
+void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones);
 
 /// Makes the overlay and sets what the report says in closed form. \pre all regions are known
-void addExactFigures(Coverage& coverage, const Environment& environment,
+void addExactMetrics(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones);
 
 /// A share of `whole`, from 0 to 1 whatever rounds; 0 of nothing

@@ -1,13 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/json_writer.h"
 #include "base/number.h"
-#include "cover/coverage_files.h"
+#include "cover/coverage_formats.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
 #include "raster/contour.h"
 
 namespace ispace {
+
+std::string coverageCsv(const Coverage& coverage) {
+    const Target& target = coverage.target;
+    const std::vector<std::uint32_t> times = timesSeen(coverage);
+    std::string text = "column,row,x,y,indoor,free,seen\n";
+    const auto columns = static_cast<std::size_t>(target.grid.columns);
+    for (std::size_t cell = 0; cell < target.grid.size(); ++cell) {
+        const Point2 center = target.grid.center(cell);
+        text += std::to_string(cell % columns);
+        text += ',';
+        text += std::to_string(cell / columns);
+        text += ',';
+        appendDouble(text, tidy(center.x));
+        text += ',';
+        appendDouble(text, tidy(center.y));
+        text += target.indoor.test(cell) ? ",1" : ",0";
+        text += target.free.test(cell) ? ",1," : ",0,";
+        text += std::to_string(times[cell]);
+        text += '\n';
+    }
+    return text;
+}
+
+namespace {
+
+constexpr char kFree = static_cast<char>(254), kUnknown = static_cast<char>(205), kOccupied = 0;
+
+}  // namespace
+
+CoverageRosMap coverageRosMap(const Coverage& coverage, double cell,
+                              const std::string& image_name) {
+    const Target& target = coverage.target;
+    const Grid& grid = target.grid;
+    const CellSet covered = coveredCells(coverage);
+    CoverageRosMap map;
+    JsonWriter name;  // JSON's strings are YAML's
+    name.value(image_name);
+    map.yaml = "image: " + name.take() + "\nmode: trinary\nresolution: " + formatDouble(cell) +
+               "\norigin: [" + formatDouble(grid.limits.low.x) + ", " +
+               formatDouble(grid.limits.low.y) +
+               ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    map.pgm = "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
+    map.pgm.reserve(map.pgm.size() + grid.size());
+    for (int row = grid.rows; row-- > 0;)
+        for (int column = 0; column < grid.columns; ++column) {
+            const std::size_t at = grid.cell(column, row);
+            map.pgm += !target.free.test(at) ? kOccupied : covered.test(at) ? kFree : kUnknown;
+        }
+    return map;
+}
 
 namespace {
 
@@ -46,7 +97,7 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
 
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     FeatureWriter out;
-    const Figure& share = coverage.report.coverage;
+    const Metric& share = coverage.report.coverage;
     out.json().key("coverage");
     if (const auto known = share.exact ? share.exact : share.grid)
         out.json().value(tidy(*known));

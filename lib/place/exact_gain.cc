@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "place/exact_worth.h"
+#include "place/exact_gain.h"
 
 #include <tbb/parallel_for.h>
 
@@ -74,7 +74,7 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
 }
 
 /// The indoor floor that counts, parted by its weight; what weighs nothing is left out.
-std::vector<Floor> floorsOf(const Environment& environment, const Worth& worth) {
+std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& worth) {
     std::vector<Floor> floors;
     if (worth.isUniform()) {
         floors.push_back({1, curvesWithArcs(environment.indoor()), {}});
@@ -160,7 +160,7 @@ struct View {
 
 }  // namespace
 
-struct ExactWorth::Data {
+struct ExactGain::Data {
     std::span<const Movable> movables;
     RefineOptions options;
     Sights sights;
@@ -280,8 +280,8 @@ struct ExactWorth::Data {
     }
 };
 
-ExactWorth::ExactWorth(const Scene& scene, std::span<const Movable> movables, const Worth& worth,
-                       const RefineOptions& options)
+ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
+                     const FloorWeights& worth, const RefineOptions& options)
     : data_(std::make_unique<Data>(Data{movables, options, Sights(scene.environment)})) {
     if (worth.weights.size() > kMostZones)
         throw UsageError("sensors cannot be refined for " + std::to_string(worth.weights.size()) +
@@ -300,15 +300,15 @@ ExactWorth::ExactWorth(const Scene& scene, std::span<const Movable> movables, co
     }
     data_->around.resize(movables.size());
 }
-ExactWorth::~ExactWorth() = default;
+ExactGain::~ExactGain() = default;
 
-double ExactWorth::total() const {
+double ExactGain::total() const {
     double sum = 0;
     for (const Floor& floor : data_->floors) sum += floor.weight * signedArea(floor.curves);
     return sum;
 }
 
-double ExactWorth::value() const {
+double ExactGain::value() const {
     std::vector<Layer> layers;
     Data::addFloors(data_->floors, layers);
     for (const View& view : data_->standing) layers.push_back(view.layer);
@@ -321,12 +321,12 @@ double ExactWorth::value() const {
     return std::max(0.0, value);
 }
 
-void ExactWorth::take(std::size_t sensor) {
+void ExactGain::take(std::size_t sensor) {
     data_->in_hand = sensor;
     data_->look(common(data_->moving[sensor].box, data_->floor_box));
 }
 
-std::vector<double> ExactWorth::gains(std::span<const Pose3> poses) {
+std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
     std::vector<std::optional<View>> views(poses.size());
     tbb::parallel_for(std::size_t{0}, poses.size(),
                       [&](std::size_t i) { views[i] = data_->viewOf(data_->in_hand, poses[i]); });
@@ -351,11 +351,11 @@ std::vector<double> ExactWorth::gains(std::span<const Pose3> poses) {
     return gains;
 }
 
-void ExactWorth::put(const Pose3& pose) {
+void ExactGain::put(const Pose3& pose) {
     data_->moving[data_->in_hand] = data_->viewOf(data_->in_hand, pose);
 }
 
-bool ExactWorth::turns(std::size_t sensor) const {
+bool ExactGain::turns(std::size_t sensor) const {
     const Movable& movable = data_->movables[sensor];
     return !looksAround(movable.model, movable.pose);
 }

@@ -1,11 +1,128 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "base/program.h"
 #include "cover/coverage.h"
 
 namespace ispace {
+
+namespace {
+
+/// Null for what is not known.
+void write(JsonWriter& json, const char* key, const std::optional<double>& metric) {
+    json.key(key);
+    if (metric)
+        json.value(tidy(*metric));
+    else
+        json.null();
+}
+
+void write(JsonWriter& json, const char* key, std::vector<double> metrics) {
+    for (double& metric : metrics) metric = tidy(metric);
+    json.key(key).value(metrics);
+}
+
+void write(JsonWriter& json, const char* key, const Metric& metric) {
+    json.key(key).beginObject();
+    write(json, "grid", metric.grid);
+    write(json, "exact", metric.exact);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const SensorMetrics& sensor) {
+    json.beginObject();
+    json.key("id").value(sensor.id);
+    json.key("model");
+    if (sensor.model.empty())
+        json.null();
+    else
+        json.value(sensor.model);
+    write(json, "slice_area", sensor.slice_area);
+    write(json, "exact_area", sensor.area.exact);
+    write(json, "marginal_area", sensor.marginal.grid);
+    json.key("kind").value(sensor.kind->keyword);
+    write(json, "area", sensor.area);
+    write(json, "marginal", sensor.marginal);
+    write(json, "overlap", sensor.overlap);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const ZoneMetrics& zone) {
+    json.beginObject();
+    json.key("id").value(zone.id);
+    write(json, "area", zone.area);
+    write(json, "coverage", zone.coverage);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const UnseenSpot& spot) {
+    json.beginObject();
+    write(json, "x", spot.place.x);
+    write(json, "y", spot.place.y);
+    write(json, "area", spot.area);
+    json.endObject();
+}
+
+void write(JsonWriter& json, const Comparison& comparison) {
+    json.key("comparison").beginObject();
+    json.key("with").value(comparison.name);
+    write(json, "coverage", comparison.coverage);
+    write(json, "gained_area", comparison.gained);
+    write(json, "lost_area", comparison.lost);
+    json.endObject();
+}
+
+template <typename Item>
+void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items) {
+    json.key(key).beginArray();
+    for (const Item& item : items) write(json, item);
+    json.endArray();
+}
+
+}  // namespace
+
+std::string coverageJson(const CoverageReport& report) {
+    const Box2& limits = report.limits;
+    JsonWriter json;
+    beginReport(json, "ispace-coverage/1", "coverage");
+    json.key("digest").value(report.digest);
+    write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
+    json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
+    json.key("height").value(report.height);
+    json.key("plane").value(report.plane);
+    write(json, "indoor_area", report.indoor_area);
+    write(json, "free_area", report.free_area);
+    writeList(json, "sensors", report.sensors);
+    write(json, "total_effective_area", report.total_effective_area);
+    write(json, "overlap_area", report.overlap);
+    write(json, "coverage", report.coverage);
+    write(json, "free_coverage", report.free_coverage);
+    if (report.coverage.grid)
+        write(json, "redundancy", report.redundancy);
+    else
+        json.key("redundancy").null();
+    if (report.redundancy_exact)
+        write(json, "redundancy_exact", *report.redundancy_exact);
+    else
+        json.key("redundancy_exact").null();
+    writeList(json, "zones", report.zones);
+    json.key("pieces").beginObject();
+    json.key("count").value(report.pieces);
+    write(json, "largest_share", report.largest_piece);
+    json.endObject();
+    writeList(json, "unseen", report.unseen);
+    json.key("exact_missing");
+    if (report.exact_missing.empty())
+        json.null();
+    else
+        json.value(report.exact_missing);
+    if (report.comparison) write(json, *report.comparison);
+    json.endObject();
+    return json.take() + "\n";
+}
 
 namespace {
 
@@ -47,16 +164,16 @@ std::string withSign(double value, Format format) {
     return text.front() == '-' || text.front() == '+' ? text : "+" + text;
 }
 
-/// A figure three ways: by cells, exact, and by how much cells are off.
+/// A metric three ways: by cells, exact, and by how much cells are off.
 template <typename Format>
-Row row(std::string name, const Figure& figure, Format format) {
-    Row row = {std::move(name), figure.grid ? format(*figure.grid) : "-",
-               figure.exact ? format(*figure.exact) : "-"};
-    if (!figure.grid || !figure.exact) {
+Row row(std::string name, const Metric& metric, Format format) {
+    Row row = {std::move(name), metric.grid ? format(*metric.grid) : "-",
+               metric.exact ? format(*metric.exact) : "-"};
+    if (!metric.grid || !metric.exact) {
         row.emplace_back("-");
         return row;
     }
-    row.push_back(withSign(*figure.grid - *figure.exact, format));
+    row.push_back(withSign(*metric.grid - *metric.exact, format));
     return row;
 }
 
@@ -78,7 +195,7 @@ void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
         --end;
     for (std::size_t k = 0; k < end; ++k) {
         const std::size_t last = k + 1 == kMostRows ? end - 1 : k;
-        Figure share;
+        Metric share;
         if (report.coverage.grid) share.grid = 0;
         if (report.redundancy_exact) share.exact = 0;
         for (std::size_t i = k; i <= last; ++i) {
@@ -90,14 +207,14 @@ void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
     }
 }
 
-std::string figureTable(const CoverageReport& report) {
+std::string metricTable(const CoverageReport& report) {
     std::vector<Row> rows = {{"", "by cells", "exact", "difference"},
                              row("total effective area", report.total_effective_area, area),
                              row("seen by several", report.overlap, area),
                              row("coverage", report.coverage, percent),
                              row("free coverage", report.free_coverage, percent)};
     addRedundancy(report, rows);
-    for (const ZoneFigures& zone : report.zones) {
+    for (const ZoneMetrics& zone : report.zones) {
         if (zone.area > 0)
             rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));
         else
@@ -106,11 +223,11 @@ std::string figureTable(const CoverageReport& report) {
     return aligned(rows, "lr");
 }
 
-std::string sensorTable(const std::vector<SensorFigures>& sensors) {
+std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
     const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
     std::vector<Row> rows = {{"sensor", "model", "slice area", "by cells", "exact", "difference",
                               "marginal", "exact", "difference", "overlap"}};
-    for (const SensorFigures& sensor : sensors) {
+    for (const SensorMetrics& sensor : sensors) {
         const Row region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
         rows.push_back(
             {printable(sensor.id),
@@ -148,7 +265,7 @@ std::string comparisonText(const CoverageReport& report) {
     const auto gain = [](const std::optional<double>& now, const std::optional<double>& then) {
         return now && then ? std::optional(*now - *then) : std::nullopt;
     };
-    const Figure change{.grid = gain(report.coverage.grid, other.coverage.grid),
+    const Metric change{.grid = gain(report.coverage.grid, other.coverage.grid),
                         .exact = gain(report.coverage.exact, other.coverage.exact)};
     return "\n" + aligned({{"beside " + printable(other.name), "by cells", "exact", "difference"},
                            row("its coverage", other.coverage, percent),
@@ -171,7 +288,7 @@ std::string coverageText(const CoverageReport& report) {
          {"indoor area", area(report.indoor_area)},
          {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
         "l");
-    text += "\n" + figureTable(report);
+    text += "\n" + metricTable(report);
     if (!report.exact_missing.empty())
         text += "no exact figures of all together: " + printable(report.exact_missing) + "\n";
     if (report.comparison) text += comparisonText(report);

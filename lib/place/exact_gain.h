@@ -16,15 +16,15 @@ namespace ispace {
 ///
 /// What stands in the scene does not move: its regions, and the floor by its weights, are made
 /// once. Movables take the place of what has their id in the scene.
-class ExactWorth {
+class ExactGain {
   public:
     /// All movables stand at their poses.
     /// \throws UsageError for sensors without an exact region and for more than kMostZones weights
-    ExactWorth(const Scene& scene, std::span<const Movable> movables, const Worth& worth,
-               const RefineOptions& options);
-    ~ExactWorth();
-    ExactWorth(const ExactWorth&) = delete;
-    ExactWorth& operator=(const ExactWorth&) = delete;
+    ExactGain(const Scene& scene, std::span<const Movable> movables, const FloorWeights& worth,
+              const RefineOptions& options);
+    ~ExactGain();
+    ExactGain(const ExactGain&) = delete;
+    ExactGain& operator=(const ExactGain&) = delete;
 
     static constexpr std::size_t kMostZones = 60;
 

@@ -15,11 +15,11 @@ CoverageReport sampleReport() {
     report.height = 0.15;
     report.indoor_area = 10;
     report.free_area = 9.25;
-    SensorFigures first{.id = "l1", .model = "urg-04lx", .slice_area = 3.5};
+    SensorMetrics first{.id = "l1", .model = "urg-04lx", .slice_area = 3.5};
     first.area = {.grid = 3.25, .exact = 3.375};
     first.marginal = {.grid = 1.25, .exact = 1.5};
     first.overlap = {.grid = 2, .exact = 1.875};
-    SensorFigures second{.id = "t", .model = "", .kind = &kRangerKind};
+    SensorMetrics second{.id = "t", .model = "", .kind = &kRangerKind};
     second.area.grid = 12;
     second.marginal.grid = 0;
     second.overlap.grid = 12;
@@ -100,7 +100,7 @@ largest spots of free floor that no sensor sees:
 )");
 }
 
-TEST(CoverageText, SaysWhyExactFiguresAreMissing) {
+TEST(CoverageText, SaysWhyExactMetricsAreMissing) {
     CoverageReport report = sampleReport();
     report.exact_missing = "what t sees is not known";
     EXPECT_NE(

@@ -3,11 +3,134 @@
 #include <bit>
 #include <optional>
 
-#include "cover/figures.h"
+#include "cover/metrics.h"
 #include "cover/sensor_views.h"
 #include "geom/boolean.h"
+#include "raster/morphology.h"
+#include "sense/ultrasound.h"
 
 namespace ispace {
+
+namespace {
+
+std::vector<double> redundancyOf(const std::vector<std::uint32_t>& times, const CellSet& indoor,
+                                 std::size_t sets) {
+    std::vector<std::size_t> counts(sets + 1);
+    indoor.forEach([&](std::size_t cell) { ++counts[times[cell]]; });
+    std::vector<double> shares(counts.size());
+    if (const std::size_t all = indoor.count(); all > 0)
+        for (std::size_t k = 0; k < counts.size(); ++k)
+            shares[k] = static_cast<double>(counts[k]) / static_cast<double>(all);
+    return shares;
+}
+
+std::size_t countSeenOnce(const CellSet& cells, const std::vector<std::uint32_t>& times) {
+    std::size_t count = 0;
+    cells.forEach([&](std::size_t cell) { count += times[cell] == 1 ? 1 : 0; });
+    return count;
+}
+
+/// Cells that are lost if one receiver is removed: those that just enough receivers hear, this one
+/// among them, and nothing else sees.
+std::size_t countNeeding(const Coverage& coverage, const CellSet& heard_by_this,
+                         const std::vector<std::uint16_t>& heard,
+                         const std::vector<std::uint32_t>& times) {
+    const CellSet& joint = coverage.sets.back().cells;
+    std::size_t count = 0;
+    heard_by_this.forEach([&](std::size_t cell) {
+        count += joint.test(cell) && heard[cell] == kLeastReceivers && times[cell] == 1 ? 1 : 0;
+    });
+    return count;
+}
+
+std::vector<std::uint16_t> timesHeard(const Coverage& coverage) {
+    std::vector<std::uint16_t> heard(coverage.target.grid.size());
+    for (const SensorView& view : coverage.sensors)
+        if (view.isPartial()) view.cells.forEach([&heard](std::size_t cell) { ++heard[cell]; });
+    return heard;
+}
+
+void addSensorMetrics(Coverage& coverage, const std::vector<std::uint32_t>& times) {
+    const double cell_area = coverage.target.grid.cellArea();
+    const std::vector<std::uint16_t> heard = timesHeard(coverage);
+    for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
+        const SensorView& view = coverage.sensors[i];
+        SensorMetrics& metrics = coverage.report.sensors[i];
+        const std::size_t seen = view.cells.count();
+        metrics.area.grid = static_cast<double>(seen) * cell_area;
+        const bool is_receiver = view.isPartial();
+        const std::size_t alone = is_receiver ? countNeeding(coverage, view.cells, heard, times)
+                                              : countSeenOnce(view.cells, times);
+        metrics.marginal.grid = static_cast<double>(alone) * cell_area;
+        if (!is_receiver) metrics.overlap.grid = static_cast<double>(seen - alone) * cell_area;
+    }
+}
+
+/// The pieces of free floor that nothing sees, the largest first.
+void addUnseen(Coverage& coverage, const CellSet& covered) {
+    const Grid& grid = coverage.target.grid;
+    CellSet cells = coverage.target.free;
+    cells -= covered;
+    const MapCells unseen(cells, grid.columns, grid.rows);
+    const CellPieces pieces(unseen, CellPieces::Joined::BySides);
+    const std::vector<CellPlace> places = deepestPlaces(unseen, pieces);
+    auto& list = coverage.report.unseen;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        list.push_back({grid.center(grid.cell(places[i].x, places[i].y)),
+                        static_cast<double>(pieces[i].cells) * grid.cellArea()});
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+}
+
+void addPieces(Coverage& coverage, const CellSet& covered) {
+    const Grid& grid = coverage.target.grid;
+    CellSet inside = covered;
+    inside &= coverage.target.indoor;
+    const CellPieces pieces(MapCells(inside, grid.columns, grid.rows), CellPieces::Joined::BySides);
+    coverage.report.pieces = pieces.size();
+    std::size_t largest = 0;
+    for (const CellPiece& piece : pieces.list()) largest = std::max(largest, piece.cells);
+    if (largest > 0)
+        coverage.report.largest_piece =
+            static_cast<double>(largest) / static_cast<double>(inside.count());
+    addUnseen(coverage, covered);
+}
+
+}  // namespace
+
+std::vector<Zone> zonesOf(const Environment& environment) {
+    std::vector<Zone> zones;
+    for (const Element& element : environment.elements())
+        if (element.record.keyword() == "zone")
+            zones.push_back({element.id, zoneOutline(element.record)});
+    return zones;
+}
+
+double shareOf(double part, double whole) {
+    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0;
+}
+
+void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones) {
+    const Target& target = coverage.target;
+    const double cell_area = target.grid.cellArea();
+    const CellSet covered = coveredCells(coverage);
+    const std::vector<std::uint32_t> times = timesSeen(coverage);
+    CoverageReport& report = coverage.report;
+    addSensorMetrics(coverage, times);
+    report.total_effective_area.grid = static_cast<double>(covered.count()) * cell_area;
+    const auto repeated =
+        std::count_if(times.begin(), times.end(), [](std::uint32_t k) { return k > 1; });
+    report.overlap.grid = static_cast<double>(repeated) * cell_area;
+    report.coverage.grid = coveredShare(covered, target.indoor);
+    report.free_coverage.grid = coveredShare(covered, target.free);
+    report.redundancy = redundancyOf(times, target.indoor, coverage.sets.size());
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+        CellSet zone = cellsWithin(target.grid, std::span(&zones[i].outline, 1));
+        zone &= target.indoor;
+        report.zones[i].coverage.grid = coveredShare(covered, zone);
+    }
+    if (!coverage.overlay) addPieces(coverage, covered);
+}
 
 namespace {
 
@@ -77,13 +200,13 @@ struct Areas {
     }
 };
 
-void addZones(std::span<ZoneFigures> figures, const Overlay& overlay) {
-    std::vector<double> covered(figures.size());
+void addZones(std::span<ZoneMetrics> metrics, const Overlay& overlay) {
+    std::vector<double> covered(metrics.size());
     addIndoorAreas(overlay, [&](std::size_t zone, const LayerLabel& label, double area) {
         if (label.count > 0) covered[zone] += area;
     });
-    for (std::size_t i = 0; i < figures.size(); ++i)
-        figures[i].coverage.exact = shareOf(covered[i], figures[i].area);
+    for (std::size_t i = 0; i < metrics.size(); ++i)
+        metrics[i].coverage.exact = shareOf(covered[i], metrics[i].area);
 }
 
 void addPieces(CoverageReport& report, const Overlay& overlay) {
@@ -113,11 +236,11 @@ void addSensors(Coverage& coverage, const Areas& areas) {
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
         if (view.isPartial()) continue;
-        SensorFigures& figures = coverage.report.sensors[i];
-        const double area = *figures.area.exact;
+        SensorMetrics& metrics = coverage.report.sensors[i];
+        const double area = *metrics.area.exact;
         const double alone = std::clamp(areas.alone[set++], 0.0, area);
-        figures.marginal.exact = alone;
-        figures.overlap.exact = area - alone;
+        metrics.marginal.exact = alone;
+        metrics.overlap.exact = area - alone;
     }
 }
 
@@ -126,11 +249,11 @@ void addSensors(Coverage& coverage, const Areas& areas) {
 void addReceivers(Coverage& coverage) {
     constexpr std::size_t kMost = 62;
     std::vector<const SensorView*> receivers;
-    std::vector<SensorFigures*> figures;
+    std::vector<SensorMetrics*> metrics;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         if (!coverage.sensors[i].isPartial()) continue;
         receivers.push_back(&coverage.sensors[i]);
-        figures.push_back(&coverage.report.sensors[i]);
+        metrics.push_back(&coverage.report.sensors[i]);
     }
     if (receivers.empty() || receivers.size() > kMost) return;
     std::vector<Layer> layers;
@@ -148,32 +271,32 @@ void addReceivers(Coverage& coverage) {
     const auto joint = static_cast<std::int64_t>(coverage.sets.size()) - 1;
     const Overlay overlay(layers);
     for (std::size_t i = 0; i < receivers.size(); ++i)
-        figures[i]->marginal.exact = std::max(0.0, overlay.area([&](const LayerLabel& label) {
+        metrics[i]->marginal.exact = std::max(0.0, overlay.area([&](const LayerLabel& label) {
             return label.count == 1 && label.numbers == joint && ((label.marks >> i) & 1U) == 0;
         }));
 }
 
 }  // namespace
 
-std::vector<ZoneFigures> zoneFiguresOf(const Environment& environment,
+std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
                                        const std::vector<Zone>& zones) {
-    std::vector<ZoneFigures> figures;
-    figures.reserve(zones.size());
-    for (const Zone& zone : zones) figures.push_back({.id = zone.id});
+    std::vector<ZoneMetrics> metrics;
+    metrics.reserve(zones.size());
+    for (const Zone& zone : zones) metrics.push_back({.id = zone.id});
     for (std::size_t first = 0; first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
         std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
         addZoneLayers(std::span(zones).subspan(first, count), layers);
         addIndoorAreas(Overlay(layers), [&](std::size_t zone, const LayerLabel&, double area) {
-            figures[first + zone].area += area;
+            metrics[first + zone].area += area;
         });
     }
-    for (ZoneFigures& zone : figures)
+    for (ZoneMetrics& zone : metrics)
         if (zone.area < kLeastPiece) zone.area = 0;
-    return figures;
+    return metrics;
 }
 
-void addExactFigures(Coverage& coverage, const Environment& environment,
+void addExactMetrics(Coverage& coverage, const Environment& environment,
                      const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
     CoverageReport& report = coverage.report;
     std::optional<Overlay> main;  // with the first zones

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/coverage_files.h"
+#include "cover/coverage_formats.h"
 
 #include <gtest/gtest.h>
 
