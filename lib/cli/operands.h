@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/import_options.h"
+#include "io/input.h"
 #include "layout/scene.h"
 #include "record/record.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/aria_map.h"
+#include "io/importers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,9 @@
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "io/import_records.h"
-#include "io/near_segments.h"
+#include "io/plan_lines.h"
 #include "io/plan_rooms.h"
-#include "io/plan_simplify.h"
+#include "record/text.h"
 
 namespace ispace {
 
@@ -62,7 +62,7 @@ struct AriaMap {
 
 class AriaReader {
   public:
-    AriaReader(std::string_view bytes, const std::string& name) : rest_(bytes), name_(name) {}
+    AriaReader(std::string_view bytes, const std::string& name) : lines_(bytes), name_(name) {}
 
     AriaMap read() {
         nextLine();  // the magic
@@ -88,16 +88,13 @@ class AriaReader {
 
   private:
     [[noreturn]] void fail(const std::string& message) const {
-        throw FormatError(Diagnostic{displayName(name_), line_, 1, message});
+        failFile(name_, message, lines_.number());
     }
 
     bool nextLine() {
-        if (rest_.empty()) return false;
-        ++line_;
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        words_ = wordsOf(rest_.substr(0, end));
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
-        return true;
+        const auto line = lines_.next();
+        if (line) words_ = wordsOf(*line);
+        return line.has_value();
     }
 
     [[nodiscard]] double number(std::size_t word) const {
@@ -122,7 +119,7 @@ class AriaReader {
 
     void readLine() {
         wantWords(4, "a line, x1 y1 x2 y2 in mm");
-        map_.lines.push_back({{place(0), place(2)}, false, line_});
+        map_.lines.push_back({{place(0), place(2)}, false, lines_.number()});
     }
     void readPoint() {
         wantWords(2, "a point, x y in mm");
@@ -162,9 +159,8 @@ class AriaReader {
         }
     }
 
-    std::string_view rest_;
+    LineReader lines_;
     const std::string& name_;
-    int line_ = 0;
     std::vector<std::string_view> words_;
     AriaMap map_;
     std::optional<std::int64_t> line_count_, point_count_;
@@ -240,9 +236,7 @@ class AriaPlan {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& message) const {
-        throw FormatError(Diagnostic{displayName(name_), 0, 0, message});
-    }
+    [[noreturn]] void fail(const std::string& message) const { failFile(name_, message); }
 
     [[nodiscard]] bool isInside(Point2 p) const {
         return std::any_of(

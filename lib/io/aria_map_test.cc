@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/aria_map.h"
+#include "io/importers.h"
 
 #include "io/test_import.h"
 

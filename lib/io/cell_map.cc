@@ -10,7 +10,6 @@
 #include "base/number.h"
 #include "env/info.h"
 #include "geom/box.h"
-#include "io/cell_report.h"
 #include "raster/cleaning.h"
 #include "raster/contour.h"
 #include "raster/distance.h"
@@ -343,11 +342,9 @@ CellPlace CellMap::placeOf(Point2 point) const {
 
 void checkCellMap(int width, int height, double resolution, const std::string& file) {
     if (resolution * std::max(width, height) <= kLargestExtent) return;
-    throw FormatError(Diagnostic{displayName(file), 0, 0,
-                                 std::to_string(width) + " x " + std::to_string(height) +
-                                     " cells of " + formatDouble(resolution) + " m are more than " +
-                                     formatDouble(kLargestExtent) +
-                                     " m: is `resolution` in metres?"});
+    failFile(file, std::to_string(width) + " x " + std::to_string(height) + " cells of " +
+                       formatDouble(resolution) + " m are more than " +
+                       formatDouble(kLargestExtent) + " m: is `resolution` in metres?");
 }
 
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,

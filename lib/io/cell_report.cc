@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cell_report.h"
+#include "io/cell_map.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,344 +1,247 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/dxf.h"
-
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
-#include <iterator>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "env/texts.h"
-#include "geom/predicates.h"
-#include "io/dxf_shapes.h"
-#include "io/import_records.h"
+#include "io/dxf_drawing.h"
+#include "io/importers.h"
 #include "io/line_plan.h"
-#include "io/near_segments.h"
-#include "io/plan_openings.h"
-#include "io/plan_rooms.h"
-#include "io/plan_simplify.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr double kLargestExtent = 10000;  // metres
-constexpr double kOpeningReach = 1e-5;    // from its end to the wall it was put on
+constexpr int kDeepest = 16;                    // blocks in blocks
+constexpr std::size_t kFreePoints = 10'000;     // whatever the file's size …
+constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
+
+/// Blocks that are in no file (an outside reference that was not bound), and how often.
+using MissingBlocks = std::map<std::string, std::size_t>;
+
+/// Beyond these a bulge is a straight line, or a circle of which an end is missing.
+constexpr double kLeastBulge = 1e-9, kLargestBulge = 1e4;
+
+constexpr double kFullTurn = 2 * std::numbers::pi;
+
+constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
+
+/// Ends of a spline this near, in metres, make it closed.
+constexpr double kSameEnd = 1e-6;
+
+/// The drawing in metres with all blocks put where they are inserted, entities on layer 0 of a
+/// block on the layer of its insert. Points, plus blocks inserted, are limited to `most`, and to a
+/// number that grows with the file, so that no small file becomes a large plan. Shapes on layers
+/// that nobody uses have no points, and count only where blocks repeat them.
+class Expander {
+  public:
+    Expander(const DxfDrawing& drawing, const std::string& name, std::size_t most,
+             MissingBlocks& missing, LayerSorter& layers)
+        : drawing_(drawing),
+          name_(name),
+          most_(most),
+          total_(kFreePoints + kPointsPerEntity * drawing.size()),
+          budget_(std::min(most, total_)),
+          layers_(layers),
+          missing_(missing) {}
+
+    std::vector<PlanShape> expand(double metres_per_unit) {
+        const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
+        add(drawing_.entities, metres, "", 0);
+        return std::move(shapes_);
+    }
+
+  private:
+    [[noreturn]] void fail(const DxfEntity& entity, const std::string& message) const {
+        failFile(name_, message, entity.line);
+    }
+
+    void spend(const DxfEntity& entity, std::size_t points) {
+        if (points > budget_ && most_ <= total_)
+            fail(entity, "the drawing comes to more than " + std::to_string(most_) +
+                             " points; leave layers out, for example with --wall-layer 'A-WALL*'");
+        if (points > budget_)
+            fail(entity,
+                 "the blocks of this drawing make too many lines of it; is one inserted by "
+                 "mistake, or in too large a grid?");
+        budget_ -= points;
+    }
+
+    void add(const std::vector<DxfEntity>& entities, const Affine& outer, const std::string& layer,
+             int depth) {
+        for (const DxfEntity& entity : entities) {
+            const Affine frame = entity.mirrored ? outer * kMirror : outer;
+            const bool inherits = depth > 0 && entity.layer == "0";
+            const std::string& own = inherits ? layer : entity.layer;
+            if (const auto* insert = std::get_if<DxfInsert>(&entity.shape))
+                addInsert(entity, *insert, frame, own, depth);
+            else
+                addShape(entity, frame, own, depth);
+        }
+    }
+
+    void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
+                   const std::string& layer, int depth) {
+        const auto block = drawing_.blocks.find(insert.block);
+        if (block == drawing_.blocks.end()) {
+            ++missing_[insert.block];
+            return;
+        }
+        if (depth == kDeepest)
+            fail(entity, "blocks in each other more than " + std::to_string(kDeepest) +
+                             " deep: does " + excerpt(insert.block) + " contain itself?");
+        const Vec2 along = unitVector(insert.turn), across = perpendicular(along);
+        const Vec2 x = insert.scale_x * along, y = insert.scale_y * across;
+        const Point2 base = block->second.base;
+        for (int row = 0; row < std::max(1, insert.rows); ++row)
+            for (int column = 0; column < std::max(1, insert.columns); ++column) {
+                spend(entity, 1);
+                const Point2 at = insert.at + (column * insert.column_step) * along +
+                                  (row * insert.row_step) * across;
+                const Affine placed{x, y, at - (Point2() + base.x * x + base.y * y)};
+                add(block->second.entities, outer * placed, layer, depth + 1);
+            }
+    }
+
+    void addShape(const DxfEntity& entity, const Affine& frame, const std::string& layer,
+                  int depth) {
+        shape_ = {};
+        shape_.layer = layer;
+        shape_.path.line = entity.line;
+        if (!layers_.isUsed(layer)) {
+            if (depth > 0) spend(entity, 1);
+            shapes_.push_back(std::move(shape_));
+            return;
+        }
+        if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
+            addPolyline(*polyline, frame);
+        else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
+            addArc(entity, *arc, frame);
+        else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
+            addEllipse(*ellipse, frame);
+        else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
+            addSpline(entity, *spline, frame);
+        spend(entity, shape_.path.points.size());
+        for (const Point2 p : shape_.path.points)
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
+                fail(entity, "lies more than " + formatDouble(kFarthestPlan / 1000) +
+                                 " km from the origin: are the units right (--units)?");
+        if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
+    }
+
+    void addPolyline(const DxfPolyline& polyline, const Affine& frame) {
+        const auto& vertices = polyline.vertices;
+        Polygon& points = shape_.path.points;
+        shape_.path.closed = polyline.closed && vertices.size() > 1;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            points.push_back(frame * vertices[i].at);
+            const bool is_last = i + 1 == vertices.size();
+            if (is_last && !shape_.path.closed) break;
+            addPiece(vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
+        }
+    }
+
+    /// What lies between a vertex and the next one.
+    void addPiece(const DxfPolyline::Vertex& from, Point2 to, const Affine& frame) {
+        PlanChord chord{{frame * from.at, frame * to}, {}};
+        const double bulge = from.bulge;
+        const Vec2 along = to - from.at;
+        if (std::abs(bulge) > kLeastBulge && std::abs(bulge) < kLargestBulge && length(along) > 0) {
+            const double aside = (1 - bulge * bulge) / (4 * bulge);
+            const Point2 center = from.at + 0.5 * along + aside * perpendicular(along);
+            const Vec2 spoke = from.at - center;
+            const double sweep = 4 * std::atan(bulge);
+            const int count = arcPieces(sweep, length(spoke) * frame.largestScale());
+            for (int i = 1; i < count; ++i)
+                shape_.path.points.push_back(frame * (center + turned(spoke, sweep * i / count)));
+            chord.center = frame * center;
+        }
+        shape_.chords.push_back(chord);
+    }
+
+    static Vec2 turned(Vec2 v, double radians) {
+        return std::cos(radians) * v + std::sin(radians) * perpendicular(v);
+    }
+
+    void addArc(const DxfEntity& entity, const DxfArc& arc, const Affine& frame) {
+        if (arc.radius == 0) return;  // shows nothing, as a line of no length
+        if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
+        const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
+        double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);
+        if (degrees <= 0) degrees += 360;
+        const int count = arcPieces(degrees / 360 * kFullTurn, arc.radius * frame.largestScale());
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const Angle angle =
+                i == count ? arc.to : arc.from + Angle::degrees(degrees * i / count);
+            shape_.path.points.push_back(frame * (arc.center + arc.radius * unitVector(angle)));
+        }
+        if (!full)
+            shape_.chords.push_back(
+                {{shape_.path.points.front(), shape_.path.points.back()}, frame * arc.center});
+    }
+
+    void addEllipse(const DxfEllipse& ellipse, const Affine& frame) {
+        double sweep = std::fmod(ellipse.to - ellipse.from, kFullTurn);
+        if (sweep <= 1e-9) sweep += kFullTurn;
+        const bool full = sweep > kFullTurn - 1e-6;
+        const double radius = std::max(length(ellipse.major), length(ellipse.minor));
+        if (!(radius > 0)) return;
+        const int count = arcPieces(sweep, radius * frame.largestScale());
+        shape_.path.closed = full;
+        for (int i = 0; i < count + (full ? 0 : 1); ++i) {
+            const double t = ellipse.from + sweep * i / count;
+            shape_.path.points.push_back(frame * (ellipse.center + std::cos(t) * ellipse.major +
+                                                  std::sin(t) * ellipse.minor));
+        }
+    }
+
+    void addSpline(const DxfEntity& entity, DxfSpline spline, const Affine& frame) {
+        for (Point2& control : spline.controls) control = frame * control;
+        Polygon& points = shape_.path.points;
+        points = splinePoints(spline, budget_);
+        if (points.size() > budget_) spend(entity, points.size());  // refuses
+        shape_.path.closed = distance(points.front(), points.back()) <= kSameEnd;
+        if (shape_.path.closed) points.pop_back();
+    }
+
+    const DxfDrawing& drawing_;
+    const std::string& name_;
+    std::size_t most_, total_, budget_;
+    LayerSorter& layers_;
+    MissingBlocks& missing_;
+    std::vector<PlanShape> shapes_;
+    PlanShape shape_;  // in the making
+};
 
 /// Metres that a plan is wide if its unit is right.
 constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
-/// What openings are if the walls are high enough.
-constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
-
-struct LengthUnit {
-    int code;  ///< of $INSUNITS
-    const char* name;
-    double metres;
-};
-
-constexpr std::array<LengthUnit, 8> kUnits{{{1, "inch", 0.0254},
-                                            {2, "foot", 0.3048},
-                                            {4, "mm", 0.001},
-                                            {5, "cm", 0.01},
-                                            {6, "m", 1},
-                                            {7, "km", 1000},
-                                            {10, "yard", 0.9144},
-                                            {14, "dm", 0.1}}};
-
-[[noreturn]] void fail(const std::string& name, const std::string& message) {
-    throw FormatError(Diagnostic{displayName(name), 0, 0, message});
-}
-
 const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
                          const ImportOptions& options, ImportRecords& out) {
     const bool asked = !options.units.empty();
-    const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&](const LengthUnit& u) {
-        return asked ? u.name == options.units : u.code == drawing.units;
-    });
-    if (unit == kUnits.end())
-        fail(name,
-             (asked                ? "unknown unit " + options.units
-              : drawing.units == 0 ? std::string("the drawing does not say its unit ($INSUNITS)")
-                                   : "$INSUNITS is " + std::to_string(drawing.units) +
-                                         ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
-                 "; say it, for example with --units mm");
+    const auto unit =
+        std::find_if(kLengthUnits.begin(), kLengthUnits.end(), [&](const LengthUnit& u) {
+            return asked ? u.name == options.units : u.insunits == drawing.units;
+        });
+    if (unit == kLengthUnits.end())
+        failFile(name, (asked ? "unknown unit " + options.units
+                        : drawing.units == 0
+                            ? std::string("the drawing does not say its unit ($INSUNITS)")
+                            : "$INSUNITS is " + std::to_string(drawing.units) +
+                                  ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
+                           "; say it, for example with --units mm");
     out.note(std::string("unit: ") + unit->name +
              (asked ? ", as asked for" : ", as $INSUNITS of the drawing says"));
     return *unit;
-}
-
-/// "WALLS (24), 0 (3) and 2 more".
-std::string listed(const std::map<std::string, std::size_t>& counts) {
-    constexpr std::size_t kMostNames = 12;
-    std::string text;
-    std::size_t named = 0;
-    for (const auto& [thing, count] : counts) {
-        if (named == kMostNames) break;
-        if (named++ > 0) text += ", ";
-        text += thing + " (" + std::to_string(count) + ')';
-    }
-    if (counts.size() > named) text += " and " + std::to_string(counts.size() - named) + " more";
-    return text;
-}
-
-/// Shapes by what their layers hold.
-struct SortedShapes {
-    std::vector<PlanPath> walls;
-    std::vector<PlanShape> doors, windows;
-};
-
-class LayerSorter {
-  public:
-    LayerSorter(const std::set<std::string>& hidden, const ImportOptions& options)
-        : hidden_(hidden), options_(options) {}
-
-    SortedShapes sort(std::vector<PlanShape> shapes) {
-        SortedShapes sorted;
-        for (PlanShape& shape : shapes) {
-            const Use use = useOf(shape.layer);
-            ++counts_[use][shape.layer];
-            if (use == Walls)
-                sorted.walls.push_back(std::move(shape.path));
-            else if (use == Doors)
-                sorted.doors.push_back(std::move(shape));
-            else if (use == Windows)
-                sorted.windows.push_back(std::move(shape));
-        }
-        return sorted;
-    }
-
-    void note(ImportRecords& out) const {
-        constexpr std::array<const char*, kUses> kTitles{
-            "layers of walls: ", "layers of doors: ", "layers of windows: ", "layers left out: ",
-            "layers left out because they are off or frozen: "};
-        for (std::size_t use = 0; use < kUses; ++use)
-            if (!counts_[use].empty()) out.note(kTitles[use] + listed(counts_[use]));
-    }
-
-    /// All layers with lines, for a message.
-    [[nodiscard]] std::string all() const {
-        std::map<std::string, std::size_t> all;
-        for (const auto& counts : counts_)
-            for (const auto& [layer, count] : counts) all[layer] += count;
-        return all.empty() ? "none" : listed(all);
-    }
-
-    [[nodiscard]] bool isUsed(const std::string& layer) {
-        const Use use = useOf(layer);
-        return use == Walls || use == Doors || use == Windows;
-    }
-
-  private:
-    enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
-
-    static bool matches(const std::vector<std::string>& globs, const std::string& layer) {
-        return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-            return ::fnmatch(glob.c_str(), layer.c_str(), FNM_CASEFOLD) == 0;
-        });
-    }
-    Use useOf(const std::string& layer) {
-        const auto [it, is_new] = uses_.try_emplace(layer, Others);
-        if (!is_new) return it->second;
-        Use& use = it->second;
-        if (hidden_.count(layer) != 0)
-            use = Hidden;
-        else if (matches(options_.door_layers, layer))
-            use = Doors;
-        else if (matches(options_.window_layers, layer))
-            use = Windows;
-        else if (options_.wall_layers.empty() || matches(options_.wall_layers, layer))
-            use = Walls;
-        return use;
-    }
-
-    const std::set<std::string>& hidden_;
-    const ImportOptions& options_;
-    std::map<std::string, Use> uses_;
-    std::array<std::map<std::string, std::size_t>, kUses> counts_;
-};
-
-/// A plan's lines and what is kept of them.
-class DxfPlan {
-  public:
-    DxfPlan(const SortedShapes& shapes, const std::string& name, const ImportOptions& options,
-            std::function<std::string(double)> unit_hint, ImportRecords& out)
-        : paths_(tidyLines(shapes.walls, options.snap.value_or(kDefaultSnap))),
-          pieces_(piecesOf(paths_)) {
-        check(name);
-        PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
-        if (options.simplify.value_or(0) > 0) {
-            simplify(*options.simplify, found.openings);
-            found = findOpenings(shapes.doors, shapes.windows, pieces_);
-        }
-        openings_ = std::move(found.openings);
-        unused_symbols_ = found.unused;
-        keepRooms(options, std::move(unit_hint), out);
-    }
-
-    [[nodiscard]] double area() const { return rooms_.area(); }
-
-    void write(ImportRecords& out, const ImportOptions& options) {
-        if (!rooms_.reached.empty()) {
-            // Doors have no walls to be in: they are where the floor goes on.
-            writeRooms(rooms_, options, out);
-            return note(out);
-        }
-        std::vector<PlanPath> fences = joinedAtEnds(paths_);
-        const std::vector<std::size_t> fence_of = fencesOfOpenings(fences);
-        std::vector<std::string> ids(fences.size());
-        for (const std::size_t fence : fence_of)
-            if (fence < fences.size() && ids[fence].empty())
-                ids[fence] = out.freeId("f" + std::to_string(fence + 1), "f");
-        for (std::size_t i = 0; i < fences.size(); ++i) out.fence(fences[i], ids[i]);
-        for (std::size_t i = 0; i < openings_.size(); ++i) {
-            const std::string wall =
-                openings_[i].wall ? ids[fence_of[i]] : out.freeId("gap", "gap");
-            if (!openings_[i].wall) out.wall(openings_[i].line, wall, openings_[i].drawn_on);
-            writeOpening(openings_[i], wall, out, options.wall_height);
-        }
-        writeRooms(rooms_, options, out);
-        note(out);
-    }
-
-  private:
-    void check(const std::string& name) const {
-        Box2 box;
-        for (const Segment2& piece : pieces_) {
-            box.add(piece.a);
-            box.add(piece.b);
-        }
-        if (!pieces_.empty() && std::max(box.width(), box.depth()) > kLargestExtent)
-            fail(name, "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
-                           " m wide: is the unit right? Say another, for example with --units mm");
-        if (crossTooOften(pieces_))
-            fail(name,
-                 "the lines cross each other too often to be walls: leave layers of hatching "
-                 "out, for example with --wall-layer 'A-WALL*'");
-    }
-
-    /// Pieces on which openings lie, or to which they reach, stay.
-    void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
-        paths_ = joinedAtEnds(paths_);
-        pieces_ = piecesOf(paths_);
-        const NearSegments search(pieces_);
-        std::vector<std::size_t> fixed;
-        for (const PlanOpening& opening : openings)
-            for (const Point2 end : {opening.line.a, opening.line.b})
-                for (const std::size_t i : search.near(end, kOpeningReach))
-                    if (distance(end, pieces_[i]) <= kOpeningReach) fixed.push_back(i);
-        paths_ = simplifiedPaths(paths_, tolerance, fixed);
-        pieces_ = piecesOf(paths_);
-    }
-
-    /// Lines that close the gaps of openings, behind those of walls.
-    [[nodiscard]] std::vector<Segment2> allPieces() const {
-        std::vector<Segment2> all(pieces_);
-        for (const PlanOpening& opening : openings_)
-            if (!opening.wall) all.push_back(opening.line);
-        return all;
-    }
-
-    void keepRooms(const ImportOptions& options, std::function<std::string(double)> unit_hint,
-                   ImportRecords& out) {
-        std::vector<Segment2> doorways;
-        for (const PlanOpening& opening : openings_)
-            if (!opening.is_window) doorways.push_back(opening.line);
-        const std::vector<Segment2> all = allPieces();
-        rooms_ = chooseRooms({all, doorways, {}, {}, std::move(unit_hint)}, options, out);
-        if (rooms_.regions.empty()) return;
-        const std::vector<bool> keep = belongsTo(rooms_.regions, all);
-        std::size_t gap = pieces_.size();
-        std::vector<PlanOpening> kept;
-        for (const PlanOpening& opening : openings_)
-            if (keep[opening.wall ? *opening.wall : gap++]) kept.push_back(opening);
-        dropped_openings_ = openings_.size() - kept.size();
-        openings_ = std::move(kept);
-        const std::vector<bool> walls(keep.begin(),
-                                      keep.begin() + static_cast<std::ptrdiff_t>(pieces_.size()));
-        dropped_lines_ = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), false));
-        paths_ = withPieces(paths_, walls);
-    }
-
-    /// For each opening on a wall the index of the fence it is in.
-    [[nodiscard]] std::vector<std::size_t> fencesOfOpenings(
-        const std::vector<PlanPath>& fences) const {
-        using Ends = std::array<double, 4>;
-        const auto ends_of = [](const Segment2& s) {
-            return lexLess(s.a, s.b) ? Ends{s.a.x, s.a.y, s.b.x, s.b.y}
-                                     : Ends{s.b.x, s.b.y, s.a.x, s.a.y};
-        };
-        std::map<Ends, std::size_t> fence_with;
-        for (const PlanOpening& opening : openings_)
-            if (opening.wall) fence_with[ends_of(pieces_[*opening.wall])] = 0;
-        for (std::size_t i = 0; i < fences.size(); ++i)
-            for (std::size_t k = 0; k < fences[i].pieceCount(); ++k)
-                if (const auto it = fence_with.find(ends_of(fences[i].piece(k)));
-                    it != fence_with.end())
-                    it->second = i;
-        std::vector<std::size_t> result;
-        result.reserve(openings_.size());
-        for (const PlanOpening& opening : openings_)
-            result.push_back(opening.wall ? fence_with.at(ends_of(pieces_[*opening.wall]))
-                                          : fences.size());
-        return result;
-    }
-
-    static void writeOpening(const PlanOpening& opening, const std::string& wall,
-                             ImportRecords& out, double wall_height) {
-        Record& record = out.add(opening.is_window ? "window" : "door", opening.drawn_on);
-        record.set("wall", wall);
-        ImportRecords::setPoint(record, "from", opening.line.a);
-        ImportRecords::setPoint(record, "to", opening.line.b);
-        if (opening.is_window) {
-            const double sill = std::min(kSill, wall_height * kSill / kDoorHeight);
-            record.set("height", std::min(kWindowHeight, wall_height - sill));
-            record.set("sill", sill);
-        } else {
-            record.set("height", std::min(kDoorHeight, wall_height));
-            record.set("open", true);
-        }
-    }
-
-    void note(ImportRecords& out) const {
-        const auto windows = static_cast<std::size_t>(
-            std::count_if(openings_.begin(), openings_.end(),
-                          [](const PlanOpening& opening) { return opening.is_window; }));
-        if (!openings_.empty() || unused_symbols_ > 0)
-            out.note(countText(openings_.size() - windows, "door") + ", " +
-                     countText(windows, "window") +
-                     (unused_symbols_ == 0 ? std::string()
-                                           : "; " + countText(unused_symbols_, "line") +
-                                                 " on their layers open nothing and are left out"));
-        if (dropped_lines_ + dropped_openings_ > 0)
-            out.note("left out outside of it: " + countText(dropped_lines_, "line") + " and " +
-                     countText(dropped_openings_, "opening"));
-    }
-
-    std::vector<PlanPath> paths_;
-    std::vector<Segment2> pieces_;  // of all walls drawn
-    std::vector<PlanOpening> openings_;
-    std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
-    PlanRooms rooms_;
-};
-
-/// \return the floor that is kept, in square metres
-double writeSorted(const SortedShapes& shapes, const LayerSorter& sorter, const std::string& name,
-                   const ImportOptions& options, std::function<std::string(double)> unit_hint,
-                   ImportRecords& out) {
-    if (shapes.walls.empty())
-        fail(name, (options.wall_layers.empty() ? "no line to make a wall of"
-                                                : "no line on the layers of walls") +
-                       std::string("; layers with lines: ") + sorter.all());
-    return withFileName(name, [&] {
-        DxfPlan plan(shapes, name, options, std::move(unit_hint), out);
-        plan.write(out, options);
-        return plan.area();
-    });
 }
 
 /// A drawing's document in a unit, and the floor it comes to.
@@ -358,16 +261,17 @@ class DxfImporter {
         const LengthUnit& unit = unitOf(drawing_, name_, options, out);
         MissingBlocks missing;
         LayerSorter sorter(drawing_.hidden_layers, options);
-        const SortedShapes shapes = sorter.sort(
-            shapesOf(drawing_, unit.metres, name_, options.most_points, missing,
-                     [&sorter](const std::string& layer) { return sorter.isUsed(layer); }));
+        const LayerSorter::Sorted shapes = sorter.sort(
+            Expander(drawing_, name_, options.most_points, missing, sorter).expand(unit.metres));
         sorter.note(out);
-        if (!drawing_.left_out.empty()) out.note("entities left out: " + listed(drawing_.left_out));
-        if (!missing.empty()) out.note("inserts of blocks that the file lacks: " + listed(missing));
+        if (!drawing_.left_out.empty())
+            out.note("entities left out: " + listText(drawing_.left_out));
+        if (!missing.empty())
+            out.note("inserts of blocks that the file lacks: " + listText(missing));
         const auto hint = [&](double extent) {
             return hints ? unitHint(extent, unit, options) : std::string();
         };
-        const double area = writeSorted(shapes, sorter, name_, options, hint, out);
+        const double area = writeLinePlan(shapes, sorter, name_, options, hint, out);
         return {out.take(), area};
     }
 
@@ -376,9 +280,9 @@ class DxfImporter {
     [[nodiscard]] std::string unitHint(double extent, const LengthUnit& unit,
                                        const ImportOptions& options) const {
         for (const char* name : {"m", "mm", "cm", "inch", "foot"}) {
-            const auto other = std::find_if(kUnits.begin(), kUnits.end(), [&](const LengthUnit& u) {
-                return std::string_view(u.name) == name;
-            });
+            const auto other =
+                std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                             [&](const LengthUnit& u) { return std::string_view(u.name) == name; });
             const double metres = extent / unit.metres * other->metres;
             if (metres < kLikelyPlan || metres > kUnlikelyPlan) continue;
             ImportOptions as_other = options;
@@ -401,14 +305,6 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
                  const Schemas& schemas) {
     const DxfDrawing drawing = readDrawing(bytes, name);
     return DxfImporter(drawing, name, schemas).import(options, true).document;
-}
-
-void writeLinePlan(std::vector<PlanShape> shapes, const std::set<std::string>& hidden_layers,
-                   const std::string& name, const ImportOptions& options, ImportRecords& out) {
-    LayerSorter sorter(hidden_layers, options);
-    const SortedShapes sorted = sorter.sort(std::move(shapes));
-    sorter.note(out);
-    writeSorted(sorted, sorter, name, options, {}, out);
 }
 
 }  // namespace ispace

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/message.h"
-#include "io/dxf_text.h"
 
 namespace ispace {
 

@@ -4,7 +4,7 @@
 
 #include "geom/predicates.h"
 #include "io/curves.h"
-#include "io/dxf.h"
+#include "io/importers.h"
 #include "io/test_dxf.h"
 #include "io/test_import.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/dxf.h"
+#include "io/importers.h"
 
 #include <cmath>
 #include <numbers>

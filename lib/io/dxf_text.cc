@@ -1,22 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/dxf_text.h"
+#include "io/dxf_drawing.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "io/curves.h"
-#include "io/dxf_groups.h"
+#include "io/import_records.h"
+#include "io/importers.h"
+#include "record/text.h"
 
 namespace ispace {
 
 namespace {
+
+/// A group code and its value.
+struct Group {
+    int code = 0;
+    std::string_view value;
+    int line = 0;  // of the value
+};
+
+/// Takes a file apart into groups, two lines each.
+class GroupReader {
+  public:
+    GroupReader(std::string_view bytes, const std::string& name)
+        : lines_(bytes.substr(0, bytes.find_last_not_of(" \t\r\n") + 1)), name_(name) {}
+
+    /// Nothing at the end of the file.
+    std::optional<Group> next() {
+        const auto code = lines_.next();
+        if (!code) return std::nullopt;
+        const auto number = parseInteger(trimmed(*code));
+        if (!number || *number < -5 || *number > 1071)
+            fail(line(), "found " + excerpt(trimmed(*code)) + ", wanted a group code");
+        const auto value = lines_.next();
+        if (!value)
+            fail(line(), "truncated: group code " + std::to_string(*number) + " without value");
+        return Group{static_cast<int>(*number), trimmed(*value), line()};
+    }
+
+    [[noreturn]] void fail(int line, const std::string& message) const {
+        failFile(name_, message, line);
+    }
+    [[nodiscard]] int line() const { return lines_.number(); }
+
+  private:
+    LineReader lines_;
+    const std::string& name_;
+};
 
 constexpr std::size_t kLongestName = 255;
 constexpr double kLargest = 1e12;  // of any number that counts: drawings end far below

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/geojson.h"
+#include "io/exporters.h"
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "io/glb_container.h"
+#include "io/glb_file.h"
 #include "io/model.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"

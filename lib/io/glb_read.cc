@@ -14,17 +14,14 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "io/glb_container.h"
+#include "io/glb_file.h"
+#include "io/input.h"
 #include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {
 
 namespace {
-
-[[noreturn]] void fail(const std::string& name, const std::string& message) {
-    throw FormatError(Diagnostic{displayName(name), 0, 0, message});
-}
 
 /// Takes the few numbers we need out of glTF's JSON as it streams by: the top level's extras and
 /// bufferViews. The parser keeps no tree and its depth costs no stack, so that neither size nor
@@ -125,12 +122,12 @@ class Finder : public nlohmann::json_sax<nlohmann::json> {
 class Glb {
   public:
     Glb(std::string_view bytes, const std::string& name) : name_(name) {
-        if (!isGlb(bytes)) fail(name, "not a binary glTF file: wanted `glTF` at its beginning");
+        if (!isGlb(bytes)) failFile(name, "not a binary glTF file: wanted `glTF` at its beginning");
         const GlbChunks chunks = glbChunks(bytes, name);
         binary_ = chunks.binary;
         if (!finder_.read(chunks.json))
-            fail(name, "damaged: bad JSON at byte " + std::to_string(finder_.error_position) +
-                           " of its chunk");
+            failFile(name, "damaged: bad JSON at byte " + std::to_string(finder_.error_position) +
+                               " of its chunk");
     }
 
     [[nodiscard]] bool hasRecords() const { return finder_.records.has_value(); }
@@ -157,13 +154,13 @@ class Glb {
     [[nodiscard]] std::string_view viewOf(std::uint64_t index, const std::string& key,
                                           const std::string& content) const {
         if (index >= finder_.views.size())
-            fail(name_, "damaged: " + key + " names none of the " +
-                            std::to_string(finder_.views.size()) + " buffer views");
+            failFile(name_, "damaged: " + key + " names none of the " +
+                                std::to_string(finder_.views.size()) + " buffer views");
         const Finder::View& view = finder_.views[index];
         if (view.buffer != 0 || view.offset > binary_.size() ||
             view.length > binary_.size() - view.offset)
-            fail(name_, "damaged: " + content + " outside of its " +
-                            std::to_string(binary_.size()) + " bytes of data");
+            failFile(name_, "damaged: " + content + " outside of its " +
+                                std::to_string(binary_.size()) + " bytes of data");
         return binary_.substr(view.offset, view.length);
     }
 
@@ -172,11 +169,11 @@ class Glb {
     void readTriples(std::uint64_t view, std::vector<std::array<T, 3>>& out) {
         const std::string_view bytes = viewOf(view, "extras.ispace_meshes", "a mesh lies");
         if (bytes.size() % sizeof out[0] != 0)
-            fail(name_, "damaged: " + std::to_string(bytes.size()) +
-                            " bytes of a mesh, wanted 12 each for points and triangles");
+            failFile(name_, "damaged: " + std::to_string(bytes.size()) +
+                                " bytes of a mesh, wanted 12 each for points and triangles");
         // Else a file could have many times its size of meshes.
         taken_ += bytes.size();
-        if (taken_ > binary_.size()) fail(name_, "damaged: its meshes overlap");
+        if (taken_ > binary_.size()) failFile(name_, "damaged: its meshes overlap");
         out.resize(bytes.size() / sizeof out[0]);
         if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
     }
@@ -194,14 +191,14 @@ class Glb {
         const auto is_beyond = [&mesh](std::uint32_t i) { return i >= mesh->vertices.size(); };
         for (const auto& point : mesh->vertices)
             if (std::any_of(point.begin(), point.end(), is_bad))
-                fail(name_, "damaged: a mesh has a point that is no number");
+                failFile(name_, "damaged: a mesh has a point that is no number");
         for (const auto& corners : mesh->triangles)
             if (std::any_of(corners.begin(), corners.end(), is_beyond))
-                fail(name_, "damaged: a triangle of a mesh has a corner beyond its " +
-                                std::to_string(mesh->vertices.size()) + " points");
+                failFile(name_, "damaged: a triangle of a mesh has a corner beyond its " +
+                                    std::to_string(mesh->vertices.size()) + " points");
         mesh->digest = meshDigest(*mesh);
         if (mesh->digest != digest)
-            fail(name_, "damaged: the content of a mesh has another digest than " + digest);
+            failFile(name_, "damaged: the content of a mesh has another digest than " + digest);
         return mesh;
     }
 
@@ -227,9 +224,9 @@ bool glbHasRecords(std::string_view bytes) {
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas) {
     Glb glb(bytes, name);
     if (!glb.hasRecords())
-        fail(name,
-             "no ispace records in this glTF file: compile the environment with `envc … -o "
-             "room.glb`");
+        failFile(name,
+                 "no ispace records in this glTF file: compile the environment with `envc … -o "
+                 "room.glb`");
     Document document = readRecordText(glb.records(), name, schemas);
     glb.attachMeshes(document.records);
     return document;

@@ -7,7 +7,7 @@
 
 #include "env/mesh.h"
 #include "io/glb.h"
-#include "io/glb_model.h"
+#include "io/glb_file.h"
 #include "io/model.h"
 #include "record/text.h"
 

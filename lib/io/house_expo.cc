@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/house_expo.h"
+#include "io/importers.h"
 
 #include <algorithm>
 #include <array>
@@ -79,10 +79,9 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
                                   CountingIterator(bytes_.data() + bytes_.size(), &at_), this);
         if (finding_) throw FormatError(*finding_);
         if (!plan_.has_outline)
-            throw FormatError(Diagnostic{
-                displayName(name_), 0, 0,
-                "JSON without `verts`: wanted a HouseExpo plan, an object with `verts`, the "
-                "outline as a list of [x, y]"});
+            failFile(name_,
+                     "JSON without `verts`: wanted a HouseExpo plan, an object with `verts`, the "
+                     "outline as a list of [x, y]");
         return std::move(plan_);
     }
 
@@ -249,9 +248,7 @@ class RoomFinder {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& message) const {
-        throw FormatError(Diagnostic{displayName(name_), 0, 0, message});
-    }
+    [[noreturn]] void fail(const std::string& message) const { failFile(name_, message); }
     [[nodiscard]] bool isFloor(Point2 p) const {
         return locate(outline_.front(), p) == Side::Inside &&
                std::none_of(holes_.begin(), holes_.end(),

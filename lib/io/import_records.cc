@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/import_records.h"
 
-#include <cctype>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -110,11 +110,21 @@ std::string ImportRecords::freeId(std::string_view name, const std::string& fall
     return id;
 }
 
+void failFile(const std::string& name, const std::string& message, int line) {
+    throw FormatError(Diagnostic{displayName(name), line, line == 0 ? 0 : 1, message});
+}
+
 std::string reasonNotToRead(const std::string& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (error) return error.message();
     return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
 std::string countText(std::size_t count, const std::string& thing) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <set>
 #include <string>
 #include <utility>
@@ -8,9 +9,8 @@
 
 #include "base/error.h"
 #include "geom/polygon.h"
-#include "io/import_options.h"
+#include "io/input.h"
 #include "io/plan_lines.h"
-#include "io/plan_region.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -77,6 +77,24 @@ auto withFileName(const std::string& name, Read read) {
 /// Why a file that another one names is not read, or "": it is not there, or it is no regular
 /// file; devices and pipes may have no end.
 std::string reasonNotToRead(const std::string& path);
+
+/// A unit of drawings.
+struct LengthUnit {
+    const char* name;  ///< as --units takes the first five
+    double metres;
+    int insunits;  ///< its code in DXF, $INSUNITS
+};
+constexpr std::array<LengthUnit, 8> kLengthUnits{{{"m", 1, 6},
+                                                   {"cm", 0.01, 5},
+                                                   {"mm", 0.001, 4},
+                                                   {"inch", 0.0254, 1},
+                                                   {"foot", 0.3048, 2},
+                                                   {"km", 1000, 7},
+                                                   {"yard", 0.9144, 10},
+                                                   {"dm", 0.1, 14}}};
+
+/// The text without blanks and line breaks around.
+std::string_view trimmed(std::string_view text);
 
 /// "1 line", "3 lines".
 std::string countText(std::size_t count, const std::string& thing);

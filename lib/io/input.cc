@@ -8,16 +8,11 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
-#include "io/aria_map.h"
-#include "io/bare_map.h"
-#include "io/dxf.h"
 #include "io/glb.h"
-#include "io/house_expo.h"
+#include "io/import_records.h"
+#include "io/importers.h"
 #include "io/mesh_file.h"
-#include "io/mesh_format.h"
-#include "io/mesh_walls.h"
-#include "io/ros_map.h"
-#include "io/svg.h"
+#include "io/mesh_parts.h"
 #include "raster/picture.h"
 #include "record/text.h"
 #include "record/yaml.h"
@@ -51,15 +46,10 @@ struct Line {
 
 /// The first line that holds more than blanks and a comment, from its first word on.
 Line firstLine(std::string_view bytes) {
-    Line line;
-    while (!bytes.empty()) {
-        ++line.number;
-        const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-        line.text = bytes.substr(0, end);
-        bytes.remove_prefix(std::min(end + 1, bytes.size()));
-        line.text.remove_prefix(std::min(line.text.find_first_not_of(kBlanks), line.text.size()));
-        if (!line.text.empty() && line.text.front() != '#') return line;
-    }
+    LineReader lines(bytes);
+    while (const auto line = lines.next())
+        if (const auto text = trimmed(*line); !text.empty() && text.front() != '#')
+            return {text, lines.number()};
     return {};
 }
 
@@ -238,9 +228,8 @@ bool isPlan(std::string_view bytes, const std::string& operand, const ImportOpti
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas) {
     const Source source{withoutMark(bytes), operand, options, schemas};
-    const InputFormat* format = formatOf(source, [&](int line, const std::string& message) {
-        throw FormatError(Diagnostic{displayName(operand), line, line == 0 ? 0 : 1, message});
-    });
+    const InputFormat* format = formatOf(
+        source, [&](int line, const std::string& message) { failFile(operand, message, line); });
     Document document = format->read(source);
     if (options.load_meshes) loadMeshes(document, operand);
     return document;

@@ -1,13 +1,55 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "io/import_options.h"
+#include "geom/polygon.h"
+#include "geom/pose.h"
 #include "record/record.h"
 
 namespace ispace {
+
+/// Places of plans lie no farther from the origin, in metres; records end at 1000 km.
+constexpr double kFarthestPlan = 900'000;
+
+/// Which of the closed regions of a plan or map are imported.
+enum class RoomChoice {
+    Largest,  ///< the largest that is no outside and no hollow of a wall
+    All,      ///< every room that is closed in itself
+};
+
+/// How plans, maps and meshes that somebody else made become records.
+struct ImportOptions {
+    double wall_height = 2.5;   ///< metres, of walls in plans without heights
+    double wall_thickness = 0;  ///< metres, of lines in plans; 0: the line is the face
+    RoomChoice rooms = RoomChoice::Largest;
+    std::vector<Point2> inside;  ///< points in the rooms that are meant; they win over `rooms`
+    std::vector<Point2> known_inside;   ///< the same, of `inside` records that come from elsewhere
+    std::vector<Segment2> known_walls;  ///< wall lines that edits or other inputs add
+    std::optional<double> close_gaps;   ///< metres up to which gaps between walls are closed;
+                                        ///< default: as little as the importer gets by with
+    std::optional<double> reachable;    ///< radius of the disc that has to reach the floor
+    std::optional<double> resolution;   ///< metres a pixel of a picture that comes alone
+    Pose2 origin;                       ///< of the lower left corner of such a picture
+    std::optional<double> slice_walls;  ///< height at which a mesh of a building is cut into walls
+    std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
+                                     ///< importer's own
+    std::optional<double> simplify;  ///< metres outlines may move; default: the importer's own
+    std::optional<double> clean;     ///< metres: what is smaller on a map is noise; 0: nothing;
+                                     ///< default: kNoiseWidth, or 0 where `simplify` is 0
+    std::string units;               ///< m, cm, mm, inch or foot; "": as the file says
+    std::string up = "auto";         ///< a mesh's upward axis: auto, x, y or z
+    std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise
+    std::vector<std::string> door_layers;    ///< globs; default none
+    std::vector<std::string> window_layers;  ///< globs; default none
+    bool points = false;                     ///< points of an ARIA map become obstacles
+    std::size_t most_points = 2'000'000;     ///< drawings that come to more are refused
+    bool load_meshes = true;                 ///< false: `mesh` records keep their file unread
+};
 
 /// Reads any environment or layout the library knows, told apart by content: GLB, `#env`, `#3dm`,
 /// YAML, ROS map YAML, pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and
@@ -27,5 +69,8 @@ bool isPlan(std::string_view bytes, const std::string& operand, const ImportOpti
 /// The same for bytes already read.
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);
+
+/// Refuses a file as a whole, or for what stands in a line of it. \throws FormatError
+[[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);
 
 }  // namespace ispace

@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "io/import_records.h"
-#include "io/mesh_load.h"
 
 namespace ispace {
 

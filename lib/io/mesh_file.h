@@ -1,12 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "io/import_options.h"
+#include "geom/triangle_mesh.h"
+#include "io/input.h"
+#include "io/mesh_parts.h"
 #include "record/record.h"
 
 namespace ispace {
+
+/// How a file of meshes is read.
+struct MeshOptions {
+    /// auto: turned so that z points up: glTF and IFC from y, COLLADA from what it says; files of
+    /// other formats stay as they are. x, y or z: the file's own axes, whatever it says of them.
+    std::string up = "auto";
+    /// The files that it names may lie anywhere, not only in its folder and below.
+    bool side_files_anywhere = false;
+};
+
+/// Reads the triangles of a file: OBJ, STL, PLY, COLLADA, glTF, GLB and IFC, by content, else by
+/// suffix. All parts are put where their nodes are, polygons cut into triangles, points and lines
+/// left out, equal vertices joined, triangles without area dropped. COLLADA and IFC come in metres,
+/// others in their own units. The bytes are parsed by a program of their own,
+/// `lib/ispace/read-mesh` beside the one that runs, which has bounds on memory and time and no
+/// rights; a file that makes it crash, grow or hang is a bad file like any other. \param side_files
+/// what the file names is appended: buffers of glTF; materials of OBJ that exist,
+///        though their content is not read
+/// \throws FormatError: nothing of the above, no triangles, NaN, more than kMaxMesh…, a side file
+///         where none may be; std::system_error if the file cannot be opened
+std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
+                                             std::vector<std::string>* side_files = nullptr);
+
+/// The same node by node, for files whose nodes tell what they are.
+std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options);
 
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
 /// and those of the files it names to Document::sources. Paths are relative to the operand's folder

@@ -9,8 +9,7 @@
 
 #include "base/file.h"
 #include "io/input.h"
-#include "io/mesh_format.h"
-#include "io/mesh_load.h"
+#include "io/mesh_parts.h"
 #include "io/test_import.h"
 #include "record/digest.h"
 

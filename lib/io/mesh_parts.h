@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,24 @@
 #include "geom/triangle_mesh.h"
 
 namespace ispace {
+
+/// Formats of meshes that are read.
+enum class MeshFormat { Obj, Stl, Ply, Collada, Gltf, Glb, Ifc };
+
+/// What the bytes say they are: OBJ, STL, PLY or COLLADA, or nothing of these.
+std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
+
+/// True if the bytes are OBJ, STL, PLY or COLLADA.
+bool isMeshFile(std::string_view bytes);
+
+/// True for `chair.obj` and the like, in any case.
+bool hasMeshSuffix(const std::string& operand);
+
+/// In lower case: ".obj".
+std::string meshSuffix(const std::string& path);
+
+/// What a mesh is by its suffix that is not read, and what helps: "a .3ds mesh, …"; "" for others.
+std::string foreignMesh(const std::string& path);
 
 /// What is read of one file at most; more is refused.
 constexpr std::size_t kMaxMeshTriangles = 50'000'000;

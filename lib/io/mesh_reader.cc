@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mesh_reader.h"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -18,17 +16,33 @@
 #include <filesystem>
 #include <new>
 #include <set>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "io/mesh_format.h"
+#include "io/mesh_file.h"
+#include "io/mesh_parts.h"
 #include "io/side_files.h"
+#include "record/digest.h"
 
 namespace ispace {
+
+/// Which parts read-mesh gives.
+enum class MeshShape {
+    Whole,  ///< one, all in it
+    Parts,  ///< one for each node that has triangles
+};
+
+/// Runs read-mesh on a file: starts it, hands it the files that the mesh names as far as it may
+/// have them, and takes its answer, which is trusted in nothing. Nothing is left running.
+/// \throws as loadMesh
+std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
+                                      MeshShape shape, std::vector<std::string>* side_files);
 
 namespace {
 
@@ -39,10 +53,6 @@ constexpr std::size_t kLongestName = 4096;        // bytes
 constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
 /// A child that does nothing is waited for this many times its processor time.
 constexpr std::size_t kPatience = 5;
-
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-    throw FormatError(Diagnostic{path, 0, 0, message});
-}
 
 std::string ownProgram() {
     return (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "read-mesh").string();
@@ -137,8 +147,8 @@ class Reading {
           limits_(meshLimits(bytes_, is_building_)),
           child_(ownProgram(), arguments(shape), main_.file.fd()) {
         if (child_.startError() != 0)
-            fail(path_, "meshes are read by " + printable(ownProgram()) +
-                            ", which cannot be started: " + ::strerror(child_.startError()));
+            failFile(path_, "meshes are read by " + printable(ownProgram()) +
+                                ", which cannot be started: " + ::strerror(child_.startError()));
         give_up_ = Clock::now() + std::chrono::seconds(kPatience * limits_.seconds);
     }
 
@@ -155,7 +165,7 @@ class Reading {
                 case MeshAnswer::Parts:
                     return parts(size);
                 case MeshAnswer::Error:
-                    fail(path_, printable(text(size, kLongestMessage)));
+                    failFile(path_, printable(text(size, kLongestMessage)));
                 case MeshAnswer::OutOfMemory:
                     tooMuchMemory();
                 default:
@@ -180,7 +190,7 @@ class Reading {
         // What it sends it had to hold.
         std::vector<MeshPart> parts = unpackedParts(text(size, limits_.memory), path_);
         if (parts.empty() || parts.front().mesh.triangles.empty())
-            fail(path_, "a mesh file without triangles");
+            failFile(path_, "a mesh file without triangles");
         return parts;
     }
 
@@ -226,7 +236,7 @@ class Reading {
 
     void reply(const std::string& name) {
         if (++names_ > kMostNames)
-            fail(path_, "it names more than " + std::to_string(kMostNames) + " files");
+            failFile(path_, "it names more than " + std::to_string(kMostNames) + " files");
         if (name.empty() || name.find('\0') != std::string::npos) return send(nullptr);
         const auto file = openSideFile(path_, name, options_.side_files_anywhere);
         if (!file) return send(nullptr);
@@ -294,12 +304,12 @@ class Reading {
         rlimit own{};
         if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur < limits_.memory)
             throw std::bad_alloc();
-        fail(path_, "bad mesh file: it takes more than " + formatBytes(limits_.memory) +
-                        " of memory" + forThisSize());
+        failFile(path_, "bad mesh file: it takes more than " + formatBytes(limits_.memory) +
+                            " of memory" + forThisSize());
     }
     [[noreturn]] void tooMuchTime() {
-        fail(path_, "bad mesh file: it takes more than " + std::to_string(limits_.seconds) + " s" +
-                        forThisSize());
+        failFile(path_, "bad mesh file: it takes more than " + std::to_string(limits_.seconds) +
+                            " s" + forThisSize());
     }
     /// It is dead, or says what it never should.
     [[noreturn]] void noAnswer() {
@@ -307,12 +317,13 @@ class Reading {
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         if (signal == SIGXCPU) tooMuchTime();
         if (signal != 0 && signal != SIGKILL)
-            fail(path_, std::string("bad mesh file: assimp crashes on it (") + ::strsignal(signal) +
-                            "); is the file damaged, or nested too deep?");
+            failFile(path_, std::string("bad mesh file: assimp crashes on it (") +
+                                ::strsignal(signal) +
+                                "); is the file damaged, or nested too deep?");
         if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-            fail(path_, "meshes are read by " + printable(ownProgram()) +
-                            ", which cannot be started; is assimp installed?");
-        fail(path_, "bad mesh file: what reads it did not finish");
+            failFile(path_, "meshes are read by " + printable(ownProgram()) +
+                                ", which cannot be started; is assimp installed?");
+        failFile(path_, "bad mesh file: what reads it did not finish");
     }
 
     const std::string& path_;
@@ -332,8 +343,20 @@ class Reading {
 
 std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
                                       MeshShape shape, std::vector<std::string>* side_files) {
-    if (const std::string what = foreignMesh(path); !what.empty()) fail(path, "it is " + what);
+    if (const std::string what = foreignMesh(path); !what.empty()) failFile(path, "it is " + what);
     return Reading(path, options, shape, side_files).read();
+}
+
+std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
+                                             std::vector<std::string>* side_files) {
+    std::vector<MeshPart> parts = readMeshInChild(path, options, MeshShape::Whole, side_files);
+    auto mesh = std::make_shared<TriangleMesh>(std::move(parts.front().mesh));
+    mesh->digest = meshDigest(*mesh);
+    return mesh;
+}
+
+std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options) {
+    return readMeshInChild(path, options, MeshShape::Parts, nullptr);
 }
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mesh_walls.h"
+#include "io/importers.h"
 
 #include <algorithm>
 #include <map>
@@ -19,7 +19,6 @@
 #include "io/import_records.h"
 #include "io/line_plan.h"
 #include "io/mesh_file.h"
-#include "io/mesh_load.h"
 #include "io/plan_lines.h"
 
 namespace ispace {
@@ -29,10 +28,6 @@ namespace {
 constexpr double kAboveStorey = 1.2;    // metres: over most sills, under most lintels
 constexpr double kStraight = 0.001;     // floats of a file wobble by less
 constexpr double kNarrowOpening = 0.1;  // what is less is a frame without a pane
-
-[[noreturn]] void fail(const std::string& operand, const std::string& message) {
-    throw FormatError(Diagnostic{displayName(operand), 0, 0, message});
-}
 
 Box2 boxOf(const Polygon& polygon) {
     Box2 box;
@@ -210,8 +205,8 @@ class IfcReader {
             all.sheets.insert(all.sheets.end(), slice.sheets.begin(), slice.sheets.end());
         }
         for (auto& [kind, slice] : cuts) addShapes(std::move(slice), kind, shapes);
-        if (shapes.empty()) fail(operand_, nothingAt(height));
-        writeLinePlan(std::move(shapes), {}, operand_, options_, out);
+        if (shapes.empty()) failFile(operand_, nothingAt(height));
+        writeLinePlan(std::move(shapes), operand_, options_, out);
     }
 
   private:
@@ -290,8 +285,9 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                 low = std::min(low, p.z);
                 high = std::max(high, p.z);
             }
-        fail(operand, "nothing stands at " + formatFixed(height, 2) + " m: the mesh reaches " +
-                          heightsText(low, high) + "; are --slice-walls, --units and --up right?");
+        failFile(operand, "nothing stands at " + formatFixed(height, 2) + " m: the mesh reaches " +
+                              heightsText(low, high) +
+                              "; are --slice-walls, --units and --up right?");
     }
     ImportOptions plan = straightened(options);
     plan.wall_layers.clear();  // a mesh has none
@@ -299,7 +295,7 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     plan.window_layers.clear();
     ImportRecords out(schemas, operand, options);
     for (std::string& side_file : mesh.sources) out.source(std::move(side_file));
-    writeLinePlan(std::move(shapes), {}, operand, plan, out);
+    writeLinePlan(std::move(shapes), operand, plan, out);
     return out.take();
 }
 
@@ -314,9 +310,10 @@ bool isIfc(std::string_view bytes) {
 Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
                  const Schemas& schemas) {
     if (operand == "-")
-        fail(operand, "a building on standard input: name its file instead, it is read by assimp");
+        failFile(operand,
+                 "a building on standard input: name its file instead, it is read by assimp");
     if (bytes.find("END-ISO-10303-21") == std::string_view::npos)
-        fail(operand, "truncated: the building ends without `END-ISO-10303-21;`");
+        failFile(operand, "truncated: the building ends without `END-ISO-10303-21;`");
     ImportRecords out(schemas, operand, options);
     IfcReader(operand, options).write(out);
     return out.take();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mesh_walls.h"
+#include "io/importers.h"
 
 #include <utility>
 

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/model.h"
-
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "base/number.h"
+#include "io/exporters.h"
+#include "io/model.h"
 #include "layout/schemas.h"
+#include "layout/test_layout.h"
 #include "record/text.h"
 
 namespace ispace {
+
 namespace {
 
 Scene sceneOf(const std::string& text) {
@@ -56,5 +66,213 @@ TEST(Model, PlacedThingsStandInFramesOfTheirOwn) {
     for (const Point3& p : robot.meshes[0].vertices) EXPECT_LT(length(p.onFloor() - Point2()), 1);
 }
 
+using ispace::testing::scene;
+
+using Triangle = std::array<Point3, 3>;
+
+/// Triangles with the normals they are written with.
+struct Soup {
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> normals;
+};
+
+/// As another program would read it: objects, materials, faces.
+struct ObjModel {
+    std::vector<std::string> objects;
+    std::map<std::string, Soup> by_object;
+    std::set<std::string> materials;
+    std::string mtllib;
+    std::string wrong;  ///< the first line that is not understood
+};
+
+ObjModel parseObj(const std::string& text) {
+    ObjModel model;
+    std::vector<Point3> vertices;
+    std::vector<Vec3> normals;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string first, a, b, c, rest;
+        words >> first;
+        if (first == "#") continue;
+        words >> a >> b >> c >> rest;
+        const auto number = [](const std::string& word) { return parseDouble(word).value(); };
+        if (first == "mtllib") {
+            model.mtllib = a;
+        } else if (first == "o") {
+            model.objects.push_back(a);
+        } else if (first == "usemtl") {
+            model.materials.insert(a);
+        } else if (first == "v") {
+            vertices.push_back({number(a), number(b), number(c)});
+        } else if (first == "vn") {
+            normals.push_back({number(a), number(b), number(c)});
+        } else if (first == "f") {
+            Triangle triangle;
+            std::size_t normal = 0;
+            const std::array<std::string, 3> words_of_face{a, b, c};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t slash = words_of_face[i].find("//");
+                triangle[i] = vertices.at(std::stoul(words_of_face[i].substr(0, slash)) - 1);
+                normal = std::stoul(words_of_face[i].substr(slash + 2)) - 1;
+            }
+            Soup& soup = model.by_object[model.objects.back()];
+            soup.triangles.push_back(triangle);
+            soup.normals.push_back(normals.at(normal));
+        } else if (model.wrong.empty()) {
+            model.wrong = line;
+        }
+        if (!rest.empty()) model.wrong = line;
+    }
+    return model;
+}
+
+Soup parseStl(const std::string& bytes) {
+    Soup soup;
+    std::uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + 80, 4);
+    EXPECT_EQ(bytes.size(), 84 + 50 * static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, 12> numbers;
+        std::memcpy(numbers.data(), bytes.data() + 84 + 50 * i, sizeof numbers);
+        const auto at = [&](std::size_t k) { return static_cast<double>(numbers[k]); };
+        soup.normals.push_back({at(0), at(1), at(2)});
+        soup.triangles.push_back(
+            {Point3{at(3), at(4), at(5)}, Point3{at(6), at(7), at(8)}, {at(9), at(10), at(11)}});
+        std::uint16_t attribute = 1;
+        std::memcpy(&attribute, bytes.data() + 84 + 50 * i + 48, 2);
+        EXPECT_EQ(attribute, 0);
+    }
+    return soup;
+}
+
+/// Of closed surfaces, by the divergence theorem.
+double volumeOf(const Soup& soup) {
+    double volume = 0;
+    for (const Triangle& t : soup.triangles)
+        volume += dot(t[0] - Point3(), cross(t[1] - Point3(), t[2] - Point3())) / 6;
+    return volume;
+}
+
+double areaOf(const Soup& soup) {
+    double area = 0;
+    for (const Triangle& t : soup.triangles) area += length(cross(t[1] - t[0], t[2] - t[0])) / 2;
+    return area;
+}
+
+void expectUnitNormals(const Soup& soup) {
+    for (std::size_t i = 0; i < soup.triangles.size(); ++i)
+        EXPECT_GT(dot(faceNormal(soup.triangles[i]), soup.normals[i]), 1 - 1e-5);
+}
+
+/// What the model is made of, in the world.
+std::vector<Triangle> trianglesOf(const Scene& from) {
+    std::vector<Triangle> triangles;
+    for (const ModelNode& node : modelOf(from)) {
+        const NodeFrame world_from_node(node);
+        for (const Mesh& mesh : node.meshes)
+            for (const auto& t : mesh.triangles) {
+                const Triangle corners{world_from_node * mesh.vertices[t[0]],
+                                       world_from_node * mesh.vertices[t[1]],
+                                       world_from_node * mesh.vertices[t[2]]};
+                if (!(faceNormal(corners) == Vec3())) triangles.push_back(corners);
+            }
+    }
+    return triangles;
+}
+
+const char* const kRoom =
+    "fence id=outer path=0,0;8,0;8,6;3,6;3,5;0,5 closed=yes thickness=0.2\n"
+    "wall id=thin from=3,5 to=3,3.6\ninside at=1,1\n"
+    "desk id=d1 at=1.5,4 heading=30\nchair at=1.2,3\ntable at=5,3\n"
+    "cube id=box at=6,1 heading=20 size=0.5,0.4,0.3\ncylinder id=can at=5,5 size=0.4\n"
+    "laser id=l1 at=1,1,0.5 heading=30 tilt=-20\nrobot id=r1 at=4,1 heading=70\n";
+
+TEST(Obj, OneBoxToTheLetter) {
+    const ObjFiles files = writeObj(scene("ispace id=room size=2,2\n"
+                                          "cube id=box at=0.5,0.25 size=0.5,0.5,0.1\n"),
+                                    "room.mtl");
+    const std::size_t at = files.obj.find("o box\n");
+    ASSERT_NE(at, std::string::npos);
+    const std::string box = files.obj.substr(at, files.obj.find("o floor\n") - at);
+    EXPECT_EQ(box.substr(0, box.find("usemtl")),
+              "o box\nv 0.25 0 0\nv 0.75 0 0\nv 0.75 0.5 0\nv 0.25 0.5 0\nv 0.25 0 0.1\n"
+              "v 0.75 0 0.1\nv 0.75 0.5 0.1\nv 0.25 0.5 0.1\n");
+    EXPECT_NE(box.find("usemtl box\n"), std::string::npos);
+    EXPECT_EQ(files.obj.rfind("# ispace: metres, z up", 0), 0U);
+    EXPECT_NE(files.obj.find("\nmtllib room.mtl\n"), std::string::npos);
+    EXPECT_NE(files.mtl.find("\nnewmtl box\nKd 0.7"), std::string::npos);
+}
+
+TEST(Obj, HoldsTheModelExactly) {
+    const Scene room = scene(kRoom);
+    const ObjModel model = parseObj(writeObj(room, "a.mtl").obj);
+    EXPECT_EQ(model.wrong, "");
+    EXPECT_EQ(model.mtllib, "a.mtl");
+    std::vector<std::string> ids;
+    std::vector<Triangle> all;
+    for (const ModelNode& node : modelOf(room)) ids.push_back(node.id);
+    EXPECT_EQ(model.objects, ids);
+    for (const std::string& id : ids) {
+        const Soup& soup = model.by_object.at(id);
+        expectUnitNormals(soup);
+        all.insert(all.end(), soup.triangles.begin(), soup.triangles.end());
+    }
+    // Shortest decimals read back as the very same doubles.
+    EXPECT_EQ(all, trianglesOf(room));
+    EXPECT_NEAR(volumeOf(model.by_object.at("box")), 0.5 * 0.4 * 0.3, 1e-12);
+    EXPECT_NEAR(areaOf(model.by_object.at("thin")), 1.4 * 2.5, 1e-9);
+}
+
+TEST(Obj, MaterialsAreThoseThatAreUsed) {
+    const ObjFiles files = writeObj(scene(kRoom), "a.mtl");
+    std::set<std::string> defined;
+    std::istringstream lines(files.mtl);
+    for (std::string word; lines >> word;)
+        if (word == "newmtl" && lines >> word) defined.insert(word);
+    EXPECT_EQ(defined, parseObj(files.obj).materials);
+    EXPECT_TRUE(defined.contains("wood"));
+    const ObjFiles plain = writeObj(scene(kRoom), "");
+    EXPECT_EQ(plain.mtl, "");
+    EXPECT_EQ(plain.obj.find("mtl"), std::string::npos);
+    EXPECT_EQ(parseObj(plain.obj).wrong, "");
+}
+
+TEST(Stl, HoldsTheModelInFloats) {
+    const Scene room = scene(kRoom);
+    const std::string bytes = writeStl(room);
+    EXPECT_NE(bytes.substr(0, 5), "solid");
+    const Soup soup = parseStl(bytes);
+    const std::vector<Triangle> wanted = trianglesOf(room);
+    ASSERT_EQ(soup.triangles.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_LT(length(soup.triangles[i][k] - wanted[i][k]), 1e-6);
+    expectUnitNormals(soup);
+    const Soup exact{wanted, {}};
+    EXPECT_NEAR(volumeOf(soup), volumeOf(exact), 1e-4);
+}
+
+TEST(Stl, LeavesOutWhatFloatsCannotTell) {
+    // A millimetre at 900 km is less than floats tell.
+    const Scene far = scene(
+        "fence path=900000,0;900008,0;900008,6;900000,6 closed=yes\n"
+        "cube at=900004,3 size=0.001,0.5,0.5\n");
+    const Soup soup = parseStl(writeStl(far));
+    EXPECT_FALSE(soup.triangles.empty());
+    for (const Triangle& t : soup.triangles) {
+        EXPECT_FALSE(t[0] == t[1]);
+        EXPECT_FALSE(t[1] == t[2]);
+        EXPECT_FALSE(t[2] == t[0]);
+    }
+    EXPECT_LT(soup.triangles.size(), trianglesOf(far).size());
+}
+
+TEST(ObjAndStl, EqualScenesGiveEqualBytes) {
+    EXPECT_TRUE(writeObj(scene(kRoom), "a.mtl").obj == writeObj(scene(kRoom), "a.mtl").obj);
+    EXPECT_TRUE(writeStl(scene(kRoom)) == writeStl(scene(kRoom)));
+}
+
 }  // namespace
+
 }  // namespace ispace

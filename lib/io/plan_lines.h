@@ -2,11 +2,28 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "geom/polygon.h"
+#include "geom/spatial_index.h"
 
 namespace ispace {
+
+/// Finds segments near a place, however unevenly they are spread: one line far out does not make
+/// the search slow for the others. O(n log n) to build.
+class NearSegments {
+  public:
+    explicit NearSegments(std::span<const Segment2> segments);
+
+    /// Ascending indices of segments, among them all those within `reach` of p.
+    [[nodiscard]] std::vector<std::size_t> near(Point2 p, double reach) const;
+    /// The same for all those within `reach` of the box.
+    [[nodiscard]] std::vector<std::size_t> near(const Box2& box, double reach) const;
+
+  private:
+    BoxTree tree_;
+};
 
 /// A drawn line of straight pieces, in metres.
 struct PlanPath {
@@ -54,5 +71,13 @@ std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths);
 /// Open paths made one where exactly two of their ends meet, so that a room drawn line by line is
 /// one closed path; it stands where its first part stood, and has that one's `line`. O(n log n).
 std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
+
+/// The paths with fewer points, and moved by no more than `tolerance` metres: between
+/// joints by Douglas and Peucker. Joints stay: ends of open paths, points that several paths share,
+/// both ends of a piece that another one meets, and those of the pieces in `fixed`. No path crosses
+/// another, or itself, that did not before, and none changes sides; a closed path keeps three
+/// corners. \param fixed indices of pieces as in piecesOf
+std::vector<PlanPath> simplifiedPaths(const std::vector<PlanPath>& paths, double tolerance,
+                                      std::span<const std::size_t> fixed = {});
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan_openings.h"
+#include "io/line_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "geom/predicates.h"
-#include "io/near_segments.h"
 #include "io/plan_lines.h"
 
 namespace ispace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan_openings.h"
+#include "io/line_plan.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "io/dxf.h"
+#include "io/importers.h"
 #include "io/test_dxf.h"
 #include "io/test_import.h"
 

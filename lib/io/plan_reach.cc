@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan_reach.h"
+#include "io/plan_rooms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "geom/predicates.h"
 #include "geom/simplify.h"
 #include "geom/triangulate.h"
-#include "io/near_segments.h"
+#include "io/plan_lines.h"
 
 namespace ispace {
 

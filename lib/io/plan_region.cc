@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan_region.h"
+#include "io/plan_rooms.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
-#include "io/near_segments.h"
+#include "io/plan_lines.h"
 
 namespace ispace {
 

@@ -13,7 +13,6 @@
 #include "env/texts.h"
 #include "geom/noding.h"
 #include "geom/planar_map.h"
-#include "io/plan_reach.h"
 
 namespace ispace {
 

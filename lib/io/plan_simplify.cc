@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan_simplify.h"
+#include "io/plan_lines.h"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,6 @@
 
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
-#include "io/near_segments.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ros_export.h"
+#include "io/exporters.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "base/number.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
-#include "io/ros_map.h"
+#include "io/importers.h"
 #include "layout/test_layout.h"
 #include "raster/occupancy.h"
 #include "raster/picture.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/side_files.h"
+#include "io/input.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -21,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-    throw FormatError(Diagnostic{path, 0, 0, message});
-}
-
 /// \pre both are canonical
 bool liesIn(const fs::path& folder, const fs::path& file) {
     return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
@@ -42,7 +39,7 @@ RegularFile openRegular(const std::string& path) {
     struct stat info {};
     const auto check_kind = [&] {
         if (S_ISDIR(info.st_mode)) throw std::system_error(EISDIR, std::generic_category(), path);
-        if (!S_ISREG(info.st_mode)) fail(path, "it is no regular file");
+        if (!S_ISREG(info.st_mode)) failFile(path, "it is no regular file");
     };
     // Before it is opened, too: to open a device may do things.
     if (::stat(path.c_str(), &info) != 0)
@@ -66,16 +63,16 @@ std::optional<RegularFile> openSideFile(const std::string& path, const std::stri
     const fs::path place = fs::canonical(sideFilePath(path, name), error);
     if (error) return std::nullopt;
     if (!anywhere && !liesIn(fs::canonical(folderOf(path)), place))
-        fail(path, "it names the file " + excerpt(name) +
-                       ", which lies outside its folder: put it there, or allow it in a `mesh` "
-                       "record with side_files=anywhere");
+        failFile(path, "it names the file " + excerpt(name) +
+                           ", which lies outside its folder: put it there, or allow it in a `mesh` "
+                           "record with side_files=anywhere");
     try {
         return openRegular(place.string());
     } catch (const FormatError&) {
-        fail(path, "it names the file " + excerpt(name) + ", which is no regular file");
+        failFile(path, "it names the file " + excerpt(name) + ", which is no regular file");
     } catch (const std::system_error& cause) {
-        fail(path, "it names the file " + excerpt(name) +
-                       ", which cannot be opened: " + cause.code().message());
+        failFile(path, "it names the file " + excerpt(name) +
+                           ", which cannot be opened: " + cause.code().message());
     }
 }
 

@@ -1,13 +1,360 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/svg.h"
+#include "io/importers.h"
 
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
 #include "io/import_records.h"
+#include "io/input.h"
 #include "io/line_plan.h"
-#include "io/svg_shapes.h"
+#include "io/svg_elements.h"
 
 namespace ispace {
+
+namespace {
+
+/// What a drawing in SVG shows.
+struct SvgDrawing {
+    std::vector<PlanShape> shapes;
+    std::string scale;                            ///< what a unit is, and why, for a note
+    std::map<std::string, std::size_t> left_out;  ///< elements, by what they are
+};
+
+constexpr int kDeepest = 200;                    // elements in elements, by `use` or not
+constexpr std::size_t kFreePoints = 10'000;      // whatever the file's size …
+constexpr std::size_t kPointsPerElement = 1000;  // … and for each element in it
+
+/// Radii that differ by less, as shares, are those of a circle.
+constexpr double kRound = 0.01;
+
+constexpr std::array<std::string_view, 4> kGroups{"g", "a", "switch", "svg"};
+constexpr std::array<std::string_view, 7> kShapes{"path", "line",   "polyline", "polygon",
+                                                  "rect", "circle", "ellipse"};
+constexpr std::array<std::string_view, 3> kOthers{"text", "image", "foreignObject"};
+
+template <typename List>
+bool isOneOf(const List& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Of the page; what is larger is no background but a drawing with a bad page.
+constexpr double kLargestBackground = 1.1;
+
+double metresOf(const std::string& unit) {
+    for (const LengthUnit& known : kLengthUnits)
+        if (unit == known.name) return known.metres;
+    throw SvgError("unknown unit " + unit);
+}
+
+class SvgReader {
+  public:
+    SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options)
+        : bytes_(bytes), name_(name), options_(options) {}
+
+    SvgDrawing read() {
+        for (std::size_t i = 0; i < bytes_.size(); ++i)
+            if (bytes_[i] == '\n') line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
+        const pugi::xml_parse_result result = file_.load_buffer(
+            bytes_.data(), bytes_.size(), pugi::parse_default, pugi::encoding_utf8);
+        if (!result) fail(lineAt(result.offset), std::string("bad XML: ") + result.description());
+        const pugi::xml_node root = file_.document_element();
+        if (svgName(root) != "svg") fail(lineOf(root), "no `svg` at the root");
+        listElements(root);
+        total_ = kFreePoints + kPointsPerElement * count_;
+        budget_ = std::min(options_.most_points, total_);
+        at(root, [&] {
+            page_frame_ = pageOf(root);
+            addChildren(root, page_frame_, svgStyle(root, {}, sheet_), 0);
+        });
+        return std::move(drawing_);
+    }
+
+  private:
+    [[noreturn]] void fail(int line, const std::string& message) const {
+        failFile(name_, message, line);
+    }
+    [[nodiscard]] int lineAt(std::ptrdiff_t offset) const {
+        const auto behind = std::lower_bound(line_ends_.begin(), line_ends_.end(), offset);
+        return 1 + static_cast<int>(behind - line_ends_.begin());
+    }
+    [[nodiscard]] int lineOf(pugi::xml_node node) const { return lineAt(node.offset_debug()); }
+
+    /// Errors in attributes get the line of their element.
+    template <typename Read>
+    void at(pugi::xml_node node, Read read) {
+        try {
+            read();
+        } catch (const SvgError& error) {
+            fail(lineOf(node), '`' + std::string(svgName(node)) + "`: " + error.what());
+        }
+    }
+
+    /// Elements by id, how many there are, and rules of style; a list instead of recursion, for
+    /// deep nests.
+    void listElements(pugi::xml_node root) {
+        for (pugi::xml_node node = root; node;) {
+            if (node.type() == pugi::node_element) {
+                ++count_;
+                if (const pugi::xml_attribute id = node.attribute("id"))
+                    ids_.emplace(id.value(), node);
+                if (svgName(node) == "style")
+                    for (const pugi::xml_node text : node.children()) sheet_.add(text.value());
+            }
+            if (node.first_child()) {
+                node = node.first_child();
+                continue;
+            }
+            while (node && node != root && !node.next_sibling()) node = node.parent();
+            node = node == root ? pugi::xml_node() : node.next_sibling();
+        }
+    }
+
+    /// From the drawing's coordinates to metres, y up, the page's lower left corner in the origin.
+    Affine pageOf(pugi::xml_node root) {
+        const auto metres_of = [root](const char* key) {
+            const std::string_view text = trimmed(root.attribute(key).value());
+            const auto metres = text.empty() ? std::nullopt : parseSvgMetres(text);
+            return metres && *metres > 0 ? metres : std::nullopt;
+        };
+        const auto width = metres_of("width"), height = metres_of("height");
+        const auto box = svgViewBox(root);
+        const double pixel = *parseSvgMetres("1");
+        page_ = box.value_or(SvgBox{0, 0, width.value_or(0) / pixel, height.value_or(0) / pixel});
+        double scale = 0;
+        if (!options_.units.empty()) {
+            scale = metresOf(options_.units);
+            drawing_.scale = "a unit of the drawing is 1 " + options_.units + ", as asked for";
+        } else if (!width && !height) {
+            throw SvgError(
+                "the drawing does not say its size (width and height in mm, cm or in); "
+                "say what its unit is, for example with --units cm");
+        } else {
+            // As large as fits, where both do not agree.
+            scale = std::min(width ? *width / page_.width : HUGE_VAL,
+                             height ? *height / page_.height : HUGE_VAL);
+            drawing_.scale = "a unit of the drawing is " +
+                             formatDouble(std::round(scale * 1e9) / 1e6) + " mm, as its size says";
+        }
+        return {{scale, 0}, {0, -scale}, {-page_.x * scale, (page_.y + page_.height) * scale}};
+    }
+
+    void addChildren(pugi::xml_node node, const Affine& frame, const SvgStyle& style, int depth) {
+        for (const pugi::xml_node child : node.children())
+            if (child.type() == pugi::node_element)
+                at(child, [&] { addElement(child, frame, style, depth + 1); });
+    }
+
+    void addElement(pugi::xml_node node, const Affine& outer, const SvgStyle& outer_style,
+                    int depth) {
+        const std::string_view kind = svgName(node);
+        const bool is_group = isOneOf(kGroups, kind), is_shape = isOneOf(kShapes, kind);
+        if (isOneOf(kOthers, kind)) ++drawing_.left_out[std::string(kind)];
+        if (!is_group && !is_shape && kind != "use") return;
+        if (svgProperty(node, "display", sheet_) == "none") {
+            ++drawing_.left_out["elements that are not displayed"];
+            return;
+        }
+        if (depth > kDeepest)
+            throw SvgError("elements nested more than " + std::to_string(kDeepest) +
+                           " deep: does one use itself?");
+        spend(1);
+        const Affine frame = outer * parseSvgTransform(node.attribute("transform").value());
+        const SvgStyle style = svgStyle(node, outer_style, sheet_);
+        names_.push_back(node);
+        if (is_shape)
+            addShape(node, kind, frame, style);
+        else if (kind == "use")
+            addUse(node, frame, style, depth);
+        else
+            addChildren(node, kind == "svg" ? frame * viewportOf(node, node) : frame, style, depth);
+        names_.pop_back();
+    }
+
+    /// How an inner `svg` or a `symbol` shows its view box where `placed` says.
+    static Affine viewportOf(pugi::xml_node node, pugi::xml_node placed) {
+        const bool is_use = node != placed;
+        const Affine corner{
+            {1, 0}, {0, 1}, is_use ? Vec2{} : Vec2{svgNumber(placed, "x"), svgNumber(placed, "y")}};
+        const auto box = svgViewBox(node);
+        if (!box) return corner;
+        const double width = svgNumber(placed, "width", svgNumber(node, "width", box->width));
+        const double height = svgNumber(placed, "height", svgNumber(node, "height", box->height));
+        const double scale = std::min(width / box->width, height / box->height);
+        const Vec2 rest{(width - scale * box->width) / 2, (height - scale * box->height) / 2};
+        return corner * Affine{{scale, 0}, {0, scale}, rest - scale * Vec2{box->x, box->y}};
+    }
+
+    void addUse(pugi::xml_node node, const Affine& frame, const SvgStyle& style, int depth) {
+        std::string_view href = node.attribute("href").value();
+        if (href.empty()) href = node.attribute("xlink:href").value();
+        const auto target =
+            href.starts_with('#') ? ids_.find(std::string(href.substr(1))) : ids_.end();
+        if (target == ids_.end()) {
+            ++drawing_.left_out["uses of what the file lacks"];
+            return;
+        }
+        const Affine placed =
+            frame * Affine{{1, 0}, {0, 1}, {svgNumber(node, "x"), svgNumber(node, "y")}};
+        if (svgName(target->second) == "symbol")
+            addChildren(target->second, placed * viewportOf(target->second, node),
+                        svgStyle(target->second, style, sheet_), depth);
+        else
+            addElement(target->second, placed, style, depth + 1);
+    }
+
+    void spend(std::size_t points) {
+        if (points > budget_ && options_.most_points <= total_)
+            throw SvgError("the drawing comes to more than " +
+                           std::to_string(options_.most_points) +
+                           " points; leave layers out, for example with --wall-layer 'walls*'");
+        if (points > budget_)
+            throw SvgError("what is used again makes too many lines of the drawing");
+        budget_ -= points;
+    }
+
+    static bool matches(const std::vector<std::string>& globs, const char* text) {
+        return std::any_of(globs.begin(), globs.end(), [text](const std::string& glob) {
+            return ::fnmatch(glob.c_str(), text, FNM_CASEFOLD) == 0;
+        });
+    }
+    [[nodiscard]] bool isNamed(const char* text) const {
+        return *text != '\0' &&
+               (matches(options_.door_layers, text) || matches(options_.window_layers, text) ||
+                matches(options_.wall_layers, text));
+    }
+
+    /// See readSvg.
+    [[nodiscard]] std::string layer() const {
+        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
+            for (const char* key : {"inkscape:label", "id"})
+                if (const char* text = node->attribute(key).value(); isNamed(text))
+                    return printable(text);
+        const auto name_of = [](pugi::xml_node node) {
+            const pugi::xml_attribute label = node.attribute("inkscape:label");
+            return printable(label ? label.value() : node.attribute("id").value());
+        };
+        for (auto node = names_.rbegin(); node != names_.rend(); ++node)
+            if (std::string_view(node->attribute("inkscape:groupmode").value()) == "layer")
+                if (std::string name = name_of(*node); !name.empty()) return name;
+        for (const pugi::xml_node node : names_)
+            if (svgName(node) == "g")
+                if (std::string name = name_of(node); !name.empty()) return name;
+        return "(none)";
+    }
+
+    /// Fills the page, without an outline.
+    [[nodiscard]] bool isBackground(pugi::xml_node node, const Affine& frame,
+                                    const SvgStyle& style) const {
+        const auto covers = [](std::string_view text, double value, double page) {
+            return text == "100%" ||
+                   (value >= page * (1 - 1e-9) && value <= page * kLargestBackground);
+        };
+        const auto size = [node](const char* key) {
+            const std::string_view text = trimmed(node.attribute(key).value());
+            return text.ends_with('%') ? 0 : svgNumber(node, key);
+        };
+        return !style.has_stroke && frame.x == page_frame_.x && frame.y == page_frame_.y &&
+               covers(node.attribute("width").value(), size("width"), page_.width) &&
+               covers(node.attribute("height").value(), size("height"), page_.height);
+    }
+
+    void addShape(pugi::xml_node node, std::string_view kind, const Affine& frame,
+                  const SvgStyle& style) {
+        if (!style.visible || (style.no_fill && style.no_stroke)) {
+            ++drawing_.left_out["elements that show nothing"];
+            return;
+        }
+        if (kind == "rect" && isBackground(node, frame, style)) {
+            ++drawing_.left_out["a background"];
+            return;
+        }
+        for (const SvgSubpath& path : svgPaths(node, kind)) addPath(node, path, frame);
+    }
+
+    /// A subpath as it lies in the plan.
+    void addPath(pugi::xml_node node, const SvgSubpath& path, const Affine& frame) {
+        PlanShape shape;
+        shape.layer = layer();
+        shape.path.line = lineOf(node);
+        shape.path.closed = path.closed;
+        Polygon& points = shape.path.points;
+        points.push_back(frame * path.start);
+        for (const SvgPiece& piece : path.pieces) {
+            std::visit([&](const auto& p) { addPiece(p, frame, shape); }, piece);
+            if (points.size() > budget_) spend(points.size());  // refuses
+        }
+        if (path.closed && points.back() != points.front())
+            shape.chords.push_back({{points.back(), points.front()}, {}});
+        if (path.closed && points.size() > 1 && points.back() == points.front()) points.pop_back();
+        spend(points.size());
+        for (const Point2 p : points)
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
+                throw SvgError("lies more than " + formatDouble(kFarthestPlan / 1000) +
+                               " km from the origin: is the unit right (--units)?");
+        if (points.size() < 3) shape.path.closed = false;
+        if (points.size() >= 2) drawing_.shapes.push_back(std::move(shape));
+    }
+
+    static void addPiece(const SvgLine& line, const Affine& frame, PlanShape& shape) {
+        const Point2 from = shape.path.points.back(), to = frame * line.to;
+        if (from == to) return;
+        shape.path.points.push_back(to);
+        shape.chords.push_back({{from, to}, {}});
+    }
+    static void addPiece(const SvgCubic& cubic, const Affine& frame, PlanShape& shape) {
+        const CubicCurve curve{shape.path.points.back(), frame * cubic.control1,
+                               frame * cubic.control2, frame * cubic.to};
+        appendCubic(curve, shape.path.points);
+        // Drawing programs write arcs, such as those of doors, as these curves.
+        if (const auto center = arcCenter(curve))
+            shape.chords.push_back({{curve[0], curve[3]}, center});
+    }
+    static void addPiece(const SvgArc& arc, const Affine& frame, PlanShape& shape) {
+        const Point2 from = shape.path.points.back(), to = frame * arc.to;
+        const Vec2 major = frame * arc.major, minor = frame * arc.minor;
+        const double longest = std::hypot(length(major), length(minor));
+        const int count = arcPieces(arc.sweep, longest);
+        for (int i = 1; i < count; ++i) {
+            const double t = arc.from + arc.sweep * i / count;
+            shape.path.points.push_back(frame * arc.center +
+                                        (std::cos(t) * major + std::sin(t) * minor));
+        }
+        shape.path.points.push_back(to);
+        const bool round = std::abs(length(major) - length(minor)) <= kRound * longest &&
+                           std::abs(dot(major, minor)) <= kRound * longest * longest;
+        if (round && from != to) shape.chords.push_back({{from, to}, frame * arc.center});
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    const ImportOptions& options_;
+    pugi::xml_document file_;
+    std::unordered_map<std::string, pugi::xml_node> ids_;
+    std::size_t count_ = 0, total_ = 0, budget_ = 0;
+    SvgSheet sheet_;
+    SvgBox page_;
+    Affine page_frame_;
+    std::vector<pugi::xml_node> names_;  // elements around, and the one itself
+    std::vector<std::ptrdiff_t> line_ends_;
+    SvgDrawing drawing_;
+};
+
+}  // namespace
 
 bool isSvg(std::string_view bytes) {
     bytes = bytes.substr(0, 1 << 16);
@@ -33,11 +380,11 @@ bool isSvg(std::string_view bytes) {
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     ImportRecords out(schemas, name, options);
-    SvgDrawing drawing = readSvgShapes(bytes, name, options);
+    SvgDrawing drawing = SvgReader(bytes, name, options).read();
     out.note(drawing.scale);
     for (const auto& [what, count] : drawing.left_out)
         out.note("left out: " + what + " (" + std::to_string(count) + ')');
-    writeLinePlan(std::move(drawing.shapes), {}, name, options, out);
+    writeLinePlan(std::move(drawing.shapes), name, options, out);
     return out.take();
 }
 

@@ -35,8 +35,8 @@ std::string_view declared(std::string_view rest, std::string_view key) {
         const std::string_view part = rest.substr(0, rest.find(';'));
         rest.remove_prefix(std::min(part.size() + 1, rest.size()));
         const std::size_t colon = part.find(':');
-        if (colon != std::string_view::npos && svgTrimmed(part.substr(0, colon)) == key)
-            value = svgTrimmed(part.substr(colon + 1));
+        if (colon != std::string_view::npos && trimmed(part.substr(0, colon)) == key)
+            value = trimmed(part.substr(colon + 1));
     }
     return value;
 }
@@ -49,16 +49,10 @@ std::string_view svgName(pugi::xml_node node) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-std::string_view svgTrimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r\n";
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
-
 std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet) {
     if (const auto own = declared(node.attribute("style").value(), key); !own.empty()) return own;
     if (const auto ruled = sheet.property(node, key); !ruled.empty()) return ruled;
-    return svgTrimmed(node.attribute(std::string(key).c_str()).value());
+    return trimmed(node.attribute(std::string(key).c_str()).value());
 }
 
 void SvgSheet::add(std::string_view css) {
@@ -73,7 +67,7 @@ void SvgSheet::add(std::string_view css) {
         while (!selectors.empty()) {
             const std::string_view part = selectors.substr(0, selectors.find(','));
             selectors.remove_prefix(std::min(part.size() + 1, selectors.size()));
-            std::string& rule = rules_[std::string(svgTrimmed(part))];
+            std::string& rule = rules_[std::string(trimmed(part))];
             if (rule.size() + body.size() < kLongestRule) (rule += body) += ';';
         }
     }
@@ -110,7 +104,7 @@ SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet) {
 }
 
 double svgNumber(pugi::xml_node node, const char* key, double standard) {
-    const std::string_view text = svgTrimmed(node.attribute(key).value());
+    const std::string_view text = trimmed(node.attribute(key).value());
     if (text.empty()) return standard;
     if (const auto numbers = tryNumbers(text); numbers && numbers->size() == 1)
         return numbers->front();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/io only: the small languages in SVG's attributes.
 // Inside lib/io only: what the attributes of SVG's elements say.
 #pragma once
 
@@ -6,13 +7,63 @@
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "io/svg_path.h"
+#include "io/curves.h"
+#include "io/import_records.h"
 
 namespace ispace {
+
+/// What is wrong in an attribute; readSvg adds the place.
+struct SvgError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Pieces of a path in its own units, each from the end of the one before.
+struct SvgLine {
+    Point2 to;
+};
+struct SvgCubic {
+    Point2 control1, control2, to;
+};
+/// center + cos(t) major + sin(t) minor for t from `from` to `from + sweep`, in radians.
+struct SvgArc {
+    Point2 center;
+    Vec2 major, minor;
+    double from = 0, sweep = 0;
+    Point2 to;
+};
+using SvgPiece = std::variant<SvgLine, SvgCubic, SvgArc>;
+
+struct SvgSubpath {
+    Point2 start;
+    std::vector<SvgPiece> pieces;
+    bool closed = false;
+};
+
+/// The data of a `path`: M L H V C S Q T A Z, absolute and relative. \throws SvgError
+std::vector<SvgSubpath> parseSvgPath(std::string_view data);
+
+/// Numbers apart by blanks and commas. \throws SvgError
+std::vector<double> parseSvgNumbers(std::string_view text);
+
+/// The value of `transform`. \throws SvgError
+Affine parseSvgTransform(std::string_view text);
+
+/// A length: a number with mm, cm, in, pt, pc, Q, px or nothing; in metres, at 96 pixels an inch,
+/// or nothing for percentages and sizes of fonts. \throws SvgError where there is no number
+std::optional<double> parseSvgMetres(std::string_view text);
+
+/// The whole ellipse, as one closed path.
+SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
+
+/// The rectangle, its corners rounded. \pre all are at least 0
+SvgSubpath svgRectangle(Point2 corner, double width, double height, double radius_x,
+                        double radius_y);
 
 /// What is inherited, as far as it makes things show.
 struct SvgStyle {
@@ -36,9 +87,6 @@ class SvgSheet {
 
 /// Without the prefix of a name space.
 std::string_view svgName(pugi::xml_node node);
-
-/// Without blanks around.
-std::string_view svgTrimmed(std::string_view text);
 
 /// A property, of `style`, by rules or as an attribute; "" if it is not set.
 std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet);

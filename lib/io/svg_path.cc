@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/svg_path.h"
+#include "io/svg_elements.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/svg.h"
+#include "io/importers.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "geom/predicates.h"
-#include "io/svg_path.h"
+#include "io/svg_elements.h"
 #include "io/test_import.h"
 
 namespace ispace {

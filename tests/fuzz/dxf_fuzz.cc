@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings in ASCII DXF; walls, doors and windows by layer, as most plans have them.
 #include "fuzz.h"
-#include "io/dxf.h"
+#include "io/importers.h"
 #include "layout/schemas.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

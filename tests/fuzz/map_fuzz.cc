@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // ROS maps: a picture alone, or map.yaml, a line `---` and the picture that it names.
 #include "fuzz.h"
-#include "io/ros_map.h"
+#include "io/importers.h"
 #include "layout/schemas.h"
 #include "raster/picture.h"
 

@@ -10,8 +10,8 @@
 #include <iterator>
 
 #include "fuzz.h"
-#include "io/mesh_format.h"
-#include "io/mesh_load.h"
+#include "io/mesh_file.h"
+#include "io/mesh_parts.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings in SVG; walls and doors by group.
 #include "fuzz.h"
-#include "io/svg.h"
+#include "io/importers.h"
 #include "layout/schemas.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

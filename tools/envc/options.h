@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/common_options.h"
-#include "io/import_options.h"
+#include "io/input.h"
 #include "record/edit.h"
 
 namespace ispace {

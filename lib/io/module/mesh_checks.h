@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/mesh_format.h"
+#include "io/mesh_parts.h"
 
 namespace ispace {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_format.h"
 #include "io/mesh_parts.h"
 
 namespace ispace {

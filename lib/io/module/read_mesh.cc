@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include "io/mesh_format.h"
 #include "io/mesh_parts.h"
 #include "io/module/confine.h"
 #include "io/module/handed_files.h"
