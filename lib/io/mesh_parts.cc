@@ -62,8 +62,12 @@ std::optional<MeshFormat> meshFormatOf(std::string_view bytes) {
 bool isMeshFile(std::string_view bytes) { return meshFormatOf(bytes).has_value(); }
 
 bool hasMeshSuffix(const std::string& operand) {
-    constexpr std::array<std::string_view, 5> kSuffixes{".obj", ".stl", ".ply", ".dae", ".gltf"};
-    return std::find(kSuffixes.begin(), kSuffixes.end(), meshSuffix(operand)) != kSuffixes.end();
+    // GLB and IFC are told by their first bytes.
+    return std::any_of(kMeshSuffixes.begin(), kMeshSuffixes.end(),
+                       [suffix = meshSuffix(operand)](const MeshSuffix& known) {
+                           return known.suffix == suffix && known.format != MeshFormat::Glb &&
+                                  known.format != MeshFormat::Ifc;
+                       });
 }
 
 std::string meshSuffix(const std::string& path) {

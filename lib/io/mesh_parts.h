@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,19 @@ namespace ispace {
 
 /// Formats of meshes that are read.
 enum class MeshFormat { Obj, Stl, Ply, Collada, Gltf, Glb, Ifc };
+
+/// The suffix of each, in lower case.
+struct MeshSuffix {
+    std::string_view suffix;
+    MeshFormat format;
+};
+constexpr std::array<MeshSuffix, 7> kMeshSuffixes{{{".obj", MeshFormat::Obj},
+                                                   {".stl", MeshFormat::Stl},
+                                                   {".ply", MeshFormat::Ply},
+                                                   {".dae", MeshFormat::Collada},
+                                                   {".gltf", MeshFormat::Gltf},
+                                                   {".glb", MeshFormat::Glb},
+                                                   {".ifc", MeshFormat::Ifc}}};
 
 /// What the bytes say they are: OBJ, STL, PLY or COLLADA, or nothing of these.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);

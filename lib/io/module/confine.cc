@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/module/confine.h"
+#include "io/module/read_mesh.h"
 
 #include <linux/audit.h>
 #include <linux/filter.h>

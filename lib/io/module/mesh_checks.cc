@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/module/mesh_checks.h"
+#include "io/module/read_mesh.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/message.h"
 #include "base/number.h"
 #include "io/mesh_parts.h"
-#include "io/module/node_graph.h"
 
 namespace ispace {
 
@@ -25,6 +26,74 @@ constexpr std::size_t kDeepestJson = 500;
 
 [[noreturn]] void fail(const std::string& message) {
     throw std::runtime_error("bad mesh file: " + message);
+}
+
+/// Nodes and what hangs on them, each time it does.
+class NodeGraph {
+  public:
+    using Node = std::uint32_t;
+
+    /// \return its number, from 0
+    Node add();
+    void hang(Node child, Node parent) { children_[parent].push_back(child); }
+    [[nodiscard]] std::size_t size() const { return children_.size(); }
+
+    /// \throws std::runtime_error: a circle, more than kMaxMeshNodeDepth below each other, or
+    ///         more than kMaxMeshNodes below one, with all repetitions
+    void check() const;
+
+  private:
+    std::vector<std::vector<Node>> children_;
+};
+
+NodeGraph::Node NodeGraph::add() {
+    if (children_.size() >= kMaxMeshNodes)
+        fail("more than " + std::to_string(kMaxMeshNodes) + " nodes");
+    children_.emplace_back();
+    return static_cast<Node>(children_.size() - 1);
+}
+
+void NodeGraph::check() const {
+    struct Below {
+        std::size_t count = 0, depth = 0;  // with the node itself; 0: not known yet
+        bool open = false;
+    };
+    struct Step {
+        Node node;
+        std::size_t next;  // child to look at
+    };
+    std::vector<Below> below(children_.size());
+    for (Node root = 0; root < children_.size(); ++root) {
+        std::vector<Step> path;
+        const auto enter = [&](Node node) {
+            if (below[node].open) fail("a node that contains itself");
+            if (below[node].count > 0) return;
+            below[node] = {0, 1, true};
+            path.push_back({node, 0});
+        };
+        enter(root);
+        while (!path.empty()) {
+            Step& step = path.back();
+            const Node node = step.node;
+            const std::vector<Node>& children = children_[node];
+            if (step.next < children.size()) {
+                enter(children[step.next++]);
+                continue;
+            }
+            path.pop_back();
+            Below sum{1, 1, false};
+            for (const Node child : children) {
+                sum.count += below[child].count;
+                sum.depth = std::max(sum.depth, below[child].depth + 1);
+            }
+            if (sum.depth > kMaxMeshNodeDepth)
+                fail("nodes nested more than " + std::to_string(kMaxMeshNodeDepth) + " deep");
+            if (sum.count > kMaxMeshNodes)
+                fail("more than " + std::to_string(kMaxMeshNodes) +
+                     " nodes, each instance counted");
+            below[node] = sum;
+        }
+    }
 }
 
 /// Assimp 5.2 never ends on a header that is cut off, and allocates whatever one says: an element
@@ -261,16 +330,6 @@ class ColladaNodes {
     std::vector<std::pair<std::string_view, NodeGraph::Node>> instances_;
 };
 
-struct Suffix {
-    std::string_view suffix;
-    MeshFormat format;
-};
-constexpr Suffix kSuffixes[] = {
-    {".obj", MeshFormat::Obj},     {".stl", MeshFormat::Stl},   {".ply", MeshFormat::Ply},
-    {".dae", MeshFormat::Collada}, {".gltf", MeshFormat::Gltf}, {".glb", MeshFormat::Glb},
-    {".ifc", MeshFormat::Ifc},
-};
-
 }  // namespace
 
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix) {
@@ -278,11 +337,10 @@ MeshFormat meshFormat(std::string_view bytes, const std::string& suffix) {
     if (bytes.starts_with("ISO-10303-21")) return MeshFormat::Ifc;
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::Ply;
     const auto* const named =
-        std::find_if(std::begin(kSuffixes), std::end(kSuffixes),
-                     [&suffix](const Suffix& known) { return known.suffix == suffix; });
-    const bool known = named != std::end(kSuffixes);
-    if (known && named->format == MeshFormat::Glb) return MeshFormat::Gltf;  // by its words alone
-    if (known) return named->format;
+        std::find_if(kMeshSuffixes.begin(), kMeshSuffixes.end(),
+                     [&suffix](const MeshSuffix& known) { return known.suffix == suffix; });
+    if (named != kMeshSuffixes.end())  // GLB is told by its first word alone
+        return named->format == MeshFormat::Glb ? MeshFormat::Gltf : named->format;
     if (const auto kind = meshFormatOf(bytes)) return *kind;
     fail("wanted OBJ, STL, PLY, COLLADA, glTF or IFC; `assimp export` and Blender convert others");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/module/mesh_import.h"
+#include "io/module/read_mesh.h"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/commonMetaData.h>
@@ -240,25 +240,12 @@ void clean(TriangleMesh& mesh) {
     joinVertices(mesh);  // without those that only dropped triangles used
 }
 
-/// One of the suffixes by which assimp knows its importer.
+/// One of the suffixes by which assimp knows its importer, without the dot.
 std::string suffixOf(MeshFormat format) {
-    switch (format) {
-        case MeshFormat::Obj:
-            return "obj";
-        case MeshFormat::Stl:
-            return "stl";
-        case MeshFormat::Ply:
-            return "ply";
-        case MeshFormat::Collada:
-            return "dae";
-        case MeshFormat::Gltf:
-            return "gltf";
-        case MeshFormat::Glb:
-            return "glb";
-        case MeshFormat::Ifc:
-            return "ifc";
-    }
-    return "";
+    const auto* const known =
+        std::find_if(kMeshSuffixes.begin(), kMeshSuffixes.end(),
+                     [format](const MeshSuffix& row) { return row.format == format; });
+    return std::string(known->suffix.substr(1));
 }
 
 /// Leaves the importers for this suffix alone, two for glTF: assimp tries the others on what those

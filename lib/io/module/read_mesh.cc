@@ -11,10 +11,8 @@
 #include <string_view>
 
 #include "io/mesh_parts.h"
-#include "io/module/confine.h"
 #include "io/module/handed_files.h"
-#include "io/module/mesh_checks.h"
-#include "io/module/mesh_import.h"
+#include "io/module/read_mesh.h"
 
 namespace {
 
