@@ -106,9 +106,6 @@ std::string shareFolder() {
     return (std::filesystem::path(programPrefix()) / "share" / "ispace").string();
 }
 
-namespace {
-
-/// Without its dot, in lower case; "" for streams, folders and names without one.
 std::string suffixOf(const std::string& output) {
     std::error_code ignored;
     if (output == "-" || std::filesystem::is_directory(output, ignored)) return "";
@@ -119,7 +116,6 @@ std::string suffixOf(const std::string& output) {
     return suffix == "yml" ? "yaml" : suffix;
 }
 
-/// "a, b or c"
 std::string listOf(const std::vector<std::string>& words) {
     std::string list;
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -128,8 +124,6 @@ std::string listOf(const std::vector<std::string>& words) {
     }
     return list;
 }
-
-}  // namespace
 
 std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
                          const std::vector<std::string>& known,

@@ -41,6 +41,13 @@ void limitThreads(int threads);
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
 std::string shareFolder();
 
+/// The suffix of a file's name without its dot, in lower case, "yaml" for "yml"; "" for streams,
+/// folders and names without one.
+std::string suffixOf(const std::string& output);
+
+/// "a, b or c"
+std::string listOf(const std::vector<std::string>& words);
+
 /// The usual suffix of a format of another name: {"log", "carmen"}; "": it has none.
 struct SuffixOf {
     std::string suffix, format;

@@ -1,13 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What is written of a room: the table of formats, and the writers behind it. A new format is a
+// writer and a row in exporters.cc.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "layout/scene.h"
+#include "record/record.h"
 
 namespace ispace {
+
+/// What a writer may need besides the scene.
+struct ExportOptions {
+    std::optional<double> slice;       ///< the obstacle map at this height instead of the room
+    std::optional<double> resolution;  ///< metres a cell of a ROS map; default 0.05
+    int width = 1200;                  ///< pixels of a PNG
+    std::string title;                 ///< of drawings; "" for none
+    std::string beside;  ///< how the product names the file beside it; "": there is none
+};
+
+/// A product, and the file that stands beside it.
+struct ExportedFiles {
+    std::string product, beside;
+};
+
+/// A format of envc: one row of exportFormats().
+struct ExportFormat {
+    std::string_view name;  ///< as --to takes it
+    std::string_view
+        suffix;             ///< of its files, without dot; one that an earlier row has is no choice
+    std::string_view help;  ///< for the manual, whole sentences
+    std::string_view binary = "";  ///< how messages call what no terminal shows; "" for text
+    bool takes_slice = false;
+    /// Records are written as they are, without a scene: the other writer is null.
+    std::string (*write_records)(Document document) = nullptr;
+    ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
+    /// A file that stands beside the product and is named after it.
+    std::string_view beside_suffix = "";  ///< ".pgm"; "" for none
+    std::string_view beside_role = "";    ///< for messages: "materials"
+    bool needs_beside = false;            ///< so that a stream cannot hold the product
+    std::string_view naming_hint = "";    ///< what a name that does not fit is answered with
+};
+
+/// All formats, in the order of `--to`; the first that can hold what is asked for is the default.
+std::span<const ExportFormat> exportFormats();
+
+/// \pre exportFormats() has one of this name
+const ExportFormat& exportFormat(std::string_view name);
 
 /// The plan as a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
 /// `"coordinate_system": "local-metres"` says; outlines counter-clockwise, holes clockwise, doubles
@@ -23,11 +66,6 @@ namespace ispace {
 /// solids as Polygons, each with the `id` of its element.
 std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height);
 
-/// A Wavefront model and its materials.
-struct ObjFiles {
-    std::string obj, mtl;
-};
-
 /// The scene as Wavefront OBJ: metres, z up, one object `o` per element, placed sensor, robot and
 /// person, named by its id, and the floor; faces by material, with a normal each, counter-clockwise
 /// seen from outside. Coordinates are the shortest decimals that read back as the same doubles.
@@ -37,7 +75,7 @@ struct ObjFiles {
 /// left out. Equal scenes give equal bytes. O(triangles).
 /// \param mtl_name how the model names the file of its materials; "": it names none, and has no
 ///        materials
-ObjFiles writeObj(const Scene& scene, const std::string& mtl_name);
+ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
 
 /// The scene as binary STL: metres, z up, all elements, placed sensors, robots, people and the
 /// floor in one surface; 80 bytes of header, a count, then per triangle its unit normal, three
@@ -48,18 +86,13 @@ ObjFiles writeObj(const Scene& scene, const std::string& mtl_name);
 /// equal bytes. O(triangles).
 std::string writeStl(const Scene& scene);
 
-/// A map as ROS' map_server reads and writes it.
-struct RosMapFiles {
-    std::string yaml;  ///< map.yaml
-    std::string pgm;   ///< the picture: P5, 254 free, 0 occupied, 205 unknown
-};
+/// Cells of a map along a side, and in all.
+constexpr int kMaxMapSide = 30'000;
+constexpr std::int64_t kMaxMapCells = 400'000'000;
 
-/// Most cells of a map along a side, and in all.
-constexpr int kMostMapSide = 30'000;
-constexpr std::int64_t kMostMapCells = 400'000'000;
-
-/// The obstacle map at a height. Cell edges lie on multiples of the resolution, with a rim of some
-/// unknown cells; the room alone is on it, not what lies outside.
+/// The obstacle map at a height, as ROS' map_server reads and writes it: map.yaml, and beside it
+/// the picture (P5, 254 free, 0 occupied, 205 unknown). Cell edges lie on multiples of the
+/// resolution, with a rim of some unknown cells; the room alone is on it, not what lies outside.
 ///
 /// A cell is free if its middle lies on the free floor (strictly inside the indoor region, in no
 /// solid). No wall is lost for being thin: where a sheet or the edge of a solid passes between two
@@ -72,7 +105,7 @@ constexpr std::int64_t kMostMapCells = 400'000'000;
 /// O(cells + cells along all lines).
 /// \param image_name how map.yaml names the picture
 /// \throws UsageError for a resolution that is no length from 0.001 to 1000, or too many cells
-RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
-                        const std::string& image_name);
+ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
+                          const std::string& image_name);
 
 }  // namespace ispace

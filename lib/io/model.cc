@@ -169,14 +169,14 @@ void addMaterial(std::string& out, Material material) {
 
 }  // namespace
 
-ObjFiles writeObj(const Scene& scene, const std::string& mtl_name) {
+ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name) {
     ObjWriter writer(mtl_name);
     for (const ModelNode& node : modelOf(scene)) writer.add(node);
-    ObjFiles files;
-    files.obj = writer.take();
+    ExportedFiles files;
+    files.product = writer.take();
     if (mtl_name.empty()) return files;
-    files.mtl = "# ispace: materials\n";
-    for (const Material material : writer.materials()) addMaterial(files.mtl, material);
+    files.beside = "# ispace: materials\n";
+    for (const Material material : writer.materials()) addMaterial(files.beside, material);
     return files;
 }
 

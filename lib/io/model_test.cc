@@ -189,24 +189,24 @@ const char* const kRoom =
     "laser id=l1 at=1,1,0.5 heading=30 tilt=-20\nrobot id=r1 at=4,1 heading=70\n";
 
 TEST(Obj, OneBoxToTheLetter) {
-    const ObjFiles files = writeObj(scene("ispace id=room size=2,2\n"
-                                          "cube id=box at=0.5,0.25 size=0.5,0.5,0.1\n"),
-                                    "room.mtl");
-    const std::size_t at = files.obj.find("o box\n");
+    const ExportedFiles files = writeObj(scene("ispace id=room size=2,2\n"
+                                               "cube id=box at=0.5,0.25 size=0.5,0.5,0.1\n"),
+                                         "room.mtl");
+    const std::size_t at = files.product.find("o box\n");
     ASSERT_NE(at, std::string::npos);
-    const std::string box = files.obj.substr(at, files.obj.find("o floor\n") - at);
+    const std::string box = files.product.substr(at, files.product.find("o floor\n") - at);
     EXPECT_EQ(box.substr(0, box.find("usemtl")),
               "o box\nv 0.25 0 0\nv 0.75 0 0\nv 0.75 0.5 0\nv 0.25 0.5 0\nv 0.25 0 0.1\n"
               "v 0.75 0 0.1\nv 0.75 0.5 0.1\nv 0.25 0.5 0.1\n");
     EXPECT_NE(box.find("usemtl box\n"), std::string::npos);
-    EXPECT_EQ(files.obj.rfind("# ispace: metres, z up", 0), 0U);
-    EXPECT_NE(files.obj.find("\nmtllib room.mtl\n"), std::string::npos);
-    EXPECT_NE(files.mtl.find("\nnewmtl box\nKd 0.7"), std::string::npos);
+    EXPECT_EQ(files.product.rfind("# ispace: metres, z up", 0), 0U);
+    EXPECT_NE(files.product.find("\nmtllib room.mtl\n"), std::string::npos);
+    EXPECT_NE(files.beside.find("\nnewmtl box\nKd 0.7"), std::string::npos);
 }
 
 TEST(Obj, HoldsTheModelExactly) {
     const Scene room = scene(kRoom);
-    const ObjModel model = parseObj(writeObj(room, "a.mtl").obj);
+    const ObjModel model = parseObj(writeObj(room, "a.mtl").product);
     EXPECT_EQ(model.wrong, "");
     EXPECT_EQ(model.mtllib, "a.mtl");
     std::vector<std::string> ids;
@@ -225,17 +225,17 @@ TEST(Obj, HoldsTheModelExactly) {
 }
 
 TEST(Obj, MaterialsAreThoseThatAreUsed) {
-    const ObjFiles files = writeObj(scene(kRoom), "a.mtl");
+    const ExportedFiles files = writeObj(scene(kRoom), "a.mtl");
     std::set<std::string> defined;
-    std::istringstream lines(files.mtl);
+    std::istringstream lines(files.beside);
     for (std::string word; lines >> word;)
         if (word == "newmtl" && lines >> word) defined.insert(word);
-    EXPECT_EQ(defined, parseObj(files.obj).materials);
+    EXPECT_EQ(defined, parseObj(files.product).materials);
     EXPECT_TRUE(defined.contains("wood"));
-    const ObjFiles plain = writeObj(scene(kRoom), "");
-    EXPECT_EQ(plain.mtl, "");
-    EXPECT_EQ(plain.obj.find("mtl"), std::string::npos);
-    EXPECT_EQ(parseObj(plain.obj).wrong, "");
+    const ExportedFiles plain = writeObj(scene(kRoom), "");
+    EXPECT_EQ(plain.beside, "");
+    EXPECT_EQ(plain.product.find("mtl"), std::string::npos);
+    EXPECT_EQ(parseObj(plain.product).wrong, "");
 }
 
 TEST(Stl, HoldsTheModelInFloats) {
@@ -269,7 +269,7 @@ TEST(Stl, LeavesOutWhatFloatsCannotTell) {
 }
 
 TEST(ObjAndStl, EqualScenesGiveEqualBytes) {
-    EXPECT_TRUE(writeObj(scene(kRoom), "a.mtl").obj == writeObj(scene(kRoom), "a.mtl").obj);
+    EXPECT_TRUE(writeObj(scene(kRoom), "a.mtl").product == writeObj(scene(kRoom), "a.mtl").product);
     EXPECT_TRUE(writeStl(scene(kRoom)) == writeStl(scene(kRoom)));
 }
 

@@ -176,7 +176,6 @@ TEST(PlanLines, WideSnappingLosesNoWalls) {
 
 using Paths = std::vector<PlanPath>;
 
-
 TEST(PlanSimplify, EndsAndCornersStay) {
     const Paths noisy{open({{0, 0}, {1, 0.01}, {2, -0.01}, {3, 0}, {3, 2}}, 7)};
     EXPECT_EQ(simplifiedPaths(noisy, 0.02), (Paths{open({{0, 0}, {3, 0}, {3, 2}}, 7)}));

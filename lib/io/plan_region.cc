@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geom/noding.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "io/plan_lines.h"
@@ -33,9 +34,6 @@ constexpr int kClearSteps = 12;
 /// Where a line is looked at that bounds nothing: not at its ends, which often lie on walls.
 constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 
-/// Pairs of lines that are tested for crossing, at most; and at least so many lines against all.
-constexpr std::size_t kMostTests = 20'000'000;
-constexpr std::size_t kLeastSample = 64;
 /// Walls cross a few others; hatching and terrain cross hundreds.
 constexpr double kManyCrossings = 20;
 constexpr double kFewCrossings = 200'000;
@@ -308,23 +306,8 @@ std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const
 }
 
 bool crossTooOften(std::span<const Segment2> lines) {
-    const std::size_t count = lines.size();
-    if (count < 2) return false;
-    const std::size_t sample = std::clamp(kMostTests / count, std::min(kLeastSample, count), count);
-    std::size_t crossings = 0;
-    for (std::size_t k = 0; k < sample; ++k) {
-        const Segment2& line = lines[k * count / sample];
-        const auto [left, right] = std::minmax(line.a.x, line.b.x);
-        for (const Segment2& other : lines)
-            if (std::max(other.a.x, other.b.x) >= left && std::min(other.a.x, other.b.x) <= right &&
-                intersects(line, other))
-                ++crossings;
-    }
-    const auto all = static_cast<double>(count);
-    // Each line meets itself; each crossing is seen from both of its lines.
-    const double estimate =
-        (static_cast<double>(crossings) / static_cast<double>(sample) - 1) * all / 2;
-    return estimate > std::max(kFewCrossings, kManyCrossings * all);
+    return sampledCrossings(lines) >
+           std::max(kFewCrossings, kManyCrossings * static_cast<double>(lines.size()));
 }
 
 }  // namespace ispace

@@ -76,7 +76,7 @@ class PlanFaces {
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
 /// True if the lines cross each other so often that their faces would take hours: no plan does.
-/// Judged by a sample, the same one at every call.
+/// An estimate from a sample, the same one at every call.
 bool crossTooOften(std::span<const Segment2> lines);
 
 /// The floor that a disc covers which moves from `start` without crossing a wall: the pieces of

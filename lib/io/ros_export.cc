@@ -44,13 +44,12 @@ Grid gridOf(const Box2& box, double resolution) {
                         multipleBelow(box.low.y - rim, resolution)};
     const double columns = std::ceil((box.high.x + rim - origin.x) / resolution);
     const double rows = std::ceil((box.high.y + rim - origin.y) / resolution);
-    const double too_many =
-        std::max(std::max(columns, rows) / kMostMapSide,
-                 std::sqrt(columns * rows / static_cast<double>(kMostMapCells)));
+    const double too_many = std::max(std::max(columns, rows) / kMaxMapSide,
+                                     std::sqrt(columns * rows / static_cast<double>(kMaxMapCells)));
     if (too_many > 1)
         throw UsageError("a map of " + formatFixed(columns, 0) + " x " + formatFixed(rows, 0) +
-                         " cells cannot be written, at most " + std::to_string(kMostMapSide) +
-                         " each way and " + std::to_string(kMostMapCells) +
+                         " cells cannot be written, at most " + std::to_string(kMaxMapSide) +
+                         " each way and " + std::to_string(kMaxMapCells) +
                          " in all: take a resolution of " +
                          formatDouble(coarserResolution(resolution, too_many)) + " m");
     return gridOf(origin, resolution, static_cast<int>(columns), static_cast<int>(rows));
@@ -170,8 +169,8 @@ std::string yamlText(const std::string& text) {
 
 }  // namespace
 
-RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
-                        const std::string& image_name) {
+ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
+                          const std::string& image_name) {
     const Regions& indoor = scene.environment.indoor();
     const Grid grid = gridOf(bounds(indoor), resolution);
     Slice slice = scene.environment.slice(height);
@@ -187,12 +186,12 @@ RosMapFiles writeRosMap(const Scene& scene, double height, double resolution,
         for (const Polygon& hole : part.holes) painter.addSmall(hole);
     painter.closeRim();
 
-    RosMapFiles files;
-    files.yaml = "image: " + yamlText(image_name) +
-                 "\nmode: trinary\nresolution: " + formatDouble(resolution) + "\norigin: [" +
-                 formatDouble(grid.limits.low.x) + ", " + formatDouble(grid.limits.low.y) +
-                 ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-    files.pgm = painter.take();
+    ExportedFiles files;
+    files.product = "image: " + yamlText(image_name) +
+                    "\nmode: trinary\nresolution: " + formatDouble(resolution) + "\norigin: [" +
+                    formatDouble(grid.limits.low.x) + ", " + formatDouble(grid.limits.low.y) +
+                    ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    files.beside = painter.take();
     return files;
 }
 

@@ -50,23 +50,23 @@ std::vector<std::string> trimmed(const std::vector<std::string>& rows) {
 }
 
 std::vector<std::string> mapOf(const std::string& room, double resolution) {
-    return trimmed(cellsOf(writeRosMap(scene(room), kHeight, resolution, "map.pgm").pgm));
+    return trimmed(cellsOf(writeRosMap(scene(room), kHeight, resolution, "map.pgm").beside));
 }
 
 using Rows = std::vector<std::string>;
 
 TEST(RosExport, RoomOnTheGrid) {
-    const RosMapFiles files = writeRosMap(scene("ispace size=2,1"), kHeight, 0.25, "map.pgm");
-    EXPECT_EQ(files.yaml,
+    const ExportedFiles files = writeRosMap(scene("ispace size=2,1"), kHeight, 0.25, "map.pgm");
+    EXPECT_EQ(files.product,
               "image: map.pgm\nmode: trinary\nresolution: 0.25\norigin: [-2, -1.5, 0]\nnegate: "
               "0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
-    EXPECT_EQ(trimmed(cellsOf(files.pgm)), (Rows{"##########",  //
-                                                 "#........#",  //
-                                                 "#........#",  //
-                                                 "#........#",  //
-                                                 "#........#",  //
-                                                 "##########"}));
-    for (const std::string& row : {cellsOf(files.pgm).front(), cellsOf(files.pgm).back()})
+    EXPECT_EQ(trimmed(cellsOf(files.beside)), (Rows{"##########",  //
+                                                    "#........#",  //
+                                                    "#........#",  //
+                                                    "#........#",  //
+                                                    "#........#",  //
+                                                    "##########"}));
+    for (const std::string& row : {cellsOf(files.beside).front(), cellsOf(files.beside).back()})
         EXPECT_EQ(row, std::string(row.size(), ' '));
 }
 
@@ -77,8 +77,8 @@ TEST(RosExport, SolidsAtTheHeightAreOccupied) {
     EXPECT_EQ(low[1], "#........#");
     EXPECT_EQ(low[2], "#.....##.#");
     EXPECT_EQ(low[3], "#.....##.#");
-    const RosMapFiles above = writeRosMap(scene(room), 0.6, 0.25, "m.pgm");
-    EXPECT_EQ(trimmed(cellsOf(above.pgm))[3], "#........#");
+    const ExportedFiles above = writeRosMap(scene(room), 0.6, 0.25, "m.pgm");
+    EXPECT_EQ(trimmed(cellsOf(above.beside))[3], "#........#");
 }
 
 TEST(RosExport, ThinWallsStay) {
@@ -132,7 +132,7 @@ TEST(RosExport, RefusesMapsNobodyCanHold) {
 TEST(RosExport, QuotesNamesThatYamlWouldTakeForElse) {
     const Scene room = scene("ispace size=2,1");
     const auto line = [&](const std::string& name) {
-        const std::string yaml = writeRosMap(room, kHeight, 0.5, name).yaml;
+        const std::string yaml = writeRosMap(room, kHeight, 0.5, name).product;
         return yaml.substr(0, yaml.find('\n'));
     };
     EXPECT_EQ(line("a/room-1.pgm"), "image: a/room-1.pgm");
@@ -153,10 +153,10 @@ class RosRoundTrip : public ::testing::Test {
 
     [[nodiscard]] Environment reread(const Scene& from, double resolution,
                                      const ImportOptions& options = {}) const {
-        const RosMapFiles files = writeRosMap(from, kHeight, resolution, "map.pgm");
-        writeAll((folder_ / "map.pgm").string(), files.pgm);
+        const ExportedFiles files = writeRosMap(from, kHeight, resolution, "map.pgm");
+        writeAll((folder_ / "map.pgm").string(), files.beside);
         const Document map =
-            readRosMap(files.yaml, (folder_ / "map.yaml").string(), options, sceneSchemas());
+            readRosMap(files.product, (folder_ / "map.yaml").string(), options, sceneSchemas());
         return makeScene(map, nullptr, DeviceCatalogue()).environment;
     }
 
@@ -323,12 +323,13 @@ TEST(RosExport, NoFloorLeaksThroughAThinWall) {
         const Point2 inside = round % 2 == 0 ? Point2{-1.9999, -1.9999} : Point2{1.9999, -1.9999};
         const Scene room = scene("ispace size=4,4\nwall from=" + wall + " thickness=0.001\n" +
                                  "inside at=" + numbers({inside.x, inside.y}) + "\n");
-        const RosMapFiles files = writeRosMap(room, kHeight, size(random), "m.pgm");
-        const MapCells free = freeCells(parsePgm(files.pgm, "m.pgm"), {});
-        const double cell = parseDouble(files.yaml.substr(files.yaml.find("resolution: ") + 12,
-                                                          files.yaml.find("\norigin") -
-                                                              files.yaml.find("resolution: ") - 12))
-                                .value();
+        const ExportedFiles files = writeRosMap(room, kHeight, size(random), "m.pgm");
+        const MapCells free = freeCells(parsePgm(files.beside, "m.pgm"), {});
+        const double cell =
+            parseDouble(files.product.substr(files.product.find("resolution: ") + 12,
+                                             files.product.find("\norigin") -
+                                                 files.product.find("resolution: ") - 12))
+                .value();
         const double area = static_cast<double>(free.count()) * cell * cell;
         EXPECT_NEAR(area, room.environment.indoor().area(), 14 * cell) << round;
     }

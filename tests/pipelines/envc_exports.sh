@@ -25,7 +25,7 @@ END
 nodes="outer thin carpet d1 t1 box in view floor l1 r1"
 
 # envc writes what the suffix says; the same as a stream.
-for format in obj stl geojson svg png; do
+for format in obj stl geojson svg png pdf; do
     expect_status 0 envc room.env room.3dm -o "room.$format"
     [ ! -s err ] || fail "talk without being asked: $(cat err)"
     envc room.env room.3dm -o "again.$format"
@@ -96,6 +96,14 @@ if command -v rsvg-convert >/dev/null; then
 else
     echo "no rsvg-convert here"
 fi
+# The same drawing as PDF, on a page of the same size (points of 1/72 inch).
+head -c 5 room.pdf | grep -q '^%PDF-' || fail "no PDF"
+if command -v pdfinfo >/dev/null && [ -s millimetres ]; then
+    paste -d' ' millimetres <(pdfinfo room.pdf | sed -n 's/^Page size: *\([0-9.]*\) x \([0-9.]*\) pts.*/\1 \2/p') |
+        awk '{ x = $3 / 72 * 25.4 - $1; y = $4 / 72 * 25.4 - $2; n += NF == 4 && x * x + y * y < 0.1 }
+             END { exit n != 1 }' ||
+        fail "not to scale: $(cat millimetres) mm, $(pdfinfo room.pdf | grep '^Page size')"
+fi
 for layer in floor zones objects walls sensors robots; do
     grep -q "inkscape:groupmode=\"layer\" inkscape:label=\"$layer\"" room.svg ||
         fail "no layer $layer in room.svg"
@@ -133,7 +141,7 @@ fi
 grep -q '"coordinate_system":"local-metres"' room.geojson || fail "GeoJSON does not say that it is local"
 
 # The obstacle map at a height: beside the table's foot there is floor, at its top not.
-for format in geojson svg png; do
+for format in geojson svg png pdf; do
     expect_status 0 envc room.env --slice 0.3 -o "slice.$format"
 done
 expect_status 0 envc room.env --slice 0.69 -o high.geojson

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // envc: compiles rooms and layouts into a model, checks, converts, edits and draws them.
 #include <filesystem>
-#include <string_view>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/file.h"
 #include "base/number.h"
@@ -14,44 +15,28 @@
 #include "env/info.h"
 #include "envc/options.h"
 #include "io/exporters.h"
-#include "io/glb.h"
 #include "io/mesh_file.h"
 #include "layout/check_scene.h"
 #include "layout/schemas.h"
-#include "plan/plan.h"
-#include "record/text.h"
-#include "record/yaml.h"
 
 namespace {
 
 using namespace ispace;
 namespace fs = std::filesystem;
 
-/// Metres a cell of a ROS map, unless --resolution says otherwise.
-constexpr double kMapResolution = 0.05;
-
-/// Records become records without a look at what they describe.
-bool isRecordFormat(const std::string& format) {
-    return format == "env" || format == "3dm" || format == "yaml";
-}
-
-/// What no terminal shows, and how messages call it.
-constexpr std::pair<std::string_view, const char*> kBinary[] = {
-    {"glb", "a GLB"}, {"stl", "an STL"}, {"png", "a PNG"}};
-
 /// The file that stands beside the product; "" for none.
 std::string besideOf(const EnvcOptions& options) {
-    if (options.format == "ros") return withSuffix(options.common.output, ".pgm");
-    if (options.format == "obj" && !isStream(options.common.output))
-        return withSuffix(options.common.output, ".mtl");
-    return "";
+    const ExportFormat& format = *options.format;
+    const bool is_none =
+        format.beside_suffix.empty() || (isStream(options.common.output) && !format.needs_beside);
+    return is_none ? "" : withSuffix(options.common.output, format.beside_suffix.data());
 }
 
 Document readModel(const EnvcOptions& options) {
     InputRequest request;
     request.inputs = options.inputs;
     request.import = options.import;
-    request.compiles = !isRecordFormat(options.format);
+    request.compiles = options.format == nullptr || options.format->write != nullptr;
     request.import.load_meshes = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
     request.any_environment = options.any_environment;
@@ -65,38 +50,17 @@ Document readModel(const EnvcOptions& options) {
     return document;
 }
 
-std::string drawing(const EnvcOptions& options, const Scene& scene) {
-    PlanOptions plan;
-    plan.format = options.format == "svg" ? PictureFormat::Svg : PictureFormat::Png;
-    plan.slice = options.slice;
-    plan.width = options.width;
-    if (!isStream(options.inputs.front())) plan.title = baseName(options.inputs.front());
-    return drawPlan(scene, plan);
-}
-
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
-    const std::string& format = options.format;
-    const std::string& output = options.common.output;
     const std::string beside = besideOf(options);
-    if (format == "obj" && !beside.empty()) {
-        const ObjFiles files = writeObj(scene, fs::path(beside).filename().string());
-        writeTogether(std::vector<NamedBytes>{{beside, files.mtl}, {output, files.obj}});
-    } else if (format == "obj") {
-        writeAll(output, writeObj(scene, "").obj);
-    } else if (format == "ros") {
-        const RosMapFiles files = writeRosMap(scene, options.slice.value_or(kScanHeight),
-                                              options.import.resolution.value_or(kMapResolution),
-                                              fs::path(beside).filename().string());
-        writeTogether(std::vector<NamedBytes>{{beside, files.pgm}, {output, files.yaml}});
-    } else if (format == "stl") {
-        writeAll(output, writeStl(scene));
-    } else if (format == "geojson") {
-        writeAll(output, writeGeoJson(scene, options.slice));
-    } else if (format == "svg" || format == "png") {
-        writeAll(output, drawing(options, scene));
-    } else {
-        writeAll(output, writeGlb(scene, document));
-    }
+    ExportOptions how{options.slice, options.import.resolution, options.width, "",
+                      fs::path(beside).filename().string()};
+    if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
+    const ExportedFiles files = options.format->write(scene, document, how);
+    if (beside.empty())
+        writeAll(options.common.output, files.product);
+    else
+        writeTogether(std::vector<NamedBytes>{{beside, files.beside},
+                                              {options.common.output, files.product}});
 }
 
 /// Names of files in a product are relative to its folder.
@@ -105,8 +69,8 @@ void rebaseTo(const std::string& output, Document& document) {
                 isStream(output) ? "" : fs::path(output).parent_path().string());
 }
 
-/// What an import doubts and what is wrong with the scene, together; the first counts all the more
-/// where no scene can be made of it. \throws FormatError with all findings
+/// The warnings of an import and what is wrong with the scene, together; the first count all the
+/// more where no scene can be made of it. \throws FormatError with all findings
 void check(const Document& document, const DeviceCatalogue& devices) {
     Diagnostics findings;
     for (const Diagnostic& warning : document.warnings) findings.add(warning);
@@ -123,7 +87,7 @@ void compile(const EnvcOptions& options, Document document) {
     std::erase_if(document.records,
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;
-    if (options.format == "glb") rebaseTo(options.common.output, document);
+    if (options.format != nullptr) rebaseTo(options.common.output, document);
     const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
     if (options.check) {
         check(document, devices);
@@ -146,20 +110,18 @@ void compile(const EnvcOptions& options, Document document) {
 void convert(const EnvcOptions& options, Document document) {
     const std::string& output = options.common.output;
     rebaseTo(output, document);
-    if (options.format != "yaml")
-        document.kind = options.format == "env" ? DocumentKind::Environment : DocumentKind::Layout;
-    writeAll(output, options.format == "yaml" ? writeYaml(document) : writeRecordText(document));
+    writeAll(output, options.format->write_records(std::move(document)));
 }
 
 void envc(const EnvcOptions& options) {
-    for (const auto& [format, name] : kBinary)
-        if (options.format == format) refuseTerminal(options.common.output, name);
+    const ExportFormat* const format = options.format;
+    if (format != nullptr && !format->binary.empty())
+        refuseTerminal(options.common.output, std::string(format->binary));
     limitThreads(options.common.threads);
     claimOutputs(options.common);
-    claimOutput(besideOf(options),
-                options.format == "ros" ? "the picture of the map" : "materials");
+    if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     const Document document = readModel(options);
-    if (isRecordFormat(options.format))
+    if (format != nullptr && format->write_records != nullptr)
         convert(options, document);
     else
         compile(options, document);

@@ -2,7 +2,6 @@
 #include "envc/options.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "base/error.h"
 #include "cli/common_options.h"
@@ -12,9 +11,13 @@ namespace ispace {
 namespace {
 
 const std::vector<std::string> kUnits{"m", "cm", "mm", "inch", "foot"};
-const std::vector<std::string> kModels{"glb", "env",     "3dm", "yaml", "obj",
-                                       "stl", "geojson", "svg", "png",  "ros"};
-const std::vector<std::string> kMaps{"svg", "png", "geojson", "ros"};
+
+std::vector<std::string> formatNames(bool of_slices) {
+    std::vector<std::string> names;
+    for (const ExportFormat& format : exportFormats())
+        if (!of_slices || format.takes_slice) names.emplace_back(format.name);
+    return names;
+}
 
 double heightFrom(const std::string& text) {
     KeySpec key;
@@ -26,7 +29,7 @@ double heightFrom(const std::string& text) {
 }
 
 void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {
-    line.choice("--to", to, kModels,
+    line.choice("--to", to, formatNames(false),
                 "format of the product (default: suffix of FILE, else glb, or svg with --slice)",
                 Enters::History);
     const auto take_slice = [&options](const std::string& text) {
@@ -154,18 +157,30 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("--info is the product then: leave --slice and --to out");
     if (line.given("--closed") && !line.given("--fence"))
         throw UsageError("--closed is about --fence: give both");
-    const std::string suffix = std::filesystem::path(options.common.output).extension().string();
-    if (options.format == "ros" && suffix != ".yaml" && suffix != ".yml")
-        throw UsageError(
-            "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
-    if (options.format == "obj" && suffix == ".mtl")
-        throw UsageError("FILE.mtl holds the materials of an OBJ: name the model FILE.obj");
+    if (options.format == nullptr) return;
+    const std::string suffix = suffixOf(options.common.output);
+    const ExportFormat& format = *options.format;
+    if ((format.needs_beside && suffix != format.suffix) ||
+        (!format.beside_suffix.empty() && '.' + suffix == format.beside_suffix))
+        throw UsageError(std::string(format.naming_hint));
 }
 
-std::string productFormat(const std::string& to, const EnvcOptions& options) {
-    // A YAML file of a slice can only be a map; of a room it is its records.
-    const std::vector<SuffixOf> ros{{options.slice ? "yaml" : "", "ros"}};
-    return outputFormat(to, options.common.output, options.slice ? kMaps : kModels, ros);
+/// A suffix means the first format that has it: .yaml is a map of a slice, and records of a room.
+const ExportFormat* productFormat(const std::string& to, const EnvcOptions& options) {
+    const std::vector<std::string> names = formatNames(options.slice.has_value());
+    std::vector<SuffixOf> suffixes;
+    for (const std::string& name : names) {
+        const std::string suffix(exportFormat(name).suffix);
+        const bool is_taken =
+            suffix != name && std::find(names.begin(), names.end(), suffix) != names.end();
+        suffixes.push_back({is_taken ? "" : suffix, name});
+    }
+    const ExportFormat& format =
+        exportFormat(outputFormat(to, options.common.output, names, suffixes));
+    if (options.slice && !format.takes_slice)
+        throw UsageError("--slice is written as " + listOf(names) + ", not " +
+                         std::string(format.name));
+    return &format;
 }
 
 }  // namespace
@@ -191,8 +206,6 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
     if (!options.info && !options.check) options.format = productFormat(to, options);
-    if (options.slice && std::find(kMaps.begin(), kMaps.end(), options.format) == kMaps.end())
-        throw UsageError("--slice is written as svg, png, geojson or ros, not " + options.format);
     checkCombination(line, options);
     if (options.info && !options.json)
         options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/common_options.h"
+#include "io/exporters.h"
 #include "io/input.h"
 #include "record/edit.h"
 
@@ -13,8 +14,8 @@ namespace ispace {
 
 struct EnvcOptions {
     CommonOptions common;
-    std::vector<std::string> inputs;  ///< "-" if none is given
-    std::string format;               ///< of the product; "" with info or check
+    std::vector<std::string> inputs;       ///< "-" if none is given
+    const ExportFormat* format = nullptr;  ///< of the product; null with info or check
     bool info = false, json = false, check = false;
     std::optional<double> slice;  ///< height of the obstacle map, which is the product then
     int width = 1200;             ///< pixels of a PNG

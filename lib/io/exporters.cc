@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/exporters.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "io/glb.h"
+#include "plan/plan.h"
+#include "record/text.h"
+#include "record/yaml.h"
+
+namespace ispace {
+
+namespace {
+
+/// Metres a cell of a ROS map, unless the options say otherwise.
+constexpr double kMapResolution = 0.05;
+
+template <DocumentKind kKind>
+std::string recordsAs(Document document) {
+    document.kind = kKind;
+    return writeRecordText(document);
+}
+
+template <PictureFormat kFormat>
+ExportedFiles drawnAs(const Scene& scene, const Document& /*document*/,
+                      const ExportOptions& options) {
+    return {drawPlan(scene, {kFormat, options.slice, options.width, options.title}), ""};
+}
+
+constexpr ExportFormat kFormats[] = {
+    {.name = "glb",
+     .suffix = "glb",
+     .help = "glTF 2.0, which any viewer opens: one named node for each element, sensor and robot, "
+             "in metres, y up. It holds the records as text and the meshes they name, so nothing "
+             "is lost. The view of a sensor is a translucent sheet of the material sensor-view, no "
+             "longer than the plan is wide; no other format has it.",
+     .binary = "a GLB",
+     .write = [](const Scene& scene, const Document& document,
+                 const ExportOptions& /*options*/) -> ExportedFiles {
+         return {writeGlb(scene, document), ""};
+     }},
+    {.name = "env",
+     .suffix = "env",
+     .help = "Records of an environment. From records to records no other file is read.",
+     .write_records = recordsAs<DocumentKind::Environment>},
+    {.name = "3dm",
+     .suffix = "3dm",
+     .help = "Records of a layout.",
+     .write_records = recordsAs<DocumentKind::Layout>},
+    {.name = "yaml",
+     .suffix = "yaml",
+     .help = "Records of either kind in YAML.",
+     .write_records = [](Document document) { return writeYaml(document); }},
+    {.name = "obj",
+     .suffix = "obj",
+     .help = "A mesh in metres, z up, with its materials in FILE.mtl beside it. Walls without "
+             "thickness, panes and floors are single surfaces, visible from both sides.",
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& options) { return writeObj(scene, options.beside); },
+     .beside_suffix = ".mtl",
+     .beside_role = "materials",
+     .naming_hint = "FILE.mtl holds the materials of an OBJ: name the model FILE.obj"},
+    {.name = "stl",
+     .suffix = "stl",
+     .help = "The same mesh as one surface without names and materials, in binary STL.",
+     .binary = "an STL",
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& /*options*/) -> ExportedFiles {
+         return {writeStl(scene), ""};
+     }},
+    {.name = "svg",
+     .suffix = "svg",
+     .help =
+         "A drawing to scale, on paper of A3 or less: print it at 100 % and measure. It has one "
+         "layer per type, and its ids are those of the records.",
+     .takes_slice = true,
+     .write = drawnAs<PictureFormat::Svg>},
+    {.name = "png",
+     .suffix = "png",
+     .help = "The view from above with a grid of 1 m.",
+     .binary = "a PNG",
+     .takes_slice = true,
+     .write = drawnAs<PictureFormat::Png>},
+    {.name = "pdf",
+     .suffix = "pdf",
+     .help = "The drawing of svg as PDF, to the same scale; the page is as large as the drawing.",
+     .binary = "a PDF",
+     .takes_slice = true,
+     .write = drawnAs<PictureFormat::Pdf>},
+    {.name = "geojson",
+     .suffix = "geojson",
+     .help = "The indoor region and the footprints in metres of the plan; programs that follow RFC "
+             "7946 strictly take them for degrees.",
+     .takes_slice = true,
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& options) -> ExportedFiles {
+         return {writeGeoJson(scene, options.slice), ""};
+     }},
+    {.name = "ros",
+     .suffix = "yaml",
+     .help = "FILE.yaml and FILE.pgm: the free floor at 0.15 m, or at the height of --slice, as "
+             "cells. A thin wall occupies the cells it runs through; free_thresh is 0.196, so that "
+             "every reader takes cells of value 205 as unknown.",
+     .takes_slice = true,
+     .write =
+         [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
+             return writeRosMap(scene, options.slice.value_or(kScanHeight),
+                                options.resolution.value_or(kMapResolution), options.beside);
+         },
+     .beside_suffix = ".pgm",
+     .beside_role = "the picture of the map",
+     .needs_beside = true,
+     .naming_hint = "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
+};
+
+}  // namespace
+
+std::span<const ExportFormat> exportFormats() { return kFormats; }
+
+const ExportFormat& exportFormat(std::string_view name) {
+    return *std::find_if(std::begin(kFormats), std::end(kFormats),
+                         [name](const ExportFormat& format) { return format.name == name; });
+}
+
+}  // namespace ispace

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/exporters.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+
+namespace {
+
+TEST(ExportFormats, RowsAreWhole) {
+    std::set<std::string_view> names;
+    for (const ExportFormat& format : exportFormats()) {
+        EXPECT_TRUE(names.insert(format.name).second) << format.name;
+        EXPECT_EQ(&exportFormat(format.name), &format);
+        EXPECT_TRUE(format.help.ends_with('.')) << format.name;
+        EXPECT_NE(format.write == nullptr, format.write_records == nullptr) << format.name;
+        // Slices are of scenes.
+        EXPECT_FALSE(format.takes_slice && format.write == nullptr) << format.name;
+        const bool is_alone = format.beside_suffix.empty();
+        EXPECT_EQ(is_alone, format.beside_role.empty()) << format.name;
+        EXPECT_EQ(is_alone, format.naming_hint.empty()) << format.name;
+        EXPECT_FALSE(is_alone && format.needs_beside) << format.name;
+    }
+    EXPECT_EQ(exportFormats().front().name, "glb");
+}
+
+TEST(ExportFormats, BytesAreWhatTheRowSays) {
+    const Document document = readRecordText("#env 1\nispace size=4,3\n", "room", sceneSchemas());
+    const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    ExportOptions options;
+    options.beside = "beside";
+    for (const ExportFormat& format : exportFormats()) {
+        if (format.write_records != nullptr) {
+            EXPECT_NE(format.write_records(document).find("4"), std::string::npos) << format.name;
+            continue;
+        }
+        const ExportedFiles files = format.write(scene, document, options);
+        EXPECT_FALSE(files.product.empty()) << format.name;
+        EXPECT_EQ(files.beside.empty(), format.beside_suffix.empty()) << format.name;
+        const bool has_zeros = files.product.find('\0') != std::string::npos;
+        EXPECT_TRUE(!has_zeros || !format.binary.empty()) << format.name;
+    }
+    EXPECT_TRUE(exportFormat("pdf").write(scene, document, options).product.starts_with("%PDF-"));
+}
+
+}  // namespace
+
+}  // namespace ispace

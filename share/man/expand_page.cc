@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// expand_page TEMPLATE PAGE: a page of the manual with the tables in it that the tools use, those
+// of records and of envc's formats. Run while the manual is built.
+#include <string>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/run_tool.h"
+#include "io/exporters.h"
+#include "layout/schemas.h"
+#include "record/schema.h"
+
+namespace {
+
+constexpr std::string_view kFormatsMark = "@EXPORT FORMATS@\n";
+
+/// A paragraph each, with hyphens that can be copied.
+std::string formatsText() {
+    std::string text;
+    for (const ispace::ExportFormat& format : ispace::exportFormats()) {
+        text.append(".TP\n.B ").append(format.name).append("\n");
+        for (const char c : format.help) {
+            if (c == '-') text += '\\';
+            text += c;
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return ispace::runTool("expand_page", [&] {
+        if (argc != 3) throw ispace::UsageError("wanted a template and a page");
+        std::string page = ispace::expandManual(ispace::readAll(argv[1]), ispace::sceneSchemas());
+        if (const std::size_t at = page.find(kFormatsMark); at != std::string::npos)
+            page.replace(at, kFormatsMark.size(), formatsText());
+        ispace::writeAll(argv[2], page);
+    });
+}
