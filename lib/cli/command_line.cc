@@ -2,7 +2,6 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -83,7 +82,7 @@ struct CommandLine::Data {
     bool help = false, version = false;
     std::vector<std::string> unused_operands;
     std::vector<std::string>* operands = &unused_operands;
-    std::size_t most_operands = 0;
+    std::size_t max_operands = 0;
     std::map<std::string, std::string> renamed;  // options that there are not: hints
     std::function<void()> check = [] {};  // of options against each other, once all are known
 
@@ -207,12 +206,32 @@ void CommandLine::dependencies(DependencyOptions& options, const std::string& ou
 
 namespace {
 
-int countFrom(const std::string& text, int lowest, int highest) {
-    const auto number = parseInteger(text);
-    if (!number || *number < lowest || *number > highest)
-        throw UsageError('`' + text + "` is not a whole number from " + std::to_string(lowest) +
-                         " to " + std::to_string(highest));
-    return static_cast<int>(*number);
+/// Puts a whole number in [lowest, highest] into `variable`.
+template <typename Number>
+auto takeCount(Number& variable, int lowest, int highest) {
+    return [&variable, lowest, highest](const std::string& text) {
+        const auto number = parseInteger(text);
+        if (!number || *number < lowest || *number > highest)
+            throw UsageError('`' + text + "` is not a whole number from " + std::to_string(lowest) +
+                             " to " + std::to_string(highest));
+        variable = static_cast<int>(*number);
+    };
+}
+
+/// Puts a length or a time in [lowest, highest] into `variable`.
+template <typename Number>
+auto takeQuantity(Number& variable, Unit unit, double lowest, double highest) {
+    return [&variable, unit, lowest, highest](const std::string& text) {
+        const bool is_time = unit == Unit::Time;
+        KeySpec key;
+        key.name = is_time ? "time" : "length";
+        key.unit = unit;
+        const double value = std::get<double>(parseValue(key, text));
+        if (value < lowest || value > highest)
+            throw UsageError('`' + text + "` is not from " + formatDouble(lowest) + " to " +
+                             formatDouble(highest) + (is_time ? " seconds" : " metres"));
+        variable = value;
+    };
 }
 
 }  // namespace
@@ -220,58 +239,29 @@ int countFrom(const std::string& text, int lowest, int highest) {
 void CommandLine::count(const std::string& names, const std::string& value,
                         std::optional<int>& variable, int lowest, int highest,
                         const std::string& help, Enters enters) {
-    const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = countFrom(s, lowest, highest);
-    };
-    parsed(names, value, take, help, enters);
+    parsed(names, value, takeCount(variable, lowest, highest), help, enters);
 }
 
 void CommandLine::count(const std::string& names, const std::string& value, int& variable,
                         int lowest, int highest, const std::string& help, Enters enters) {
-    const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = countFrom(s, lowest, highest);
-    };
-    parsed(names, value, take, help + " (default " + std::to_string(variable) + ")", enters);
+    parsed(names, value, takeCount(variable, lowest, highest),
+           help + " (default " + std::to_string(variable) + ")", enters);
 }
-
-namespace {
-
-double quantityFrom(const std::string& text, Unit unit, double lowest, double highest) {
-    const bool is_time = unit == Unit::Time;
-    KeySpec key;
-    key.name = is_time ? "time" : "length";
-    key.unit = unit;
-    const double value = std::get<double>(parseValue(key, text));
-    if (value < lowest || value > highest)
-        throw UsageError('`' + text + "` is not from " + formatDouble(lowest) + " to " +
-                         formatDouble(highest) + (is_time ? " seconds" : " metres"));
-    return value;
-}
-
-}  // namespace
 
 void CommandLine::meters(const std::string& names, std::optional<double>& variable, double lowest,
                          double highest, const std::string& help, Enters enters) {
-    const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = quantityFrom(s, Unit::Length, lowest, highest);
-    };
-    parsed(names, "M", take, help, enters);
+    parsed(names, "M", takeQuantity(variable, Unit::Length, lowest, highest), help, enters);
 }
 
 void CommandLine::meters(const std::string& names, double& variable, double lowest, double highest,
                          const std::string& help, Enters enters) {
-    const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = quantityFrom(s, Unit::Length, lowest, highest);
-    };
-    parsed(names, "M", take, help + " (default " + formatDouble(variable) + " m)", enters);
+    parsed(names, "M", takeQuantity(variable, Unit::Length, lowest, highest),
+           help + " (default " + formatDouble(variable) + " m)", enters);
 }
 
 void CommandLine::duration(const std::string& names, std::optional<double>& variable, double lowest,
                            double highest, const std::string& help, Enters enters) {
-    const auto take = [&variable, lowest, highest](const std::string& s) {
-        variable = quantityFrom(s, Unit::Time, lowest, highest);
-    };
-    parsed(names, "TIME", take, help, enters);
+    parsed(names, "TIME", takeQuantity(variable, Unit::Time, lowest, highest), help, enters);
 }
 
 void CommandLine::choice(const std::string& names, std::string& variable,
@@ -292,7 +282,7 @@ void CommandLine::renamed(const std::string& name, const std::string& hint) {
 
 void CommandLine::operands(std::vector<std::string>& variable, std::size_t most) {
     data_->operands = &variable;
-    data_->most_operands = most;
+    data_->max_operands = most;
 }
 
 std::string CommandLine::Data::hintFor(const std::string& unknown) const {
@@ -316,8 +306,8 @@ void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
             operands->push_back(word);
         }
     }
-    if (operands->size() > most_operands)
-        usage("too many operands: " + shellQuote((*operands)[most_operands]));
+    if (operands->size() > max_operands)
+        usage("too many operands: " + shellQuote((*operands)[max_operands]));
 }
 
 void CommandLine::parse(int argc, const char* const* argv) {
@@ -343,16 +333,6 @@ void CommandLine::parse(int argc, const char* const* argv) {
     rest.insert(rest.end(), tail.begin(), tail.end());
     d.sortOut(rest);
     d.check();
-}
-
-bool isStream(const std::string& operand) {
-    // What is open already has a name, too; behind it may be a regular file.
-    if (operand == "-" || operand.starts_with("/dev/std") || operand.starts_with("/dev/fd/") ||
-        (operand.starts_with("/proc/") && operand.find("/fd/") != std::string::npos))
-        return true;
-    std::error_code ignored;
-    const auto status = std::filesystem::status(operand, ignored);
-    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
 bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }

@@ -100,7 +100,4 @@ class CommandLine {
     std::unique_ptr<Data> data_;
 };
 
-/// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
-bool isStream(const std::string& operand);
-
 }  // namespace ispace

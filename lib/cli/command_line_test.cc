@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
+#include "cli/outputs.h"
 #include "cli/run_tool.h"
 
 namespace ispace {

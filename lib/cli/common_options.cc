@@ -91,6 +91,16 @@ void warn(const CommonOptions& options, const std::string& tool,
         std::cerr << tool << ": " << printable(warning.text()) << '\n';
 }
 
+void warn(const CommonOptions& options, const std::string& tool,
+          std::span<const std::string> sentences) {
+    constexpr std::size_t kMaxSentences = 20;
+    if (options.quiet) return;
+    for (const std::string& sentence : sentences.first(std::min(kMaxSentences, sentences.size())))
+        std::cerr << tool << ": warning: " << sentence << '\n';
+    if (sentences.size() > kMaxSentences)
+        std::cerr << tool << ": warning: and " << sentences.size() - kMaxSentences << " more\n";
+}
+
 void limitThreads(int threads) {
     // TBB starts no more than there are cores.
     const int wanted =

@@ -33,6 +33,10 @@ void talk(const CommonOptions& options, const std::string& tool, const std::stri
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings);
 
+/// The same for sentences; of many the first 20, and how many more there are.
+void warn(const CommonOptions& options, const std::string& tool,
+          std::span<const std::string> sentences);
+
 /// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
 /// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants: fewer
 /// work longer, and that is all. 1 starts no thread.

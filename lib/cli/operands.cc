@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "cli/common_options.h"
+#include "cli/outputs.h"
 #include "env/walls.h"
 #include "io/input.h"
 #include "layout/scene.h"

@@ -310,4 +310,14 @@ std::string OutputSet::stem(const std::string& id, int frame) const {
     return out;
 }
 
+bool isStream(const std::string& operand) {
+    // What is open already has a name, too; behind it may be a regular file.
+    if (operand == "-" || operand.starts_with("/dev/std") || operand.starts_with("/dev/fd/") ||
+        (operand.starts_with("/proc/") && operand.find("/fd/") != std::string::npos))
+        return true;
+    std::error_code ignored;
+    const auto status = std::filesystem::status(operand, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
 }  // namespace ispace

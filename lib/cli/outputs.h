@@ -80,6 +80,9 @@ class OutputSet {
     std::string suffix_;   // of the pattern, with its dot
 };
 
+/// True for "-" and for what is a stream by another name: /dev/stdin, <(…), a named pipe.
+bool isStream(const std::string& operand);
+
 /// The part of a file's name before its suffix.
 std::string withoutSuffix(const std::string& file);
 
