@@ -3,15 +3,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <iterator>
+#include <mutex>
 #include <utility>
 
 #include "env/enclosure.h"
 #include "env/info.h"
+#include "env/level.h"
 #include "env/mesh_cut.h"
 #include "env/openings.h"
 #include "env/walls.h"
-#include "geom/boolean.h"
 #include "geom/planar_map.h"
 
 namespace ispace {
@@ -206,35 +208,44 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
     builder.takeRecords(records, ids);
     builder.raiseWalls();
     Enclosure enclosure = builder.enclose();
-    indoor_ = std::move(enclosure.indoor);
-    inside_ = enclosure.inside;
-    limits_ = builder.limits();
-    height_ = builder.height();
-    elements_ = builder.takeElements();
-    wall_lines_ = builder.takeLines();
+    auto data = std::make_shared<Data>();
+    data->indoor = std::move(enclosure.indoor);
+    data->inside = enclosure.inside;
+    data->limits = builder.limits();
+    data->height = builder.height();
+    data->elements = builder.takeElements();
+    data->wall_lines = builder.takeLines();
+    data_ = std::move(data);
+    levels_ = std::make_shared<Levels>();
 }
 
-Slice Environment::slice(double height) const {
+const RegionIndex& Environment::Data::indoorIndex() const {
+    return *indoor_index.get([this] { return std::make_shared<const RegionIndex>(indoor.parts); });
+}
+
+Slice Environment::Data::slice(double at) const {
     Slice slice;
-    slice.height = height;
-    const auto add_sheet = [&](const Sheet& sheet, std::size_t /*owner*/) {
-        if (isAmong(Surfaces::Opaque, sheet)) slice.sheets.push_back(sheet.line);
+    slice.height = at;
+    const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
+        if (!isAmong(Surfaces::Opaque, sheet)) return;
+        slice.sheets.push_back(sheet.line);
+        slice.sheet_owners.push_back(owner);
     };
-    const auto add_solid = [&](const Prism& prism, std::size_t /*owner*/) {
+    const auto add_solid = [&](const Prism& prism, std::size_t owner) {
         if (prism.curve) slice.rounds.push_back({*prism.curve, slice.solids.size()});
         slice.solids.push_back(prism.curve ? outlineOf(*prism.curve) : prism.footprint);
+        slice.solid_owners.push_back(owner);
     };
-    forEachStanding(elements_, height, height, add_sheet, add_solid);
-    for (const Element& element : elements_)
-        if (!element.body.meshes.empty()) cutMeshes(element.body, height, slice);
+    forEachStanding(elements, at, at, add_sheet, add_solid);
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        if (!elements[i].body.meshes.empty()) cutMeshes(elements[i].body, at, slice, i);
     return slice;
 }
 
-Band Environment::band(double bottom, double top) const {
+Slice Environment::band(double bottom, double top) const {
     assert(bottom <= top);
-    Band band;
-    band.bottom = bottom;
-    band.top = top;
+    Slice band;
+    band.height = bottom;
     const auto add_sheet = [&](const Sheet& sheet, std::size_t owner) {
         band.sheets.push_back(sheet.line);
         band.sheet_owners.push_back(owner);
@@ -243,23 +254,56 @@ Band Environment::band(double bottom, double top) const {
         band.solids.push_back(prism.footprint);
         band.solid_owners.push_back(owner);
     };
-    forEachStanding(elements_, bottom, top, add_sheet, add_solid);
-    for (std::size_t i = 0; i < elements_.size(); ++i)
-        if (!elements_[i].body.meshes.empty())
-            bandOfMeshes(elements_[i].body, bottom, top, band, i);
+    forEachStanding(elements(), bottom, top, add_sheet, add_solid);
+    for (std::size_t i = 0; i < elements().size(); ++i)
+        if (!elements()[i].body.meshes.empty())
+            bandOfMeshes(elements()[i].body, bottom, top, band, i);
     return band;
 }
 
 std::vector<Region> Environment::freeFloor(double height) const {
-    const Box2 box = bounds(indoor_);
-    std::vector<Polygon> solids = slice(height).solids;
-    std::erase_if(solids, [&box](const Polygon& solid) {
-        const Box2 other = bounds(solid);
-        return other.low.x > box.high.x || other.high.x < box.low.x || other.low.y > box.high.y ||
-               other.high.y < box.low.y;
+    return level(height)->freeFloor();
+}
+
+/// The levels last asked for, the latest at the end.
+struct Environment::Levels {
+    /// Each takes some 100 bytes a line, and 300 once somebody looks about in it.
+    static constexpr std::ptrdiff_t kMaxKept = 64;
+    static constexpr std::size_t kMaxLines = 500'000;
+
+    std::mutex mutex;
+    std::vector<std::shared_ptr<const Level>> kept;
+
+    /// Takes out those that are too many, the latest excepted.
+    std::vector<std::shared_ptr<const Level>> takeSurplus() {
+        auto first = std::prev(kept.end());
+        std::size_t lines = 0;
+        while (first != kept.begin() && kept.end() - first < kMaxKept) {
+            lines += (*std::prev(first))->linesMade();
+            if (lines > kMaxLines) break;
+            --first;
+        }
+        std::vector<std::shared_ptr<const Level>> surplus(std::move_iterator(kept.begin()),
+                                                          std::move_iterator(first));
+        kept.erase(kept.begin(), first);
+        return surplus;
+    }
+};
+
+std::shared_ptr<const Level> Environment::level(double height) const {
+    std::vector<std::shared_ptr<const Level>> surplus;  // ends after the lock
+    const std::scoped_lock lock(levels_->mutex);
+    auto& kept = levels_->kept;
+    const auto known = std::find_if(kept.begin(), kept.end(), [height](const auto& level) {
+        return level->height() == height;
     });
-    if (solids.empty()) return indoor_.parts;
-    return difference(indoor_, solids);
+    if (known != kept.end()) {
+        std::rotate(known, known + 1, kept.end());
+    } else {
+        kept.push_back(std::shared_ptr<const Level>(new Level(data_, height)));
+        surplus = levels_->takeSurplus();
+    }
+    return kept.back();
 }
 
 }  // namespace ispace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "env/band.h"
+#include "base/lazy.h"
 #include "env/body.h"
 #include "env/slice.h"
 #include "geom/polygon.h"
@@ -24,7 +25,10 @@ struct Element {
     Body body;
 };
 
-/// A room: its elements and the region they enclose. Immutable.
+class Level;
+class RegionIndex;
+
+/// A room: its elements and the region they enclose. Immutable; copies share everything.
 class Environment {
   public:
     /// Takes the environment records among `records` (others are left alone). `ids` as of
@@ -36,37 +40,56 @@ class Environment {
     ///         (4.1, 2.0)"); the last two only where every wall has made its lines
     Environment(std::span<const Record> records, std::span<const std::string> ids);
 
-    [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
+    [[nodiscard]] const std::vector<Element>& elements() const { return data_->elements; }
     /// Bounding rectangle of the wall lines (thesis, Limit Acquire).
-    [[nodiscard]] const Box2& limits() const { return limits_; }
+    [[nodiscard]] const Box2& limits() const { return data_->limits; }
     /// The faces of the wall lines that hold the inside points, each with those joined to it by
     /// open doors, directly or through others: mostly one part, and one for each room where
     /// several are meant. Openings else do not count: an open door to the outside joins nothing.
     /// Walls that stand within the joined rooms bound nothing.
-    [[nodiscard]] const Regions& indoor() const { return indoor_; }
+    [[nodiscard]] const Regions& indoor() const { return data_->indoor; }
+    /// The same, made for very many questions; built when first asked for.
+    [[nodiscard]] const RegionIndex& indoorIndex() const { return data_->indoorIndex(); }
     /// The known inside point: the first record's, else the origin if it lies strictly in a bounded
     /// face, else a point of the largest face.
-    [[nodiscard]] Point2 inside() const { return inside_; }
+    [[nodiscard]] Point2 inside() const { return data_->inside; }
     /// The wall lines, welded, with all openings closed; for drawings, and for the parity rule
     /// where no open door joins rooms: there the lines that enclose are the edges of indoor().
-    [[nodiscard]] const std::vector<Segment2>& wallLines() const { return wall_lines_; }
+    [[nodiscard]] const std::vector<Segment2>& wallLines() const { return data_->wall_lines; }
     /// Height of the highest wall, in metres.
-    [[nodiscard]] double height() const { return height_; }
+    [[nodiscard]] double height() const { return data_->height; }
 
-    /// What stands at this height (prisms are closed: their top and bottom count).
-    [[nodiscard]] Slice slice(double height) const;
-    /// What stands anywhere between the two heights, ends included. \pre bottom <= top
-    [[nodiscard]] Band band(double bottom, double top) const;
-    /// Indoor less the solids at this height.
+    /// The level at a height: its slice, free floor, point location and sight, see env/level.h.
+    /// Thread-safe. Levels last asked for are kept, so that whoever asks again gets the same one;
+    /// how many depends on their size. Hold on to one that is used for long.
+    [[nodiscard]] std::shared_ptr<const Level> level(double height) const;
+    /// What stops light at this height (prisms are closed: their top and bottom count). Made anew
+    /// at each call; a level keeps its slice.
+    [[nodiscard]] Slice slice(double height) const { return data_->slice(height); }
+    /// What stands anywhere between the two heights, ends included, clear glass too.
+    /// \pre bottom <= top
+    [[nodiscard]] Slice band(double bottom, double top) const;
+    /// Indoor less the solids at this height; a level keeps it.
     [[nodiscard]] std::vector<Region> freeFloor(double height) const;
 
   private:
-    std::vector<Element> elements_;
-    std::vector<Segment2> wall_lines_;
-    Box2 limits_;
-    Regions indoor_;
-    Point2 inside_;
-    double height_ = 0;
+    friend class Level;
+    struct Data {
+        std::vector<Element> elements = {};
+        std::vector<Segment2> wall_lines = {};
+        Box2 limits = {};
+        Regions indoor = {};
+        Point2 inside = {};
+        double height = 0;
+
+        [[nodiscard]] Slice slice(double at) const;
+        [[nodiscard]] const RegionIndex& indoorIndex() const;
+        Lazy<std::shared_ptr<const RegionIndex>> indoor_index = {};
+    };
+    struct Levels;
+
+    std::shared_ptr<const Data> data_;
+    std::shared_ptr<Levels> levels_;  // apart from the data, which levels hold
 };
 
 }  // namespace ispace

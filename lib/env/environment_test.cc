@@ -228,9 +228,7 @@ TEST(Environment, BandHoldsWhatStandsBetweenItsHeights) {
         "cube at=2,2,0 size=1,1,0.5\n"
         "cube at=-2,2,0.8 size=1,1,0.5\n"
         "floor size=2,2 kind=checker\n");
-    const Band low = env.band(0, 0.22);
-    EXPECT_EQ(low.bottom, 0);
-    EXPECT_EQ(low.top, 0.22);
+    const Slice low = env.band(0, 0.22);
     EXPECT_EQ(low.sheets.size(), 5U);
     ASSERT_EQ(low.solids.size(), 1U);
     EXPECT_EQ(locate(low.solids[0], {2, 2}), Side::Inside);
@@ -256,7 +254,7 @@ TEST(Environment, ABandOfNoHeightIsTheSlice) {
         "ispace size=8,8\ndesk at=2,2\ntable at=-2,2\nchair at=1,-2\npillar at=-2,-2 kind=round\n");
     for (const double height : {0.0, 0.15, 0.42, 0.68, 0.7, 1.0, 2.5, 3.0}) {
         Slice slice = env.slice(height);
-        const Band band = env.band(height, height);
+        const Slice band = env.band(height, height);
         // Round solids are inscribed in a band, and have their area in a slice.
         for (const Slice::Round& round : slice.rounds) {
             EXPECT_NEAR(signedArea(slice.solids[round.solid]), round.curve.area(), 1e-12);
@@ -264,6 +262,8 @@ TEST(Environment, ABandOfNoHeightIsTheSlice) {
         }
         EXPECT_EQ(band.sheets, slice.sheets) << height;
         EXPECT_EQ(band.solids, slice.solids) << height;
+        EXPECT_EQ(band.sheet_owners, slice.sheet_owners) << height;
+        EXPECT_EQ(band.solid_owners, slice.solid_owners) << height;
     }
 }
 

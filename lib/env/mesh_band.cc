@@ -46,7 +46,7 @@ Segment2 spanOf(const Polygon& points) {
 
 }  // namespace
 
-void bandOfMeshes(const Body& body, double bottom, double top, Band& out, std::size_t owner) {
+void bandOfMeshes(const Body& body, double bottom, double top, Slice& out, std::size_t owner) {
     // What stands higher and reaches lower than the band has no face in it.
     Slice slice;
     cutMeshes(body, bottom, slice);

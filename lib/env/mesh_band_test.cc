@@ -19,10 +19,8 @@ using testing::torusMesh;
 using testing::unionArea;
 using testing::withMesh;
 
-Band bandOf(const Body& body, double bottom, double top) {
-    Band band;
-    band.bottom = bottom;
-    band.top = top;
+Slice bandOf(const Body& body, double bottom, double top) {
+    Slice band;
     bandOfMeshes(body, bottom, top, band, 7);
     EXPECT_EQ(band.solid_owners, std::vector<std::size_t>(band.solids.size(), 7));
     EXPECT_EQ(band.sheet_owners, std::vector<std::size_t>(band.sheets.size(), 7));
@@ -48,7 +46,7 @@ TEST(BandOfMeshes, BoxWithinThroughAndBeside) {
 
 TEST(BandOfMeshes, IsTheShadowOfTheCutsWithin) {
     const Body body = meshed(torusMesh(2, 0.5, 60, 24), "up=x heading=20");
-    const Band band = bandOf(body, 0.4, 0.9);
+    const Slice band = bandOf(body, 0.4, 0.9);
     std::mt19937_64 random(29);
     std::uniform_real_distribution<double> place(-3, 3);
     std::vector<Slice> slices;
@@ -75,7 +73,7 @@ TEST(BandOfMeshes, UprightSurfacesWithARimAreSheets) {
     TriangleMesh wall;
     wall.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 0, 2}, {0, 0, 2}};
     wall.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const Band band = bandOf(meshed(wall), 0.5, 1);
+    const Slice band = bandOf(meshed(wall), 0.5, 1);
     EXPECT_TRUE(band.solids.empty());
     double low = 9, high = -9;
     for (const Segment2& line : band.sheets) {
@@ -105,7 +103,7 @@ TEST(BandOfMeshes, PartOfTheEnvironment) {
     EXPECT_TRUE(slice.blocked({-1, 1}));
     EXPECT_NEAR(totalArea(room.freeFloor(kScanHeight)), 48 - 4, 1e-9);
     EXPECT_TRUE(room.slice(0.05).solids.empty());
-    const Band band = room.band(0, 0.3);
+    const Slice band = room.band(0, 0.3);
     EXPECT_FALSE(band.solids.empty());
     for (const std::size_t owner : band.solid_owners) EXPECT_EQ(owner, 2U);
     EXPECT_EQ(band.sheet_owners.size(), band.sheets.size());

@@ -315,8 +315,10 @@ void cutMesh(const Mesh& mesh, double height, Slice& out) {
 
 }  // namespace
 
-void cutMeshes(const Body& body, double height, Slice& out) {
+void cutMeshes(const Body& body, double height, Slice& out, std::size_t owner) {
     for (const Mesh& mesh : body.meshes) cutMesh(mesh, height, out);
+    out.sheet_owners.resize(out.sheets.size(), owner);
+    out.solid_owners.resize(out.solids.size(), owner);
 }
 
 }  // namespace ispace

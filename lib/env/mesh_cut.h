@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "env/band.h"
 #include "env/body.h"
 #include "env/slice.h"
 
@@ -18,11 +17,12 @@ namespace ispace {
 /// beams are right. Where the surface is open its curve becomes sheets. Meshes are closed sets, as
 /// prisms are: a level face counts at its height, whichever side of it is solid; a level face of an
 /// open mesh does not, like a plate. O(triangles + k log k) for k triangles that are cut.
-void cutMeshes(const Body& body, double height, Slice& out);
+/// `owner` is entered for each piece.
+void cutMeshes(const Body& body, double height, Slice& out, std::size_t owner = 0);
 
 /// Adds what the body's meshes fill between two heights, ends included, seen from above: the cut at
 /// `bottom`, and the projection of each triangle between the heights: a solid, or a sheet where it
 /// stands upright. `owner` is entered for each. O(triangles). \pre bottom <= top
-void bandOfMeshes(const Body& body, double bottom, double top, Band& out, std::size_t owner);
+void bandOfMeshes(const Body& body, double bottom, double top, Slice& out, std::size_t owner);
 
 }  // namespace ispace

@@ -121,7 +121,7 @@ TEST(RandomMeshes, AnyTrianglesWhatsoever) {
             const Slice slice = cut(body, height);
             expectSound(slice);
             EXPECT_NO_THROW(difference({rectangle({0, 0}, 20, 20, {}), {}}, slice.solids));
-            Band band;
+            Slice band;
             bandOfMeshes(body, height, height + 0.6, band, 0);
             for (const Polygon& solid : band.solids) EXPECT_GT(signedArea(solid), 0);
         }
@@ -146,7 +146,7 @@ TEST(RandomMeshes, FacesInCommonAndSurfacesDrawnTwice) {
     wall.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}};
     EXPECT_TRUE(cut(meshed(wall), 0.5).solids.empty());
     EXPECT_EQ(cut(meshed(wall), 0.5).sheets.size(), 2U);
-    Band band;
+    Slice band;
     bandOfMeshes(meshed(wall), -1, 0.5, band, 0);
     EXPECT_FALSE(band.sheets.empty());
 }

@@ -5,6 +5,12 @@
 
 namespace ispace {
 
+std::vector<Segment2> Slice::lines() const {
+    std::vector<Segment2> lines;
+    forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
+    return lines;
+}
+
 std::vector<Segment2> Slice::straightLines() const {
     std::vector<Segment2> lines;
     forEachStraightLine([&lines](const Segment2& line) { lines.push_back(line); });

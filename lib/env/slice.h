@@ -9,9 +9,9 @@
 
 namespace ispace {
 
-/// The cut of everything that stands at one height: what a level laser meets.
+/// What stands at one height, or in a band: anywhere between two heights. Seen from above.
 struct Slice {
-    double height = 0;
+    double height = 0;             ///< of a band: its lower end
     std::vector<Segment2> sheets;  ///< walls without thickness
     std::vector<Polygon> solids;   ///< closed sets, counter-clockwise; may overlap
     /// A solid that is a polygon of the same area, outlineOf() it, for want of a curve.
@@ -19,7 +19,9 @@ struct Slice {
         Ellipse curve;
         std::size_t solid = 0;  ///< index in `solids`
     };
-    std::vector<Round> rounds = {};  ///< ascending by solid
+    std::vector<Round> rounds = {};  ///< ascending by solid; none in a band
+    /// Indices in Environment::elements(); empty in a slice that is of no environment.
+    std::vector<std::size_t> sheet_owners = {}, solid_owners = {};
 
     /// Calls visit(Segment2) for every line that stops a beam: sheets, then edges of solids.
     template <typename Visit>
@@ -27,9 +29,10 @@ struct Slice {
     /// The same without the edges of round solids.
     template <typename Visit>
     void forEachStraightLine(Visit visit) const;
+    [[nodiscard]] std::vector<Segment2> lines() const;
     [[nodiscard]] std::vector<Segment2> straightLines() const;
     [[nodiscard]] std::vector<Ellipse> curves() const;
-    /// True if p lies in a solid or on its edge.
+    /// True if p lies in a solid or on its edge. O(n); Level answers faster.
     [[nodiscard]] bool blocked(Point2 p) const;
 };
 

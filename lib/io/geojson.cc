@@ -12,6 +12,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "draw/feature_writer.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "plan/elements.h"
 #include "plan/footprint.h"
@@ -128,24 +129,20 @@ void addRoom(FeatureWriter& out, const Scene& scene) {
 }
 
 void addSlice(FeatureWriter& out, const Environment& environment, double height) {
-    const Slice slice = environment.slice(height);
-    const SliceOwners owners = ownersOf(environment, slice);
+    const auto level = environment.level(height);
+    const Slice& slice = level->slice();
     addFree(out, environment, height);
     const auto begin = [&](std::size_t owner) {
-        if (owner == environment.elements().size()) {
-            out.begin("", "", "");
-        } else {
-            const Element& element = environment.elements()[owner];
-            out.begin(element.id, element.record.keyword(), typeName(element.record.schema().type));
-        }
+        const Element& element = environment.elements()[owner];
+        out.begin(element.id, element.record.keyword(), typeName(element.record.schema().type));
         out.json().key("z").value(height);
     };
     for (std::size_t i = 0; i < slice.sheets.size(); ++i) {
-        begin(owners.sheets[i]);
+        begin(slice.sheet_owners[i]);
         out.endAsLines({{slice.sheets[i].a, slice.sheets[i].b}});
     }
     for (std::size_t i = 0; i < slice.solids.size(); ++i) {
-        begin(owners.solids[i]);
+        begin(slice.solid_owners[i]);
         out.endAsArea({{slice.solids[i], {}}});
     }
 }

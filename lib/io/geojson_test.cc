@@ -161,23 +161,5 @@ TEST(GeoJson, SliceAlone) {
     EXPECT_TRUE(featuresOf(room, 50.0).size() == 1U);
 }
 
-TEST(SliceOwners, EachPartBelongsToOne) {
-    const Scene room = scene(kRoom);
-    const Slice slice = room.environment.slice(0.3);
-    const SliceOwners owners = ownersOf(room.environment, slice);
-    ASSERT_EQ(owners.sheets.size(), slice.sheets.size());
-    ASSERT_EQ(owners.solids.size(), slice.solids.size());
-    const std::vector<Polygon> solids = inscribedSolids(slice);
-    for (std::size_t i = 0; i < owners.solids.size(); ++i) {
-        const auto& prisms = room.environment.elements().at(owners.solids[i]).body.prisms;
-        EXPECT_TRUE(std::any_of(prisms.begin(), prisms.end(),
-                                [&](const Prism& prism) { return prism.footprint == solids[i]; }));
-    }
-    Slice strange;
-    strange.sheets = {{{1, 2}, {3, 4}}};
-    EXPECT_EQ(ownersOf(room.environment, strange).sheets.front(),
-              room.environment.elements().size());
-}
-
 }  // namespace
 }  // namespace ispace

@@ -88,7 +88,7 @@ class PlacedCheck {
     void checkCircle(const Circle& circle, Diagnostics& findings);
     /// What the meshes of an element fill below a height.
     struct MeshBand {
-        Band band;
+        Slice band;
         BoxTree solids, sheets;
     };
 

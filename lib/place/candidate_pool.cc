@@ -30,7 +30,7 @@ std::vector<Site> onNanometres(std::vector<Site> sites) {
 }
 
 /// Sites at one height.
-struct Level {
+struct SitesAtHeight {
     double height = kScanHeight;
     std::vector<Site> sites;
 };
@@ -92,11 +92,11 @@ struct CandidatePool::Data {
             rowOf(options.strategy).propose({environment, height, maxRange(kind.model), options}));
     }
 
-    [[nodiscard]] std::vector<Level> frameLevels() const {
+    [[nodiscard]] std::vector<SitesAtHeight> frameLevels() const {
         std::map<double, std::vector<Point2>> by_height;
         for (const Point3& place : framePlaces(environment, options.density.lattice_step))
             by_height[onNanometres(place.z)].push_back(place.onFloor());
-        std::vector<Level> levels;
+        std::vector<SitesAtHeight> levels;
         levels.reserve(by_height.size());
         for (const auto& [height, places] : by_height)
             levels.push_back({height, sitesAt(places, headingsPerPlace(options))});
@@ -104,15 +104,15 @@ struct CandidatePool::Data {
     }
 
     /// Sites at all heights, those that are not valid left out.
-    std::vector<Level> levelsFor(const SensorClass& kind) {
-        std::vector<Level> levels;
+    std::vector<SitesAtHeight> levelsFor(const SensorClass& kind) {
+        std::vector<SitesAtHeight> levels;
         if (options.mount.on == MountOn::Frame)
             levels = frameLevels();
         else
             for (const double height : heights())
                 levels.push_back({height, proposals(kind, height)});
         std::size_t proposed = 0, valid = 0;
-        for (Level& level : levels) {
+        for (SitesAtHeight& level : levels) {
             proposed += level.sites.size();
             level.sites = validSites(judgeAt(level.height), level.sites, progress);
             valid += level.sites.size();
@@ -151,13 +151,13 @@ struct CandidatePool::Data {
 
     /// Candidates at these sites for each tilt; false if progress says stop: then of about `least`
     /// places, shared out over all levels and tilts.
-    bool addLevels(PosedCandidates& set, const SensorClass& kind, const std::vector<Level>& levels,
-                   std::size_t least) {
+    bool addLevels(PosedCandidates& set, const SensorClass& kind,
+                   const std::vector<SitesAtHeight>& levels, std::size_t least) {
         const std::vector<Angle> tilts = tiltsOf(kind);
         std::size_t places = 0;
-        for (const Level& level : levels) places += level.sites.size() * tilts.size();
+        for (const SitesAtHeight& level : levels) places += level.sites.size() * tilts.size();
         bool is_complete = true;
-        for (const Level& level : levels)
+        for (const SitesAtHeight& level : levels)
             for (const Angle tilt : tilts) {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
@@ -174,7 +174,7 @@ struct CandidatePool::Data {
 
     /// Places drawn at all heights.
     struct Drawn {
-        std::vector<Level> levels;
+        std::vector<SitesAtHeight> levels;
         std::size_t places = 0;
         bool is_complete = true;  ///< false: progress said to stop before
     };

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/number.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
 #include "plan/drawing.h"
@@ -265,21 +266,20 @@ void PlanDrawing::drawFreeFloor(double height) {
 void PlanDrawing::drawObstacles(double height) {
     const std::string at_height = " at " + formatDouble(height) + " m";
     const Environment& environment = scene_.environment;
-    const Slice slice = environment.slice(height);
-    const SliceOwners owners = ownersOf(environment, slice);
+    const auto level = environment.level(height);
+    const Slice& slice = level->slice();
     struct Parts {
         std::vector<Segment2> sheets;
         std::vector<Polygon> solids;
     };
-    std::map<std::size_t, Parts> parts;  // by element, nobody's last
+    std::map<std::size_t, Parts> parts;  // by element
     for (std::size_t i = 0; i < slice.sheets.size(); ++i)
-        parts[owners.sheets[i]].sheets.push_back(slice.sheets[i]);
+        parts[slice.sheet_owners[i]].sheets.push_back(slice.sheets[i]);
     for (std::size_t i = 0; i < slice.solids.size(); ++i)
-        parts[owners.solids[i]].solids.push_back(slice.solids[i]);
+        parts[slice.solid_owners[i]].solids.push_back(slice.solids[i]);
     const PlanLayer layer(*this, "walls");
     for (const auto& [owner, of_one] : parts) {
-        const bool known = owner < environment.elements().size();
-        const std::string id = known ? environment.elements()[owner].id : "";
+        const std::string& id = environment.elements()[owner].id;
         picture_.pushGroup(id, id + at_height);
         for (const Polygon& solid : of_one.solids)
             picture_.area(solid, {kSolidEdge, pen(kSolidEdge, 0.03)});

@@ -28,7 +28,7 @@ std::vector<Person> peopleOf(const Scene& scene) {
 
 namespace {
 
-std::vector<Segment2> linesOf(const Band& band) {
+std::vector<Segment2> linesOf(const Slice& band) {
     std::vector<Segment2> lines;
     band.forEachLine([&](const Segment2& line) { lines.push_back(line); });
     return lines;
@@ -55,14 +55,14 @@ double distance(const Segment2& s, const Segment2& t) {
     return std::min({distance(s.a, t), distance(s.b, t), distance(t.a, s), distance(t.b, s)});
 }
 
-Obstacles::Obstacles(const Band& band)
+Obstacles::Obstacles(const Slice& band)
     : solids_(band.solids),
       lines_(linesOf(band)),
       solid_owners_(band.solid_owners),
       grid_(lines_, 0) {
     boxes_.reserve(solids_.size());
     for (const Polygon& solid : solids_) boxes_.push_back(bounds(solid));
-    // In the order of Band::forEachLine.
+    // In the order of Slice::forEachLine.
     line_owners_ = band.sheet_owners;
     for (std::size_t i = 0; i < solids_.size(); ++i)
         line_owners_.insert(line_owners_.end(), solids_[i].size(), solid_owners_[i]);

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "env/band.h"
+#include "env/slice.h"
 #include "geom/spatial_index.h"
 #include "layout/robot.h"
 #include "layout/scene.h"
@@ -39,7 +39,7 @@ double distance(const Segment2& s, const Segment2& t);
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
-    explicit Obstacles(const Band& band);
+    explicit Obstacles(const Slice& band);
 
     /// An element of Environment::elements() whose line a circle reaches into, or in whose solid it
     /// lies.

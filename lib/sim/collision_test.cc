@@ -19,8 +19,8 @@ Polygon square(Point2 center, double half) {
 }
 
 /// A room of 10 m with a sheet along x = 2 from y = 0 on, and a closed square of 2 m at -2,-2.
-Band room() {
-    Band band{.bottom = 0, .top = 0.22, .sheets = {}, .solids = {}};
+Slice room() {
+    Slice band{.height = 0, .sheets = {}, .solids = {}};
     forEachEdge(square({0, 0}, 5), [&](const Segment2& line) { band.sheets.push_back(line); });
     band.sheets.push_back({{2, 0}, {2, 5}});
     band.solids.push_back(square({-2, -2}, 1));
@@ -67,20 +67,20 @@ TEST(Collision, CirclesMayTouch) {
     EXPECT_EQ(obstacles.overlap({-1.5, -2}, 0.2), 2U);
     // Within a solid, far from its edges.
     EXPECT_TRUE(obstacles.overlap({-2, -2}, 0.1));
-    EXPECT_FALSE(Obstacles(Band{}).overlap({0, 0}, 1));
+    EXPECT_FALSE(Obstacles(Slice{}).overlap({0, 0}, 1));
 }
 
 TEST(Collision, NearestLineIsWhatAllSay) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> place(-6, 6), extent(-1, 1);
-    Band band = room();
+    Slice band = room();
     for (int i = 0; i < 200; ++i) {
         const Point2 a{place(random), place(random)};
         band.sheets.push_back({a, a + Vec2{extent(random), extent(random)}});
         band.sheet_owners.push_back(3);
     }
     const Obstacles obstacles(band);
-    EXPECT_EQ(Obstacles(Band{}).nearest({0, 0}, 1.3), 1.3);
+    EXPECT_EQ(Obstacles(Slice{}).nearest({0, 0}, 1.3), 1.3);
     for (int i = 0; i < 500; ++i) {
         const Point2 p{1.5 * place(random), 1.5 * place(random)};
         const Segment2 way{p, p + Vec2{extent(random), extent(random)}};

@@ -94,7 +94,7 @@ void drive(World& world, std::mt19937_64& random) {
 }
 
 /// By brute force; every solid and sheet at every robot's height.
-void expectNoOverlap(const World& world, const std::vector<Band>& bands,
+void expectNoOverlap(const World& world, const std::vector<Slice>& bands,
                      const std::vector<Point2>& people) {
     for (std::size_t i = 0; i < world.robots().size(); ++i) {
         const Point2 p = world.status(i).pose.position;
@@ -116,7 +116,7 @@ void expectNoOverlap(const World& world, const std::vector<Band>& bands,
 
 TEST(WorldRandom, NothingEverOverlaps) {
     const Scene room = crowdedRoom(60, 1);
-    std::vector<Band> bands;
+    std::vector<Slice> bands;
     for (const PlacedRobot& robot : room.robots)
         bands.push_back(room.environment.band(0, robot.model.height));
     std::vector<Point2> people;

@@ -18,7 +18,7 @@ double distanceTo(const Segment2& line, Point2 p) {
     return distance(p, line.a + t * along);
 }
 
-bool isClear(const Band& band, Point2 p, double radius) {
+bool isClear(const Slice& band, Point2 p, double radius) {
     bool clear = true;
     band.forEachLine([&](const Segment2& line) { clear &= distanceTo(line, p) > radius; });
     return clear && std::none_of(band.solids.begin(), band.solids.end(), [p](const Polygon& solid) {
@@ -39,7 +39,7 @@ float nearest(const Scan& scan, double from, double to) {
 std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel& model,
                                std::size_t count, double gap, std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    const Band band = environment.band(0, model.height);
+    const Slice band = environment.band(0, model.height);
     const Box2 box = bounds(environment.indoor());
     std::uniform_real_distribution<double> x(box.low.x, box.high.x), y(box.low.y, box.high.y);
     std::uniform_real_distribution<double> heading(-180, 180);

@@ -26,7 +26,7 @@ constexpr std::size_t kRobots = 500;
 /// Lines by square buckets wider than any robot.
 class Lines {
   public:
-    Lines(const Band& band, double radius) : size_(4 * radius) {
+    Lines(const Slice& band, double radius) : size_(4 * radius) {
         band.forEachLine([&](const Segment2& line) {
             const double steps = std::ceil(distance(line.a, line.b) / size_ * 4) + 1;
             for (double k = 0; k <= steps; ++k) {

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "env/level.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "env/test_scene.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+namespace {
+
+using testing::environment;
+
+constexpr const char* kRoom =
+    "ispace at=0,0 size=8,6\n"
+    "wall from=-1,-1 to=1,-1 height=1\n"
+    "cube at=2,2 size=1,1,0.5\n"
+    "cube at=-2,2,0.5 size=1,1,0.5\n"
+    "pillar at=-2,-2 kind=round\n";
+
+TEST(Lazy, MakesOnceAndAgainAfterAFailure) {
+    const Lazy<int> lazy;
+    EXPECT_EQ(lazy.peek(), nullptr);
+    EXPECT_THROW(lazy.get([]() -> int { throw std::runtime_error("no"); }), std::runtime_error);
+    EXPECT_EQ(lazy.get([] { return 3; }), 3);
+    EXPECT_EQ(lazy.get([] { return 4; }), 3);
+    EXPECT_EQ(*lazy.peek(), 3);
+}
+
+TEST(Level, AnswersAsItsSliceDoes) {
+    const Environment room = environment(kRoom);
+    // Between things, where some end and begin, at the very top, above all, below the floor.
+    for (const double height : {0.0, 0.15, 0.5, 0.7, 1.0, 2.5, 2.6, -0.1}) {
+        const auto level = room.level(height);
+        const Slice slice = room.slice(height);
+        EXPECT_EQ(level->height(), height);
+        EXPECT_EQ(level->slice().height, height);
+        EXPECT_EQ(level->slice().sheets, slice.sheets);
+        EXPECT_EQ(level->slice().solids, slice.solids);
+        EXPECT_EQ(level->slice().sheet_owners, slice.sheet_owners);
+        EXPECT_EQ(level->slice().solid_owners.size(), slice.solids.size());
+        double area = 0;
+        for (const Region& region : level->freeFloor()) area += region.area();
+        EXPECT_NEAR(area, 48 - testing::areaOf(slice.solids), 1e-9);
+        for (double x = -5; x <= 5; x += 0.25)
+            for (double y = -4; y <= 4; y += 0.25) {
+                const Point2 p{x, y};
+                bool is_free = room.indoor().locate(p) == Side::Inside && !slice.blocked(p);
+                for (const Segment2& sheet : slice.sheets)
+                    is_free = is_free && !intersects(sheet, {p, p});
+                EXPECT_EQ(level->isFree(p), is_free) << x << ' ' << y << " at " << height;
+                if (level->isBuried(p)) {
+                    EXPECT_TRUE(slice.blocked(p));
+                }
+            }
+    }
+}
+
+TEST(Level, KnowsWhoseItsPartsAre) {
+    const Environment room = environment(kRoom);
+    const auto level = room.level(0.5);
+    EXPECT_EQ(level->slice().sheet_owners, (std::vector<std::size_t>{0, 0, 0, 0, 1}));
+    EXPECT_EQ(level->slice().solid_owners, (std::vector<std::size_t>{2, 3, 4}));
+    ASSERT_EQ(level->slice().rounds.size(), 1U);
+    EXPECT_EQ(level->slice().rounds[0].solid, 2U);
+}
+
+TEST(Level, SeesAsAVisibilityMapAndNothingFromWithinSolids) {
+    const Environment room = environment(kRoom);
+    const auto level = room.level(0.15);
+    const VisibilityMap map(level->slice().straightLines(), level->slice().curves());
+    VisibleRegion region;
+    for (const Point2 p : {Point2{0, 0}, {3, -2}, {2.5, 2}, {2.5 - 1e-5, 2}}) {
+        level->query(p, 4, region);
+        EXPECT_EQ(area(region), area(map.query(p, 4)));
+        EXPECT_GT(area(region), 0);
+    }
+    EXPECT_EQ(level->solidsTouching({2.5, 2}).size(), 1U);
+    level->query({2, 2}, 4, region);
+    EXPECT_TRUE(level->isBuried({2, 2}));
+    EXPECT_TRUE(region.edges.empty());
+    EXPECT_TRUE(region.is_whole);
+    EXPECT_EQ(region.max_range, 4);
+    EXPECT_TRUE(Level(Slice{}).slice().sheets.empty());
+    Level(Slice{}).query({2, 2}, 4, region);
+    EXPECT_NEAR(area(region), 16 * M_PI, 1e-6);
+}
+
+TEST(Level, IsTheSameOneForAll) {
+    std::optional<Environment> room = environment(kRoom);
+    const auto level = room->level(0.15);
+    EXPECT_EQ(room->level(0.15), level);
+    EXPECT_NE(room->level(0.2), level);
+    const Environment copy = *room;
+    EXPECT_EQ(copy.level(0.15), level);
+    // Not a number is no height, but does no harm.
+    EXPECT_TRUE(room->level(std::numeric_limits<double>::quiet_NaN())->slice().sheets.empty());
+    room.reset();
+    EXPECT_EQ(copy.level(0.15), level);
+    EXPECT_EQ(level->freeFloor().size(), 1U);
+}
+
+TEST(Level, OutlivesItsEnvironment) {
+    const auto level = environment(kRoom).level(0.15);
+    EXPECT_TRUE(level->isFree({0, 0}));
+    EXPECT_EQ(level->freeFloor().size(), 1U);
+}
+
+TEST(Level, FewAreKept) {
+    const Environment room = environment(kRoom);
+    const std::weak_ptr<const Level> first = room.level(0.001), used = room.level(0.002);
+    const auto held = used.lock();
+    for (int i = 10; i < 1000; ++i) EXPECT_EQ(room.level(0.001 * i)->slice().height, 0.001 * i);
+    EXPECT_TRUE(first.expired());
+    EXPECT_TRUE(held->isFree({0, 0}));
+}
+
+TEST(Level, LargeOnesAreKeptOneByOne) {
+    std::string lines = "ispace at=0,0 size=80,60\n";
+    for (int i = 0; i < 150; ++i)
+        for (int j = 0; j < 40; ++j)
+            lines += "cylinder at=" + std::to_string(0.5 * i - 37) + ',' + std::to_string(j - 20) +
+                     " size=0.2,0.2,1\n";
+    const Environment room = environment(lines);
+    const auto of = [&](double height) {
+        const auto level = room.level(height);
+        EXPECT_GT(level->slice().solids.size(), 5000U);
+        return std::weak_ptr(level);
+    };
+    const auto a = of(0.1), b = of(0.2), c = of(0.3);
+    EXPECT_FALSE(c.expired());
+    EXPECT_TRUE(a.expired() || room.level(0.1)->linesMade() < 250'000);
+}
+
+TEST(Level, ManyThreadsShareOne) {
+    for (int round = 0; round < 20; ++round) {
+        const Environment room = environment(kRoom);
+        std::vector<std::thread> threads;
+        std::atomic<int> right = 0;
+        for (int thread = 0; thread < 4; ++thread)
+            threads.emplace_back([&] {
+                VisibleRegion region;
+                for (int i = 0; i < 100; ++i) {
+                    const auto level = room.level(0.01 * (i % 3));
+                    level->query({0, 0}, 3, region);
+                    const bool is_right = level->isFree({0, 0}) && !level->isFree({2, 2}) &&
+                                          level->freeFloor().size() == 1 && !region.edges.empty();
+                    right += is_right ? 1 : 0;
+                }
+            });
+        for (std::thread& thread : threads) thread.join();
+        EXPECT_EQ(right, 400);
+    }
+}
+
+}  // namespace
+}  // namespace ispace
