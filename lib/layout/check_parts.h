@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "env/info.h"
+#include "env/point_location.h"
 #include "env/walls.h"
-#include "layout/indoor_index.h"
 #include "layout/parts.h"
 #include "layout/scene.h"
 
@@ -24,6 +24,8 @@ struct CheckContext {
     [[nodiscard]] const Element& element(std::size_t i) const {
         return scene.environment.elements()[i];
     }
+    /// Outside the room, and farther from its walls than touching.
+    [[nodiscard]] bool isOut(Point2 p) const { return !indoor.isWithin(p, kTouching); }
     /// Furniture, pillars, ceiling frames, meshes.
     [[nodiscard]] bool isObject(std::size_t i) const;
     /// "desk d1", or the id alone where that is keyword and number.
@@ -33,7 +35,7 @@ struct CheckContext {
     [[nodiscard]] Diagnostic finding(std::size_t i, const std::string& message) const;
 
     const Scene& scene;
-    IndoorIndex indoor;
+    const RegionIndex& indoor;
     Parts parts;
     std::map<std::size_t, MeshCuts> meshes;  ///< by element
 };

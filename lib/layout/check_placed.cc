@@ -60,7 +60,7 @@ void PlacedCheck::check(std::size_t placed, Diagnostics& findings) {
     const Placed& thing = context_->scene.placed[placed];
     const Point2 p = thing.pose.position.onFloor();
     // What a robot carries is where that is.
-    if (!thing.mount && context_->indoor.isOut(p))
+    if (!thing.mount && context_->isOut(p))
         findings.add(
             finding(placed, " stands outside the room at " + placeText(p) + "; move it in"));
     const auto circle =

@@ -49,7 +49,7 @@ double wayApart(const std::vector<PartPair>& pairs, const PartPair& deepest) {
 }  // namespace
 
 CheckContext::CheckContext(const Scene& from)
-    : scene(from), indoor(from.environment.indoor()), parts(from.environment) {
+    : scene(from), indoor(from.environment.indoorIndex()), parts(from.environment) {
     const std::vector<Element>& elements = scene.environment.elements();
     for (std::size_t i = 0; i < elements.size(); ++i)
         if (!elements[i].body.meshes.empty()) meshes.emplace(i, MeshCuts(elements[i].body));
@@ -191,10 +191,11 @@ void ThingCheck::checkInRoom(std::size_t element, bool in_wall, Diagnostics& fin
     std::optional<Point2> out, in;
     const auto look = [&](const Box2& box, const auto& points, const auto& on_floor) {
         // Away from the walls one point tells of all.
-        const bool near = context_->indoor.hasEdgeIn(box);
+        bool near = false;
+        context_->indoor.edgesIn(box, [&near](const Segment2& /*edge*/) { near = true; });
         for (const auto& point : points) {
             const Point2 p = on_floor(point);
-            std::optional<Point2>& side = context_->indoor.isOut(p) ? out : in;
+            std::optional<Point2>& side = context_->isOut(p) ? out : in;
             if (!side) side = p;
             if (!near || (out && in)) return;
         }
@@ -212,7 +213,7 @@ void ThingCheck::checkInRoom(std::size_t element, bool in_wall, Diagnostics& fin
 }
 
 void ThingCheck::checkZone(std::size_t element, Diagnostics& findings) const {
-    const IndoorIndex& indoor = context_->indoor;
+    const RegionIndex& indoor = context_->indoor;
     const Polygon outline = zoneOutline(context_->element(element).record);
     bool in = false;
     for (const Point2 p : outline) in = in || indoor.locate(p) == Side::Inside;

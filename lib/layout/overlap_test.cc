@@ -9,7 +9,6 @@
 #include "env/body.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
-#include "layout/indoor_index.h"
 
 namespace ispace {
 namespace {
@@ -154,32 +153,6 @@ TEST(Overlap, OfRoundThingsAsLargeAsTowns) {
     EXPECT_NEAR(overlap->place.x, 4e5, 1);
     EXPECT_NEAR(overlap->place.y, 0, 1);
     EXPECT_NEAR(overlapOf(a, {{4e5, -1e6}, {4e5, 1e6}})->depth, 1e5, 1);
-}
-
-TEST(IndoorIndex, AnswersAsTheRegionDoes) {
-    const Region region{{{0, 0}, {8, 0}, {8, 4}, {4, 4}, {4, 8}, {0, 8}},
-                        {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
-    const IndoorIndex index({{region}});
-    std::mt19937_64 random(11);
-    // Half metres: through vertices and along edges.
-    std::uniform_int_distribution<int> half(-2, 18);
-    std::uniform_real_distribution<double> place(-1, 9);
-    for (int i = 0; i < 3000; ++i) {
-        const Point2 p = i % 2 == 0 ? Point2{0.5 * half(random), 0.5 * half(random)}
-                                    : Point2{place(random), place(random)};
-        EXPECT_EQ(index.locate(p), region.locate(p)) << p.x << ' ' << p.y;
-        EXPECT_EQ(index.isOut(p), region.locate(p) == Side::Outside) << p.x << ' ' << p.y;
-    }
-    EXPECT_FALSE(index.isOut({8 + 1e-9, 2})) << "it touches";
-    EXPECT_TRUE(index.isOut({8 + 1e-3, 2}));
-    EXPECT_FALSE(index.isOut({2.999999999, 2}));
-    EXPECT_TRUE(index.hasEdgeIn({{7, 1}, {9, 2}}));
-    EXPECT_FALSE(index.hasEdgeIn({{6, 1}, {7, 2}}));
-    EXPECT_EQ(IndoorIndex({}).locate({0, 0}), Side::Outside);
-    // Left of the origin as well.
-    const Region west{{{-9, 0}, {-8, 0}, {-8, 1}, {-9, 1}}, {}};
-    EXPECT_EQ(IndoorIndex({{west}}).locate({-8.5, 0.5}), Side::Inside);
-    EXPECT_EQ(IndoorIndex({{west}}).locate({-7.5, 0.5}), Side::Outside);
 }
 
 }  // namespace

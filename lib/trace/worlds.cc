@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "env/level.h"
+
 namespace ispace {
 
 namespace {
@@ -33,7 +35,7 @@ void Worlds::prepare(const Pose3& pose) {
     const double height = pose.position.z;
     if (slices_.contains(height)) return;
     if (slices_.size() >= kMaxSlices) return prepareMesh();
-    RayWorld slice = RayWorld::ofSlice(environment_->slice(height));
+    RayWorld slice = RayWorld::ofSlice(environment_->level(height)->slice());
     const std::unique_lock lock(mutex_);
     slices_.emplace(height, std::move(slice));
 }
