@@ -25,7 +25,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kMostThreads = 4096;
+constexpr int kMaxThreads = 4096;
 
 /// Cores this process may use: the affinity mask, or less if a batch system says so.
 int availableThreads() {
@@ -65,7 +65,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
     }
     line.flag("-q,--quiet", options.quiet, "say nothing but errors", Enters::Nothing);
     line.flag("-v,--verbose", options.verbose, "say more about the work", Enters::Nothing);
-    line.count("-j,--threads", "N", options.threads, 0, kMostThreads,
+    line.count("-j,--threads", "N", options.threads, 0, kMaxThreads,
                "worker threads, 0 for all cores; the result does not depend on it",
                Enters::Nothing);
     const auto take_seed = [&options](const std::string& text) {
@@ -162,13 +162,13 @@ void refuseTerminal(const std::string& output, const std::string& what) {
 namespace {
 
 CellCount readCount(const std::string& text) {
-    constexpr std::int64_t kMostASide = 10000;
+    constexpr std::int64_t kMaxASide = 10000;
     const auto comma = text.find(',');
     const auto p = parseInteger(text.substr(0, comma));
     const auto q = comma == std::string::npos ? p : parseInteger(text.substr(comma + 1));
-    if (!p || !q || *p < 1 || *q < 1 || *p > kMostASide || *q > kMostASide)
+    if (!p || !q || *p < 1 || *q < 1 || *p > kMaxASide || *q > kMaxASide)
         throw UsageError('`' + text + "` is not P or P,Q with whole numbers from 1 to " +
-                         std::to_string(kMostASide));
+                         std::to_string(kMaxASide));
     return {static_cast<int>(*p), static_cast<int>(*q)};
 }
 
@@ -211,8 +211,8 @@ std::uint64_t byteCount(const std::string& text) {
         throw UsageError('`' + text + "` is not a size like 500M or 2G");
     double bytes = *number;
     for (std::size_t i = 0; !unit.empty() && i <= power; ++i) bytes *= 1024;
-    constexpr double kMost = 1e15;
-    if (bytes > kMost) throw UsageError('`' + text + "` is more than any machine has");
+    constexpr double kMax = 1e15;
+    if (bytes > kMax) throw UsageError('`' + text + "` is more than any machine has");
     return static_cast<std::uint64_t>(bytes);
 }
 

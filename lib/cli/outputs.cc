@@ -142,7 +142,7 @@ struct Piece {
     std::size_t width = 0;
 };
 
-constexpr std::size_t kLongestName = 255;  // bytes
+constexpr std::size_t kMaxName = 255;  // bytes
 
 [[noreturn]] void refuse(const std::string& pattern, const std::string& piece) {
     throw UsageError("--output: `" + pattern + "`: `" + piece +
@@ -150,7 +150,7 @@ constexpr std::size_t kLongestName = 255;  // bytes
                      "percent sign");
 }
 
-std::vector<Piece> piecesOf(const std::string& pattern) {
+std::vector<Piece> patternParts(const std::string& pattern) {
     constexpr std::size_t kWidest = 9;
     std::vector<Piece> pieces(1);
     for (std::size_t i = 0; i < pattern.size(); ++i) {
@@ -258,7 +258,7 @@ void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames
         };
         if (suffix_.find('%') != std::string::npos)
             refuse_pattern("has % in its suffix; write the suffix of the format behind it");
-        const std::vector<Piece> pieces = piecesOf(pattern_);
+        const std::vector<Piece> pieces = patternParts(pattern_);
         if (several_frames && !has(pieces, Piece::Kind::Frame))
             refuse_pattern("gives all frames one name; write %04d where their number goes");
         if (ids.size() > 1 && !has(pieces, Piece::Kind::Id))
@@ -275,10 +275,10 @@ void OutputSet::prepare(const std::vector<std::string>& ids, bool several_frames
             if (!names.insert(file).second)
                 throw UsageError("--output: two files would have the name " + file);
             for (const fs::path& part : fs::path(file))
-                if (part.native().size() > kLongestName)
+                if (part.native().size() > kMaxName)
                     throw UsageError("--output: the name " + excerpt(part.native()) + " has " +
                                      std::to_string(part.native().size()) + " bytes, and file " +
-                                     "systems take " + std::to_string(kLongestName));
+                                     "systems take " + std::to_string(kMaxName));
             // Most names of a set are those of its first frame.
             claimOutput(file, "--output");
         }
@@ -301,7 +301,7 @@ std::string OutputSet::stem(const std::string& id, int frame) const {
         return (fs::path(folder_) / name).string();
     }
     std::string out;
-    for (const Piece& piece : piecesOf(pattern_)) {
+    for (const Piece& piece : patternParts(pattern_)) {
         if (piece.kind == Piece::Kind::Frame)
             out += padded(frame, piece.width);
         else

@@ -105,10 +105,10 @@ std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bo
 
 SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit)
     : shown_(std::move(shown)) {
-    constexpr double kLongest = 1e9;  // some thirty years, and no overflow
+    constexpr double kMaxLength = 1e9;  // some thirty years, and no overflow
     if (limit)
         end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(std::min(*limit, kLongest)));
+                                  std::chrono::duration<double>(std::min(*limit, kMaxLength)));
 }
 
 void SearchWatch::note(std::string_view text) {

@@ -40,11 +40,11 @@ void check(cairo_status_t status) {
 /// Cairo crashes in its rasteriser when memory runs out: what it may want has to be there before.
 /// It costs a microsecond or two.
 void mustHaveMemory() {
-    constexpr std::size_t kMost = std::size_t{8} << 20U;
-    void* const memory = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE,
+    constexpr std::size_t kMax = std::size_t{8} << 20U;
+    void* const memory = ::mmap(nullptr, kMax, PROT_READ | PROT_WRITE,
                                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    ::munmap(memory, kMost);
+    ::munmap(memory, kMax);
 }
 
 /// Sets the font, independent of what the machine's settings prefer.

@@ -21,10 +21,9 @@ std::uint32_t index(std::size_t size) { return static_cast<std::uint32_t>(size);
 
 Picture::Picture(double width, double height, PageUnit unit)
     : width_(width), height_(height), unit_(unit) {
-    if (!(width >= 1 && width <= kLongestSide && height >= 1 && height <= kLongestSide))
+    if (!(width >= 1 && width <= kMaxSide && height >= 1 && height <= kMaxSide))
         throw UsageError("a picture of " + formatFixed(width, 0) + " x " + formatFixed(height, 0) +
-                         " cannot be drawn, wanted 1 to " + formatFixed(kLongestSide, 0) +
-                         " each way");
+                         " cannot be drawn, wanted 1 to " + formatFixed(kMaxSide, 0) + " each way");
 }
 
 void Picture::describe(std::string title, std::string description) {

@@ -131,9 +131,9 @@ struct DisplayList {
 class Picture {
   public:
     /// Longest side of a page, in page units.
-    static constexpr double kLongestSide = 30000;
+    static constexpr double kMaxSide = 30000;
 
-    /// \throws UsageError unless both sides are in 1..kLongestSide
+    /// \throws UsageError unless both sides are in 1..kMaxSide
     Picture(double width, double height, PageUnit unit = PageUnit::Pixel);
 
     [[nodiscard]] double width() const { return width_; }

@@ -26,7 +26,7 @@ namespace {
 constexpr std::string_view kMagic = "2D-Map";
 constexpr double kCell = 0.05;      // edge of an obstacle made of points
 constexpr double kEchoReach = 0.1;  // points this near to a line are the line
-constexpr std::size_t kMostCubes = 100'000;
+constexpr std::size_t kMaxCubes = 100'000;
 
 /// Words between blanks; a word in quotes may have blanks.
 std::vector<std::string_view> wordsOf(std::string_view line) {
@@ -205,8 +205,8 @@ class AriaPlan {
     AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options, ImportRecords& out)
         : map_(std::move(map)),
           name_(name),
-          paths_(tidyLines(map_.lines, options.snap.value_or(kDefaultSnap))) {
-        std::vector<Segment2> lines = piecesOf(paths_);
+          paths_(normalisedLines(map_.lines, options.snap.value_or(kDefaultSnap))) {
+        std::vector<Segment2> lines = pathPieces(paths_);
         if (lines.empty())
             fail(map_.points.empty()
                      ? "a map without lines: nothing is a wall"
@@ -215,7 +215,7 @@ class AriaPlan {
         if (crossTooOften(lines)) fail("the lines cross each other too often to be walls");
         if (options.simplify.value_or(0) > 0) {
             paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify);
-            lines = piecesOf(paths_);
+            lines = pathPieces(paths_);
         }
         rooms_ = chooseRooms({lines, {}, map_.home}, options, out);
         if (rooms_.regions.empty()) return;
@@ -248,7 +248,7 @@ class AriaPlan {
     }
 
     void writePoints(ImportRecords& out) const {
-        const std::vector<Segment2> lines = piecesOf(paths_);
+        const std::vector<Segment2> lines = pathPieces(paths_);
         const NearSegments search(lines);
         std::vector<Point2> free;
         std::size_t echoes = 0, outside = 0;
@@ -263,9 +263,9 @@ class AriaPlan {
             if (!is_echo && !is_outside) free.push_back(p);
         }
         const std::vector<Cells> blocks = cellsOf(free);
-        if (blocks.size() > kMostCubes)
+        if (blocks.size() > kMaxCubes)
             fail("the points make " + std::to_string(blocks.size()) +
-                 " obstacles, wanted at most " + std::to_string(kMostCubes) +
+                 " obstacles, wanted at most " + std::to_string(kMaxCubes) +
                  ": import the map without them");
         for (const auto& [left, right, bottom, top] : blocks) {
             const auto length = static_cast<double>(right - left + 1) * kCell;

@@ -25,10 +25,10 @@ constexpr double kDefaultSimplify = 1;
 constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on each side
 
 /// Metres: beyond it numbers are no metres, or the map is no plan of a building.
-constexpr double kLargestExtent = 10000;
+constexpr double kMaxExtent = 10000;
 
 /// Of the bounding boxes of all rooms that are kept.
-constexpr double kMostCellsOfRooms = 1e9;
+constexpr double kMaxCellsOfRooms = 1e9;
 
 /// Metres; rooms beyond have a resolution that is hardly meant.
 constexpr double kSmallRoom = 2, kLargeRoom = 2000;
@@ -157,10 +157,10 @@ class CellMapImport {
             const CellPiece& box = pieces[room];
             cells += (box.highest.x - box.lowest.x + 1.0) * (box.highest.y - box.lowest.y + 1.0);
         }
-        if (rooms.size() > 1 && cells > kMostCellsOfRooms)
+        if (rooms.size() > 1 && cells > kMaxCellsOfRooms)
             fail(std::to_string(rooms.size()) + " rooms, whose boxes have " +
                  formatFixed(cells, 0) + " cells together, are more than " +
-                 formatFixed(kMostCellsOfRooms, 0) +
+                 formatFixed(kMaxCellsOfRooms, 0) +
                  "; choose some with --inside, or make the cells larger");
     }
 
@@ -341,10 +341,10 @@ CellPlace CellMap::placeOf(Point2 point) const {
 }
 
 void checkCellMap(int width, int height, double resolution, const std::string& file) {
-    if (resolution * std::max(width, height) <= kLargestExtent) return;
+    if (resolution * std::max(width, height) <= kMaxExtent) return;
     failFile(file, std::to_string(width) + " x " + std::to_string(height) + " cells of " +
-                       formatDouble(resolution) + " m are more than " +
-                       formatDouble(kLargestExtent) + " m: is `resolution` in metres?");
+                       formatDouble(resolution) + " m are more than " + formatDouble(kMaxExtent) +
+                       " m: is `resolution` in metres?");
 }
 
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,

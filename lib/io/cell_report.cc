@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-constexpr double kLeastOpening = 0.5;     ///< metres of the picture's border
+constexpr double kMinOpening = 0.5;       ///< metres of the picture's border
 constexpr double kWidestDoor = 1.2;       ///< metres
 constexpr double kShareBehindDoor = 0.1;  ///< of the floor, that is worth a warning
 
@@ -87,7 +87,7 @@ BehindDoor behindDoors(const CellMap& map, const MapRoom& room) {
 void warnOfOpenings(const CellMap& map, const MapRoom& room, ImportRecords& out) {
     std::vector<Opening> openings = openingsOf(map, room);
     std::erase_if(openings, [&map](const Opening& opening) {
-        return opening.length * map.resolution < kLeastOpening;
+        return opening.length * map.resolution < kMinOpening;
     });
     if (openings.empty()) return;
     const Opening widest =

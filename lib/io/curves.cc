@@ -13,10 +13,10 @@ namespace {
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
 /// Least and largest number of pieces in a full circle; the latter for 10 km.
-constexpr double kFewestPieces = 8, kMostPieces = 7200;
+constexpr double kMinPieces = 8, kMaxPieces = 7200;
 
-constexpr int kHighestDegree = 15;
-constexpr int kMostHalvings = 12;  // of a span between two knots
+constexpr int kMaxDegree = 15;
+constexpr int kMaxHalvings = 12;  // of a span between two knots
 
 /// Share of the radius by which a curve may be off its circle.
 constexpr double kArcShare = 0.01;
@@ -41,7 +41,7 @@ class SplineSpan {
         const auto degree = static_cast<std::size_t>(spline_.degree);
         const std::vector<double>& knots = spline_.knots;
         const std::size_t first = knot_ - degree;
-        std::array<std::array<double, 3>, kHighestDegree + 1> d{};
+        std::array<std::array<double, 3>, kMaxDegree + 1> d{};
         for (std::size_t j = 0; j <= degree; ++j) {
             const Point2 p = spline_.controls[first + j];
             const double weight = spline_.weights.empty() ? 1 : spline_.weights[first + j];
@@ -67,7 +67,7 @@ class SplineSpan {
         const bool straight = distance(middle, chord) <= kCurveSagitta / 2 &&
                               distance(point_at(0.25), chord) <= kCurveSagitta / 2 &&
                               distance(point_at(0.75), chord) <= kCurveSagitta / 2;
-        if (straight || halvings == kMostHalvings) {
+        if (straight || halvings == kMaxHalvings) {
             points.push_back(end);
             return;
         }
@@ -86,7 +86,7 @@ class SplineSpan {
 int arcPieces(double sweep, double radius) {
     const double share = std::min(1.0, kCurveSagitta / radius);
     const double per_turn =
-        std::clamp(std::numbers::pi / std::acos(1 - share), kFewestPieces, kMostPieces);
+        std::clamp(std::numbers::pi / std::acos(1 - share), kMinPieces, kMaxPieces);
     return std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / kFullTurn * per_turn - 1e-9)));
 }
 
@@ -104,16 +104,15 @@ void appendCubic(const CubicCurve& curve, Polygon& points) {
     };
     const double bend = 6 * std::max(second(0), second(1));
     const double wanted = std::sqrt(bend / (8 * kCurveSagitta));
-    const int count = static_cast<int>(std::ceil(std::clamp(wanted, 1.0, kMostPieces)));
+    const int count = static_cast<int>(std::ceil(std::clamp(wanted, 1.0, kMaxPieces)));
     for (int i = 1; i < count; ++i) points.push_back(pointOf(curve, double(i) / count));
     points.push_back(curve[3]);
 }
 
 std::string splineFault(const SplineCurve& spline) {
     const auto& [degree, knots, controls, weights] = spline;
-    if (degree < 1 || degree > kHighestDegree)
-        return "degree " + std::to_string(degree) + ", wanted 1 to " +
-               std::to_string(kHighestDegree);
+    if (degree < 1 || degree > kMaxDegree)
+        return "degree " + std::to_string(degree) + ", wanted 1 to " + std::to_string(kMaxDegree);
     const auto order = static_cast<std::size_t>(degree) + 1;
     if (controls.size() < order)
         return std::to_string(controls.size()) + " control points, wanted " +

@@ -28,7 +28,7 @@ constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
 using MissingBlocks = std::map<std::string, std::size_t>;
 
 /// Beyond these a bulge is a straight line, or a circle of which an end is missing.
-constexpr double kLeastBulge = 1e-9, kLargestBulge = 1e4;
+constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
@@ -154,7 +154,7 @@ class Expander {
         PlanChord chord{{frame * from.at, frame * to}, {}};
         const double bulge = from.bulge;
         const Vec2 along = to - from.at;
-        if (std::abs(bulge) > kLeastBulge && std::abs(bulge) < kLargestBulge && length(along) > 0) {
+        if (std::abs(bulge) > kMinBulge && std::abs(bulge) < kMaxBulge && length(along) > 0) {
             const double aside = (1 - bulge * bulge) / (4 * bulge);
             const Point2 center = from.at + 0.5 * along + aside * perpendicular(along);
             const Vec2 spoke = from.at - center;

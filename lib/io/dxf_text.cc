@@ -58,8 +58,8 @@ class GroupReader {
     const std::string& name_;
 };
 
-constexpr std::size_t kLongestName = 255;
-constexpr double kLargest = 1e12;  // of any number that counts: drawings end far below
+constexpr std::size_t kMaxName = 255;
+constexpr double kMaxNumber = 1e12;  // of any number that counts: drawings end far below
 
 /// A normal this near to the z axis is upright.
 constexpr double kUpright = 1e-6;
@@ -213,7 +213,7 @@ class DxfChecker {
 
     [[nodiscard]] double real(const Group& group) const {
         const auto value = parseDouble(group.value);
-        if (!value || std::abs(*value) > kLargest)
+        if (!value || std::abs(*value) > kMaxNumber)
             groups_.fail(group.line, "found " + excerpt(group.value) + ", wanted a number");
         return *value;
     }
@@ -230,10 +230,10 @@ class DxfChecker {
             !contains(kCommon, code))
             return;
         if (isText(code)) {
-            if (group.value.size() > kLongestName)
+            if (group.value.size() > kMaxName)
                 groups_.fail(group.line, "a name of " + std::to_string(group.value.size()) +
                                              " characters, wanted at most " +
-                                             std::to_string(kLongestName));
+                                             std::to_string(kMaxName));
             entity_.texts[code] = group.value;
         } else {
             entity_.numbers[code] = isInteger(code) ? integer(group) : real(group);

@@ -20,7 +20,7 @@ constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN" and a zero
 constexpr std::size_t kHeaderSize = 12;
 constexpr std::size_t kChunkHeaderSize = 8;
-constexpr std::size_t kMostBytes = 0x7fff0000;
+constexpr std::size_t kMaxBytes = 0x7fff0000;
 
 /// Little-endian. \pre four bytes from `at` on
 std::uint32_t word(std::string_view bytes, std::size_t at) {
@@ -76,7 +76,7 @@ std::string glbContainer(std::string_view json, std::span<const std::string_view
     const std::size_t json_size = padded(json.size()), binary_size = padded(size);
     const std::size_t length = kHeaderSize + 2 * kChunkHeaderSize + json_size + binary_size;
     // Checked before anything is copied: the parts may be large.
-    if (length > kMostBytes) failFile("", "the model is too large for a glTF file");
+    if (length > kMaxBytes) failFile("", "the model is too large for a glTF file");
     std::string out;
     out.reserve(length);
     out += kMagic;

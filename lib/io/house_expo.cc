@@ -207,15 +207,15 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
 };
 
 /// The rings as the options want them; what has no area is gone.
-std::vector<Polygon> tidied(const std::vector<Polygon>& rings, const ImportOptions& options) {
+std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportOptions& options) {
     std::vector<PlanPath> paths;
     paths.reserve(rings.size());
     for (const Polygon& ring : rings) paths.push_back({ring, true, 0});
-    std::vector<Polygon> tidy;
+    std::vector<Polygon> result;
     for (PlanPath& path : snapped(paths, options.snap.value_or(0)))
-        if (path.closed) tidy.push_back(std::move(path.points));
-    if (options.simplify.value_or(0) > 0) tidy = simplified(tidy, *options.simplify);
-    return tidy;
+        if (path.closed) result.push_back(std::move(path.points));
+    if (options.simplify.value_or(0) > 0) result = simplified(result, *options.simplify);
+    return result;
 }
 
 /// The region that is the room: of the faces within the outline and outside of the holes the
@@ -224,9 +224,9 @@ class RoomFinder {
   public:
     RoomFinder(const HousePlan& plan, const std::string& name, const ImportOptions& options)
         : name_(name),
-          outline_(tidied({plan.outline}, options)),
-          holes_(tidied(plan.holes, options)) {
-        if (outline_.empty() && !tidied({plan.outline}, {}).empty())
+          outline_(normalised({plan.outline}, options)),
+          holes_(normalised(plan.holes, options)) {
+        if (outline_.empty() && !normalised({plan.outline}, {}).empty())
             fail("`verts`: nothing is left of an outline of " +
                  countText(plan.outline.size(), "point") +
                  " after snapping and simplifying, wanted less of that (--snap, --simplify)");

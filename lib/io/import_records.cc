@@ -13,8 +13,6 @@ namespace ispace {
 
 namespace {
 
-Tuple tupleOf(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
-
 /// ASCII only, whatever the locale.
 bool isIdCharacter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
@@ -38,14 +36,14 @@ Record& ImportRecords::add(const char* keyword, int line) {
 }
 
 void ImportRecords::setPoint(Record& record, const char* key, Point2 point) {
-    record.set(key, tupleOf(point));
+    record.set(key, Tuple{wholeMicrometres(point.x), wholeMicrometres(point.y)});
 }
 
 void ImportRecords::fence(const PlanPath& path, const std::string& id) {
     Record& record = add("fence", path.line);
     if (!id.empty()) record.set("id", id);
     Polygon corners = path.points;
-    for (Point2& p : corners) p = {wholeMicrometres(p.x), wholeMicrometres(p.y)};
+    for (Point2& p : corners) p = wholeMicrometres(p);
     const bool crossing = path.closed && selfCrossing(corners);
     if (crossing) corners.push_back(corners.front());
     TupleList points;

@@ -18,8 +18,8 @@ namespace ispace {
 
 namespace {
 
-constexpr double kLargestExtent = 10000;  // metres
-constexpr double kOpeningReach = 1e-5;    // from its end to the wall it was put on
+constexpr double kMaxExtent = 10000;    // metres
+constexpr double kOpeningReach = 1e-5;  // from its end to the wall it was put on
 
 /// What openings are if the walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
@@ -30,8 +30,8 @@ class LinePlan {
     LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
              const ImportOptions& options, std::function<std::string(double)> unit_hint,
              ImportRecords& out)
-        : paths_(tidyLines(shapes.walls, options.snap.value_or(kDefaultSnap))),
-          pieces_(piecesOf(paths_)) {
+        : paths_(normalisedLines(shapes.walls, options.snap.value_or(kDefaultSnap))),
+          pieces_(pathPieces(paths_)) {
         check(name);
         PlanOpenings found = findOpenings(shapes.doors, shapes.windows, pieces_);
         if (options.simplify.value_or(0) > 0) {
@@ -70,12 +70,8 @@ class LinePlan {
 
   private:
     void check(const std::string& name) const {
-        Box2 box;
-        for (const Segment2& piece : pieces_) {
-            box.add(piece.a);
-            box.add(piece.b);
-        }
-        if (!pieces_.empty() && std::max(box.width(), box.depth()) > kLargestExtent)
+        const Box2 box = boundsOf(pieces_);
+        if (!pieces_.empty() && std::max(box.width(), box.depth()) > kMaxExtent)
             failFile(name,
                      "the plan is " + formatFixed(std::max(box.width(), box.depth()), 0) +
                          " m wide: is the unit right? Say another, for example with --units mm");
@@ -88,7 +84,7 @@ class LinePlan {
     /// Pieces on which openings lie, or to which they reach, stay.
     void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
         paths_ = joinedAtEnds(paths_);
-        pieces_ = piecesOf(paths_);
+        pieces_ = pathPieces(paths_);
         const NearSegments search(pieces_);
         std::vector<std::size_t> fixed;
         for (const PlanOpening& opening : openings)
@@ -96,7 +92,7 @@ class LinePlan {
                 for (const std::size_t i : search.near(end, kOpeningReach))
                     if (distance(end, pieces_[i]) <= kOpeningReach) fixed.push_back(i);
         paths_ = simplifiedPaths(paths_, tolerance, fixed);
-        pieces_ = piecesOf(paths_);
+        pieces_ = pathPieces(paths_);
     }
 
     /// Lines that close the gaps of openings, behind those of walls.

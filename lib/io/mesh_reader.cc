@@ -48,9 +48,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostNames = 1000;          // of side files
-constexpr std::size_t kLongestName = 4096;        // bytes
-constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
+constexpr std::size_t kMaxNames = 1000;       // of side files
+constexpr std::size_t kMaxName = 4096;        // bytes
+constexpr std::size_t kMaxMessage = 1 << 16;  // bytes
 /// A child that does nothing is waited for this many times its processor time.
 constexpr std::size_t kPatience = 5;
 
@@ -160,12 +160,12 @@ class Reading {
             std::memcpy(&size, head.data() + 1, sizeof size);
             switch (static_cast<MeshAnswer>(head[0])) {
                 case MeshAnswer::WantsFile:
-                    reply(text(size, kLongestName));
+                    reply(text(size, kMaxName));
                     break;
                 case MeshAnswer::Parts:
                     return parts(size);
                 case MeshAnswer::Error:
-                    failFile(path_, printable(text(size, kLongestMessage)));
+                    failFile(path_, printable(text(size, kMaxMessage)));
                 case MeshAnswer::OutOfMemory:
                     tooMuchMemory();
                 default:
@@ -235,8 +235,8 @@ class Reading {
     }
 
     void reply(const std::string& name) {
-        if (++names_ > kMostNames)
-            failFile(path_, "it names more than " + std::to_string(kMostNames) + " files");
+        if (++names_ > kMaxNames)
+            failFile(path_, "it names more than " + std::to_string(kMaxNames) + " files");
         if (name.empty() || name.find('\0') != std::string::npos) return send(nullptr);
         const auto file = openSideFile(path_, name, options_.side_files_anywhere);
         if (!file) return send(nullptr);

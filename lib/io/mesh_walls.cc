@@ -29,12 +29,6 @@ constexpr double kAboveStorey = 1.2;    // metres: over most sills, under most l
 constexpr double kStraight = 0.001;     // floats of a file wobble by less
 constexpr double kNarrowOpening = 0.1;  // what is less is a frame without a pane
 
-Box2 boxOf(const Polygon& polygon) {
-    Box2 box;
-    for (const Point2 p : polygon) box.add(p);
-    return box;
-}
-
 bool edgesMeet(const Polygon& a, const Polygon& b) {
     bool meet = false;
     forEachEdge(a, [&](const Segment2& s) {
@@ -52,7 +46,7 @@ class Joiner {
     }
 
     std::vector<Polygon> join() {
-        groupByContact();
+        groupTouching();
         std::map<std::size_t, std::vector<Polygon>> groups;
         for (std::size_t i = 0; i < solids_.size(); ++i)
             groups[rootOf(i)].push_back(std::move(solids_[i]));
@@ -73,9 +67,9 @@ class Joiner {
     }
 
     /// From left to right, so that only boxes that overlap in x are compared.
-    void groupByContact() {
+    void groupTouching() {
         std::vector<Box2> boxes;
-        for (const Polygon& solid : solids_) boxes.push_back(boxOf(solid));
+        for (const Polygon& solid : solids_) boxes.push_back(bounds(solid));
         std::vector<std::size_t> order(group_);
         std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
             return std::pair(boxes[a].low.x, a) < std::pair(boxes[b].low.x, b);
@@ -156,9 +150,21 @@ ImportOptions straightened(ImportOptions options) {
     return options;
 }
 
-std::string heightsText(double low, double high) {
-    return "from " + formatFixed(low, 2) + " m to " + formatFixed(high, 2) + " m";
-}
+/// Lowest and highest point of meshes.
+struct Heights {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+
+    void add(const Body& body) {
+        for (const Mesh& mesh : body.meshes)
+            for (const Point3& p : mesh.vertices) {
+                low = std::min(low, p.z);
+                high = std::max(high, p.z);
+            }
+    }
+    [[nodiscard]] std::string text() const {
+        return "from " + formatFixed(low, 2) + " m to " + formatFixed(high, 2) + " m";
+    }
+};
 
 Mesh meshOf(const TriangleMesh& triangles) {
     Mesh mesh;
@@ -239,25 +245,19 @@ class IfcReader {
                 lowest = std::min(lowest.value_or(*product.storey), *product.storey);
         if (lowest) return *lowest;
         out.note("no storey has walls: its foot is taken");
-        return limits().first;
+        return heights().low;
     }
 
-    [[nodiscard]] std::pair<double, double> limits() const {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const auto& [name, product] : products_)
-            for (const Mesh& mesh : product.body.meshes)
-                for (const Point3& p : mesh.vertices) {
-                    low = std::min(low, p.z);
-                    high = std::max(high, p.z);
-                }
-        return {low, high};
+    [[nodiscard]] Heights heights() const {
+        Heights heights;
+        for (const auto& [name, product] : products_) heights.add(product.body);
+        return heights;
     }
 
     [[nodiscard]] std::string nothingAt(double height) const {
         if (products_.empty()) return "no wall and no other product of IFC in the building";
-        const auto [low, high] = limits();
         return "nothing stands at " + formatFixed(height, 2) + " m: the building reaches " +
-               heightsText(low, high) + "; say another height with --slice-walls";
+               heights().text() + "; say another height with --slice-walls";
     }
 
     const std::string& operand_;
@@ -279,15 +279,10 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     const double height = slice.height;
     addShapes(std::move(slice), "cut", shapes);
     if (shapes.empty()) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const Mesh& part : body.meshes)
-            for (const Point3& p : part.vertices) {
-                low = std::min(low, p.z);
-                high = std::max(high, p.z);
-            }
+        Heights heights;
+        heights.add(body);
         failFile(operand, "nothing stands at " + formatFixed(height, 2) + " m: the mesh reaches " +
-                              heightsText(low, high) +
-                              "; are --slice-walls, --units and --up right?");
+                              heights.text() + "; are --slice-walls, --units and --up right?");
     }
     ImportOptions plan = straightened(options);
     plan.wall_layers.clear();  // a mesh has none

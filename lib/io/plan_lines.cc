@@ -17,11 +17,9 @@ namespace ispace {
 namespace {
 
 std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
-    std::vector<Box2> boxes(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        boxes[i].add(segments[i].a);
-        boxes[i].add(segments[i].b);
-    }
+    std::vector<Box2> boxes;
+    boxes.reserve(segments.size());
+    for (const Segment2& segment : segments) boxes.push_back(bounds(segment));
     return boxes;
 }
 
@@ -47,11 +45,7 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
 namespace {
 
 /// Points are whole micrometres: what reaches less far reaches nothing.
-constexpr double kLeastSnap = 1e-6;
-
-struct LexLess {
-    bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
-};
+constexpr double kMinSnap = 1e-6;
 
 /// Finds for each point the one that stands for all within a distance of it: the nearest earlier
 /// one in reach, else itself.
@@ -105,7 +99,7 @@ void dropRepeatedPoints(std::vector<PlanPath>& paths) {
 class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)
-        : pieces_(piecesOf(paths)), search_(pieces_), reach_(reach) {
+        : pieces_(pathPieces(paths)), search_(pieces_), reach_(reach) {
         for (const PlanPath& path : paths)
             for (const Point2 p : path.points) ++uses_[p];
     }
@@ -120,7 +114,7 @@ class EndMover {
             const Point2 foot = nearestPoint(piece, end);
             const double apart = distance(foot, end);
             if (apart > nearest) continue;
-            best = {wholeMicrometres(foot.x), wholeMicrometres(foot.y)};
+            best = wholeMicrometres(foot);
             nearest = apart;
         }
         return best;
@@ -214,13 +208,21 @@ double wholeMicrometres(double metres) {
     return whole == 0 ? 0 : whole;  // no minus zero
 }
 
+Box2 boundsOf(std::span<const Segment2> lines) {
+    Box2 box;
+    for (const Segment2& line : lines) {
+        box.add(line.a);
+        box.add(line.b);
+    }
+    return box;
+}
+
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
     std::vector<PlanPath> result(paths);
-    if (snap < kLeastSnap) snap = 0;
+    if (snap < kMinSnap) snap = 0;
     PointWelder welder(snap);
     for (PlanPath& path : result)
-        for (Point2& p : path.points)
-            p = welder.standing({wholeMicrometres(p.x), wholeMicrometres(p.y)});
+        for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));
     dropRepeatedPoints(result);
     if (snap > 0 && !result.empty()) {
         moveEnds(result, snap);
@@ -229,7 +231,7 @@ std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap) {
     return result;
 }
 
-std::vector<Segment2> piecesOf(const std::vector<PlanPath>& paths) {
+std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths) {
     std::vector<Segment2> pieces;
     for (const PlanPath& path : paths)
         for (std::size_t i = 0; i < path.pieceCount(); ++i) pieces.push_back(path.piece(i));
@@ -266,7 +268,7 @@ std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths,
 }
 
 std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths) {
-    std::vector<Segment2> pieces = piecesOf(paths);
+    std::vector<Segment2> pieces = pathPieces(paths);
     for (Segment2& piece : pieces)
         if (lexLess(piece.b, piece.a)) std::swap(piece.a, piece.b);
     std::vector<std::size_t> order(pieces.size());
@@ -290,25 +292,24 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
     for (const PlanPath& path : paths)
         for (const Point2 end : {path.points.front(), path.points.back()})
             if (!path.closed && uses[end] == 1) free.emplace(end, path.line);
-    const std::vector<Segment2> lines = piecesOf(paths);
+    const std::vector<Segment2> lines = pathPieces(paths);
     for (const Closing& closing : closings(lines, {}, reach)) {
         auto from = free.find(closing.line.a);
         if (from == free.end()) from = free.find(closing.line.b);
         if (from == free.end()) continue;
         const bool forward = from->first == closing.line.a;
         const Point2 to = forward ? closing.line.b : closing.line.a;
-        paths.push_back(
-            {{from->first, {wholeMicrometres(to.x), wholeMicrometres(to.y)}}, false, from->second});
+        paths.push_back({{from->first, wholeMicrometres(to)}, false, from->second});
         free.erase(from);
         free.erase(to);
     }
     return paths;
 }
 
-std::vector<PlanPath> tidyLines(const std::vector<PlanPath>& paths, double snap) {
-    std::vector<PlanPath> tidy = snapped(paths, std::min(snap, kDefaultSnap));
-    if (snap > kDefaultSnap && !tidy.empty()) tidy = bridged(std::move(tidy), snap);
-    return withoutRepeats(tidy);
+std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap) {
+    std::vector<PlanPath> lines = snapped(paths, std::min(snap, kDefaultSnap));
+    if (snap > kDefaultSnap && !lines.empty()) lines = bridged(std::move(lines), snap);
+    return withoutRepeats(lines);
 }
 
 std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geom/polygon.h"
+#include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {
@@ -43,6 +44,14 @@ constexpr double kDefaultSnap = 0.005;
 
 /// Metres on whole micrometres, which keeps the text short and moves nothing visibly.
 double wholeMicrometres(double metres);
+inline Point2 wholeMicrometres(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
+
+Box2 boundsOf(std::span<const Segment2> lines);
+
+/// Points by x, then y, in maps.
+struct LexLess {
+    bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
+};
 
 /// Puts points on whole micrometres and joins what was meant to meet: points within `snap` of an
 /// earlier one move onto it, then ends of open paths within `snap` of another path onto that.
@@ -56,12 +65,12 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
 
 /// Lines as people draw them, ready to be walls: points within 5 mm (or `snap`, if that is less)
 /// are one, loose ends are bridged within `snap`, and nothing is there twice.
-std::vector<PlanPath> tidyLines(const std::vector<PlanPath>& paths, double snap);
+std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap);
 
 /// All pieces of all paths, in order.
-std::vector<Segment2> piecesOf(const std::vector<PlanPath>& paths);
+std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths);
 
-/// The paths less the pieces whose `keep` is false, in the order of piecesOf: what is left of a
+/// The paths less the pieces whose `keep` is false, in the order of pathPieces: what is left of a
 /// path may be several.
 std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths, const std::vector<bool>& keep);
 
@@ -76,7 +85,7 @@ std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
 /// joints by Douglas and Peucker. Joints stay: ends of open paths, points that several paths share,
 /// both ends of a piece that another one meets, and those of the pieces in `fixed`. No path crosses
 /// another, or itself, that did not before, and none changes sides; a closed path keeps three
-/// corners. \param fixed indices of pieces as in piecesOf
+/// corners. \param fixed indices of pieces as in pathPieces
 std::vector<PlanPath> simplifiedPaths(const std::vector<PlanPath>& paths, double tolerance,
                                       std::span<const std::size_t> fixed = {});
 

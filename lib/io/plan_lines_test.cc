@@ -135,19 +135,19 @@ TEST(PlanLines, JoiningKeepsEveryPiece) {
                     {static_cast<double>(random() % 5), static_cast<double>(random() % 5)});
             paths.push_back({points, random() % 3 == 0, 0});
         }
-        const Paths tidy = withoutRepeats(snapped(paths, 0));
+        const Paths lines = withoutRepeats(snapped(paths, 0));
         const auto sorted = [](const Paths& all) {
             std::vector<std::pair<std::pair<double, double>, std::pair<double, double>>> pieces;
-            for (auto [a, b] : piecesOf(all)) {
+            for (auto [a, b] : pathPieces(all)) {
                 if (lexLess(b, a)) std::swap(a, b);
                 pieces.push_back({{a.x, a.y}, {b.x, b.y}});
             }
             std::sort(pieces.begin(), pieces.end());
             return pieces;
         };
-        const Paths joined = joinedAtEnds(tidy);
-        EXPECT_EQ(sorted(joined), sorted(tidy));
-        EXPECT_LE(joined.size(), tidy.size());
+        const Paths joined = joinedAtEnds(lines);
+        EXPECT_EQ(sorted(joined), sorted(lines));
+        EXPECT_LE(joined.size(), lines.size());
         for (const PlanPath& path : joined) EXPECT_GE(path.points.size(), path.closed ? 3U : 2U);
     }
 }
@@ -171,7 +171,7 @@ TEST(PlanLines, LooseEndsAreBridged) {
 TEST(PlanLines, WideSnappingLosesNoWalls) {
     // A thin wall drawn as a rectangle survives a snap that is wider than it is thick.
     const Paths wall{closed({{0, 0}, {3, 0}, {3, 0.1}, {0, 0.1}})};
-    EXPECT_EQ(tidyLines(wall, 0.3), wall);
+    EXPECT_EQ(normalisedLines(wall, 0.3), wall);
 }
 
 using Paths = std::vector<PlanPath>;
@@ -217,7 +217,7 @@ TEST(PlanSimplify, NewCrossingsDoNotArise) {
     std::mt19937_64 random(11);
     const auto unit = [&] { return static_cast<double>(random() % 10000) / 10000; };
     const auto crossings = [](const Paths& paths) {
-        const std::vector<Segment2> all = piecesOf(paths);
+        const std::vector<Segment2> all = pathPieces(paths);
         std::size_t count = 0;
         for (std::size_t i = 0; i < all.size(); ++i)
             for (std::size_t k = i + 1; k < all.size(); ++k)
@@ -238,7 +238,7 @@ TEST(PlanSimplify, NewCrossingsDoNotArise) {
         const double tolerance = 0.02 + 0.2 * unit();
         const Paths simple = simplifiedPaths(paths, tolerance);
         EXPECT_EQ(crossings(simple), 0U);
-        EXPECT_LT(piecesOf(simple).size(), piecesOf(paths).size());
+        EXPECT_LT(pathPieces(simple).size(), pathPieces(paths).size());
         for (std::size_t i = 0; i < paths.size(); ++i)
             for (const Point2 p : paths[i].points) {
                 double nearest = 1e9;

@@ -21,7 +21,7 @@ constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
 constexpr double kNarrowest = 0.4;  // metres; what is less is a frame or a jamb
 
 /// Each is compared with each other: more are no doors.
-constexpr std::size_t kMostOpenSwings = 4000;
+constexpr std::size_t kMaxOpenSwings = 4000;
 
 bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
 
@@ -47,8 +47,7 @@ class Walls {
             keep_nearest(corner, walls_[i].b);
             keep_nearest(foot, nearestPoint(walls_[i], p));
         }
-        if (!corner && foot)
-            foot->place = {wholeMicrometres(foot->place.x), wholeMicrometres(foot->place.y)};
+        if (!corner && foot) foot->place = wholeMicrometres(foot->place);
         return corner ? corner : foot;
     }
 
@@ -108,8 +107,7 @@ class Finder {
         if (distance(line.a, line.b) < kNarrowest) return std::nullopt;
         if (const auto wall = walls_.wallUnder(line)) {
             const auto foot = [&](Point2 p) {
-                const Point2 near = nearestPoint(walls_[*wall], p);
-                return Point2{wholeMicrometres(near.x), wholeMicrometres(near.y)};
+                return wholeMicrometres(nearestPoint(walls_[*wall], p));
             };
             return Candidate{{{foot(line.a), foot(line.b)}, wall, are_windows_, drawn_on}, 0};
         }
@@ -166,7 +164,7 @@ class Finder {
 
     /// Arcs that end in the air: two that meet there are a double door.
     void joinDoubleDoors() {
-        if (open_swings_.size() > kMostOpenSwings) {
+        if (open_swings_.size() > kMaxOpenSwings) {
             found_.unused += open_swings_.size();
             return;
         }

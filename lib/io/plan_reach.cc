@@ -31,7 +31,7 @@ constexpr double kTolerance = 0.01;
 constexpr double kSliver = 0.01;
 
 /// Outlines may move by this, in metres.
-constexpr double kTidy = 2e-5;
+constexpr double kSimplify = 2e-5;
 
 /// All points within the radius of the segment, arcs by chords.
 Polygon capsule(const Segment2& s, double radius) {
@@ -61,18 +61,18 @@ bool isSliver(const Region& region, double radius) {
 }
 
 /// With fewer corners, and without the many that lie upon each other where arcs were cut.
-Region tidied(const Region& region, double tolerance) {
+Region normalised(const Region& region, double tolerance) {
     std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
-    const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kTidy; };
+    const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
     for (Polygon& curve : curves) {
         curve.erase(std::unique(curve.begin(), curve.end(), are_one), curve.end());
         while (curve.size() > 1 && are_one(curve.front(), curve.back())) curve.pop_back();
     }
-    Region tidy;
-    tidy.outline = std::move(curves.front());
-    tidy.holes.assign(std::make_move_iterator(curves.begin() + 1),
-                      std::make_move_iterator(curves.end()));
-    return tidy;
+    Region result;
+    result.outline = std::move(curves.front());
+    result.holes.assign(std::make_move_iterator(curves.begin() + 1),
+                        std::make_move_iterator(curves.end()));
+    return result;
 }
 
 /// Where the disc's centre may be.
@@ -101,7 +101,7 @@ std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const 
     });
     if (home == pieces.end()) return {};
     // Its arcs need no more corners than the tolerance wants; the sweep makes up for that.
-    const Region centre = tidied(*home, kTolerance / 2 * radius);
+    const Region centre = normalised(*home, kTolerance / 2 * radius);
     const double sweep = (1 + kTolerance) * radius;
     std::vector<Polygon> swept;
     appendTriangles(centre, swept);
@@ -116,7 +116,7 @@ std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const 
             continue;
         }
         for (Region& piece : difference(room, unreached))
-            if (!isSliver(piece, radius)) reached.push_back(tidied(piece, kTidy));
+            if (!isSliver(piece, radius)) reached.push_back(normalised(piece, kSimplify));
     }
     return reached;
 }

@@ -55,7 +55,7 @@ class RegionLocator {
             box_.add(edge.a);
             box_.add(edge.b);
         }
-        levels_.resize(std::clamp<std::size_t>(edges_.size() / 4, 1, kMostLevels));
+        levels_.resize(std::clamp<std::size_t>(edges_.size() / 4, 1, kMaxLevels));
         for (std::size_t i = 0; i < edges_.size(); ++i) {
             const auto [low, high] = std::minmax(edges_[i].a.y, edges_[i].b.y);
             for (std::size_t k = levelOf(low); k <= levelOf(high); ++k) levels_[k].push_back(i);
@@ -75,7 +75,7 @@ class RegionLocator {
     }
 
   private:
-    static constexpr std::size_t kMostLevels = 512;
+    static constexpr std::size_t kMaxLevels = 512;
 
     [[nodiscard]] std::size_t levelOf(double y) const {
         const double share = (y - box_.low.y) / box_.depth();

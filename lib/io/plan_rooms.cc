@@ -24,7 +24,7 @@ constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
 
 /// Drawings with more lines or faces are not tried again and again: heaps of lines that cross take
 /// long enough once.
-constexpr std::size_t kMostLinesTried = 10'000, kMostFacesTried = 1'000;
+constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 
 /// A room of less than this share of the drawing's extent, or of what could be enclosed, is
 /// doubted.
@@ -35,32 +35,21 @@ constexpr double kNarrowestDoorway = 0.3;
 
 /// Where all rooms are kept: smaller ones are shafts, and smaller ones that stand within another
 /// room things.
-constexpr double kSmallestRoom = 1, kSmallestInnerRoom = 4;
+constexpr double kMinRoom = 1, kMinInnerRoom = 4;
 
 /// Metres: what is smaller or larger is in other units.
-constexpr double kSmallestPlan = 2, kLargestPlan = 2000;
+constexpr double kMinPlan = 2, kMaxPlan = 2000;
 
 /// Rooms that were left out are counted up to here.
-constexpr std::size_t kMostGroups = 500;
+constexpr std::size_t kMaxGroups = 500;
 
-constexpr std::size_t kMostPlaces = 6;  // that one message names
-
-Box2 boundsOf(std::span<const Segment2> lines) {
-    Box2 box;
-    for (const Segment2& line : lines) {
-        box.add(line.a);
-        box.add(line.b);
-    }
-    return box;
-}
+constexpr std::size_t kMaxPlaces = 6;  // that one message names
 
 double areaOf(const Box2& box) { return box.width() * box.depth(); }
 
 std::string sizeText(const Box2& box) {
     return formatFixed(box.width(), 1) + " x " + formatFixed(box.depth(), 1) + " m";
 }
-
-Point2 rounded(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
 
 class RoomChooser {
   public:
@@ -74,7 +63,7 @@ class RoomChooser {
     PlanRooms choose() {
         const Box2 box = boundsOf(plan_.lines);
         const double extent = std::max(box.width(), box.depth());
-        is_odd_ = !plan_.lines.empty() && (extent < kSmallestPlan || extent > kLargestPlan);
+        is_odd_ = !plan_.lines.empty() && (extent < kMinPlan || extent > kMaxPlan);
         if (is_odd_)
             out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
                       (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
@@ -133,7 +122,7 @@ class RoomChooser {
         std::vector<Point2> corners;
         if (width >= kNarrowestDoorway) corners = PlanFaces(lines_).wallCorners();
         for (const Closing& gap : closings(lines_, corners, width)) {
-            const Segment2 line{rounded(gap.line.a), rounded(gap.line.b)};
+            const Segment2 line{wholeMicrometres(gap.line.a), wholeMicrometres(gap.line.b)};
             if (line.a == line.b) continue;
             ways.lines.push_back(line);
             ways.widths.push_back(gap.width);
@@ -180,7 +169,7 @@ class RoomChooser {
     void takeAll(Attempt& attempt) const {
         const PlanFaces& faces = attempt.faces;
         for (const PlanFaces::Group& group : faces.groups()) {
-            if (group.area < kSmallestRoom || !isRoom(faces, group)) continue;
+            if (group.area < kMinRoom || !isRoom(faces, group)) continue;
             const Point2 corner = faces.faces()[group.faces.front()].outline.front();
             const bool is_inner = std::any_of(
                 attempt.groups.begin(), attempt.groups.end(), [&](const PlanFaces::Group* outer) {
@@ -189,7 +178,7 @@ class RoomChooser {
                         room.holes.begin(), room.holes.end(),
                         [&](const Polygon& hole) { return locate(hole, corner) != Side::Outside; });
                 });
-            if (!is_inner || group.area >= kSmallestInnerRoom) attempt.groups.push_back(&group);
+            if (!is_inner || group.area >= kMinInnerRoom) attempt.groups.push_back(&group);
         }
     }
 
@@ -264,7 +253,7 @@ class RoomChooser {
     }
 
     Attempt closed(Attempt open) {
-        if (lines_.size() > kMostLinesTried || open.faces.faces().size() > kMostFacesTried)
+        if (lines_.size() > kMaxLinesTried || open.faces.faces().size() > kMaxFacesTried)
             return open;
         if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
         if (!isDoubtful(open)) return open;
@@ -331,7 +320,7 @@ class RoomChooser {
         for (const PlanFaces::Group& group : taken.faces.groups()) {
             if (std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end())
                 continue;
-            if (++looked_at > kMostGroups) break;
+            if (++looked_at > kMaxGroups) break;
             if (!isRoom(taken.faces, group)) continue;
             if (largest_other == nullptr) largest_other = &group;
             others += group.area;
@@ -355,11 +344,11 @@ class RoomChooser {
                          [](const auto& a, const auto& b) { return a.first > b.first; });
         std::string text = "the walls do not close: closed " + countText(gaps.size(), "gap") +
                            " of up to " + formatDouble(width) + " m (";
-        for (std::size_t i = 0; i < std::min(gaps.size(), kMostPlaces); ++i)
+        for (std::size_t i = 0; i < std::min(gaps.size(), kMaxPlaces); ++i)
             text += (i == 0 ? "" : ", ") + formatFixed(gaps[i].first, 3) + " m at " +
                     placeText(gaps[i].second);
-        if (gaps.size() > kMostPlaces)
-            text += " and " + std::to_string(gaps.size() - kMostPlaces) + " more";
+        if (gaps.size() > kMaxPlaces)
+            text += " and " + std::to_string(gaps.size() - kMaxPlaces) + " more";
         return text + "); --close-gaps M sets the widest";
     }
 
@@ -388,7 +377,7 @@ void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportReco
     for (const Region& floor : rooms.reached) out.outline(floor);
     if (rooms.reached.empty())
         for (const Segment2& line : rooms.closing)
-            out.fence({{rounded(line.a), rounded(line.b)}, false, 0});
+            out.fence({{wholeMicrometres(line.a), wholeMicrometres(line.b)}, false, 0});
     if (!rooms.writes_inside) return;
     for (const Point2 p : options.inside) out.inside(p);
     if (!options.inside.empty()) return;

@@ -13,14 +13,10 @@ namespace ispace {
 namespace {
 
 /// Runs are cut after so many pieces: the method takes the square of their number at worst.
-constexpr std::size_t kLongestRun = 500;
+constexpr std::size_t kMaxRun = 500;
 
 /// Lines this near to each other may become one when the plan is compiled.
 constexpr double kTouching = 2 * kWeldDistance;
-
-struct LexLess {
-    bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
-};
 
 bool touch(const Segment2& s, const Segment2& t) {
     return intersects(s, t) || distance(s.a, t) <= kTouching || distance(s.b, t) <= kTouching ||
@@ -31,18 +27,11 @@ bool shareEnd(const Segment2& s, const Segment2& t) {
     return s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b;
 }
 
-Box2 boxOf(const Segment2& s) {
-    Box2 box;
-    box.add(s.a);
-    box.add(s.b);
-    return box;
-}
-
 class Simplifier {
   public:
     Simplifier(const std::vector<PlanPath>& paths, double tolerance,
                std::span<const std::size_t> fixed)
-        : paths_(paths), tolerance_(tolerance), pieces_(piecesOf(paths)), search_(pieces_) {
+        : paths_(paths), tolerance_(tolerance), pieces_(pathPieces(paths)), search_(pieces_) {
         for (const PlanPath& path : paths) {
             for (const Point2 p : path.points) ++uses_[p];
             if (path.closed) continue;
@@ -51,7 +40,7 @@ class Simplifier {
         }
         for (const std::size_t i : fixed) fix(i);
         for (std::size_t i = 0; i < pieces_.size(); ++i)
-            for (const std::size_t k : search_.near(boxOf(pieces_[i]), kTouching))
+            for (const std::size_t k : search_.near(bounds(pieces_[i]), kTouching))
                 if (k > i && !shareEnd(pieces_[i], pieces_[k]) && touch(pieces_[i], pieces_[k])) {
                     fix(i);
                     fix(k);
@@ -81,7 +70,7 @@ class Simplifier {
         const std::size_t count = path.pieceCount();
         std::vector<std::size_t> stops{0};
         for (std::size_t i = 1; i < count; ++i)
-            if (isJoint(point(i)) || i - stops.back() == kLongestRun) stops.push_back(i);
+            if (isJoint(point(i)) || i - stops.back() == kMaxRun) stops.push_back(i);
         if (path.closed && stops.size() == 1) stops.push_back(farthestFromStart());
         stops.push_back(count);
 

@@ -53,7 +53,7 @@ bool isOneOf(const List& names, std::string_view name) {
 }
 
 /// Of the page; what is larger is no background but a drawing with a bad page.
-constexpr double kLargestBackground = 1.1;
+constexpr double kMaxBackground = 1.1;
 
 double metresOf(const std::string& unit) {
     for (const LengthUnit& known : kLengthUnits)
@@ -261,8 +261,7 @@ class SvgReader {
     [[nodiscard]] bool isBackground(pugi::xml_node node, const Affine& frame,
                                     const SvgStyle& style) const {
         const auto covers = [](std::string_view text, double value, double page) {
-            return text == "100%" ||
-                   (value >= page * (1 - 1e-9) && value <= page * kLargestBackground);
+            return text == "100%" || (value >= page * (1 - 1e-9) && value <= page * kMaxBackground);
         };
         const auto size = [node](const char* key) {
             const std::string_view text = trimmed(node.attribute(key).value());

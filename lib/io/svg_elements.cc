@@ -26,7 +26,7 @@ double radius(pugi::xml_node node, const char* key) {
 }
 
 /// Rules of drawings are short; files may try to make each look-up a long one.
-constexpr std::size_t kLongestRule = 4096;
+constexpr std::size_t kMaxRule = 4096;
 
 /// The value of a property in `a: b; c: d`, or ""; the last one counts.
 std::string_view declared(std::string_view rest, std::string_view key) {
@@ -68,7 +68,7 @@ void SvgSheet::add(std::string_view css) {
             const std::string_view part = selectors.substr(0, selectors.find(','));
             selectors.remove_prefix(std::min(part.size() + 1, selectors.size()));
             std::string& rule = rules_[std::string(trimmed(part))];
-            if (rule.size() + body.size() < kLongestRule) (rule += body) += ';';
+            if (rule.size() + body.size() < kMaxRule) (rule += body) += ';';
         }
     }
 }

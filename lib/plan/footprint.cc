@@ -24,7 +24,7 @@ namespace {
 constexpr double kUnseen = 1e-6;
 
 /// Triangles that are united exactly, which takes some milliseconds.
-constexpr std::size_t kMostExact = 200;
+constexpr std::size_t kMaxExact = 200;
 /// Cells along the longer side of a larger mesh.
 constexpr int kCells = 500;
 
@@ -96,7 +96,7 @@ std::vector<Polygon> rasterOutline(const std::vector<Polygon>& triangles) {
 
 std::vector<Polygon> silhouette(const Mesh& mesh) {
     std::vector<Polygon> triangles = trianglesAbove(mesh);
-    if (triangles.size() > kMostExact) return rasterOutline(triangles);
+    if (triangles.size() > kMaxExact) return rasterOutline(triangles);
     std::erase_if(triangles,
                   [](const Polygon& t) { return orientation(t[0], t[1], t[2]) == Turn::Straight; });
     return curvesOf(unite(triangles));

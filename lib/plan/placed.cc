@@ -179,8 +179,8 @@ void PlanDrawing::drawZoneName(const Element& element, std::size_t index) {
 }
 
 void PlanDrawing::drawPlacedNames() {
-    constexpr std::size_t kMostNames = 500;  // more are no use on one page
-    if (scene_.placed.size() > kMostNames) return;
+    constexpr std::size_t kMaxNames = 500;  // more are no use on one page
+    if (scene_.placed.size() > kMaxNames) return;
     const Box2 page{{0, 0}, {picture_.width(), picture_.height()}};
     LabelPlacer places(page, style_.em);
     for (const Placed& placed : scene_.placed) {

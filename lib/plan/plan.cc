@@ -15,12 +15,12 @@ namespace {
 
 using namespace palette;
 
-constexpr int kLeastWidth = 200, kMostWidth = 12000;
+constexpr int kMinWidth = 200, kMaxWidth = 12000;
 
 /// Around the plan, in sizes of text: coordinates on the left and below, then the bar of scale.
 constexpr double kLeft = 3.4, kRight = 1.6, kBottom = 4.6, kTop = 1.4, kTitle = 2.4;
 /// A mere strip of a room still gets room for marks and names.
-constexpr double kLeastHeight = 5;
+constexpr double kMinHeight = 5;
 /// Most height of a picture's plan, of its width.
 constexpr double kTall = 1.4;
 
@@ -37,7 +37,7 @@ struct Page {
 Page layOut(const Box2& box, double em, double scale, bool with_title, double least_width) {
     const double plan_width = scale * box.width(), plan_height = scale * box.depth();
     const double inner = std::max(plan_width, least_width - (kLeft + kRight) * em);
-    const double inner_height = std::max(plan_height, kLeastHeight * em);
+    const double inner_height = std::max(plan_height, kMinHeight * em);
     const double top = (with_title ? kTitle : 0) * em + kTop * em;
     Page page{inner + (kLeft + kRight) * em, std::ceil(top + inner_height + kBottom * em), {}};
     page.style.em = em;
@@ -50,10 +50,10 @@ Page layOut(const Box2& box, double em, double scale, bool with_title, double le
 }
 
 Page layOutScreen(const Box2& box, const PlanOptions& options) {
-    if (options.width < kLeastWidth || options.width > kMostWidth)
+    if (options.width < kMinWidth || options.width > kMaxWidth)
         throw UsageError("a plan " + std::to_string(options.width) +
-                         " pixels wide cannot be drawn, wanted " + std::to_string(kLeastWidth) +
-                         " to " + std::to_string(kMostWidth));
+                         " pixels wide cannot be drawn, wanted " + std::to_string(kMinWidth) +
+                         " to " + std::to_string(kMaxWidth));
     const double em = std::max(9.0, options.width / 1200.0 * 15);
     const double inner = options.width - (kLeft + kRight) * em;
     const double scale = std::min(inner / box.width(), kTall * options.width / box.depth());

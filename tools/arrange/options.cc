@@ -15,8 +15,8 @@ namespace ispace {
 namespace {
 
 /// As many as a room may ask for, and no slip of a digit.
-constexpr int kMostHeadings = 3600;
-constexpr double kLongest = 1e6;  // metres
+constexpr int kMaxHeadings = 3600;
+constexpr double kMaxLength = 1e6;  // metres
 
 /// Numbers of a unit, parted by commas.
 Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t least,
@@ -38,8 +38,9 @@ CandidateDensity readDensity(const std::string& text) {
     const auto last = text.rfind(',');
     if (std::count(text.begin(), text.end(), ',') != 2) throw UsageError(wanted);
     const auto headings = parseInteger(text.substr(last + 1));
-    if (!headings || *headings < 1 || *headings > kMostHeadings) throw UsageError(wanted);
-    const Tuple steps = numbers("steps", text.substr(0, last), Unit::Length, 2, 2, 0.001, kLongest);
+    if (!headings || *headings < 1 || *headings > kMaxHeadings) throw UsageError(wanted);
+    const Tuple steps =
+        numbers("steps", text.substr(0, last), Unit::Length, 2, 2, 0.001, kMaxLength);
     return {steps[0], steps[1], static_cast<int>(*headings)};
 }
 
@@ -137,7 +138,7 @@ void ArrangeCommand::addPlaceOptions() {
     for (const StrategyRow& row : strategies())
         for (const StrategyOption& option : row.options) addStrategyOption(row, option);
     line_.count(
-        "--deg", "N", how.headings, 1, kMostHeadings,
+        "--deg", "N", how.headings, 1, kMaxHeadings,
         "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
         "(default 8 of grid and random, else those of --candidates; of wall the normals alone)",
         Enters::History);
@@ -194,8 +195,8 @@ void ArrangeCommand::addGoalOptions() {
                 Enters::History);
     line_.texts("--weight", "ZONE=W", options_.zones.weights,
                 "floor there counts W times (elsewhere once)", Enters::History);
-    constexpr int kMostTimes = 100;
-    line_.count("--redundancy", "K", how.redundancy, 1, kMostTimes,
+    constexpr int kMaxTimes = 100;
+    line_.count("--redundancy", "K", how.redundancy, 1, kMaxTimes,
                 "floor counts if K sensors see it", Enters::History);
     line_.flag("--connected", how.is_connected,
                "views must hang together: each shares a cell with another, and so all of them",
@@ -224,14 +225,14 @@ void ArrangeCommand::addSearchOptions() {
                  "one after another (greedy), with moves from many starts (swap), or to the proven "
                  "best (exact); default swap, greedy with grid, random and wall",
                  Enters::History);
-    constexpr int kMostStarts = 100000;
-    line_.count("--starts", "N", how.search.swap.starts, 0, kMostStarts, "random starts of swap",
+    constexpr int kMaxStarts = 100000;
+    line_.count("--starts", "N", how.search.swap.starts, 0, kMaxStarts, "random starts of swap",
                 Enters::History);
     line_.parsed(
         "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readGap(text); },
         "end once value and bound are this near, e.g. 1%", Enters::History);
-    constexpr double kLongestWait = 1e9;
-    line_.duration("--time-limit", options_.time_limit, 0, kLongestWait,
+    constexpr double kMaxWait = 1e9;
+    line_.duration("--time-limit", options_.time_limit, 0, kMaxWait,
                    "end with the best so far after this time (500ms, 2s, 1min), marked complete=no",
                    Enters::History);
     line_.flag("--refine", how.refine,

@@ -88,14 +88,14 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
 }
 
 std::string idleText(const Arrangement& arrangement) {
-    constexpr std::size_t kMostNamed = 10;
+    constexpr std::size_t kMaxNamed = 10;
     const std::vector<std::string>& idle = arrangement.idle;
     if (idle.empty()) return "";
     std::string text;
-    for (std::size_t i = 0; i < std::min(idle.size(), kMostNamed); ++i)
+    for (std::size_t i = 0; i < std::min(idle.size(), kMaxNamed); ++i)
         text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
-    if (idle.size() > kMostNamed)
-        text += " and " + std::to_string(idle.size() - kMostNamed) + " more";
+    if (idle.size() > kMaxNamed)
+        text += " and " + std::to_string(idle.size() - kMaxNamed) + " more";
     return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
 }
 

@@ -111,11 +111,11 @@ class OneCloud final : public Delivery {
   private:
     const ScanToolOptions& options_;
     static void checkPoints(std::size_t points) {
-        constexpr std::size_t kMost = 100'000'000;
-        if (points > kMost)
+        constexpr std::size_t kMax = 100'000'000;
+        if (points > kMax)
             throw FormatError({"", 0, 0,
                                "a cloud of " + std::to_string(points) + " points, wanted at most " +
-                                   std::to_string(kMost) +
+                                   std::to_string(kMax) +
                                    " in one file; name a folder (-o DIR/) for a file each reading, "
                                    "or take fewer"});
     }

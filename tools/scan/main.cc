@@ -61,12 +61,12 @@ class PoseDoubts {
 };
 
 void warn(const ScanToolOptions& options, const std::vector<std::string>& warnings) {
-    constexpr std::size_t kMost = 20;
+    constexpr std::size_t kMax = 20;
     if (options.common.quiet) return;
-    for (std::size_t i = 0; i < std::min(kMost, warnings.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMax, warnings.size()); ++i)
         std::cerr << "scan: warning: " << warnings[i] << '\n';
-    if (warnings.size() > kMost)
-        std::cerr << "scan: warning: and " << warnings.size() - kMost << " more\n";
+    if (warnings.size() > kMax)
+        std::cerr << "scan: warning: and " << warnings.size() - kMax << " more\n";
 }
 
 std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors) {

@@ -45,8 +45,8 @@ void ScanCommand::declare() {
                  Enters::History);
     line_.texts("--select", "GLOB", o.select, "read only sensors whose ids match (* ? [a-z])",
                 Enters::History);
-    constexpr int kMostFrames = 1'000'000'000;
-    line_.count("--frames", "N", o.frames, 1, kMostFrames,
+    constexpr int kMaxFrames = 1'000'000'000;
+    line_.count("--frames", "N", o.frames, 1, kMaxFrames,
                 "readings of each sensor, at its rate (default 1); of --motion the most it takes",
                 Enters::History);
     line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
@@ -65,10 +65,10 @@ void ScanCommand::declare() {
                  "frame of the points in csv, pcd and ply (default world)", Enters::History);
     line_.choice("--encoding", encoding_, {"binary", "ascii"}, "of pcd and ply (default binary)",
                  Enters::History);
-    constexpr double kMostScale = 1e6;
+    constexpr double kMaxScale = 1e6;
     line_.parsed(
         "--depth-scale", "N",
-        [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMostScale); },
+        [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMaxScale); },
         "depth png: units a metre (default 1000: millimetres)", Enters::History);
     line_.switchFlag("--color", "--no-color", color_,
                      "depth png: also NAME-color.png for people (default on)", Enters::History);

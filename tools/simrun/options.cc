@@ -63,7 +63,7 @@ void SimrunCommand::declareRun() {
 
 void SimrunCommand::declareServer() {
     SimrunOptions& o = options_;
-    constexpr int kMostClients = 100'000;
+    constexpr int kMaxClients = 100'000;
     line_.parsed(
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0: one the system gives (default 127.0.0.1:0)",
@@ -74,9 +74,9 @@ void SimrunCommand::declareServer() {
         "--max-clients", "N",
         [&o](const std::string& text) {
             const auto count = parseInteger(text);
-            if (!count || *count < 1 || *count > kMostClients)
+            if (!count || *count < 1 || *count > kMaxClients)
                 throw UsageError(excerpt(text) + " is not a whole number from 1 to " +
-                                 std::to_string(kMostClients));
+                                 std::to_string(kMaxClients));
             o.limits.clients = static_cast<std::size_t>(*count);
         },
         "clients served at once; more are refused (default 256)", Enters::Nothing);

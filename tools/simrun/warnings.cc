@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kMostCollisions = 100;
+constexpr int kMaxCollisions = 100;
 constexpr const char* kWarning = "simrun: warning: ";
 
 void say(const World& world, const Collision& collision) {
@@ -27,9 +27,9 @@ void say(const World& world, const Collision& collision) {
 void CollisionLog::tell() {
     if (quiet_) return;
     for (const Collision& collision : world_->collisions()) {
-        if (count_ == kMostCollisions) return;
+        if (count_ == kMaxCollisions) return;
         say(*world_, collision);
-        if (++count_ == kMostCollisions) std::cerr << kWarning << "no more of these are told\n";
+        if (++count_ == kMaxCollisions) std::cerr << kWarning << "no more of these are told\n";
     }
 }
 

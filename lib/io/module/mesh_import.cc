@@ -44,13 +44,13 @@ namespace {
 using Vertex = std::array<float, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr std::size_t kLongestWords = 1000;
+constexpr std::size_t kMaxWords = 1000;
 
 [[noreturn]] void fail(const std::string& message) { throw std::runtime_error(message); }
 
 /// What assimp says, without the name of the file, which every message has, and the full stop.
 std::string assimpsWords(std::string words, const std::string& path) {
-    words = words.substr(0, kLongestWords);
+    words = words.substr(0, kMaxWords);
     for (const std::string& part : {" of file \"" + path + '"', " for " + path})
         if (const std::size_t at = words.find(part); at != std::string::npos)
             words.erase(at, part.size());

@@ -74,5 +74,5 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         tell(MeshAnswer::Error, error.what());
     }
-    ::_exit(0);  // nothing is left to be tidied up, which takes time
+    ::_exit(0);  // without destructors, which would only take time
 }
