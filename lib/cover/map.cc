@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "cover/map_parts.h"
-#include "draw/axis.h"
+#include "draw/picture.h"
 
 namespace ispace {
 

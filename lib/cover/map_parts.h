@@ -10,7 +10,7 @@
 
 #include "cover/coverage.h"
 #include "cover/map.h"
-#include "draw/palette.h"
+#include "draw/color.h"
 #include "draw/picture.h"
 #include "plan/drawing.h"
 

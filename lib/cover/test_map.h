@@ -10,7 +10,7 @@
 
 #include "cover/map_parts.h"
 #include "cover/test_scenes.h"
-#include "draw/image.h"
+#include "draw/picture.h"
 
 namespace ispace {
 

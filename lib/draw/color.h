@@ -53,4 +53,44 @@ Color turboColor(double share);
 /// so that it reads in grey as well; the first is well below white.
 Color sequentialColor(int level, int levels);
 
+/// Colours of all pictures but those of data and materials. Floor that is not seen is the lightest,
+/// so that what is seen stands out in grey as well.
+namespace palette {
+constexpr Color kInk = Color::rgb(0x1F2328);
+constexpr Color kFaintInk = Color::rgb(0x57606A);
+constexpr Color kWhite = Color::rgb(0xFFFFFF);
+constexpr Color kGrid = Color::rgb(0x7A8794);
+
+constexpr Color kFloor = Color::rgb(0xFBF5E9);
+constexpr Color kOutside = Color::rgb(0xE4E4E4);
+constexpr Color kOutsideHatch = Color::rgb(0xB4B4B4);
+constexpr Color kWall = Color::rgb(0x24292F);
+constexpr Color kLowWall = Color::rgb(0xB9BDC1);
+constexpr Color kGlass = Color::rgb(0x2F7EA8);
+constexpr Color kDoor = Color::rgb(0x7A5230);
+
+constexpr Color kSensor = Color::rgb(0xB3261E);
+constexpr Color kRobot = Color::rgb(0x8E2C2C);
+constexpr Color kPerson = Color::rgb(0x33507A);
+constexpr Color kMat = Color::rgb(0x2F6B45);
+
+// Below an overlay, which has the colours.
+constexpr Color kOpening = Color::rgb(0xA39B90);
+constexpr Color kSolid = Color::rgb(0x7D746B);
+constexpr Color kSolidEdge = Color::rgb(0x4A443E);
+constexpr Color kObject = Color::rgb(0xE2D9CD);
+constexpr Color kObjectEdge = Color::rgb(0x9A9085);
+constexpr Color kZone = Color::rgb(0x6E3A8E);
+
+/// Floor that several sensors see, where colours tell which one does: below the stripes.
+constexpr Color kShared = Color::rgb(0xD4D4D4);
+constexpr Color kSharedHatch = Color::rgb(0x6B6B6B);
+/// Of comparisons: blue and orange, far apart for any colour vision; in grey the hatch tells.
+constexpr Color kBoth = Color::rgb(0xC3CDD8);
+constexpr Color kGained = Color::rgb(0x4A96C9);
+constexpr Color kLost = Color::rgb(0xF3B562);
+constexpr Color kLostHatch = Color::rgb(0x9C4A00);
+constexpr Color kOtherSensor = Color::rgb(0x6E7781);
+}  // namespace palette
+
 }  // namespace ispace

@@ -2,9 +2,11 @@
 // lib/draw: one retained picture with PNG, SVG and PDF behind it. Uses geom; Cairo inside.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,11 +15,44 @@
 #include <vector>
 
 #include "draw/color.h"
-#include "draw/image.h"
-#include "draw/text.h"
 #include "geom/polygon.h"
 
 namespace ispace {
+
+enum class Align { Left, Center, Right };
+
+/// How a line of text is set; sizes are in page units, whatever the view.
+struct TextStyle {
+    double size = 12;  ///< of the font: about 1.2 times a capital's height plus its descent
+    bool bold = false;
+    Align align = Align::Left;
+    Color color;
+    std::optional<Color> halo = {};  ///< a rim of this colour keeps text readable on lines
+};
+
+/// Length of the text as Picture::text sets it, in page units. Control characters and bad UTF-8
+/// show as '?', here and in all text.
+double textWidth(std::string_view text, const TextStyle& style);
+
+/// The text, or its beginning and an ellipsis if it is longer than `width` page units.
+std::string fitText(std::string_view text, double width, const TextStyle& style);
+
+/// The pixels of a picture, opaque, from the upper left corner row by row.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::uint32_t> pixels;  ///< 0xRRGGBB
+
+    /// \pre the place lies in the picture
+    [[nodiscard]] std::uint32_t at(int x, int y) const {
+        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+};
+
+/// Reads a PNG back, e.g. to look at what was drawn; transparency counts as black.
+/// \throws FormatError if the bytes are no whole PNG
+Image decodePng(std::string_view bytes);
+std::string encodePng(const Image& image);
 
 enum class PictureFormat { Png, Svg, Pdf };
 
@@ -214,5 +249,13 @@ std::string writeSvg(const Picture& picture);
 std::vector<Segment2> hatchLines(const Hatch& hatch, const Box2& box);
 /// What shows of the curves first..last: their bounds within the page.
 Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape);
+
+/// 1, 2 or 5 times a power of ten, at least `least`. \pre least > 0
+double roundStep(double least);
+
+/// A bar of round length in black and white pieces, at most `most` page units long, with its length
+/// and what else is to be said; `corner` is its lower left end on the page, `em` the size of text.
+void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,
+                  const std::string& more = "");
 
 }  // namespace ispace

@@ -9,7 +9,6 @@
 #include <cstdint>
 
 #include "base/error.h"
-#include "draw/image.h"
 
 namespace ispace {
 namespace {

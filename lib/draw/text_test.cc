@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "draw/text.h"
+#include "draw/picture.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include "base/number.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
-#include "raster/occupancy.h"
 #include "raster/picture.h"
 #include "record/text.h"
 

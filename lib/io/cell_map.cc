@@ -12,7 +12,6 @@
 #include "geom/box.h"
 #include "raster/cleaning.h"
 #include "raster/contour.h"
-#include "raster/distance.h"
 #include "raster/morphology.h"
 #include "raster/rooms.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/number.h"
 #include "env/info.h"
-#include "raster/distance.h"
+#include "raster/morphology.h"
 #include "raster/rooms.h"
 
 namespace ispace {

@@ -15,7 +15,6 @@
 #include "env/level.h"
 #include "geom/boolean.h"
 #include "plan/elements.h"
-#include "plan/footprint.h"
 
 namespace ispace {
 

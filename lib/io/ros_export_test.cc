@@ -16,7 +16,6 @@
 #include "geom/predicates.h"
 #include "io/importers.h"
 #include "layout/test_layout.h"
-#include "raster/occupancy.h"
 #include "raster/picture.h"
 
 namespace ispace {

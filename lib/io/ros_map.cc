@@ -20,7 +20,6 @@
 #include "geom/pose.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
-#include "raster/occupancy.h"
 #include "raster/picture.h"
 
 namespace ispace {

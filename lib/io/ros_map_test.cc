@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
-#include "raster/occupancy.h"
+#include "raster/picture.h"
 #include "raster/test_png.h"
 #include "record/text.h"
 

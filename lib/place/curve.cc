@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "draw/axis.h"
-#include "draw/palette.h"
+#include "draw/color.h"
 #include "draw/picture.h"
 
 namespace ispace {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "draw/color.h"
-#include "draw/image.h"
+#include "draw/picture.h"
 
 namespace ispace {
 namespace {

@@ -3,9 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <utility>
 
 #include "env/openings.h"
 #include "env/walls.h"
+#include "geom/boolean.h"
+#include "geom/box.h"
+#include "geom/predicates.h"
+#include "raster/contour.h"
+#include "raster/grid.h"
 
 namespace ispace {
 
@@ -71,6 +81,176 @@ std::vector<Polygon> inscribedSolids(const Slice& slice) {
     std::vector<Polygon> solids = slice.solids;
     for (const Slice::Round& round : slice.rounds) solids[round.solid] = inscribedIn(round.curve);
     return solids;
+}
+
+namespace {
+
+/// Turned corners of bodies are round-off apart where they are meant to be the same; nobody sees
+/// a micrometre of what lies below a board.
+constexpr double kUnseen = 1e-6;
+
+/// Triangles that are united exactly, which takes some milliseconds.
+constexpr std::size_t kMaxExact = 200;
+/// Cells along the longer side of a larger mesh.
+constexpr int kCells = 500;
+
+/// True if the polygon is convex and p lies in it or at most kUnseen outside.
+bool covers(const Polygon& convex, Point2 p) {
+    bool inside = true;
+    forEachEdge(convex, [&](const Segment2& edge) {
+        const Vec2 along = edge.b - edge.a;
+        inside = inside && cross(along, p - edge.a) >= -kUnseen * length(along);
+    });
+    return inside;
+}
+
+bool covers(const Polygon& convex, const std::vector<Polygon>& curves) {
+    return std::all_of(curves.begin(), curves.end(), [&](const Polygon& curve) {
+        return std::all_of(curve.begin(), curve.end(), [&](Point2 p) { return covers(convex, p); });
+    });
+}
+
+std::vector<Polygon> trianglesAbove(const Mesh& mesh) {
+    std::vector<Polygon> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& triangle : mesh.triangles) {
+        Polygon corners;
+        for (const std::uint32_t i : triangle) corners.push_back(mesh.vertices[i].onFloor());
+        triangles.push_back(std::move(corners));
+    }
+    return triangles;
+}
+
+/// Cells that triangles touch, with an empty rim of one.
+MapCells cellsUnder(const std::vector<Polygon>& triangles, const Grid& grid) {
+    MapCells cells(grid.columns, grid.rows);
+    const auto insert = [&](std::int64_t column, std::int64_t row) {
+        if (column >= 0 && row >= 0 && column < grid.columns && row < grid.rows)
+            cells.insert(static_cast<int>(column), static_cast<int>(row));
+    };
+    std::vector<CellPair> crossings;
+    for (const Polygon& triangle : triangles) {
+        for (const RowRun& run : runsWithin(grid, std::span(&triangle, 1)))
+            cells.insertRun(run.row, run.first, run.last);
+        // What is thinner than a cell shows by its edges.
+        crossings.clear();
+        forEachEdge(triangle, [&](const Segment2& e) { appendCrossings(e, grid, crossings); });
+        for (const CellPair& pair : crossings) insert(pair.near_column, pair.near_row);
+        const Point2 corner = grid.toCells(triangle.front());
+        insert(std::lround(corner.x), std::lround(corner.y));
+    }
+    return cells;
+}
+
+std::vector<Polygon> rasterOutline(const std::vector<Polygon>& triangles) {
+    Box2 box;
+    for (const Polygon& triangle : triangles)
+        for (const Point2 p : triangle) box.add(p);
+    const double side = std::max(box.width(), box.depth());
+    if (!(side > kUnseen)) return {};
+    const double size = side / kCells;
+    const Grid grid =
+        gridOf(box.low - Vec2{2 * size, 2 * size}, size, static_cast<int>(box.width() / size) + 5,
+               static_cast<int>(box.depth() / size) + 5);
+    std::vector<Polygon> curves = withoutStairs(boundaryCurves(cellsUnder(triangles, grid)));
+    for (Polygon& curve : curves)
+        for (Point2& p : curve) p = grid.limits.low + size * (p - Point2{});
+    return curves;
+}
+
+}  // namespace
+
+std::vector<Polygon> silhouette(const Mesh& mesh) {
+    std::vector<Polygon> triangles = trianglesAbove(mesh);
+    if (triangles.size() > kMaxExact) return rasterOutline(triangles);
+    std::erase_if(triangles,
+                  [](const Polygon& t) { return orientation(t[0], t[1], t[2]) == Turn::Straight; });
+    return curvesOf(unite(triangles));
+}
+
+std::vector<PartAbove> partsFromAbove(const Body& body) {
+    std::vector<PartAbove> parts;
+    parts.reserve(body.prisms.size() + body.meshes.size());
+    for (const Prism& prism : body.prisms)
+        parts.push_back({{prism.footprint}, prism.bottom, prism.top, prism.material});
+    for (const Mesh& mesh : body.meshes) {
+        PartAbove part{silhouette(mesh), 0, 0, mesh.material};
+        if (part.curves.empty()) continue;
+        part.bottom = std::numeric_limits<double>::infinity();
+        part.top = -part.bottom;
+        for (const Point3& p : mesh.vertices) {
+            part.bottom = std::min(part.bottom, p.z);
+            part.top = std::max(part.top, p.z);
+        }
+        parts.push_back(std::move(part));
+    }
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const PartAbove& a, const PartAbove& b) { return a.top < b.top; });
+    for (std::size_t high = 1; high < parts.size(); ++high) {
+        const std::vector<Polygon>& above = parts[high].curves;
+        if (above.size() != 1 || !isConvex(above.front())) continue;
+        for (std::size_t low = 0; low < high; ++low)
+            parts[low].hidden = parts[low].hidden || covers(above.front(), parts[low].curves);
+    }
+    return parts;
+}
+
+std::vector<Region> footprintOf(const Body& body) {
+    std::vector<PartAbove> parts = partsFromAbove(body);
+    std::erase_if(parts, [](const PartAbove& part) { return part.hidden; });
+    // A board below a smaller thing of the same body is not hidden, but covers.
+    for (const PartAbove& part : parts) {
+        if (part.curves.size() == 1 && isConvex(part.curves.front()) &&
+            std::all_of(parts.begin(), parts.end(), [&](const PartAbove& other) {
+                return covers(part.curves.front(), other.curves);
+            }))
+            return {{part.curves.front(), {}}};
+    }
+    if (parts.size() == 1) return regionsOf(std::move(parts.front().curves));
+    std::vector<Polygon> solids;
+    for (PartAbove& part : parts)
+        for (Region& region : regionsOf(std::move(part.curves)))
+            solids.push_back(std::move(region.outline));  // holes of meshes are lost under others
+    return unite(solids);
+}
+
+std::vector<Region> regionsOf(std::vector<Polygon> curves) {
+    struct Piece {
+        Region region;
+        Box2 box;
+        double area;
+    };
+    std::vector<Piece> pieces;
+    std::vector<Polygon> holes;
+    for (Polygon& curve : curves) {
+        const double area = signedArea(curve);
+        const Box2 box = bounds(curve);
+        if (area > 0)
+            pieces.push_back({{std::move(curve), {}}, box, area});
+        else if (area < 0)
+            holes.push_back(std::move(curve));
+    }
+    for (Polygon& hole : holes) {
+        // Of the outlines around it the smallest; that of an island within it is not around it.
+        const Box2 box = bounds(hole);
+        const double area = -signedArea(hole);
+        Piece* best = nullptr;
+        for (Piece& piece : pieces) {
+            if (piece.area <= area || (best != nullptr && piece.area >= best->area) ||
+                piece.box.low.x > box.low.x || piece.box.low.y > box.low.y ||
+                piece.box.high.x < box.high.x || piece.box.high.y < box.high.y)
+                continue;
+            if (std::none_of(hole.begin(), hole.end(), [&](Point2 p) {
+                    return locate(piece.region.outline, p) == Side::Outside;
+                }))
+                best = &piece;
+        }
+        if (best != nullptr) best->region.holes.push_back(std::move(hole));
+    }
+    std::vector<Region> regions;
+    regions.reserve(pieces.size());
+    for (Piece& piece : pieces) regions.push_back(std::move(piece.region));
+    return regions;
 }
 
 }  // namespace ispace

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "draw/axis.h"
+#include "draw/picture.h"
 #include "plan/drawing.h"
 
 namespace ispace {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "draw/image.h"
+#include "draw/picture.h"
 #include "layout/test_layout.h"
 #include "plan/drawing.h"
 

@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "raster/spikes.h"
-
 namespace ispace {
 
 namespace {

@@ -48,4 +48,9 @@ struct Cleaning {
 Cleaning cleanRoom(MapRoom& room, double resolution, double width,
                    const std::vector<CellPlace>& keep);
 
+/// Removes strips of floor that are one cell wide, or at most `width` metres where no occupied cell
+/// is near, with what is connected only through them; see cleanRoom(). O(cells)
+void removeSpikes(MapRoom& room, double resolution, double width,
+                  const std::vector<CellPlace>& keep, Cleaning& done);
+
 }  // namespace ispace

@@ -2,6 +2,8 @@
 #include "raster/morphology.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -75,6 +77,133 @@ std::vector<CellPlace> deepestPlaces(const MapCells& cells, const CellPieces& pi
         });
         return places;
     });
+}
+
+namespace {
+
+/// Further than any distance in a grid, and its square still an int.
+constexpr int kFar = 40'000;
+
+/// Distances within columns, kFar where there is none.
+std::vector<int> columnDistances(const MapCells& cells, Beyond beyond) {
+    const int width = cells.width();
+    const int height = cells.height();
+    const int edge = beyond == Beyond::Out ? 0 : kFar;
+    std::vector<int> away(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    std::vector<int> last(static_cast<std::size_t>(width), edge);
+    const auto pass = [&](int y) {
+        const std::span<const std::uint8_t> row = cells.row(y);
+        int* out = &away[cells.index(0, y)];
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            last[x] = row[x] == 0 ? 0 : std::min(last[x] + 1, kFar);
+            out[x] = std::min(out[x], last[x]);
+        }
+    };
+    std::fill(away.begin(), away.end(), kFar);
+    for (int y = 0; y < height; ++y) pass(y);
+    std::fill(last.begin(), last.end(), edge);
+    for (int y = height - 1; y >= 0; --y) pass(y);
+    return away;
+}
+
+/// One row: the lower envelope of a parabola over each column.
+class RowEnvelope {
+  public:
+    explicit RowEnvelope(int width)
+        : site_(static_cast<std::size_t>(width) + 2), begin_(site_.size()) {}
+
+    /// \param away distances within the columns -1 … width, those beyond the grid included
+    void run(const std::vector<std::int64_t>& away, int* out) {
+        const auto n = static_cast<std::int64_t>(away.size());
+        const auto value = [&](std::int64_t x, std::int64_t site) {
+            const std::int64_t up = away[static_cast<std::size_t>(site)];
+            return (x - site) * (x - site) + up * up;
+        };
+        std::size_t top = 0;
+        site_[0] = begin_[0] = 0;
+        for (std::int64_t x = 1; x < n; ++x) {
+            bool empty = false;
+            while (value(begin_[top], site_[top]) > value(begin_[top], x)) {
+                if (top == 0) {
+                    empty = true;
+                    break;
+                }
+                --top;
+            }
+            if (empty) {
+                site_[0] = x;
+                continue;
+            }
+            // The first column that is nearer to x than to the site before.
+            const std::int64_t s = site_[top];
+            const std::int64_t a = away[static_cast<std::size_t>(s)];
+            const std::int64_t b = away[static_cast<std::size_t>(x)];
+            const std::int64_t from = 1 + (x * x - s * s + b * b - a * a) / (2 * (x - s));
+            if (from >= n) continue;
+            ++top;
+            site_[top] = x;
+            begin_[top] = from;
+        }
+        for (std::int64_t x = n - 2; x >= 1; --x) {
+            while (top > 0 && begin_[top] > x) --top;
+            out[x - 1] =
+                static_cast<int>(std::min<std::int64_t>(value(x, site_[top]), kNoDistance));
+        }
+    }
+
+  private:
+    std::vector<std::int64_t> site_, begin_;
+};
+
+}  // namespace
+
+std::vector<int> squaredDistances(const MapCells& cells, Beyond beyond) {
+    std::vector<int> result = columnDistances(cells, beyond);
+    RowEnvelope envelope(cells.width());
+    std::vector<std::int64_t> away(static_cast<std::size_t>(cells.width()) + 2);
+    away.front() = away.back() = beyond == Beyond::Out ? 0 : kFar;
+    for (int y = 0; y < cells.height(); ++y) {
+        int* row = &result[cells.index(0, y)];
+        std::copy(row, row + cells.width(), away.begin() + 1);
+        envelope.run(away, row);
+    }
+    for (int& squared : result)
+        if (squared >= kFar * kFar) squared = kNoDistance;
+    return result;
+}
+
+CellPlace widestPlace(const MapCells& cells) {
+    const int width = cells.width(), height = cells.height();
+    // Rows with a column on each side, and a row below and above: rings grow from beyond the grid.
+    // They are at most half as many as the shorter side, which 16 bits hold for any picture.
+    const std::size_t n = static_cast<std::size_t>(width) + 2;
+    std::vector<std::uint16_t> rings(n * (static_cast<std::size_t>(height) + 2));
+    const auto row_of = [&](int y) { return &rings[n * (static_cast<std::size_t>(y) + 1) + 1]; };
+    // Distance transform in two passes: from below and the left, then from above and the right.
+    const auto grown = [](std::uint16_t ring) { return static_cast<std::uint16_t>(ring + 1); };
+    for (int y = 0; y < height; ++y) {
+        const std::uint8_t* const is_in = cells.row(y).data();
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const below = row - n;
+        for (int x = 0; x < width; ++x)
+            if (is_in[x] != 0)
+                row[x] = grown(std::min({row[x - 1], below[x - 1], below[x], below[x + 1]}));
+    }
+    CellPlace best;
+    std::uint16_t widest = 0;
+    for (int y = height - 1; y >= 0; --y) {
+        std::uint16_t* const row = row_of(y);
+        const std::uint16_t* const above = row + n;
+        for (int x = width - 1; x >= 0; --x) {
+            if (row[x] == 0) continue;
+            row[x] = std::min(row[x],
+                              grown(std::min({row[x + 1], above[x + 1], above[x], above[x - 1]})));
+            if (row[x] < widest) continue;
+            widest = row[x];
+            best = {x, y};
+        }
+    }
+    return best;
 }
 
 }  // namespace ispace

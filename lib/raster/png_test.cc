@@ -6,7 +6,6 @@
 #include <random>
 
 #include "base/error.h"
-#include "raster/occupancy.h"
 #include "raster/test_png.h"
 
 namespace ispace {

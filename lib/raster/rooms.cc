@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "raster/distance.h"
 #include "raster/grid.h"
+#include "raster/morphology.h"
 
 namespace ispace {
 

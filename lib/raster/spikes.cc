@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "raster/spikes.h"
+#include "raster/cleaning.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "draw/image.h"
+#include "draw/picture.h"
 #include "sense/sample_readings.h"
 
 namespace ispace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/figure_parts.h"
 
-#include "draw/axis.h"
+#include "draw/picture.h"
 
 #include <gtest/gtest.h>
 

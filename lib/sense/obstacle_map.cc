@@ -5,8 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "draw/axis.h"
-#include "draw/palette.h"
+#include "draw/color.h"
 #include "draw/picture.h"
 #include "sense/figure_parts.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "draw/image.h"
+#include "draw/picture.h"
 #include "sense/sample_readings.h"
 
 namespace ispace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "draw/image.h"
+#include "draw/picture.h"
 
 namespace golden {
 
