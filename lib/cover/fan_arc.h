@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "geom/angle.h"
+#include "geom/point.h"
 #include "sensor/sensor.h"
 
 namespace ispace {

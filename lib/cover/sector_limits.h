@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "geom/angle.h"
 #include "geom/point.h"
 
 namespace ispace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "env/environment.h"
-#include "geom/box.h"
 #include "geom/overlay.h"
+#include "geom/point.h"
 #include "geom/pose.h"
 
 namespace ispace {

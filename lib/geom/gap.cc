@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"

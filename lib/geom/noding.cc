@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 
 #include <algorithm>
 #include <bit>

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "geom/arrangement.h"
-#include "geom/noding.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 

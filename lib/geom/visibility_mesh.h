@@ -11,7 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/predicates.h"
 #include "geom/visibility.h"
 

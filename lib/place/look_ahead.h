@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cover/sector_cells.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "place/sites.h"
 #include "trace/ray_world.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/angle.h"
+#include "geom/point.h"
 
 #include <cmath>
 
