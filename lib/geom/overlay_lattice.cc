@@ -87,7 +87,7 @@ std::vector<Edge> sorted(const std::vector<Edge>& edges, std::size_t points) {
     return out;
 }
 
-/// Several edges with the same ends as one.
+/// Merges edges with the same ends.
 Edge joined(std::span<const Edge> same, SetStore& sets, std::vector<Index>& layers) {
     Edge edge = same.front();
     bool is_first = true;
@@ -97,7 +97,7 @@ Edge joined(std::span<const Edge> same, SetStore& sets, std::vector<Index>& laye
         const std::span<const Index> set = sets[other.set];
         if (set.empty()) continue;
         layers.insert(layers.end(), set.begin(), set.end());
-        // Where an arc lies along something else, within a chord's error, it is nothing round.
+        // An arc along another edge, within a chord's error, no longer counts as one.
         if (is_first)
             edge.circle = other.circle;
         else if (edge.circle != other.circle)
@@ -136,13 +136,13 @@ namespace {
 
 using Graph = plane::Graph<Point>;
 
-/// The layers that hold a place.
+/// The layers that contain a point, as it moves.
 class Place {
   public:
     explicit Place(std::span<const Layer> layers) : layers_(layers), inside_(layers.size()) {}
 
     [[nodiscard]] const LayerLabel& label() const { return label_; }
-    /// Goes across the boundary of these.
+    /// Crosses the boundary of these.
     void cross(std::span<const Index> set) {
         for (const Index i : set) {
             const bool enters = inside_[i] == 0;
@@ -177,7 +177,7 @@ class Place {
     LayerLabel label_;
 };
 
-/// What hangs together: components lie in faces of others, or outside of all.
+/// Connected components of the edges: each lies in a face of another, or outside all.
 class Nesting {
   public:
     explicit Nesting(const Graph& graph)
@@ -201,9 +201,9 @@ class Nesting {
         }
     }
 
-    /// The lowest points (lexLess) of components outside of all.
+    /// Lowest points (lexLess) of the components outside all others.
     [[nodiscard]] const std::vector<Index>& outermost() const { return outermost_; }
-    /// Calls visit(lowest point) for the components that are right above this line.
+    /// Calls visit(lowest point) for each component directly above this line.
     template <typename Visit>
     void forEachAbove(Index line, Visit visit) const {
         for (Index c = first_inside_[line]; c != kNone; c = next_[c]) visit(roots_[c]);

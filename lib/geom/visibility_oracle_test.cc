@@ -10,7 +10,6 @@
 
 #include "geom/predicates.h"
 #include "geom/test_curves.h"
-#include "geom/test_plans.h"
 #include "geom/visibility.h"
 
 namespace ispace {

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "place/candidate_views.h"
 #include "place/test_arrange.h"
-#include "solve/test_progress.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -31,9 +31,9 @@ struct Pooled {
           worlds(scene.environment),
           target(makeTarget(scene.environment, CellCount{50, 50}, kScanHeight)),
           kinds(kindsOf(groupsOf(scene, {sensor}))) {
-        CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
-        target.indoor.forEach([&](std::size_t cell) { worth.left[cell] = 1; });
-        CandidatePool pool(scene.environment, worlds, target, std::move(worth), options, silent);
+        CandidateWeights weights{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
+        target.indoor.forEach([&](std::size_t cell) { weights.left[cell] = 1; });
+        CandidatePool pool(scene.environment, worlds, target, std::move(weights), options, silent);
         set = pool.make(kinds.front()).set;
     }
 };
@@ -124,8 +124,9 @@ CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     options.first_places = count;
     options.mount.heights = {0.15, 1};
     options.mount.keep_in = {readZone(zone, scene.environment)};
-    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
-    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    const CandidateWeights weights{target.indoor,
+                                   std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, weights, options, progress);
     return pool.make(kindsOf(groupsOf(scene, {"laser:2"})).front());
 }
 
@@ -165,8 +166,9 @@ CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Pr
     ArrangeOptions options;
     options.density = {0.1, 0.1, 2};
     options.mount.heights = std::move(heights);
-    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
-    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    const CandidateWeights weights{target.indoor,
+                                   std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, weights, options, progress);
     return pool.make(kindsOf(groupsOf(scene, {"laser,range=3"})).front());
 }
 
@@ -283,7 +285,8 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     for (const Point2 place : gridPlaces(room.limits(), {9, 9}))
         everywhere.push_back({place, headingsAround(8)});
     SilentProgress silent;
-    const std::vector<Site> inside = validSites(SiteJudge(room, SiteRules()), everywhere, silent);
+    const std::vector<Site> inside =
+        validSites(SiteValidity(room, SiteRules()), everywhere, silent);
     Worlds worlds(room);
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;

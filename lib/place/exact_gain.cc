@@ -207,7 +207,7 @@ struct ExactGain::Data {
     }
     /// True where one more sensor of this kind makes the floor count.
     [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
-        if (setsAt(label) != options.demand - 1) return false;
+        if (setsAt(label) != options.multiplicity - 1) return false;
         return !is_receiver ||
                label.numbers / kOneReceiver == static_cast<std::int64_t>(kLeastReceivers) - 1;
     }
@@ -315,7 +315,7 @@ double ExactGain::value() const {
     for (const View& view : data_->moving) layers.push_back(view.layer);
     double value = 0;
     Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
-        if (Data::setsAt(label) >= data_->options.demand)
+        if (Data::setsAt(label) >= data_->options.multiplicity)
             value += data_->weightOf(label.marks) * area;
     });
     return std::max(0.0, value);

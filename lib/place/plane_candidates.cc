@@ -13,14 +13,14 @@ namespace ispace {
 
 namespace {
 
-/// As many views as a word has bits are looked through together.
+/// Views answered together: one bit of a word each.
 constexpr std::size_t kTogether = 64;
 
-/// Looks at the cells of one row after another.
-class RowLook {
+/// Answers which views see the cells of a row.
+class RowQuery {
   public:
-    RowLook(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-            double height, double reach)
+    RowQuery(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
+             double height, double reach)
         : grid_(grid), mesh_(mesh), views_(views), height_(height), reach_(reach) {}
 
     /// Adds what each view sees of a row to its runs.
@@ -94,9 +94,9 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
         // Greatest distance on the plan; range tests are those of float32.
         const double reach = (1 + 1e-6) * std::sqrt(std::max(0.0, range * range - drop * drop));
         const bool is_in_range = withinRange(drop, range);
-        RowLook look(grid, mesh, some, height, reach);
+        RowQuery query(grid, mesh, some, height, reach);
         std::vector<std::vector<CellRun>> runs(some.size());
-        for (int row = 0; is_in_range && row < grid.rows; ++row) look.add(row, runs);
+        for (int row = 0; is_in_range && row < grid.rows; ++row) query.add(row, runs);
         for (const std::vector<CellRun>& of_view : runs) {
             parts.runs.insert(parts.runs.end(), of_view.begin(), of_view.end());
             parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));

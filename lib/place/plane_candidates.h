@@ -10,10 +10,9 @@
 
 namespace ispace {
 
-/// Sets part k of `parts` to the cells that view k sees of a level plane: the same as cellsSeen()
-/// of a ranger and cellsSeen() of a receiver give, but what several views look at is looked at
-/// once. O(cells in reach * views + rays) \pre the views differ in the direction in which they face
-/// only
+/// Sets part k of `parts` to the cells that view k sees of a level plane, the same as cellsSeen()
+/// for a ranger or receiver; a cell in several views is traced once. O(cells in reach * views +
+/// rays) \pre the views differ only in the direction they face
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
                  double height, CellParts& parts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/coverage_state.h"
+#include "solve/search_state.h"
 
 #include <gtest/gtest.h>
 
