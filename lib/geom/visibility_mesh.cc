@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "geom/arrangement.h"
+#include "geom/noding.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "geom/point.h"
-#include "geom/test_plans.h"
+#include "geom/box.h"
+#include "geom/visibility_oracle.h"
 
 namespace ispace::test {
 

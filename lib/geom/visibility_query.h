@@ -2,8 +2,8 @@
 // Private to VisibilityMap.
 //
 // Triangular expansion: F. Bungiu, M. Hemmer, J. Hershberger, K. Huang, A. Kröller, Efficient
-// computation of visibility polygons, 2014. Windows are limited by vertices, never by constructed
-// points, so that each decision is the orientation of three input points.
+// computation of visibility polygons, 2014. Windows are limited by vertices, never by points made
+// on the way, so that each decision is the turn of three given points.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace ispace {
 
-/// Collects the edges of the region, counter-clockwise; inline, as it is much of the work of a
-/// query.
+/// Collects what ends sight, counter-clockwise; inline, as it is most of what a query does besides
+/// finding its way.
 class EdgeWriter {
   public:
     EdgeWriter(Point2 viewpoint, double range, std::vector<SightEdge>& edges)
@@ -35,11 +35,11 @@ class EdgeWriter {
                 return;
             }
         }
-        // Else it has no width in doubles.
+        // Else it has no width that doubles can tell.
         if (cross(from - viewpoint_, to - viewpoint_) > 0) edges_.push_back({from, to, line});
     }
 
-    /// The view is free from one direction to another, less than a half turn on.
+    /// Nothing stops sight from one direction to another, less than a half turn on.
     void addFree(Vec2 from, Vec2 to) {
         const bool is_wide = dot(from, to) < 0;
         if (!is_wide && !(cross(from, to) > 0)) return;
@@ -93,7 +93,7 @@ class EdgeWriter {
     Vec2 arc_from_, arc_to_;
 };
 
-/// Prefetches a target; harmless if it is not a portal.
+/// What will be needed if sight gets there; harmless where that is no portal.
 inline void prefetch(const Portal* portals, std::uint32_t target) {
     // The place may lie beyond the portals: nothing is read there.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
@@ -101,15 +101,16 @@ inline void prefetch(const Portal* portals, std::uint32_t target) {
                                                      target * sizeof(Portal)));
 }
 
-/// Two numbers, for the right and the left limit; selecting between pairs is branch-free.
+/// Two numbers, one each for the right and the left limit: what is chosen between two pairs is so
+/// without branches.
 using Pair = double __attribute__((vector_size(16)));
 
 struct PairOfPoints {
     Pair x, y;
 };
 
-/// Where rays along the limits cross the segment from a to b, as fractions of it; a is on their
-/// right or on them (exactly 0 if it is a limit itself), b on their left or on them (exactly 1).
+/// Where rays along the limits cross from a to b, as shares of that way; a is on their right or on
+/// them (exactly 0 if it is a limit itself), b on their left or on them (exactly 1).
 ISPACE_INLINE Pair crossings(Pair limits_x, Pair limits_y, Vec2 a, Vec2 b) {
     const Pair right = a.x * limits_y - a.y * limits_x, left = limits_x * b.y - limits_y * b.x;
     const Pair share = right / (right + left), zero{}, one{1, 1};
@@ -118,7 +119,7 @@ ISPACE_INLINE Pair crossings(Pair limits_x, Pair limits_y, Vec2 a, Vec2 b) {
     return above < one ? above : one;
 }
 
-/// The points at these fractions of the segment, measured from the nearer end: exact at both ends.
+/// So far on the way from a to b, from the nearer one: exact at both.
 ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     const Vec2 way = s.b - s.a;
     const Pair half{0.5, 0.5};
@@ -129,7 +130,7 @@ ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     return {from_x + part * way.x, from_y + part * way.y};
 }
 
-/// A view to the left of a portal's corner that waits until everything to its right is done.
+/// Sight that waits until what lies on its right is done: past the corner of a portal, on its left.
 struct Pending {
     std::uint32_t target;       ///< what lies there
     std::uint32_t corner;       ///< the portal whose corner is the right limit
@@ -137,7 +138,7 @@ struct Pending {
     Vec2 right, left;           ///< the limits, from the viewpoint
 };
 
-/// A stack with inline storage, which seldom overflows to the heap.
+/// Memory for as many as may come: seldom more than fit in here.
 class PendingStack {
   public:
     [[nodiscard]] bool empty() const { return top_ == base_; }
@@ -170,8 +171,8 @@ class PendingStack {
     PendingStack() {}
 };
 
-/// A query, depth first. kBounded: some line may lie beyond the range. kTouches: some lines are
-/// transparent.
+/// One query, depth first: to the end of one way after the other. Bounded: some line may lie beyond
+/// the range. Touches: some lines are transparent.
 template <bool kBounded, bool kTouches>
 class Expansion {
   public:
@@ -195,10 +196,10 @@ class Expansion {
     /// From outside of all triangles; in the same order.
     void throughPortal(Index portal) { begin(portal, beforeOf(portal), nextOf(portal)); }
 
-    /// Expands through all edges and portals given so far and writes the region.
+    /// Looks through all edges and portals that were named, and writes what is seen.
     void run();
 
-    /// Writes what bounds the view between two limits, counter-clockwise: a line, or kFree.
+    /// Writes down what sight ends at between two limits, counter-clockwise: a line, or kFree.
     void stopAt(Index target, const Vec2& right, const Vec2& left);
     EdgeWriter& out() { return out_; }
 
@@ -216,7 +217,7 @@ class Expansion {
     static double square(double x) { return x * x; }
     static double squaredLength(Vec2 v) { return dot(v, v); }
 
-    /// A vertex that limits the view.
+    /// A vertex that limits what is looked through.
     struct Limit {
         Index portal;  ///< its corner is the vertex
         Vec2 way;      ///< to the vertex
@@ -226,7 +227,7 @@ class Expansion {
         pending_.push({passed(target), right, left, wayTo(right), wayTo(left)});
     }
 
-    /// The target behind transparent lines.
+    /// What sight gets to past a line that is transparent.
     [[nodiscard]] Index passed(Index target) const {
         if (!kTouches || target < Portal::kBlocked || target == Portal::kFree) return target;
         const Index edge = target - Portal::kBlocked;
@@ -262,7 +263,7 @@ void Expansion<kBounded, kTouches>::run() {
             const Portal& portal = portals_[target];
             const Limit corner{target, portal.corner - viewpoint_};
             if (kBounded) may_be_beyond = squaredLength(corner.way) > squared_range_;
-            // Both possible targets.
+            // Whichever way sight goes.
             prefetch(portals_, portal.left);
             prefetch(portals_, portal.right);
             double from_right = cross(right.way, corner.way);
@@ -322,7 +323,7 @@ void Expansion<kBounded, kTouches>::stopWithinRange(Index line, const Segment2& 
                                                     const Vec2& right, const Vec2& left) {
     const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_, along = b - a;
     const double from = shares[0], to = shares[1];
-    // Where the line through the wall is nearest, and within the range, as fractions of the wall.
+    // Where the line through the wall is nearest, and within the range, as shares of the wall.
     const double squared_length = squaredLength(along);
     const double room = squared_range_ - square(cross(a, b)) / squared_length;
     const double middle = -dot(a, along) / squared_length;

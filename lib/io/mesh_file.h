@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "record/record.h"
+#include "geom/triangle_mesh.h"
 #include "io/input.h"
 #include "io/mesh_parts.h"
+#include "record/record.h"
 
 namespace ispace {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "record/record.h"
+#include "geom/triangle_mesh.h"
 
 namespace ispace {
 

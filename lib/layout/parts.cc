@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "env/mesh_cut.h"
-#include "geom/polygon.h"
+#include "geom/triangulate.h"
 
 namespace ispace {
 

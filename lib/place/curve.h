@@ -8,21 +8,21 @@
 
 namespace ispace {
 
-/// What this number of sensors covers.
+/// What so many sensors reach.
 struct CurvePoint {
     int sensors = 0;
     double value = 0;  ///< share covered by the best layout found
     double bound = 1;  ///< no layout of these candidates covers more
 };
 
-/// CSV: a header `sensors,value,bound`, then a line per point, as fractions.
+/// `sensors,value,bound` and a line a point; fractions.
 std::string curveCsv(const std::vector<CurvePoint>& points);
-/// An aligned table in per cent.
+/// The same for people, aligned, per cent.
 std::string curveText(const std::vector<CurvePoint>& points);
 
-/// Draws coverage over the number of sensors: values as a line with dots, bounds as a line above,
-/// the gap between them shaded; axes in whole sensors and per cent. Points may come in any order.
-/// \throws UsageError for a width outside the limits of a map
+/// Coverage over the number of sensors: the values as a line with dots, the bounds as a line above
+/// them, the gap between them shaded; axes in whole sensors and per cent, a title. Points may come
+/// in any order. Equal input gives equal bytes. \throws UsageError for a width that no map may have
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,
                       PictureFormat format, int width);
 

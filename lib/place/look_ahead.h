@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sites that are evaluated ahead of their turn, and storage for their views until then.
+// Which sites are looked at before their turn, and where what is seen from them waits.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 #include <span>
 #include <vector>
 
-#include "cover/sector_cells.h"
-#include "geom/point.h"
+#include "base/cell_set.h"
+#include "geom/box.h"
 #include "place/sites.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 
-/// Spreads the 16 low bits to every second bit.
+/// The bits of a number of 16 bits at every second place.
 inline std::uint32_t spreadOut(std::uint32_t x) {
     x = (x | x << 8U) & 0x00ff00ffU;
     x = (x | x << 4U) & 0x0f0f0f0fU;
@@ -24,7 +24,8 @@ inline std::uint32_t spreadOut(std::uint32_t x) {
     return (x | x << 1U) & 0x55555555U;
 }
 
-/// Position of a place along a Morton curve through the box, on which neighbours are mostly close.
+/// Where a place is along a curve through the whole box, on which neighbours mostly are near each
+/// other: the bits of both coordinates in turn (Morton order).
 inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
     const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
     const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
@@ -32,8 +33,8 @@ inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
     return spreadOut(x & 0xffffU) | spreadOut(y & 0xffffU) << 1U;
 }
 
-/// A sample of the sites, in an order whose every prefix is spread over the plan, however the sites
-/// are listed. O(n log n)
+/// Some of the sites, and the order in which to take them so that those taken at any time are
+/// spread over the plan, however the sites are listed. O(n log n)
 class Spread {
   public:
     /// \pre count <= sites.size() < 2^32
@@ -62,9 +63,9 @@ class Spread {
         std::sort(in_order_.begin(), in_order_.end());
     }
     [[nodiscard]] std::size_t size() const { return in_turn_.size(); }
-    /// The k-th site in that order.
+    /// The site whose turn is the k-th.
     [[nodiscard]] std::size_t turn(std::size_t k) const { return in_turn_[k]; }
-    /// The k-th site of the sample in the order of the list.
+    /// The k-th of all as they are listed.
     [[nodiscard]] std::size_t at(std::size_t k) const { return in_order_[k]; }
     [[nodiscard]] std::size_t slotOf(std::size_t site) const {
         return static_cast<std::size_t>(std::lower_bound(in_order_.begin(), in_order_.end(), site) -
@@ -75,8 +76,8 @@ class Spread {
     std::vector<std::size_t> in_turn_, in_order_;
 };
 
-/// Views that were found ahead of their turn, stored together for some hundred neighbours, in
-/// pieces large enough to be returned to the system when done.
+/// What was seen from places before their turn. It lies together by some hundred neighbours, in
+/// pieces large enough to go back to the system once they are done with.
 class Shelf {
   public:
     explicit Shelf(std::size_t size) : slots_(size), boards_(size / kTogether + 1) {}
@@ -96,11 +97,11 @@ class Shelf {
         parts.runs.assign(runs.begin(), runs.end());
         parts.first.assign(first.begin(), first.end());
     }
-    /// Frees those before k.
+    /// Those before k are not asked for any more.
     void dropBefore(std::size_t k) {
         for (; dropped_ < k / kTogether; ++dropped_) boards_[dropped_] = {};
     }
-    /// Of all that was ever stored.
+    /// Of all that was put here.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   private:

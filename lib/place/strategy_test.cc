@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "place/test_arrange.h"
+#include "place/test_room.h"
 
 namespace ispace {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "geom/point.h"
+#include "geom/angle.h"
 #include "record/record.h"
 
 namespace ispace {

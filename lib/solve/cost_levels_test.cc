@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/problem.h"
+#include "solve/cost_levels.h"
 
 #include <gtest/gtest.h>
 

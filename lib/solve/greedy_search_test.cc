@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "solve/search.h"
-#include "solve/search_state.h"
+#include "solve/search_basis.h"
 #include "solve/test_problems.h"
+#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "geom/point.h"
+#include "geom/box.h"
 
 namespace ispace {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/point.h"
+#include "geom/box.h"
 #include "geom/pose.h"
 #include "trace/rays.h"
 
