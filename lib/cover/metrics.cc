@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cover/metrics.h"
+#include "cover/sensor_views.h"
 #include "geom/boolean.h"
 #include "raster/morphology.h"
 #include "sense/ultrasound.h"

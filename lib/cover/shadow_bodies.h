@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "env/environment.h"
-#include "geom/box.h"
 #include "geom/overlay.h"
+#include "geom/point.h"
 #include "geom/pose.h"
 
 namespace ispace {
@@ -68,7 +68,6 @@ class Shadows {
 
     [[nodiscard]] Place placeOf(Point3 p) const;
     [[nodiscard]] double sideOf(const Place& p, int plane) const;
-    [[nodiscard]] bool isOutOfTheWay(const ShadowBody& body) const;
     [[nodiscard]] bool mayTouch(const ShadowBody& body) const;
     [[nodiscard]] bool isPassed(const std::array<Point3, 3>& triangle) const;
     [[nodiscard]] bool isClear(const Corners& corners) const;

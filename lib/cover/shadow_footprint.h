@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "geom/box.h"
 #include "geom/overlay.h"
+#include "geom/point.h"
 #include "sensor/field_of_view.h"
 
 namespace ispace {

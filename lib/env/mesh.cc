@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "env/body.h"
+#include "geom/polygon.h"
 #include "geom/pose.h"
-#include "geom/triangulate.h"
 
 namespace ispace {
 

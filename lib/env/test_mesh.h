@@ -13,7 +13,7 @@
 #include "env/mesh_cut.h"
 #include "env/schemas.h"
 #include "geom/boolean.h"
-#include "geom/triangle_mesh.h"
+#include "record/record.h"
 #include "record/text.h"
 
 namespace ispace::testing {

@@ -94,7 +94,7 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     std::vector<Box2> boxes;
     boxes.reserve(solids.size());
     for (const Polygon& solid : solids) boxes.push_back(bounds(solid));
-    // Most furniture stands clear of all others and of the walls: what it covers is just a hole.
+    // Most furniture stands clear of everything else and just makes a hole.
     const std::vector<bool> is_alone = alone(boxes);
     const EdgeTree walls({&region, 1});
     std::vector<std::size_t> clear;
@@ -138,14 +138,14 @@ double totalArea(std::span<const Region> regions) {
 
 namespace {
 
-/// A direction that turned by more than this (the cosine) is not walked to: on the far side of a
-/// polygon rounding could end the walk at once.
+/// Cosine of the largest turn that is followed by walking: on the far side of a polygon rounding
+/// could end a walk at once.
 constexpr double kTurned = 0.7;
 
-/// The part of a convex polygon that is left after cuts along lines that go once round.
+/// A convex polygon cut by lines that turn once around.
 ///
-/// Its corners are a ring of links. A cut walks from the last one to the corner that lies furthest
-/// behind the line, and takes out the corners about it: each is taken out once.
+/// Its vertices form a ring of links. A cut walks from the last vertex to the one deepest behind
+/// the line and removes the vertices around it: each is removed once.
 class Remainder {
   public:
     explicit Remainder(const Polygon& polygon) {

@@ -9,29 +9,29 @@
 
 namespace ispace {
 
-/// The pieces of `region` outside all closed `solids`: simple polygons of either orientation, which
-/// may overlap and touch. Crossings are rounded to doubles, nothing else is.
+/// The connected pieces of `region` outside all closed `solids`, which are simple polygons of
+/// either orientation and may overlap and touch. Only crossings are rounded, to doubles.
 /// \throws FormatError (without a place) for outlines that cross each other by the million
 std::vector<Region> difference(const Region& region, std::span<const Polygon> solids);
 
-/// The same of each part.
+/// The same for each part.
 std::vector<Region> difference(const Regions& regions, std::span<const Polygon> solids);
 
-/// The union of closed `solids`, which are as for difference().
+/// The union of closed `solids`, as in difference().
 std::vector<Region> unite(std::span<const Polygon> solids);
 
 /// Sum of the areas of disjoint regions.
 double totalArea(std::span<const Region> regions);
 
-// Convex polygons, in time linear in their corners: round tables have tens of thousands.
+// Convex polygons, in time linear in their vertices: round tables have tens of thousands.
 
 /// The support function of a convex polygon, for a sequence of directions. Each query walks on from
 /// the last answer: O(1) on average if the directions turn steadily, O(n) if they jump.
 class Caliper {
   public:
-    /// Keeps a view of the corners; at least one.
+    /// Keeps a view of the vertices. \pre at least one
     explicit Caliper(std::span<const Point2> corners) : corners_(corners) {}
-    /// The greatest dot product of a corner (from the origin) and a unit vector.
+    /// Largest dot product of a vertex (from the origin) and a unit vector.
     double reach(Vec2 direction);
 
   private:

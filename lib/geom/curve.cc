@@ -233,7 +233,7 @@ void addArc(const Ellipse& ellipse, const Polygon& outline, double from, double 
 TouchedAt touchedFrom(const Ellipse& ellipse, Point2 viewpoint) {
     const Vec2 q = ellipse.toUnit(viewpoint - ellipse.center);
     const double middle = std::atan2(q.y, q.x), half = std::acos(std::min(1.0, 1 / length(q)));
-    // What is counter-clockwise about the centre lies on the right of who looks there.
+    // Counter-clockwise about the centre is on the right as seen from the viewpoint.
     return {middle + half, middle - half};
 }
 

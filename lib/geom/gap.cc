@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
@@ -13,16 +13,16 @@ namespace ispace {
 
 namespace {
 
-/// Ways to close a dangling end that are tried: the nearest may lead nowhere new.
+/// Ways to close a dangling end: the nearest may lead nowhere new.
 constexpr std::size_t kWaysPerEnd = 4;
-/// Closings that are considered, the narrowest: no plan has more, and a great many loose lines are
-/// answered in seconds too.
+/// Closings considered, the narrowest first: no plan has more, and very many loose lines still take
+/// seconds only.
 constexpr std::size_t kMaxClosings = 10000;
 
-/// What is this near to a line lies on it: a place that was rounded.
+/// A rounded point this near to a line lies on it.
 constexpr double kOnLine = 2 * kWeldDistance;
 
-/// Each line's pieces without the doubles that overlapping lines leave.
+/// The pieces without the duplicates that overlapping lines leave.
 WeldedLines withoutDoubles(const WeldedLines& lines) {
     std::vector<std::tuple<double, double, double, double, std::size_t>> keys;
     for (std::size_t i = 0; i < lines.pieces.size(); ++i) {
@@ -170,7 +170,7 @@ class GapFinder {
     WeldedLines lines_;
     Vertices vertices_;
     SegmentTree tree_;
-    double first_reach_ = 0;  // to look in from an end, where lines are evenly spread
+    double first_reach_ = 0;  // first search radius about an end, for evenly spread lines
     double extent_ = 0;       // no two points of lines are farther apart
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,25 +17,26 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// Pairs of lines looked at in a grid, which is quickest for what is evenly spread, per line and
-/// besides: beyond that in a tree.
+/// Pairs of lines tested in a grid, per line and in addition: it is quickest for evenly spread
+/// lines. Beyond that a tree is used.
 constexpr std::size_t kGridPairsPerLine = 64, kGridPairsAnyway = 1U << 20;
-/// The same in the tree: more crowd only where very many lines cross.
+/// The same for the tree: only very many lines that cross need more.
 constexpr std::size_t kPairsPerLine = 4096, kPairsAnyway = 1U << 26;
-/// Of cutting, and how often points are moved together from farther away if that does not end it.
+/// Rounds of cutting, and how often the distance for merging points is widened if they do not
+/// suffice.
 constexpr int kMaxRounds = 12, kMaxWidenings = 4;
 
-/// Pairs of lines by which crossings are counted.
+/// Sample size for counting crossings.
 constexpr std::size_t kSampledPairs = 1U << 17, kSampledPairsPerLine = 16, kMaxSampled = 1U << 22;
 constexpr std::size_t kSureHits = 16;
 
-/// Two digits: it is an estimate.
+/// Rounded to two digits: it is an estimate.
 std::string roundNumber(double value) {
     const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(value)) - 1));
     return std::to_string(static_cast<std::uint64_t>(std::round(value / unit) * unit));
 }
 
-/// Thrown inside, where the lines are not at hand.
+/// Internal; turned into a message where the lines are known.
 struct TooMany {};
 
 [[noreturn]] void refuse(std::span<const LinePiece> lines, const CrossingMessage& message) {
@@ -116,7 +117,7 @@ class DistinctPoints {
 /// From its lower end to its upper.
 Segment2 ordered(const Segment2& s) { return lexLess(s.b, s.a) ? Segment2{s.b, s.a} : s; }
 
-/// One round of cutting; what it moves by rounding may have to be cut again.
+/// One round of cutting; pieces moved by rounding may need another.
 class Cutter {
   public:
     Cutter(std::vector<LinePiece>& pieces, DistinctPoints& points, double reach)

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "geom/arrangement.h"
 #include "geom/overlay_lattice.h"
 #include "geom/predicates.h"
 
@@ -346,6 +347,43 @@ std::vector<double> Overlay::areasOf(std::span<const Region> regions) const {
         areas.push_back(area);
     }
     return areas;
+}
+
+std::vector<Region> Overlay::trace(const std::vector<Sides>& sides) const {
+    std::vector<lattice::Point> points;
+    points.reserve(points_.size());
+    for (const auto& [x, y] : points_) points.push_back({x, y});
+    std::vector<plane::Line> lines;
+    std::vector<bool> has_piece;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        if (sides[i] == kNowhere) continue;
+        lines.push_back({ends_[i].from, ends_[i].to});
+        has_piece.push_back((sides[i] & kLeft) != 0);
+        has_piece.push_back((sides[i] & kRight) != 0);
+    }
+    const plane::Faces<lattice::Point> faces(points, lines, std::move(has_piece));
+    const plane::Graph<lattice::Point>& graph = faces.graph();
+    const auto goes_on = [&](Index before, Index half) {
+        return lattice::cross(graph.pointOf(graph.source(before)),
+                              graph.pointOf(graph.source(half)),
+                              graph.pointOf(graph.target(half))) == 0;
+    };
+    std::vector<Region> regions(faces.count());
+    const auto face_of = [&](Index half) { return faces.of(half); };
+    faces.forEachBoundary(face_of, [&](Index face, const plane::Loop& loop, bool is_outline) {
+        Polygon curve;
+        curve.reserve(loop.size());
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            if (!goes_on(loop[i == 0 ? loop.size() - 1 : i - 1], loop[i]))
+                curve.push_back(place(graph.source(loop[i])));
+        rotateToLowest(curve);
+        if (is_outline)
+            regions[face].outline = std::move(curve);
+        else
+            regions[face].holes.push_back(std::move(curve));
+    });
+    putInOrder(regions);
+    return regions;
 }
 
 }  // namespace ispace

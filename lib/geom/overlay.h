@@ -18,11 +18,11 @@ struct LayerLabel {
     friend bool operator==(const LayerLabel&, const LayerLabel&) = default;
 };
 
-/// A point set to be overlaid with others: what lies to the left of its curves. These are the
-/// outlines and holes of one region, or of several disjoint ones, which may touch.
+/// A point set to overlay with others: what lies to the left of its curves, the outlines and holes
+/// of one or more disjoint regions, which may touch.
 struct Layer {
     std::vector<Curve> curves;
-    /// Adds 1 to count and its number to numbers, else sets bits of marks.
+    /// If true it adds 1 to `count` and its number to `numbers`, else it sets bits of `marks`.
     bool counts = true;
     std::int64_t number = 0;
     std::uint64_t marks = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geom/overlay_lattice.h"
 
+#include <array>
 #include <bit>
 #include <numeric>
 
@@ -86,7 +87,7 @@ std::vector<Edge> sorted(const std::vector<Edge>& edges, std::size_t points) {
     return out;
 }
 
-/// Several edges with the same ends as one.
+/// Merges edges with the same ends.
 Edge joined(std::span<const Edge> same, SetStore& sets, std::vector<Index>& layers) {
     Edge edge = same.front();
     bool is_first = true;
@@ -96,7 +97,7 @@ Edge joined(std::span<const Edge> same, SetStore& sets, std::vector<Index>& laye
         const std::span<const Index> set = sets[other.set];
         if (set.empty()) continue;
         layers.insert(layers.end(), set.begin(), set.end());
-        // Where an arc lies along something else, within a chord's error, it is nothing round.
+        // An arc along another edge, within a chord's error, no longer counts as one.
         if (is_first)
             edge.circle = other.circle;
         else if (edge.circle != other.circle)
@@ -129,6 +130,161 @@ std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& poin
     }
     edges.resize(count);
     return edges;
+}
+
+namespace {
+
+using Graph = plane::Graph<Point>;
+
+/// The layers that contain a point, as it moves.
+class Place {
+  public:
+    explicit Place(std::span<const Layer> layers) : layers_(layers), inside_(layers.size()) {}
+
+    [[nodiscard]] const LayerLabel& label() const { return label_; }
+    /// Crosses the boundary of these.
+    void cross(std::span<const Index> set) {
+        for (const Index i : set) {
+            const bool enters = inside_[i] == 0;
+            inside_[i] = enters ? 1 : 0;
+            const Layer& layer = layers_[i];
+            if (!layer.counts) {
+                crossMarks(layer.marks, enters);
+                continue;
+            }
+            label_.count += enters ? 1 : -1;
+            // Numbers may be anything: their sum may wrap around.
+            const auto number = static_cast<std::uint64_t>(layer.number);
+            const auto sum = static_cast<std::uint64_t>(label_.numbers);
+            label_.numbers = static_cast<std::int64_t>(enters ? sum + number : sum - number);
+        }
+    }
+
+  private:
+    void crossMarks(std::uint64_t marks, bool enters) {
+        for (; marks != 0; marks &= marks - 1) {
+            const int bit = std::countr_zero(marks);
+            Index& count = marking_[static_cast<std::size_t>(bit)];
+            count += enters ? 1 : static_cast<Index>(-1);
+            const std::uint64_t mask = std::uint64_t{1} << bit;
+            label_.marks = count > 0 ? label_.marks | mask : label_.marks & ~mask;
+        }
+    }
+
+    std::span<const Layer> layers_;
+    std::vector<std::uint8_t> inside_;
+    std::array<Index, 64> marking_{};  // layers with each mark
+    LayerLabel label_;
+};
+
+/// Connected components of the edges: each lies in a face of another, or outside all.
+class Nesting {
+  public:
+    explicit Nesting(const Graph& graph)
+        : component_of_(graph.vertices(), kNone), first_inside_(graph.halves() / 2, kNone) {
+        for (Index v = 0; v < graph.vertices(); ++v) {
+            if (component_of_[v] == kNone && !graph.leaving(v).empty()) addComponent(graph, v);
+        }
+        next_.assign(roots_.size(), kNone);
+        if (roots_.size() < 2) {
+            outermost_ = roots_;
+            return;
+        }
+        const std::vector<Index> below = graph.linesBelow(roots_);
+        for (Index c = 0; c < roots_.size(); ++c) {
+            if (below[c] == kNone) {
+                outermost_.push_back(roots_[c]);
+            } else {
+                next_[c] = first_inside_[below[c]];
+                first_inside_[below[c]] = c;
+            }
+        }
+    }
+
+    /// Lowest points (lexLess) of the components outside all others.
+    [[nodiscard]] const std::vector<Index>& outermost() const { return outermost_; }
+    /// Calls visit(lowest point) for each component directly above this line.
+    template <typename Visit>
+    void forEachAbove(Index line, Visit visit) const {
+        for (Index c = first_inside_[line]; c != kNone; c = next_[c]) visit(roots_[c]);
+    }
+
+  private:
+    void addComponent(const Graph& graph, Index start) {
+        const auto number = static_cast<Index>(roots_.size());
+        Index lowest = start;
+        std::vector<Index>& open = open_;
+        open.assign(1, start);
+        component_of_[start] = number;
+        while (!open.empty()) {
+            const Index v = open.back();
+            open.pop_back();
+            if (lexLess(graph.pointOf(v), graph.pointOf(lowest))) lowest = v;
+            for (const Index half : graph.leaving(v)) {
+                const Index other = graph.target(half);
+                if (component_of_[other] != kNone) continue;
+                component_of_[other] = number;
+                open.push_back(other);
+            }
+        }
+        roots_.push_back(lowest);
+    }
+
+    std::vector<Index> component_of_;  // points
+    std::vector<Index> roots_;         // lowest point of each component
+    std::vector<Index> next_;          // of the components right above the same line
+    std::vector<Index> first_inside_;  // component right above each line
+    std::vector<Index> outermost_;
+    std::vector<Index> open_;
+};
+
+}  // namespace
+
+std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
+                                 const std::vector<Edge>& edges, const SetStore& sets) {
+    std::vector<plane::Line> lines;
+    lines.reserve(edges.size());
+    for (const Edge& edge : edges) lines.push_back({edge.from, edge.to});
+    const Graph graph(points, lines);
+    const Nesting nesting(graph);
+    std::vector<EdgeLabels> labels(edges.size());
+    Place place(layers);
+    // A turn around a point, from before the half-edge at `at`: at its end the place is the same
+    // again, so that turns begun meanwhile may be made one within another.
+    struct Turn {
+        Index vertex, at;
+        Index left;  // half-edges to come
+    };
+    std::vector<Turn> turns;
+    std::vector<bool> begun(points.size());
+    const auto begin = [&](Index vertex, Index at) {
+        if (begun[vertex]) return;
+        begun[vertex] = true;
+        turns.push_back({vertex, at, static_cast<Index>(graph.leaving(vertex).size())});
+    };
+    for (const Index root : nesting.outermost()) {
+        begin(root, 0);
+        while (!turns.empty()) {
+            Turn& turn = turns.back();
+            if (turn.left == 0) {
+                turns.pop_back();
+                continue;
+            }
+            const std::span<const Index> about = graph.leaving(turn.vertex);
+            const Index half = about[turn.at];
+            turn.at = turn.at + 1 == about.size() ? 0 : turn.at + 1;
+            --turn.left;
+            const Index line = half / 2;
+            if (half % 2 == 0) labels[line].right = place.label();
+            place.cross(sets[edges[line].set]);
+            if (half % 2 == 0) {
+                labels[line].left = place.label();
+                nesting.forEachAbove(line, [&](Index lowest) { begin(lowest, 0); });
+            }
+            begin(graph.target(half), graph.placeOf(plane::twin(half)));
+        }
+    }
+    return labels;
 }
 
 }  // namespace ispace::lattice

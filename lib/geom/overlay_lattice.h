@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/geom only: the lattice on which layers are laid over each other, and edges between its
-// points.
+// Inside lib/geom only: the lattice to which overlays are rounded, and edges between its points.
 #pragma once
 
 #include <algorithm>
@@ -57,11 +56,11 @@ struct Box {
     }
 };
 
-/// Points, each once, numbered as they came.
+/// Distinct points, numbered in the order of arrival.
 class PointTable {
   public:
     void reserve(std::size_t count);
-    /// Its number; a new one if it is not there yet. Amortised O(1)
+    /// Number of the point, which is added if it is new. Amortised O(1)
     Index add(Point p);
     [[nodiscard]] const std::vector<Point>& points() const { return points_; }
 
@@ -83,8 +82,8 @@ class SetStore {
     [[nodiscard]] std::span<const Index> operator[](Index set) const {
         return std::span(items_).subspan(first_[set], first_[set + 1] - first_[set]);
     }
-    /// Of the layers in an odd number of sets. \param layers of all sets one after another; is
-    /// sorted
+    /// The set of the layers that are in an odd number of sets. \param layers of all sets one after
+    /// another; sorted in place
     Index addOdd(std::vector<Index>& layers);
 
   private:
@@ -101,8 +100,8 @@ struct Edge {
     bool is_wall = false;
 };
 
-/// Each edge once, from its lower end (lexLess); what lies an even number of times in the boundary
-/// of each layer, or has no length, is left out unless it is a wall. O(n)
+/// Each edge once, from its lower end (lexLess). Edges without length, and those that cancel out in
+/// the boundary of each layer, are dropped unless they are walls. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
 /// A part of the lattice.
@@ -115,10 +114,9 @@ struct Cell {
 /// In steps of the lattice, in x as well as in y.
 constexpr std::int32_t kReach = 2;
 
-/// Divides the box of all points so that few edges come near to each cell, as far as that can be:
-/// square cells, crowded ones divided again. Where dividing does not part edges (because they lie
-/// along each other) it stops. In an order that depends only on the input. `visit` may add points,
-/// which belong to no cell.
+/// Divides the box of all points into square cells, and crowded ones again, until few edges come
+/// near each cell or dividing no longer separates them (because they lie along each other). The
+/// order depends only on the input. `visit` may add points; they belong to no cell.
 /// \pre edges begin at their lower end (lexLess)
 void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
                  const std::function<void(const Cell&)>& visit);

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "geom/arrangement.h"
-#include "geom/noding.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
@@ -58,13 +57,13 @@ std::vector<Point2> weldPoints(const std::vector<Point2>& points) {
     return welded;
 }
 
-/// Points on lines, per line and besides: no plan needs as many, and what does would not fit into
-/// memory.
+/// Limits of points on lines, per line and in addition: no plan needs more, and more would not fit
+/// into memory.
 constexpr std::size_t kTouchesPerLine = 32, kTouchesAnyway = 1U << 21;
-/// Looks at lines near a point, per line: so many in a grid, which is quickest for what is evenly
-/// spread, then in a tree; so many there, and besides, only where very many long lines cross.
-constexpr std::size_t kGridLooksPerLine = 64;
-constexpr std::size_t kLooksPerLine = 1024, kLooksAnyway = 1U << 26;
+/// Tests of a line against a point, per line: first in a grid, which is quickest for evenly spread
+/// lines, then in a tree. Only very many long lines that cross need more there.
+constexpr std::size_t kGridTestsPerLine = 64;
+constexpr std::size_t kTestsPerLine = 1024, kTestsAnyway = 1U << 26;
 
 /// Collects for each segment the points of others that lie on its inside.
 class TouchFinder {
@@ -85,9 +84,9 @@ class TouchFinder {
         const SegmentGrid grid(segments_, kWeldDistance);
         for (std::size_t k = 0; k < points.size(); ++k) {
             const auto near = grid.near(points[k]);
-            looks_ += near.size();
-            if (looks_ > kGridLooksPerLine * segments_.size()) return k;
-            for (const std::uint32_t i : near) look(i, points[k]);
+            tests_ += near.size();
+            if (tests_ > kGridTestsPerLine * segments_.size()) return k;
+            for (const std::uint32_t i : near) test(i, points[k]);
             checkTouches();
         }
         return points.size();
@@ -97,17 +96,17 @@ class TouchFinder {
         const SegmentTree tree(segments_);
         for (const Point2 p : points) {
             tree.search({p, p}, kWeldDistance, [&](std::size_t i) {
-                ++looks_;
-                if (!isSurelyOff(segments_[i], p)) look(i, p);
+                ++tests_;
+                if (!isSurelyOff(segments_[i], p)) test(i, p);
             });
             checkTouches();
-            if (looks_ > kLooksAnyway + kLooksPerLine * segments_.size())
+            if (tests_ > kTestsAnyway + kTestsPerLine * segments_.size())
                 throw FormatError(Diagnostic{
                     "", 0, 0, "too many wall lines cross each other; end them where they meet"});
         }
     }
 
-    /// Told without a division for most of the points beside a line; never wrongly.
+    /// Rules out most points beside a line without a division; never wrong.
     static bool isSurelyOff(const Segment2& s, Point2 p) {
         const Vec2 along = s.b - s.a, to = p - s.a;
         // The second term is far above what rounding makes of a point on the line.
@@ -116,9 +115,9 @@ class TouchFinder {
         return twist * twist > reach * reach * dot(along, along) && std::isfinite(twist * twist);
     }
 
-    void look(std::size_t i, Point2 p) {
+    void test(std::size_t i, Point2 p) {
         const Segment2& s = segments_[i];
-        // Far out distances overflow to what is not near.
+        // Distances that overflow are not near.
         if (p == s.a || p == s.b || !(distance(p, s) <= kWeldDistance)) return;
         touching_[i].push_back(p);
         ++touches_;
@@ -132,7 +131,7 @@ class TouchFinder {
 
     const std::vector<Segment2>& segments_;
     std::vector<std::vector<Point2>> touching_;
-    std::size_t touches_ = 0, looks_ = 0;
+    std::size_t touches_ = 0, tests_ = 0;
 };
 
 /// For each segment the points of others that lie on its inside, in order along it.

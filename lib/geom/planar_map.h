@@ -62,9 +62,9 @@ struct Gap {
     std::size_t a, b;  ///< indices of the two lines that do not meet
 };
 
-/// Closes gaps from the narrowest up until `inside` (or, without it, any point) is enclosed, and
-/// returns the last one closed; nothing if it is not enclosed even with every dangling end joined
-/// to its nearest lines.
+/// Closes gaps, narrowest first, until `inside` (or, without it, any point) is enclosed, and
+/// returns the last one closed; nothing if joining every dangling end to its nearest lines does not
+/// enclose it.
 std::optional<Gap> findGap(std::span<const Segment2> lines, std::optional<Point2> inside);
 
 }  // namespace ispace

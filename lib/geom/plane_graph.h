@@ -45,7 +45,7 @@ class Graph {
     [[nodiscard]] std::span<const Index> leaving(Index vertex) const {
         return std::span(order_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }
-    /// Its place among those that leave the same point.
+    /// Its index in leaving(source(half)).
     [[nodiscard]] Index placeOf(Index half) const { return place_[half]; }
     /// The next on the way around the face to its left.
     [[nodiscard]] Index next(Index half) const {

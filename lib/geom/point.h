@@ -1,12 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/geom: points, poses, angles, polygons, predicates, regions. Uses base, Eigen, CGAL (inside).
+// lib/geom: angles, points, poses, polygons, regions, exact predicates, overlays, visibility. Uses
+// base and Eigen; CGAL in sources alone.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
-
-#include "geom/angle.h"
+#include <compare>
+#include <limits>
+#include <numbers>
 
 namespace ispace {
+
+/// A plane angle; the unit is named where one is made or read. Counter-clockwise is positive.
+///
+/// Kept in degrees, the unit of files and options, so that 90 is exactly a quarter turn:
+/// cosine and sine are exact at multiples of 90 degrees and walls drawn square stay square.
+class Angle {
+  public:
+    constexpr Angle() = default;
+    static constexpr Angle degrees(double value) { return Angle(value); }
+    static constexpr Angle radians(double value) { return Angle(value * (180 / std::numbers::pi)); }
+    [[nodiscard]] constexpr double degrees() const { return degrees_; }
+    [[nodiscard]] constexpr double radians() const { return degrees_ * (std::numbers::pi / 180); }
+
+    friend constexpr Angle operator+(Angle a, Angle b) { return Angle(a.degrees_ + b.degrees_); }
+    friend constexpr Angle operator-(Angle a, Angle b) { return Angle(a.degrees_ - b.degrees_); }
+    friend constexpr Angle operator-(Angle a) { return Angle(-a.degrees_); }
+    friend constexpr Angle operator*(double s, Angle a) { return Angle(s * a.degrees_); }
+    friend constexpr auto operator<=>(Angle a, Angle b) = default;
+
+  private:
+    explicit constexpr Angle(double degrees) : degrees_(degrees) {}
+    double degrees_ = 0;
+};
+
+struct CosSin {
+    double cos, sin;
+};
+/// Both at once; exact at multiples of 90 degrees.
+CosSin cosSin(Angle angle);
+double cos(Angle angle);
+double sin(Angle angle);
+double tan(Angle angle);
+
+/// The same direction within (-180, 180] degrees.
+Angle wrapped(Angle angle);
+
+/// Direction of the vector (x, y), in (-180, 180]; 0 for the null vector.
+Angle directionOf(double x, double y);
 
 /// A displacement on the floor, in metres.
 struct Vec2 {
@@ -46,7 +87,7 @@ inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 /// through orientation() in predicates.h.
 inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 inline double length(Vec2 v) { return std::hypot(v.x, v.y); }
-/// An order of places without meaning but that it is one: by x, then by y.
+/// Lexicographic order: by x, then by y.
 inline bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
 inline double distance(Point2 a, Point2 b) { return length(b - a); }
 /// v turned left by a quarter turn.
@@ -64,5 +105,23 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline double length(Vec3 v) { return std::hypot(v.x, v.y, v.z); }
+
+/// Axis-parallel rectangle on the floor; empty until a point is added.
+struct Box2 {
+    Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    Point2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+    [[nodiscard]] bool empty() const { return low.x > high.x; }
+    [[nodiscard]] double width() const { return high.x - low.x; }
+    [[nodiscard]] double depth() const { return high.y - low.y; }
+    [[nodiscard]] Point2 center() const {
+        return {low.x + (high.x - low.x) / 2, low.y + (high.y - low.y) / 2};
+    }
+    void add(Point2 p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    friend bool operator==(const Box2&, const Box2&) = default;
+};
 
 }  // namespace ispace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
-#include "geom/box.h"
 #include "geom/point.h"
 
 namespace ispace {
@@ -24,16 +25,15 @@ double signedArea(const Polygon& polygon);
 double perimeter(const Polygon& polygon);
 Box2 bounds(const Polygon& polygon);
 Box2 bounds(const Segment2& segment);
-/// True if every corner of a polygon that does not cross itself turns left or goes straight on, and
-/// one turns: counter-clockwise, with an area; vertices may lie along edges and be doubled. Exact.
-/// O(n)
+/// True if a simple polygon is convex, counter-clockwise and has an area; collinear and repeated
+/// vertices are allowed. Exact. O(n)
 bool isConvex(const Polygon& polygon);
-/// The same without corners that go straight on: then a fan from any vertex triangulates it. O(n)
+/// The same without collinear vertices: a fan from any vertex then triangulates it. O(n)
 bool isStrictlyConvex(const Polygon& polygon);
 /// Even-odd rule, exact (robust orientation of the given doubles). O(n).
 Side locate(const Polygon& polygon, Point2 p);
 
-/// A connected piece of the floor: an outline (counter-clockwise) less its holes (clockwise).
+/// A connected piece of the floor: an outline (counter-clockwise) minus its holes (clockwise).
 /// Curves may touch themselves and each other at single points.
 struct Region {
     Polygon outline;
@@ -49,15 +49,14 @@ struct Region {
     friend bool operator==(const Region&, const Region&) = default;
 };
 
-/// Pieces of the floor that share no inside: they may share edges, and one may lie in a hole of
-/// another.
+/// Regions with disjoint interiors: they may share edges, and one may lie in a hole of another.
 struct Regions {
     std::vector<Region> parts;
 
     [[nodiscard]] double area() const;
-    /// Of all parts: an edge between two counts for both.
+    /// Sum over all parts: an edge between two counts twice.
     [[nodiscard]] double boundaryLength() const;
-    /// On the boundary of a part it is Boundary, also between two.
+    /// Boundary also on an edge between two parts.
     [[nodiscard]] Side locate(Point2 p) const;
     /// Calls visit(Segment2) for each edge of each part.
     template <typename Visit>
@@ -66,13 +65,13 @@ struct Regions {
 };
 Box2 bounds(const Regions& regions);
 
-/// The outline and then the holes, of one region or of several one after another: by the even-odd
-/// rule the same area, where regions are disjoint.
+/// Outline and then holes, of one region after another. If the regions are disjoint, the curves
+/// enclose the same area by the even-odd rule.
 std::vector<Polygon> curvesOf(const Region& region);
 std::vector<Polygon> curvesOf(const std::vector<Region>& regions);
 std::vector<Polygon> curvesOf(const Regions& regions);
 
-/// A point strictly inside the region, well away from its boundary where it can be.
+/// A point strictly inside the region, well away from its boundary where possible.
 Point2 interiorPoint(const Region& region);
 
 template <typename Visit>
@@ -91,5 +90,20 @@ template <typename Visit>
 void Regions::forEachEdge(Visit visit) const {
     for (const Region& part : parts) part.forEachEdge(visit);
 }
+
+/// Triangles over a region's own vertices, counter-clockwise.
+struct Triangulation {
+    std::vector<Point2> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Constrained Delaunay triangulation of the region's interior (CGAL). Curves may touch.
+Triangulation triangulate(const Region& region);
+
+/// The closed curves with fewer vertices: none moves by more than `tolerance` metres, curves that
+/// were apart stay apart, and none disappears (CGAL's Polyline_simplification_2). Vertices where
+/// curves touch and those in `kept` stay. Result i belongs to curve i.
+std::vector<Polygon> simplified(const std::vector<Polygon>& curves, double tolerance,
+                                std::vector<Point2> kept = {});
 
 }  // namespace ispace

@@ -31,21 +31,21 @@ struct Pose3 {
     friend bool operator==(const Pose3&, const Pose3&) = default;
 };
 
-/// The axes of a frame in the outer frame, for many points of it; exact where angles are multiples
-/// of 90 degrees.
+/// A frame given by its axes in the outer frame; quicker than Pose3 for many points. Exact where
+/// angles are multiples of 90 degrees.
 struct Frame3 {
     Point3 origin;
     Vec3 forward{1, 0, 0}, left{0, 1, 0}, up{0, 0, 1};
 
     Frame3() = default;
     explicit Frame3(const Pose3& pose);
-    /// Of this frame in the outer one.
+    /// A vector of this frame in the outer frame.
     [[nodiscard]] Vec3 operator*(Vec3 local) const {
         return {local.x * forward.x + local.y * left.x + local.z * up.x,
                 local.x * forward.y + local.y * left.y + local.z * up.y,
                 local.x * forward.z + local.y * left.z + local.z * up.z};
     }
-    /// A place of the outer frame as the way from the origin, along the axes.
+    /// A point of the outer frame, in this frame.
     [[nodiscard]] Vec3 toLocal(Point3 outer) const {
         const Vec3 way = outer - origin;
         return {dot(way, forward), dot(way, left), dot(way, up)};

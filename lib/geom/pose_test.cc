@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+
+#include "geom/point.h"
+#include "geom/rotation.h"
 
 namespace ispace {
 namespace {
@@ -88,6 +92,94 @@ TEST(Pose3, rollTurnsAboutTheBeamAhead) {
         EXPECT_NEAR(dot(beam, x), cos(b), 1e-14);
         EXPECT_NEAR(dot(beam, y), sin(b) * cos(r), 1e-14);
         EXPECT_NEAR(dot(beam, z), sin(b) * sin(r), 1e-14);
+    }
+}
+
+TEST(Angle, isExactAtQuarterTurns) {
+    for (int turn = -8; turn <= 8; ++turn) {
+        const Angle angle = Angle::degrees(90.0 * turn);
+        const int quadrant = ((turn % 4) + 4) % 4;
+        const double cosines[] = {1, 0, -1, 0}, sines[] = {0, 1, 0, -1};
+        EXPECT_EQ(cos(angle), cosines[quadrant]) << turn;
+        EXPECT_EQ(sin(angle), sines[quadrant]) << turn;
+        EXPECT_FALSE(std::signbit(cos(angle)) && cos(angle) == 0) << turn;
+        EXPECT_FALSE(std::signbit(sin(angle)) && sin(angle) == 0) << turn;
+    }
+    EXPECT_EQ(tan(Angle::degrees(180)), 0);
+    EXPECT_NEAR(tan(Angle::degrees(45)), 1, 1e-15);
+}
+
+TEST(Angle, convertsUnits) {
+    EXPECT_DOUBLE_EQ(Angle::degrees(180).radians(), std::numbers::pi);
+    EXPECT_DOUBLE_EQ(Angle::radians(std::numbers::pi / 2).degrees(), 90);
+    EXPECT_EQ((Angle::degrees(30) + 2.0 * Angle::degrees(15) - Angle::degrees(10)).degrees(), 50);
+    EXPECT_EQ(-Angle::degrees(30), Angle::degrees(-30));
+    EXPECT_LT(Angle::degrees(30), Angle::degrees(31));
+}
+
+TEST(Angle, agreesWithTheStandardLibrary) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> degrees(-1000, 1000);
+    for (int i = 0; i < 1000; ++i) {
+        const Angle angle = Angle::degrees(degrees(random));
+        EXPECT_NEAR(cos(angle), std::cos(angle.radians()), 1e-13);
+        EXPECT_NEAR(sin(angle), std::sin(angle.radians()), 1e-13);
+    }
+}
+
+TEST(Angle, wrapsToHalfOpenTurn) {
+    EXPECT_EQ(wrapped(Angle::degrees(180)).degrees(), 180);
+    EXPECT_EQ(wrapped(Angle::degrees(-180)).degrees(), 180);
+    EXPECT_EQ(wrapped(Angle::degrees(540)).degrees(), 180);
+    EXPECT_EQ(wrapped(Angle::degrees(-190)).degrees(), 170);
+    EXPECT_EQ(wrapped(Angle::degrees(360)).degrees(), 0);
+    EXPECT_EQ(wrapped(Angle::degrees(359.5)).degrees(), -0.5);
+}
+
+TEST(Angle, directionOfVector) {
+    EXPECT_EQ(directionOf(0, 0).degrees(), 0);
+    EXPECT_EQ(directionOf(2, 0).degrees(), 0);
+    EXPECT_DOUBLE_EQ(directionOf(0, 3).degrees(), 90);
+    EXPECT_DOUBLE_EQ(directionOf(-1, 0).degrees(), 180);
+    EXPECT_DOUBLE_EQ(directionOf(-1, -0.0).degrees(), 180);
+    EXPECT_DOUBLE_EQ(directionOf(1, -1).degrees(), -45);
+}
+
+void expectNear(const Eigen::Vector3d& a, Vec3 b, double tolerance) {
+    EXPECT_LE((a - vectorOf(b)).norm(), tolerance);
+}
+
+Pose3 pose(double heading, double tilt, double roll) {
+    return {{1, 2, 3}, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(roll)};
+}
+
+TEST(Rotation, TurnsAsPosesDo) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> any(-180, 180), tilts(-90, 90);
+    for (int i = 0; i < 500; ++i) {
+        Pose3 p = pose(any(random), tilts(random), any(random));
+        if (i % 5 == 0) p.tilt = Angle::degrees(i % 2 == 0 ? 90 : -90);
+        const Frame3 frame(p);
+        const Eigen::Quaterniond q = quaternionOf(p);
+        expectNear(q * Eigen::Vector3d::UnitX(), frame.forward, 1e-12);
+        expectNear(q * Eigen::Vector3d::UnitY(), frame.left, 1e-12);
+        expectNear(q * Eigen::Vector3d::UnitZ(), frame.up, 1e-12);
+        const Pose3 back = poseOf(p.position, Eigen::Quaterniond(-3 * q.coeffs()));
+        expectNear(vectorOf(back.beam({})), p.beam({}), 1e-7);
+        expectNear(vectorOf(back.beam(Angle::degrees(90))), p.beam(Angle::degrees(90)), 1e-7);
+        expectNear(isometryOf(p) * Eigen::Vector3d(0, 2, 0), p.position + 2 * frame.left - Point3(),
+                   1e-12);
+    }
+}
+
+TEST(Rotation, IsExactAtQuarterTurns) {
+    for (int i = 0; i < 64; ++i) {
+        const Frame3 frame(pose(90 * (i % 4), 90 * (i / 4 % 4), 90 * (i / 16)));
+        for (const Vec3 axis : {frame.forward, frame.left, frame.up}) {
+            EXPECT_EQ(dot(axis, axis), 1);
+            for (const double part : {axis.x, axis.y, axis.z})
+                EXPECT_TRUE(part == 0 || part == 1 || part == -1);
+        }
     }
 }
 

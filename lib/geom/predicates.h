@@ -9,7 +9,8 @@ namespace ispace {
 
 enum class Turn { Right = -1, Straight = 0, Left = 1 };
 
-/// Where c lies seen along a -> b; exact for the given doubles (adaptive arithmetic).
+/// On which side of the line a -> b the point c lies; exact for the given doubles (adaptive
+/// arithmetic).
 Turn orientation(Point2 a, Point2 b, Point2 c);
 
 /// True if the closed segments share a point; exact.
@@ -24,11 +25,11 @@ Point2 nearestPoint(const Segment2& s, Point2 p);
 /// The thesis' Insider Judge (section 4.4.4): p is inside if the segment from p to a point known
 /// to be inside crosses the wall lines an even number of times.
 ///
-/// A crossing is counted as the thesis does, by the signs of the end points of each segment in
-/// the line equation of the other, but with exact signs, and an end point on the line counts as
-/// lying to its left, so that a common vertex of two walls is crossed once or twice, never by
-/// half. Agrees with the exact test where wall lines are simple closed curves; unlike that, it errs
-/// if a free-standing wall lies between p and the known point. O(n).
+/// Crossings are counted as in the thesis, by the signs of each segment's end points in the line
+/// equation of the other, but with exact signs. An end point on the line counts as left of it, so
+/// that a vertex shared by two walls is crossed once or twice, never half. Agrees with the exact
+/// test where wall lines are simple closed curves; unlike that, it errs if a free-standing wall
+/// lies between p and the known point. O(n).
 bool insideByParity(Point2 p, Point2 known_inside, std::span<const Segment2> walls);
 
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/polygon.h"
 
 namespace ispace {

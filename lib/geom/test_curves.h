@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "geom/polygon.h"
@@ -100,5 +101,17 @@ struct PixelMap {
         return count;
     }
 };
+
+// The reference for faces and differences: CGAL's arrangement in exact numbers, rounded to doubles
+// at the end. Defined in arrangement_cgal_test.cc.
+
+/// What boundedFaces() finds.
+std::vector<Region> exactFaces(std::span<const Segment2> lines,
+                               std::span<const Segment2> passages = {});
+
+/// The open connected pieces where the winding number of `added` is positive and that of `removed`
+/// is zero.
+std::vector<Region> exactDifference(std::span<const Segment2> added,
+                                    std::span<const Segment2> removed);
 
 }  // namespace ispace::test

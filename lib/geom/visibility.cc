@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 
-bool isArc(const SightEdge& end) { return end.line == SightEdge::kArc; }
+bool isArc(const SightEdge& edge) { return edge.line == SightEdge::kArc; }
 
 /// From direction a counter-clockwise to b, in [0, 2 pi).
 double angleBetween(Vec2 a, Vec2 b) {
@@ -19,29 +19,29 @@ double angleBetween(Vec2 a, Vec2 b) {
     return angle < 0 ? angle + kWholeTurn : angle;
 }
 
-/// Where sight in a direction ends.
-Point2 endIn(const VisibleRegion& region, const SightEdge& end, Vec2 direction) {
-    if (isArc(end)) return region.viewpoint + region.max_range * direction;
-    const Vec2 a = end.from - region.viewpoint, b = end.to - region.viewpoint;
+/// The point of the edge in a direction.
+Point2 pointIn(const VisibleRegion& region, const SightEdge& edge, Vec2 direction) {
+    if (isArc(edge)) return region.viewpoint + region.max_range * direction;
+    const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
     const double right = -cross(direction, a), left = cross(direction, b);
     // Written so that 0 / 0 gives 0.
     const double share = std::min(1.0, std::max(0.0, right / (right + left)));
-    return end.from + share * (end.to - end.from);
+    return edge.from + share * (edge.to - edge.from);
 }
 
-void addEnd(VisibleRegion& region, const SightEdge& end) {
-    if (cross(end.from - region.viewpoint, end.to - region.viewpoint) > 0)
-        region.edges.push_back(end);
+void addEdge(VisibleRegion& region, const SightEdge& edge) {
+    if (cross(edge.from - region.viewpoint, edge.to - region.viewpoint) > 0)
+        region.edges.push_back(edge);
 }
 
 }  // namespace
 
 double area(const VisibleRegion& region) {
     double twice = 0;
-    for (const SightEdge& end : region.edges) {
-        const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
-        twice += isArc(end) ? region.max_range * region.max_range * angleBetween(from, to)
-                            : cross(from, to);
+    for (const SightEdge& edge : region.edges) {
+        const Vec2 from = edge.from - region.viewpoint, to = edge.to - region.viewpoint;
+        twice += isArc(edge) ? region.max_range * region.max_range * angleBetween(from, to)
+                             : cross(from, to);
     }
     return twice / 2;
 }
@@ -55,10 +55,10 @@ Curve outlineOf(const VisibleRegion& region) {
     };
     if (!region.is_whole) go_to(region.viewpoint, region.edges.front().from);
     for (std::size_t i = 0; i < region.edges.size(); ++i) {
-        const SightEdge& end = region.edges[i];
-        if (i > 0) go_to(region.edges[i - 1].to, end.from);
-        curve.push_back({end.from, end.to});
-        if (isArc(end)) {
+        const SightEdge& edge = region.edges[i];
+        if (i > 0) go_to(region.edges[i - 1].to, edge.from);
+        curve.push_back({edge.from, edge.to});
+        if (isArc(edge)) {
             curve.back().radius = region.max_range;
             curve.back().center = region.viewpoint;
         }
@@ -77,12 +77,12 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     VisibleRegion sector{region.viewpoint, region.max_range, false, {}};
     if (region.edges.empty() || !(span > Angle())) return sector;
     const Vec2 begin = unitVector(first), stop = unitVector(first + span);
-    // The end in which the sector begins is the first one to stop after that: where the angles
-    // fall back by almost a turn. The least of them may be a tie, or one of the last by rounding.
+    // The sector begins in the first edge that ends after `begin`: where the angles drop by almost
+    // a turn. The least of them may be a tie, or one of the last by rounding.
     std::vector<double> stops;
     stops.reserve(region.edges.size());
-    for (const SightEdge& end : region.edges)
-        stops.push_back(angleBetween(begin, end.to - region.viewpoint));
+    for (const SightEdge& edge : region.edges)
+        stops.push_back(angleBetween(begin, edge.to - region.viewpoint));
     std::size_t start = 0;
     double drop = stops.back() - stops.front();
     for (std::size_t i = 1; i < stops.size(); ++i)
@@ -93,20 +93,20 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
     const std::size_t count = region.edges.size();
     sector.edges.reserve(count + 1);
     for (std::size_t i = 0; i <= count; ++i) {
-        SightEdge end = region.edges[(start + i) % count];
+        SightEdge edge = region.edges[(start + i) % count];
         const bool comes_back = i == count;
-        const double from = angleBetween(begin, end.from - region.viewpoint);
-        // Whether the first one begins before the sector: then it does so almost a turn later too.
+        const double from = angleBetween(begin, edge.from - region.viewpoint);
+        // If the first edge begins before the sector, its angle is almost a whole turn.
         const bool is_split = (i == 0 || comes_back) && from > stops[start];
         if (comes_back && !is_split) break;
-        // All others begin where the one before them stopped, whatever their angle rounds to.
+        // All others begin where the previous one ended, whatever their angle rounds to.
         if (i == 0 && is_split)
-            end.from = endIn(region, end, begin);
+            edge.from = pointIn(region, edge, begin);
         else if (i == 0 && from >= span.radians())
             break;
         const bool is_last = comes_back || stops[(start + i) % count] >= span.radians();
-        if (is_last) end.to = endIn(region, end, stop);
-        addEnd(sector, end);
+        if (is_last) edge.to = pointIn(region, edge, stop);
+        addEdge(sector, edge);
         if (is_last) break;
     }
     return sector;
@@ -115,10 +115,10 @@ VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span) {
 bool holds(const VisibleRegion& region, Point2 p) {
     const Vec2 way = p - region.viewpoint;
     if (way == Vec2()) return !region.edges.empty();
-    return std::any_of(region.edges.begin(), region.edges.end(), [&](const SightEdge& end) {
-        const Vec2 from = end.from - region.viewpoint, to = end.to - region.viewpoint;
+    return std::any_of(region.edges.begin(), region.edges.end(), [&](const SightEdge& edge) {
+        const Vec2 from = edge.from - region.viewpoint, to = edge.to - region.viewpoint;
         if (cross(from, way) < 0 || cross(way, to) < 0) return false;
-        if (isArc(end)) return dot(way, way) <= region.max_range * region.max_range;
+        if (isArc(edge)) return dot(way, way) <= region.max_range * region.max_range;
         return cross(to - from, way - from) >= 0;
     });
 }

@@ -11,17 +11,16 @@
 
 namespace ispace {
 
-/// Lines this close to a viewpoint do not block its view, in metres, nor do the lines that continue
-/// them: a viewpoint on a wall sees both sides. The same as for rays.
+/// Lines within this distance of a viewpoint, in metres, do not block its view, nor do lines that
+/// continue them: a viewpoint on a wall sees both sides. Rays use the same value.
 constexpr double kRayEpsilon = 1e-4;
 
-/// What bounds the view over an interval of directions: a piece of a line, or an arc at the maximum
-/// range.
+/// An edge of a visibility polygon: a piece of a line, or an arc at the maximum range.
 struct SightEdge {
     static constexpr std::uint32_t kArc = std::numeric_limits<std::uint32_t>::max();
     Point2 from, to;  ///< counter-clockwise seen from the viewpoint, in different directions
-    /// Index of a line that blocks the view there (one of them), or kArc. Round bodies are numbered
-    /// after the lines; their `from` and `to` may lie off the curve, see VisibilityMap.
+    /// Index of a line that blocks the view there, or kArc. Round bodies are numbered after the
+    /// lines; their `from` and `to` may lie off the curve, see VisibilityMap.
     std::uint32_t line = kArc;
 };
 
@@ -46,7 +45,7 @@ Curve outlineOf(const VisibleRegion& region);
 /// The part in directions from `first` counter-clockwise over `span`: the whole turn for a span of
 /// 360 degrees or more, nothing for one of 0 or less. \pre region.is_whole
 VisibleRegion sectorOf(const VisibleRegion& region, Angle first, Angle span);
-/// True if p lies in the region; on its boundary, rounding decides. O(edges)
+/// True if p lies in the region; on the boundary rounding decides. O(edges)
 bool holds(const VisibleRegion& region, Point2 p);
 
 /// Answers visibility queries among lines, from anywhere in the plane.
@@ -73,8 +72,8 @@ class VisibilityMap {
     ~VisibilityMap();
 
     /// Sets `region` to what is visible from a viewpoint up to max_range, all around; its memory is
-    /// reused. Any viewpoint will do: on a line (within kRayEpsilon it is moved onto it), on an end
-    /// point or a crossing, or outside of everything. Typically O(edges + log n), and O(edges) for
+    /// reused. Any viewpoint is allowed: on a line (within kRayEpsilon it is moved onto it), on an
+    /// end point or a crossing, or outside everything. Typically O(edges + log n), and O(edges) for
     /// each round body within range.
     /// \pre max_range >= 0; 0 gives an empty region. Use +infinity where lines enclose the
     ///      viewpoint: if the view is free after all, it ends beyond all lines, at region.max_range

@@ -13,23 +13,24 @@
 
 namespace ispace {
 
-/// Directions of sight that have come equally far: from its right limit to that of the next window.
+/// Directions of view that have reached the same portal: from the right limit of this window to
+/// that of the next.
 struct Window {
     Vec2 right;            ///< from the viewpoint to the corner of a portal
     std::uint32_t corner;  ///< that portal
     std::uint32_t next;    ///< the window on the left
-    std::uint32_t target;  ///< the portal that is got through, or what stops sight
+    std::uint32_t target;  ///< the portal to pass, or what blocks the view
 };
 
-/// A chain of windows, counter-clockwise, and those of them that wait their turn, first come first
-/// served. In memory that needs none from the heap but for the widest views.
+/// A counter-clockwise chain of windows, and a queue of those still to expand. Uses the heap only
+/// for the widest views.
 class Windows {
   public:
     Windows() {}  // nothing is set before it is used
     Windows(const Windows&) = delete;
     Windows& operator=(const Windows&) = delete;
 
-    /// Where all is, to be kept in registers.
+    /// The pointers and counters, to be kept in registers.
     struct State {
         Window* windows;
         std::uint32_t* queue;
@@ -41,7 +42,7 @@ class Windows {
     [[nodiscard]] std::uint32_t count() const { return s_.count; }
     Window& operator[](std::uint32_t i) { return s_.windows[i]; }
 
-    /// Adds one to the left end of the chain. Those that are split off keep within.
+    /// Appends a window at the left end of the chain.
     void append(const Window& window) {
         if (s_.isFull()) s_ = grow(s_);
         s_.windows[s_.count] = window;
@@ -50,7 +51,7 @@ class Windows {
     }
     void wait(std::uint32_t window) { s_.queue[s_.tail++ & s_.mask] = window; }
 
-    /// Twice the room. \return where all is now
+    /// Doubles the capacity. \return the new state
     [[nodiscard]] State grow(State s) {
         const std::uint32_t size = 2 * (s.mask + 1);
         std::vector<Window> windows(size);
@@ -79,15 +80,14 @@ class Windows {
     State s_{windows_here, queue_here, kHere - 1, 0, 0, 0};
 };
 
-/// One query in a large mesh, in which nobody can predict which way sight goes next: a processor
-/// that guesses wrong loses more time than the step takes. So all windows go on in turn, one
-/// triangle each, without branches: the steps do not depend on each other and overlap. What is seen
-/// is the same as what Expansion finds, to the last bit.
+/// A query in a large mesh, in which branches are unpredictable and a misprediction costs more than
+/// a step. So all windows advance in turn, one triangle each, without branches: the steps are
+/// independent and overlap. The result is that of Expansion, to the last bit.
 class BreadthFirst {
   public:
     using Index = std::uint32_t;
 
-    /// \param search turns and stops are left to it
+    /// \param search decides turns and writes edges
     BreadthFirst(const Portal* portals, Point2 viewpoint, double farthest,
                  Expansion<false, false>& search)
         : portals_(portals),
@@ -104,7 +104,7 @@ class BreadthFirst {
         if (isPortal(target) != 0) windows_.wait(windows_.count() - 1);
         left_corner_ = beforeOf(edge);
     }
-    /// Looks through all edges that were named, and writes what is seen.
+    /// Expands through the edges given so far and writes the region.
     void run() {
         windows_.append({search_.wayTo(left_corner_), left_corner_, 0, Portal::kFree});
         const Index end = windows_.count() - 1;
@@ -124,9 +124,9 @@ class BreadthFirst {
     template <Index kBatch>
     void advance(Windows::State& s) const;
 
-    /// Lets all windows that wait pass on through triangles until all of them are stopped.
+    /// Expands all waiting windows until each is blocked.
     void expand() {
-        // In registers, for all that is written: each step adds to what the one before left.
+        // A local copy stays in registers in spite of all stores.
         Windows::State s = windows_.state();
         while (s.head != s.tail) {
             if (s.isFull()) [[unlikely]]
@@ -147,8 +147,8 @@ class BreadthFirst {
     Windows windows_;
 };
 
-/// Lets so many of the windows that wait pass one triangle each: all is read before anything is
-/// written, so that no reading has to wait.
+/// Advances kBatch waiting windows by one triangle each. All reads come before all writes, so that
+/// no load waits for a store.
 template <std::uint32_t kBatch>
 ISPACE_INLINE void BreadthFirst::advance(Windows::State& s) const {
     Index here[kBatch], entered[kBatch], next[kBatch];

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Far, tiny, crowded and endless: what nobody draws.
-#include "geom/visibility.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +12,9 @@
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "geom/test_curves.h"
+#include "geom/test_plans.h"
 #include "geom/test_visibility.h"
-#include "geom/visibility_test_plans.h"
+#include "geom/visibility.h"
 
 namespace ispace {
 namespace {
@@ -128,6 +127,85 @@ TEST(Visibility, RegionsAreUsedAgain) {
     EXPECT_DOUBLE_EQ(area(region), 16);
     map.query({0, 0}, 1, region);
     EXPECT_NEAR(area(region), pi, 1e-12);
+}
+
+TEST(VisibilityBreadth, MoreWindowsThanFitAtFirst) {
+    Polygon round;
+    constexpr int kCorners = 3000;
+    for (int i = 0; i < kCorners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kCorners;
+        round.push_back({10 * std::cos(angle), 10 * std::sin(angle)});
+    }
+    const VisibilityMap map(test::linesOf({round, {}}));
+    const double wanted = kCorners / 2.0 * 100 * std::sin(2 * std::numbers::pi / kCorners);
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 20; ++i) {
+        const VisibleRegion region =
+            map.query(test::randomIn(random, {{-7, -7}, {7, 7}}), kInfinity);
+        EXPECT_NEAR(area(region), wanted, 1e-9 * wanted);
+        EXPECT_EQ(region.edges.size(), std::size_t{kCorners});
+    }
+}
+
+TEST(VisibilityBreadth, SameAsOneWayAfterTheOther) {
+    const std::vector<Segment2> lines = test::linesOf(test::makePlan(1, {5, 5, 82, 14, 195}));
+    const VisibilityMap map(lines);
+    std::mt19937_64 random(2);
+    int compared = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Point2 p = test::randomIn(random, test::boxOf(lines));
+        const VisibleRegion in_turn = map.query(p, kInfinity);
+        // A range that ends beyond all that is seen, but not beyond all lines.
+        double farthest = 0;
+        for (const SightEdge& end : in_turn.edges)
+            farthest = std::max({farthest, distance(p, end.from), distance(p, end.to)});
+        const VisibleRegion bounded = map.query(p, 1.001 * farthest);
+        if (farthest > 25) continue;
+        ++compared;
+        ASSERT_EQ(in_turn.edges.size(), bounded.edges.size());
+        for (std::size_t k = 0; k < in_turn.edges.size(); ++k) {
+            const SightEdge &a = in_turn.edges[k], &b = bounded.edges[k];
+            EXPECT_TRUE(a.from == b.from && a.to == b.to && a.line == b.line) << i << ' ' << k;
+        }
+    }
+    EXPECT_GT(compared, 1000);
+}
+
+TEST(SectorOf, SectorAndTheRestAreTheWholeOnAGrid) {
+    std::mt19937_64 random(11);
+    const auto whole = [&random](int low, int high) {
+        return static_cast<double>(std::uniform_int_distribution<int>(low, high)(random));
+    };
+    for (int plan = 0; plan < 300; ++plan) {
+        std::vector<Segment2> lines;
+        for (int i = 0; i < 6; ++i)
+            lines.push_back({{whole(-4, 4), whole(-4, 4)}, {whole(-4, 4), whole(-4, 4)}});
+        const VisibilityMap map(lines);
+        for (int trial = 0; trial < 40; ++trial) {
+            const VisibleRegion seen =
+                map.query({whole(-4, 4), whole(-4, 4)}, trial % 2 == 0 ? 5 : 0.5);
+            const Angle first = Angle::degrees(15 * whole(-24, 24));
+            const Angle span = Angle::degrees(15 * whole(1, 23));
+            const VisibleRegion sector = sectorOf(seen, first, span);
+            const VisibleRegion rest = sectorOf(seen, first + span, Angle::degrees(360) - span);
+            ASSERT_NEAR(area(sector) + area(rest), area(seen), 1e-9)
+                << plan << ' ' << trial << ' ' << first.degrees() << ' ' << span.degrees();
+            ASSERT_NEAR(signedArea(outlineOf(sector)), area(sector), 1e-9);
+        }
+    }
+}
+
+TEST(SectorOf, SidesAlongALineOfSight) {
+    // The fan begins in the direction of the wall's end, which rounds to either side of it.
+    const std::vector<Segment2> wall = {{{-1, 3}, {0, 1}}};
+    const VisibleRegion seen = VisibilityMap(wall).query({-2, 2}, 3);
+    double before = 0;
+    for (const double first : {44.9, 44.9999999, 45.0, 45.0000001, 45.1}) {
+        const double now = area(sectorOf(seen, Angle::degrees(first), Angle::degrees(135)));
+        EXPECT_GT(now, 10) << first;
+        EXPECT_NEAR(now, before > 0 ? before : now, 0.05);
+        before = now;
+    }
 }
 
 }  // namespace

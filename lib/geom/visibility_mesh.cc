@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to VisibilityMap: the triangulation that sight passes through.
+// Private to VisibilityMap: the triangulation that a view expands through.
 #pragma once
 
 #include <algorithm>
@@ -11,34 +11,33 @@
 #include <unordered_set>
 #include <vector>
 
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/predicates.h"
 #include "geom/visibility.h"
 
 namespace ispace {
 
 /// Corner and edge i of triangle t, at index 3 t + i: the edge lies opposite to the corner, corners
-/// are counter-clockwise. Also the portal by which sight enters the triangle through that edge:
-/// from there the corner lies straight ahead, corner i + 2 on the right and corner i + 1 on the
-/// left.
+/// are counter-clockwise. Also the portal through which a view enters the triangle across that
+/// edge: the corner is then straight ahead, corner i + 2 on the right and corner i + 1 on the left.
 ///
-/// 32 bytes and aligned: all that one step of sight needs is one half of a cache line.
+/// 32 bytes and aligned: one step of a query reads half a cache line.
 struct alignas(32) Portal {
     Point2 corner;
-    /// Where sight gets through the edges right (i + 1) and left (i + 2) of the corner: a portal,
-    /// or that edge with kBlocked set if it is of a line, or kFree.
+    /// What lies beyond the edges right (i + 1) and left (i + 2) of the corner: a portal, or that
+    /// edge with kBlocked set if it is on a line, or kFree.
     std::uint32_t right = 0, left = 0;
-    /// The portal on the other side of edge i, be it of a line or not, or kFree.
+    /// The portal on the other side of edge i, whether or not it is on a line, or kFree.
     std::uint32_t behind = 0;
-    /// Of which line edge i is, if of any.
+    /// The line of edge i, if it is on one.
     std::uint32_t line = 0;
 
     static constexpr std::uint32_t kBlocked = 1U << 31;
     static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
 };
 
-/// Lines, viewpoints and ranges are cut off there, in metres, so that products of four lengths are
-/// finite.
+/// Lines, viewpoints and ranges are clamped to this, in metres, so that products of four lengths
+/// are finite.
 constexpr double kFarthestSight = 1e75;
 
 inline Point2 withinSight(Point2 p) {
@@ -46,7 +45,7 @@ inline Point2 withinSight(Point2 p) {
             std::clamp(p.y, -kFarthestSight, kFarthestSight)};
 }
 
-/// The next and the one before of the same triangle, counter-clockwise. Without branches.
+/// The next and the previous portal of the same triangle, counter-clockwise. Branch-free.
 inline std::uint32_t nextOf(std::uint32_t portal) {
     return portal + 1 - 3 * static_cast<std::uint32_t>(portal % 3 == 2);
 }
@@ -54,7 +53,8 @@ inline std::uint32_t beforeOf(std::uint32_t portal) {
     return portal - 1 + 3 * static_cast<std::uint32_t>(portal % 3 == 0);
 }
 
-/// Lines, and a box around them that is none, triangulated: sight beyond the box is free.
+/// Triangulation of lines and a box around them; the box is not a line, and the view beyond it is
+/// free.
 struct SightMesh {
     std::vector<Portal> portals;
     Box2 box;                         ///< of all triangles; lines lie strictly inside
@@ -69,7 +69,7 @@ struct SightMesh {
     /// \throws FormatError (without a place) for lines that cross by the million
     explicit SightMesh(std::span<const Segment2> lines);
 
-    /// What stops sight from inside at an edge, or the portal behind it.
+    /// What blocks the view at an edge, seen from inside, or the portal behind it.
     [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {
         return portals[beforeOf(edge)].right;
     }
@@ -86,14 +86,13 @@ struct SightMesh {
     void makeCells(std::size_t count);
 };
 
-/// What cross(a, b), for vectors a = A - o, b = B - o that were rounded, may differ from the true
-/// value, over the sum of the magnitudes of its two products; and in case of underflow (Shewchuk,
-/// 1997).
+/// Maximum error of cross(a, b) for rounded vectors a = A - o and b = B - o, relative to the sum of
+/// the magnitudes of its two products; and for underflow (Shewchuk, 1997).
 constexpr double kTurnError =
     (3 + 8 * std::numeric_limits<double>::epsilon()) * (std::numeric_limits<double>::epsilon() / 2);
 constexpr double kTurnUnderflow = 1e-300;
 
-/// cross(a, b) if its sign is surely that of the turn o, A, B, else 0.
+/// cross(a, b) if its sign is certainly that of the turn o, A, B, else 0.
 inline double surelyTurns(Vec2 a, Vec2 b) {
     const double left = a.x * b.y, right = a.y * b.x;
     const double turn = left - right;
@@ -101,12 +100,12 @@ inline double surelyTurns(Vec2 a, Vec2 b) {
     return std::abs(turn) > error ? turn : 0;
 }
 
-/// The same error for all vectors that are not longer.
+/// Bound of that error for vectors up to this length.
 inline double errorOfTurns(double length) {
     return 2 * kTurnError * (length * length) + kTurnUnderflow;
 }
 
-/// The edges of lines around a viewpoint, and where it moves because of them.
+/// The edges on lines close to a viewpoint, and where they move it.
 class TouchedLines {
   public:
     explicit TouchedLines(const SightMesh& mesh) : mesh_(mesh) {}

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "geom/box.h"
-#include "geom/visibility_oracle.h"
+#include "geom/point.h"
+#include "geom/test_plans.h"
 
 namespace ispace::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geom/visibility_oracle.h"
+#include "geom/test_plans.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include "geom/predicates.h"
 #include "geom/test_curves.h"
 #include "geom/visibility.h"
-#include "geom/visibility_test_plans.h"
 
 namespace ispace {
 namespace {

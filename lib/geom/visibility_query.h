@@ -2,8 +2,8 @@
 // Private to VisibilityMap.
 //
 // Triangular expansion: F. Bungiu, M. Hemmer, J. Hershberger, K. Huang, A. Kröller, Efficient
-// computation of visibility polygons, 2014. Windows are limited by vertices, never by points made
-// on the way, so that each decision is the turn of three given points.
+// computation of visibility polygons, 2014. Windows are limited by vertices, never by constructed
+// points, so that each decision is the orientation of three input points.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace ispace {
 
-/// Collects what ends sight, counter-clockwise; inline, as it is most of what a query does besides
-/// finding its way.
+/// Collects the edges of the region, counter-clockwise; inline, as it is much of the work of a
+/// query.
 class EdgeWriter {
   public:
     EdgeWriter(Point2 viewpoint, double range, std::vector<SightEdge>& edges)
@@ -35,11 +35,11 @@ class EdgeWriter {
                 return;
             }
         }
-        // Else it has no width that doubles can tell.
+        // Else it has no width in doubles.
         if (cross(from - viewpoint_, to - viewpoint_) > 0) edges_.push_back({from, to, line});
     }
 
-    /// Nothing stops sight from one direction to another, less than a half turn on.
+    /// The view is free from one direction to another, less than a half turn on.
     void addFree(Vec2 from, Vec2 to) {
         const bool is_wide = dot(from, to) < 0;
         if (!is_wide && !(cross(from, to) > 0)) return;
@@ -93,7 +93,7 @@ class EdgeWriter {
     Vec2 arc_from_, arc_to_;
 };
 
-/// What will be needed if sight gets there; harmless where that is no portal.
+/// Prefetches a target; harmless if it is not a portal.
 inline void prefetch(const Portal* portals, std::uint32_t target) {
     // The place may lie beyond the portals: nothing is read there.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
@@ -101,16 +101,15 @@ inline void prefetch(const Portal* portals, std::uint32_t target) {
                                                      target * sizeof(Portal)));
 }
 
-/// Two numbers, one each for the right and the left limit: what is chosen between two pairs is so
-/// without branches.
+/// Two numbers, for the right and the left limit; selecting between pairs is branch-free.
 using Pair = double __attribute__((vector_size(16)));
 
 struct PairOfPoints {
     Pair x, y;
 };
 
-/// Where rays along the limits cross from a to b, as shares of that way; a is on their right or on
-/// them (exactly 0 if it is a limit itself), b on their left or on them (exactly 1).
+/// Where rays along the limits cross the segment from a to b, as fractions of it; a is on their
+/// right or on them (exactly 0 if it is a limit itself), b on their left or on them (exactly 1).
 ISPACE_INLINE Pair crossings(Pair limits_x, Pair limits_y, Vec2 a, Vec2 b) {
     const Pair right = a.x * limits_y - a.y * limits_x, left = limits_x * b.y - limits_y * b.x;
     const Pair share = right / (right + left), zero{}, one{1, 1};
@@ -119,7 +118,7 @@ ISPACE_INLINE Pair crossings(Pair limits_x, Pair limits_y, Vec2 a, Vec2 b) {
     return above < one ? above : one;
 }
 
-/// So far on the way from a to b, from the nearer one: exact at both.
+/// The points at these fractions of the segment, measured from the nearer end: exact at both ends.
 ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     const Vec2 way = s.b - s.a;
     const Pair half{0.5, 0.5};
@@ -130,7 +129,7 @@ ISPACE_INLINE PairOfPoints between(const Segment2& s, Pair share) {
     return {from_x + part * way.x, from_y + part * way.y};
 }
 
-/// Sight that waits until what lies on its right is done: past the corner of a portal, on its left.
+/// A view to the left of a portal's corner that waits until everything to its right is done.
 struct Pending {
     std::uint32_t target;       ///< what lies there
     std::uint32_t corner;       ///< the portal whose corner is the right limit
@@ -138,7 +137,7 @@ struct Pending {
     Vec2 right, left;           ///< the limits, from the viewpoint
 };
 
-/// Memory for as many as may come: seldom more than fit in here.
+/// A stack with inline storage, which seldom overflows to the heap.
 class PendingStack {
   public:
     [[nodiscard]] bool empty() const { return top_ == base_; }
@@ -171,8 +170,8 @@ class PendingStack {
     PendingStack() {}
 };
 
-/// One query, depth first: to the end of one way after the other. Bounded: some line may lie beyond
-/// the range. Touches: some lines are transparent.
+/// A query, depth first. kBounded: some line may lie beyond the range. kTouches: some lines are
+/// transparent.
 template <bool kBounded, bool kTouches>
 class Expansion {
   public:
@@ -196,10 +195,10 @@ class Expansion {
     /// From outside of all triangles; in the same order.
     void throughPortal(Index portal) { begin(portal, beforeOf(portal), nextOf(portal)); }
 
-    /// Looks through all edges and portals that were named, and writes what is seen.
+    /// Expands through all edges and portals given so far and writes the region.
     void run();
 
-    /// Writes down what sight ends at between two limits, counter-clockwise: a line, or kFree.
+    /// Writes what bounds the view between two limits, counter-clockwise: a line, or kFree.
     void stopAt(Index target, const Vec2& right, const Vec2& left);
     EdgeWriter& out() { return out_; }
 
@@ -217,7 +216,7 @@ class Expansion {
     static double square(double x) { return x * x; }
     static double squaredLength(Vec2 v) { return dot(v, v); }
 
-    /// A vertex that limits what is looked through.
+    /// A vertex that limits the view.
     struct Limit {
         Index portal;  ///< its corner is the vertex
         Vec2 way;      ///< to the vertex
@@ -227,7 +226,7 @@ class Expansion {
         pending_.push({passed(target), right, left, wayTo(right), wayTo(left)});
     }
 
-    /// What sight gets to past a line that is transparent.
+    /// The target behind transparent lines.
     [[nodiscard]] Index passed(Index target) const {
         if (!kTouches || target < Portal::kBlocked || target == Portal::kFree) return target;
         const Index edge = target - Portal::kBlocked;
@@ -263,7 +262,7 @@ void Expansion<kBounded, kTouches>::run() {
             const Portal& portal = portals_[target];
             const Limit corner{target, portal.corner - viewpoint_};
             if (kBounded) may_be_beyond = squaredLength(corner.way) > squared_range_;
-            // Whichever way sight goes.
+            // Both possible targets.
             prefetch(portals_, portal.left);
             prefetch(portals_, portal.right);
             double from_right = cross(right.way, corner.way);
@@ -323,7 +322,7 @@ void Expansion<kBounded, kTouches>::stopWithinRange(Index line, const Segment2& 
                                                     const Vec2& right, const Vec2& left) {
     const Vec2 a = wall.a - viewpoint_, b = wall.b - viewpoint_, along = b - a;
     const double from = shares[0], to = shares[1];
-    // Where the line through the wall is nearest, and within the range, as shares of the wall.
+    // Where the line through the wall is nearest, and within the range, as fractions of the wall.
     const double squared_length = squaredLength(along);
     const double room = squared_range_ - square(cross(a, b)) / squared_length;
     const double middle = -dot(a, along) / squared_length;

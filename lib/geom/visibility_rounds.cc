@@ -49,10 +49,10 @@ struct Reach {
     }
 };
 
-/// A piece of the near side of a body, or what was seen before, over an interval of slopes.
+/// A piece of the near side of a body, or of an edge of the region, over an interval of slopes.
 struct Part {
     static constexpr std::size_t kNoEdge = std::numeric_limits<std::size_t>::max();
-    std::size_t end;             ///< index among the region's edges
+    std::size_t seen;            ///< index of the region's edge
     std::size_t edge = kNoEdge;  ///< of the body's near side, if that is nearer
     double low, high;
 };
@@ -129,7 +129,7 @@ NearSide farSide(Point2 viewpoint, const Ellipse& round, const Polygon& outline)
     std::vector<Vec2> places;
     places.reserve(far.size());
     for (const Point2 place : far) places.push_back(side.frame.local(place - viewpoint));
-    // Close to the viewpoint sight along the surface ends within the body.
+    // Close to the viewpoint the view along the surface ends within the body.
     const double close = places.empty() ? kRayEpsilon : length(places.front()) / 2;
     side.add({close / kWidest, -close});
     for (const Vec2 place : places) side.add(place);
@@ -148,7 +148,7 @@ class Cut {
         const double low = side_.slope(0), high = side_.slope(side_.places.size() - 1);
         return find(side_.frame.direction(low), side_.frame.direction(high));
     }
-    /// The same for the ways to its right and left side.
+    /// The same for the directions of its right and left side.
     bool find(Vec2 right, Vec2 left) {
         right_ = right;
         left_ = left;
@@ -165,8 +165,8 @@ class Cut {
     /// Whether something of the body may be nearer than what was seen.
     [[nodiscard]] bool mayBeSeen() const {
         for (std::size_t k = 0; k < covered_; ++k) {
-            const SightEdge& end = region_.edges[at(k)];
-            if (end.line == SightEdge::kArc) {
+            const SightEdge& edge = region_.edges[at(k)];
+            if (edge.line == SightEdge::kArc) {
                 if (1 / region_.max_range < side_.nearest) return true;
                 continue;
             }
@@ -203,7 +203,7 @@ class Cut {
     [[nodiscard]] Reach edgeReach(std::size_t edge) const {
         return Reach::ofLine(side_.places[edge], side_.places[edge + 1]);
     }
-    /// The slopes of covered end k, between two.
+    /// The slopes of covered edge k, clamped to [low, high].
     [[nodiscard]] std::pair<double, double> interval(std::size_t k, double low, double high) const {
         if (k > 0) {
             const Vec2 begin = side_.frame.local(from(at(k)));
@@ -216,7 +216,7 @@ class Cut {
         return {low, high};
     }
 
-    /// The nearer of both over all slopes, in order.
+    /// The nearer of body and region over all slopes, in order.
     void compare() {
         const double lowest = side_.slope(0), highest = side_.slope(side_.places.size() - 1);
         std::size_t edge = 0;
@@ -233,7 +233,8 @@ class Cut {
             }
         }
     }
-    void compare(std::size_t end, const Reach& seen, std::size_t edge, double low, double high) {
+    void compare(std::size_t seen_edge, const Reach& seen, std::size_t edge, double low,
+                 double high) {
         const Reach body = edgeReach(edge);
         std::array<double, 4> cuts{low, high, high, high};
         std::size_t count = 1;
@@ -242,11 +243,11 @@ class Cut {
         cuts[count] = high;
         for (std::size_t i = 0; i < count; ++i) {
             const double middle = cuts[i] + (cuts[i + 1] - cuts[i]) / 2;
-            add({end, body.at(middle) > seen.at(middle) ? edge : Part::kNoEdge, cuts[i],
+            add({seen_edge, body.at(middle) > seen.at(middle) ? edge : Part::kNoEdge, cuts[i],
                  cuts[i + 1]});
         }
     }
-    /// Ascending; those that are none lie at `low`.
+    /// Ascending; missing ones are `low`.
     static std::array<double, 2> crossings(const Reach& seen, const Reach& body, double low,
                                            double high) {
         if (seen.range > 0) {
@@ -268,13 +269,13 @@ class Cut {
     void add(const Part& part) {
         if (!(part.low < part.high)) return;
         if (!parts_.empty() && parts_.back().edge == part.edge &&
-            (part.edge != Part::kNoEdge || parts_.back().end == part.end))
+            (part.edge != Part::kNoEdge || parts_.back().seen == part.seen))
             parts_.back().high = part.high;
         else
             parts_.push_back(part);
     }
 
-    /// Puts the parts in the place of what was seen.
+    /// Replaces the covered edges by the parts.
     void write() {
         std::vector<SightEdge> made;
         const SightEdge& first = region_.edges[first_];
@@ -282,11 +283,11 @@ class Cut {
         for (std::size_t k = 0; k < parts_.size(); ++k) {
             const Part& part = parts_[k];
             const bool is_body = part.edge != Part::kNoEdge;
-            SightEdge end = is_body ? bodyEnd(part) : seenEnd(part);
-            if (!is_body && k == 0) end.from = first.from;
-            if (!is_body && k + 1 == parts_.size()) end.to = last.to;
+            SightEdge edge = is_body ? bodyEdge(part) : seenEdge(part);
+            if (!is_body && k == 0) edge.from = first.from;
+            if (!is_body && k + 1 == parts_.size()) edge.to = last.to;
             if (is_body && k == 0) push({first.from, seenPlace(first_, right_), first.line}, made);
-            push(end, made);
+            push(edge, made);
             if (is_body && k + 1 == parts_.size())
                 push({seenPlace(at(covered_ - 1), left_), last.to, last.line}, made);
         }
@@ -296,25 +297,25 @@ class Cut {
         edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(covered_));
         edges.insert(edges.begin(), made.begin(), made.end());
     }
-    void push(const SightEdge& end, std::vector<SightEdge>& made) const {
-        if (cross(end.from - region_.viewpoint, end.to - region_.viewpoint) > 0)
-            made.push_back(end);
+    void push(const SightEdge& edge, std::vector<SightEdge>& made) const {
+        if (cross(edge.from - region_.viewpoint, edge.to - region_.viewpoint) > 0)
+            made.push_back(edge);
     }
     [[nodiscard]] Point2 seenPlace(std::size_t i, Vec2 way) const {
         return reachOf(i).place(side_.frame, slopeOf(way));
     }
-    [[nodiscard]] SightEdge seenEnd(const Part& part) const {
-        const SightEdge& old = region_.edges[part.end];
-        const Reach reach = reachOf(part.end);
+    [[nodiscard]] SightEdge seenEdge(const Part& part) const {
+        const SightEdge& old = region_.edges[part.seen];
+        const Reach reach = reachOf(part.seen);
         const auto place = [&](double slope, Point2 own, Vec2 way) {
             return side_.frame.local(way).x > 0 && slope == slopeOf(way)
                        ? own
                        : reach.place(side_.frame, slope);
         };
-        return {place(part.low, old.from, from(part.end)), place(part.high, old.to, to(part.end)),
+        return {place(part.low, old.from, from(part.seen)), place(part.high, old.to, to(part.seen)),
                 old.line};
     }
-    [[nodiscard]] SightEdge bodyEnd(const Part& part) const {
+    [[nodiscard]] SightEdge bodyEdge(const Part& part) const {
         const Reach reach = edgeReach(part.edge);
         const auto place = [&](double slope, std::size_t i) {
             if (slope != side_.slope(i)) return reach.place(side_.frame, slope);
@@ -329,7 +330,7 @@ class Cut {
     const NearSide& side_;
     std::uint32_t line_;
     Vec2 right_, left_;
-    std::size_t first_ = 0, covered_ = 0;  // the ends in the directions of the body
+    std::size_t first_ = 0, covered_ = 0;  // the edges in the directions of the body
     std::vector<Part> parts_;
 };
 

@@ -12,17 +12,17 @@
 
 namespace ispace {
 
-/// Round bodies in the way of sight. What lies in their shadow is cut from a region that was found
-/// without them: no query crosses their outlines edge by edge.
+/// Round bodies that block the view. Their shadows are cut from a region that was found without
+/// them: no query crosses their outlines edge by edge.
 class RoundBodies {
   public:
-    /// \param first_line what the first of them is called in SightEdge::line
+    /// \param first_line SightEdge::line of the first of them
     RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line);
 
     [[nodiscard]] bool empty() const { return rounds_.empty(); }
-    /// No round body is farther from p.
+    /// Distance within which all round bodies lie.
     [[nodiscard]] double farthest(Point2 p) const;
-    /// Cuts the shadows of all of them from what is seen. O(edges) for each that is within range.
+    /// Cuts the shadows of all of them from the region. O(edges) for each that is within range.
     void cut(VisibleRegion& region) const;
 
   private:

@@ -13,8 +13,8 @@
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "geom/test_curves.h"
+#include "geom/test_plans.h"
 #include "geom/test_visibility.h"
-#include "geom/visibility_test_plans.h"
 
 namespace ispace {
 namespace {

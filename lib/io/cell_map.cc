@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "env/info.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "raster/cleaning.h"
 #include "raster/contour.h"
 #include "raster/morphology.h"

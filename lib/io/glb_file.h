@@ -16,7 +16,7 @@
 #include "base/json_writer.h"
 #include "env/mesh.h"
 #include "geom/rotation.h"
-#include "geom/triangle_mesh.h"
+#include "record/record.h"
 
 namespace ispace {
 

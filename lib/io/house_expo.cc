@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "geom/simplify.h"
+#include "geom/polygon.h"
 #include "io/import_records.h"
 #include "io/plan_rooms.h"
 

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "geom/triangle_mesh.h"
+#include "record/record.h"
 #include "io/input.h"
 #include "io/mesh_parts.h"
-#include "record/record.h"
 
 namespace ispace {
 

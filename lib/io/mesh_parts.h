@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geom/triangle_mesh.h"
+#include "record/record.h"
 
 namespace ispace {
 

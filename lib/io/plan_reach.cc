@@ -9,9 +9,8 @@
 
 #include "geom/boolean.h"
 #include "geom/planar_map.h"
+#include "geom/polygon.h"
 #include "geom/predicates.h"
-#include "geom/simplify.h"
-#include "geom/triangulate.h"
 #include "io/plan_lines.h"
 
 namespace ispace {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "io/plan_lines.h"

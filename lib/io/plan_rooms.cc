@@ -11,7 +11,7 @@
 #include "base/number.h"
 #include "env/info.h"
 #include "env/texts.h"
-#include "geom/noding.h"
+#include "geom/arrangement.h"
 #include "geom/planar_map.h"
 
 namespace ispace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "env/mesh_cut.h"
-#include "geom/triangulate.h"
+#include "geom/polygon.h"
 
 namespace ispace {
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "cover/visible.h"
 #include "place/sensor_group.h"
 #include "sensor/field_of_view.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// What a sensor may see of a plane, at most; each figure on its own.
+/// Upper bounds of what a sensor sees of a plane, each on its own.
 struct Extent {
     double reach;          ///< distance from the sensor, metres
     double area, outline;  ///< square metres, metres
@@ -27,15 +28,15 @@ Extent discOf(double radius) { return {radius, kPi * radius * radius, 2 * kPi * 
 Extent extentOf(const Laser& laser) {
     const double range = laser.max_range;
     if (laser.sweep != SweepAxis::None) return discOf(range);
-    const double span = laser.sweptSpan().radians();
-    // The sides of a fan count also where it goes all around but for a gap.
+    const double span = fanLimits(laser, Angle()).span.radians();
+    // The two sides also count for a sector with just a gap.
     return {range, span / 2 * range * range, span * range + (span < 2 * kPi ? 2 * range : 0)};
 }
 
 Extent extentOf(const FieldOfView& view) {
     const Extent disc = discOf(view.farthest());
     if (view.shape != FieldOfView::Shape::Pyramid) return disc;
-    // Who measures distances has no greater depth than that in view, either.
+    // For sensors that measure distances this bounds the depth too.
     const double depth = view.max_range, x = view.across, y = view.upright;
     const double area = depth * depth * std::hypot(4 * x * y, x, y);
     const double diameter = depth * std::max(2 * std::hypot(x, y), std::hypot(1, x, y));
@@ -44,9 +45,9 @@ Extent extentOf(const FieldOfView& view) {
 
 }  // namespace
 
-std::uint64_t mostCellsInView(const SensorModel& device, const Grid& grid) {
-    // Edges are in view, whatever rounding makes of them: ranges are those of float32, and of a
-    // narrow fan the cosines of its sides.
+std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid) {
+    // Edges are in view however they round: ranges are float32, and so are the cosines of the sides
+    // of a narrow sector.
     constexpr double kRounding = 2e-6;
     const auto view = fieldOfView(Sensor{"", device, {}});
     const Extent most = view ? extentOf(*view) : extentOf(std::get<Laser>(device));
@@ -60,9 +61,9 @@ std::uint64_t mostCellsInView(const SensorModel& device, const Grid& grid) {
 
 namespace {
 
-/// Shares of cells that sensors at any places can meet together.
-std::uint64_t mostParts(const Problem& problem, const Grid& grid,
-                        std::span<const SensorModel> devices, std::span<const int> most, int unit) {
+/// Multiplicity that sensors at any places can add to all cells together.
+std::uint64_t maxParts(const Problem& problem, const Grid& grid,
+                       std::span<const SensorModel> devices, std::span<const int> most, int unit) {
     struct Offer {
         double parts, cost;
         int most;
@@ -71,7 +72,7 @@ std::uint64_t mostParts(const Problem& problem, const Grid& grid,
     offers.reserve(devices.size());
     for (std::size_t k = 0; k < devices.size(); ++k) {
         const int share = isPartial(devices[k]) ? 1 : unit;
-        offers.push_back({share * static_cast<double>(mostCellsInView(devices[k], grid)),
+        offers.push_back({share * static_cast<double>(maxCellsInView(devices[k], grid)),
                           problem.kinds[k].cost, most[k]});
     }
     std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
@@ -83,22 +84,22 @@ std::uint64_t mostParts(const Problem& problem, const Grid& grid,
         parts += number * offer.parts;
         left -= number * offer.cost;
     }
-    return static_cast<std::uint64_t>(std::floor(parts + 1e-6));  // no part is seen in part
+    return static_cast<std::uint64_t>(std::floor(parts + 1e-6));  // multiplicities are whole
 }
 
 }  // namespace
 
-std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
-                               std::span<const SensorModel> devices, std::span<const int> most,
-                               int unit) {
-    std::uint64_t value = 0, parts = mostParts(problem, grid, devices, most, unit);
-    /// What of a cell's demand is missing.
+std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
+                              std::span<const SensorModel> devices, std::span<const int> most,
+                              int unit) {
+    std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most, unit);
+    /// What a cell lacks to be covered.
     struct Missing {
         std::uint32_t weight;
         std::uint64_t parts;
     };
     std::vector<Missing> missing;
-    int together = 0;  // what a cell gets from all of them
+    int together = 0;  // what all of them give a cell
     for (std::size_t k = 0; k < devices.size(); ++k)
         together += most[k] * (isPartial(devices[k]) ? 1 : unit);
     for (std::size_t i = 0; i < problem.cells(); ++i) {
@@ -109,14 +110,14 @@ std::uint64_t mostFromAnyPlace(const Problem& problem, const Grid& grid,
             missing.push_back(
                 {problem.weights[i], static_cast<std::uint64_t>(problem.required - achieved)});
     }
-    // Those that give most for a part come first.
+    // Most weight per missing multiplicity first.
     std::sort(missing.begin(), missing.end(), [](const Missing& a, const Missing& b) {
         return a.weight * b.parts > b.weight * a.parts;
     });
     for (const Missing& cell : missing) {
         if (parts == 0) break;
         const std::uint64_t used = std::min(parts, cell.parts);
-        // The last one in part, as a fraction of a knapsack.
+        // The last one in part, as in a fractional knapsack.
         value += (cell.weight * used + cell.parts - 1) / cell.parts;
         parts -= used;
     }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "cover/sight.h"
+#include "cover/plane_view.h"
 #include "place/test_arrange.h"
 
 namespace ispace {
@@ -38,7 +38,7 @@ TEST(MostCellsInView, HoldsAnywhereAndIsNearWhereNothingHides) {
         laser.max_range = 4;
         laser.first = Angle::degrees(-fov / 2);
         laser.beams = static_cast<int>(fov) + 1;
-        const std::uint64_t most = mostCellsInView(laser, grid);
+        const std::uint64_t most = maxCellsInView(laser, grid);
         std::size_t best = 0;
         for (int i = 0; i < 40; ++i) {
             const Point2 place{-1 + 0.047 * i, 0.031 * i};
@@ -59,7 +59,7 @@ TEST(MostCellsInView, ANarrowFanMayRunAlongARowOfCenters) {
     laser.beams = 2;
     const std::size_t seen = cellsSeenFrom({0.1, 0.1}, 0, laser, grid);
     EXPECT_GE(seen, 20U);
-    EXPECT_LE(seen, mostCellsInView(laser, grid));
+    EXPECT_LE(seen, maxCellsInView(laser, grid));
 }
 
 constexpr double kPlane = 0.3;  // height of what is looked at
@@ -91,16 +91,16 @@ template <typename Placed, typename Figures>
 double fullestView(const Figures& figures, double most_height, unsigned seed) {
     static const Scene kHall = hall();
     static Worlds worlds(kHall.environment);
-    static const Sight sight(kHall.environment, kPlane, &worlds);
+    worlds.prepareMesh();
     const Grid grid{kHall.environment.limits(), 80, 90};
-    const auto most = static_cast<double>(mostCellsInView(figures, grid));
+    const auto most = static_cast<double>(maxCellsInView(figures, grid));
     PoseSource poses(seed);
     double fullest = 0;
     for (int i = 0; i < 300; ++i) {
         const double above = i % 6 == 0 ? 0 : poses.between(0, most_height);
         const Placed placed{"s", figures, poses.pose(kPlane + above)};
-        sight.prepare(placed);
-        const auto seen = static_cast<double>(sight.cellsOf(grid, placed).count());
+        const auto seen =
+            static_cast<double>(cellsSeen(grid, worlds.mesh(), placed, kPlane).count());
         EXPECT_LE(seen, most) << seed << ": " << i;
         fullest = std::max(fullest, seen / most);
     }
@@ -156,20 +156,20 @@ TEST(MostCellsInView, DepthReachesBeyondTheRange) {
     Ranger ranger;
     ranger.max_range = 2;
     ranger.fov_x = ranger.fov_y = Angle::degrees(90);
-    const std::uint64_t by_distance = mostCellsInView(ranger, grid);
+    const std::uint64_t by_distance = maxCellsInView(ranger, grid);
     EXPECT_LE(by_distance, 400U) << "the disc of the range has 314 cells";
     ranger.measures_depth = true;
-    EXPECT_GE(mostCellsInView(ranger, grid), 400U) << "4 m x 4 m, looking down";
+    EXPECT_GE(maxCellsInView(ranger, grid), 400U) << "4 m x 4 m, looking down";
     ranger.fov_x = ranger.fov_y = Angle::degrees(179.9999);
-    EXPECT_EQ(mostCellsInView(ranger, grid), grid.size());
+    EXPECT_EQ(maxCellsInView(ranger, grid), grid.size());
 }
 
 TEST(MostCellsInView, IsAtMostAllCells) {
     const Grid grid{hall().environment.limits(), 10, 10};
     Laser laser;
     laser.max_range = 1000;
-    EXPECT_EQ(mostCellsInView(laser, grid), 100U);
-    EXPECT_EQ(mostCellsInView(receiver(1e6), grid), 100U);
+    EXPECT_EQ(maxCellsInView(laser, grid), 100U);
+    EXPECT_EQ(maxCellsInView(receiver(1e6), grid), 100U);
 }
 
 TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
@@ -181,14 +181,14 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     problem.achieved.assign(100, 0);
     problem.achieved[1] = 1;
     const SensorModel small = receiver(0.1);
-    const std::uint64_t cells = mostCellsInView(small, grid);
+    const std::uint64_t cells = maxCellsInView(small, grid);
     ASSERT_GE(cells, 1U);
     ASSERT_LT(cells, 10U);
     const auto most_of = [&](int number) {
         const SensorModel devices[] = {small};
         const int most[] = {number};
         problem.kinds = {Kind{}};
-        return mostFromAnyPlace(problem, grid, devices, most, 1);
+        return maxFromAnyPlace(problem, grid, devices, most, 1);
     };
     EXPECT_EQ(most_of(0), 10U) << "what is met already";
     EXPECT_EQ(most_of(1), 10 + 50 + (cells - 1));
@@ -219,18 +219,18 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     problem.weights.assign(grid.size(), 1);
     problem.achieved.assign(grid.size(), 0);
     const SensorModel devices[] = {receiver(2), receiver(4)};
-    const std::uint64_t few = mostCellsInView(devices[0], grid),
-                        many = mostCellsInView(devices[1], grid);
+    const std::uint64_t few = maxCellsInView(devices[0], grid),
+                        many = maxCellsInView(devices[1], grid);
     ASSERT_GT(many, 2 * few);
     problem.kinds = {Kind{}, Kind{}};
     problem.kinds[1].cost = 2;
     const int most[] = {10, 10};
     problem.budget = 5;
-    const std::uint64_t bought = mostFromAnyPlace(problem, grid, devices, most, 1);
+    const std::uint64_t bought = maxFromAnyPlace(problem, grid, devices, most, 1);
     EXPECT_GE(bought, 2 * many + few);
     EXPECT_LE(bought, 5 * many / 2 + 1);
     problem.budget.reset();
-    EXPECT_EQ(mostFromAnyPlace(problem, grid, devices, most, 1), 10 * (many + few));
+    EXPECT_EQ(maxFromAnyPlace(problem, grid, devices, most, 1), 10 * (many + few));
 }
 
 }  // namespace

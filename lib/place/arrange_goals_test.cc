@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "base/number.h"
+#include "place/scene_problem.h"
 #include "place/test_arrange.h"
-#include "solve/test_progress.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -13,7 +14,7 @@ TEST(ArrangeGoals, AZoneIsAllThatCounts) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3"});
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.worth.targets = {readZone("left", scene.environment)};
+    options.weights.targets = {readZone("left", scene.environment)};
     const Arrangement arrangement = arranged(scene, groups, options);
     ASSERT_TRUE(arrangement.value);
     EXPECT_LT(arrangement.sensors[0].pose.position.x, 0.5) << "it stands by what counts";
@@ -29,13 +30,13 @@ TEST(ArrangeGoals, WeightsDraw) {
     const auto groups = groupsOf(scene, {"laser,range=2.5"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     const NamedZone corner = readZone("rect:2,-3,4,-1", scene.environment);
-    options.worth.weights = {{corner, 20}};
+    options.weights.weights = {{corner, 20}};
     const Arrangement drawn = arranged(scene, groups, options);
     const Point3& place = drawn.sensors[0].pose.position;
     EXPECT_GT(place.x, 0.5);
     EXPECT_LT(place.y, 1);
-    options.worth.weights = {{corner, 0}};
-    options.worth.targets = {readZone("rect:0,-3,4,3", scene.environment)};
+    options.weights.weights = {{corner, 0}};
+    options.weights.targets = {readZone("rect:0,-3,4,3", scene.environment)};
     EXPECT_LE(arranged(scene, groups, options).value.value_or(2), 1);
 }
 
@@ -61,7 +62,7 @@ TEST(ArrangeGoals, ATargetIsReachedWithTheFewest) {
     ArrangeOptions options = coarse(Optimizer::Exact);
     options.target = 0.9;
     const auto groups = groupsOf(scene, {"laser,range=4"}, true);
-    EXPECT_EQ(groups[0].most, kMostOpen);
+    EXPECT_EQ(groups[0].most, kMaxOpen);
     const Arrangement enough = arranged(scene, groups, options);
     EXPECT_TRUE(enough.is_reached);
     EXPECT_GE(enough.coverage, 0.9);
@@ -312,6 +313,48 @@ TEST(ArrangeGoals, WhatIsNotMovedKeepsItsBound) {
     const Arrangement all = arranged(scene, groupsOf(scene, {"laser,range=9,fov=360"}), options);
     EXPECT_EQ(all.refined_after, all.refined_before);
     EXPECT_EQ(all.bound, all.candidate_bound);
+}
+
+TEST(SceneProblem, TheTreeGetsTheMemoryThatCandidatesLeave) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3:2"});
+    ArrangeOptions options = coarse(Optimizer::Exact);
+    SilentProgress silent;
+    const SceneProblem usual(scene, groups, options, silent);
+    EXPECT_EQ(usual.searchOptions().most_bytes, kMaxTreeBytes);
+    options.most_bytes = usual.bytes() + 1000;
+    const SceneProblem narrow(scene, groups, options, silent);
+    EXPECT_EQ(narrow.searchOptions().most_bytes, 1000U);
+    EXPECT_EQ(arranged(scene, groups, options).candidate_value,
+              arranged(scene, groups, coarse(Optimizer::Exact)).candidate_value);
+}
+
+TEST(SceneProblem, SharesAndValuesLeadBackAndForth) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3"});
+    const ArrangeOptions options = coarse();
+    SilentProgress silent;
+    const SceneProblem model(scene, groups, options, silent);
+    for (const std::uint64_t value :
+         {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{977}, model.problem().totalWeight()}) {
+        EXPECT_EQ(model.valueFor(model.share(value)), value);
+        EXPECT_EQ(model.valueFor(model.share(value) - 0.1 / 10'000), value) << "rounded up";
+    }
+}
+
+TEST(SceneProblem, ChosenCandidatesBecomeSensorsWorthTheSame) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=3:2", "laser,range=2,fov=90"});
+    const ArrangeOptions options = coarse();
+    SilentProgress silent;
+    SceneProblem model(scene, groups, options, silent);
+    ASSERT_EQ(model.kinds().size(), 2U);
+    const std::vector<Choice> chosen = {{1, 7}, {0, 30}, {0, 5}};
+    const std::vector<ArrangedSensor> sensors = model.sensorsOf(chosen);
+    ASSERT_EQ(sensors.size(), 3U);
+    EXPECT_EQ(sensors[0].id, "laser1");
+    EXPECT_EQ(sensors[2].group, 1U);
+    EXPECT_EQ(model.valueOf(model.coverageOf(sensors)), valueOf(model.problem(), chosen));
 }
 
 }  // namespace

@@ -14,23 +14,21 @@
 
 namespace ispace {
 
-/// How places are proposed; each has its row in place/strategy.h.
+/// How places are proposed; each strategy is a row in place/strategy.h.
 enum class Strategy {
     Grid,    ///< the thesis' Ordinary Grid
     Random,  ///< its Hierarchical Random
     Wall,    ///< its Along Wall
     Medial,  ///< the medial axis of the free floor
-    List,    ///< places that somebody gives
-    All,     ///< a lattice, and along everything that stands
+    List,    ///< the places of a list
+    All,     ///< a lattice, and along everything that stands on the floor
 };
-constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
 /// The words of the command line and of results.
 std::string_view nameOf(Strategy strategy);
-std::string_view nameOf(Optimizer optimizer);
 /// True for Ordinary Grid, Hierarchical Random and Along Wall.
 bool isOfThesis(Strategy strategy);
 
-/// What a sensor is fixed to.
+/// What a sensor is mounted on.
 enum class MountOn { Floor, Wall, Frame, Ceiling };
 constexpr MountOn kMounts[] = {MountOn::Floor, MountOn::Wall, MountOn::Frame, MountOn::Ceiling};
 std::string_view nameOf(MountOn mount);
@@ -41,16 +39,15 @@ struct CandidateDensity {
     int headings = 16;
 };
 
-/// How far candidates along walls keep from them, metres.
+/// Distance of candidates along walls from the wall, metres.
 constexpr double kOffWall = 0.02;
-/// How far below the ceiling a sensor hangs.
+/// Distance of a ceiling mount from the ceiling, metres.
 constexpr double kBelowCeiling = 0.05;
 
 struct MountRules {
     MountOn on = MountOn::Floor;
-    std::vector<double> heights =
-        {};                         ///< to choose from; none: kScanHeight, or as the mount has it
-    std::vector<Angle> tilts = {};  ///< to choose from, where the sensor does not say
+    std::vector<double> heights = {};  ///< to choose from; empty: kScanHeight, or the mount's
+    std::vector<Angle> tilts = {};     ///< to choose from, for sensors without a tilt of their own
     double clearance = 0;
     std::vector<NamedZone> keep_out = {}, keep_in = {};
 };
@@ -69,21 +66,21 @@ struct ArrangeOptions {
 
     SearchOptions search;
     bool refine = false;
-    FloorWeights worth;
-    int redundancy = 1;  ///< floor counts if so many sensors see it
+    FloorWeights weights;
+    int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
-    std::optional<double> target;  ///< share that is to be reached with the fewest sensors
+    std::optional<double> target;  ///< share to reach at minimum cost
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
     double plane = 0;                                ///< height of what rangers and receivers cover
-    std::optional<CellChoice> cells;                 ///< while searching; see searchCells()
+    std::optional<CellChoice> cells;                 ///< while searching, see searchCells()
     std::size_t most_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
     std::uint64_t seed = 0;
 };
 
-/// Cells while searching: those asked for; with the thesis' strategies its 100 x 100; else those of
-/// the room, in a large one fewer than a report has, so that a search stays quick.
+/// Cells while searching: options.cells if set; with the thesis' strategies its 100 x 100; else
+/// those of the room, but in a large room fewer than a report has, to keep the search quick.
 CellChoice searchCells(const ArrangeOptions& options);
 
 }  // namespace ispace

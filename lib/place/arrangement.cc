@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/coverage.h"
-#include "place/refine_arranged.h"
+#include "layout/schemas.h"
+#include "place/refine.h"
 #include "place/scene_problem.h"
-#include "place/tried_poses.h"
-#include "solve/coverage_state.h"
 #include "solve/mps_file.h"
+#include "solve/search_state.h"
 
 namespace ispace {
 
@@ -19,7 +19,7 @@ namespace {
 
 /// A row for each cell that a candidate sees: some 30 bytes each.
 void mustFitInModel(const Problem& problem) {
-    constexpr double kMostEntries = 1e8;
+    constexpr double kMaxEntries = 1e8;
     double entries = 0;
     const std::vector<std::uint32_t> ones(problem.cells(), 1);
     for (const Kind& kind : problem.kinds) {
@@ -27,9 +27,9 @@ void mustFitInModel(const Problem& problem) {
         kind.candidates->weighAll(WeightSums(ones), counts);
         for (const std::uint32_t count : counts) entries += count;
     }
-    if (entries > kMostEntries)
+    if (entries > kMaxEntries)
         throw UsageError("--export-mps: the model has " + formatFixed(entries / 1e6, 0) +
-                         " million entries, more than " + formatFixed(kMostEntries / 1e6, 0) +
+                         " million entries, more than " + formatFixed(kMaxEntries / 1e6, 0) +
                          ": use fewer candidates (--candidates) or larger cells (--cell)");
 }
 
@@ -60,14 +60,14 @@ SearchResult find(const SceneProblem& model, Arrangement& result, Progress& prog
     return cover.result;
 }
 
-/// Where there are fewer candidates than sensors a search chooses some again, which counts for
-/// nothing; two sensors cannot stand in one another.
+/// With fewer candidates than sensors a search chooses some twice, which adds nothing; two sensors
+/// cannot stand in one place.
 void takeEachOnce(std::vector<Choice>& chosen) {
     std::set<Choice> taken;
     std::erase_if(chosen, [&taken](const Choice& choice) { return !taken.insert(choice).second; });
 }
 
-/// A bound over all places. A budget might have bought others; else there are as many as there are.
+/// Bound over all places: for any sensors a budget buys, else for the number of each kind found.
 double boundOfAnyPlace(const SceneProblem& model, const std::vector<ArrangedSensor>& sensors) {
     const bool buys = model.options().budget.has_value();
     std::vector<int> most(model.kinds().size());
@@ -75,10 +75,10 @@ double boundOfAnyPlace(const SceneProblem& model, const std::vector<ArrangedSens
         if (buys) most[k] = model.kinds()[k].most;
     if (!buys)
         for (const ArrangedSensor& sensor : sensors) ++most[kindOf(model.kinds(), sensor.group)];
-    return model.share(model.mostFromAnyPlace(most));
+    return model.share(model.maxFromAnyPlace(most));
 }
 
-/// Nothing is known of candidates that were not made.
+/// If some candidates were not made, nothing bounds the value.
 double boundOf(const SearchResult& result, const SceneProblem& model) {
     return model.isComplete() ? model.share(result.bound) : 1;
 }
@@ -102,15 +102,15 @@ void measure(Arrangement& result, SceneProblem& model) {
     const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
-    const bool is_coverage = options.worth.isUniform() && options.redundancy == 1 &&
+    const bool is_coverage = options.weights.isUniform() && options.redundancy == 1 &&
                              model.target().grid == measured.target.grid;
     const Coverage searched = model.coverageOf(result.sensors);
     if (!is_coverage) result.value = model.share(model.valueOf(searched));
     result.idle = model.idleIn(searched);
 }
 
-/// Worth of the first n of these sensors, each placed where it adds most of them: [n]. Where views
-/// have to hang together part of them need not: then only all are worth something. O(n^2 * runs)
+/// [n]: value of the best n of these sensors, chosen greedily. If coverage must be connected, a
+/// subset may not be: then only all of them count. O(n^2 * runs)
 std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
     const std::vector<std::uint32_t> partial_weights = partialWeights(problem);
     CoverageState state(problem, partial_weights);
@@ -135,15 +135,15 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
     return values;
 }
 
-/// Up to so many sensors a point of a curve is searched for even if there is no time left: what
-/// greedy and a quick bound take is about in proportion to what is looked through.
+/// Points of a curve up to this number of sensors are searched even if no time is left: greedy
+/// search and a quick bound take time in proportion to the candidates' size.
 std::size_t quickPoints(const SceneProblem& model) {
-    constexpr std::size_t kMostBytes = std::size_t{64} << 20U;
+    constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
     constexpr std::size_t kBytesPerCell = 8;
-    return kMostBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
+    return kMaxBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
 }
 
-/// True if what was found is also the most that so many sensors are known to be worth.
+/// True if the search had only the number of sensors as its limit.
 bool isByNumber(const SceneProblem& model) {
     if (!model.options().budget && !model.options().target) return true;
     const std::vector<Kind>& kinds = model.problem().kinds;
@@ -151,8 +151,8 @@ bool isByNumber(const SceneProblem& model) {
                        [&](const Kind& kind) { return kind.cost == kinds[0].cost; });
 }
 
-/// What 1, 2, ... sensors of these kinds are worth, whatever they cost, and at most. Where there is
-/// no time left for a search it is what so many of the sensors found are worth, and no bound.
+/// Value of 1, 2, ... sensors of these kinds, whatever they cost, with bounds. Where no time is
+/// left to search: the value of that many of the sensors found, without a bound.
 std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneProblem& model,
                                          Progress& progress) {
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
@@ -179,7 +179,7 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const SceneP
 std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& model,
                                 Progress& progress) {
     std::vector<SearchResult> results = searchByNumber(found, model, progress);
-    // One sensor more costs nothing and is worth no less; what more cannot cover fewer cannot.
+    // One more sensor never covers less; what more sensors cannot cover, fewer cannot.
     for (std::size_t i = 1; i < results.size(); ++i)
         results[i].best.value = std::max(results[i].best.value, results[i - 1].best.value);
     for (std::size_t i = results.size(); i-- > 1;)
@@ -226,8 +226,64 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
         result.curve = curveTo(found, model, progress);
         result.is_complete = result.is_complete && !progress.stopped();
     }
-    if (options.wants_trace) result.tried = triedPoses(model, chosen);
+    if (options.wants_trace) result.tried = model.triedPoses(chosen);
     return result;
+}
+
+namespace {
+
+Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
+    Record result(*sceneSchemas().find("result"));
+    result.set("coverage", Value(tidy(arrangement.coverage)));
+    result.set("area", Value(tidy(arrangement.area)));
+    if (arrangement.value) result.set("value", Value(tidy(*arrangement.value)));
+    result.set("bound", Value(tidy(arrangement.bound)));
+    if (arrangement.is_refined)
+        result.set("candidates_bound", Value(tidy(arrangement.candidate_bound)));
+    result.set("strategy", Value(parts.strategy));
+    result.set("optimize", Value(parts.optimize));
+    result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
+    if (arrangement.least) result.set("least", Value(*arrangement.least));
+    if (!arrangement.is_complete) result.set("complete", Value(false));
+    return result;
+}
+
+}  // namespace
+
+Document layoutDocument(const LayoutParts& parts, const Document* before,
+                        const std::vector<SensorGroup>& groups, const Arrangement& arrangement) {
+    Document document{DocumentKind::Layout, parts.history, {}};
+    Record environment(*sceneSchemas().find("environment"));
+    if (!parts.environment_file.empty()) environment.set("file", Value(parts.environment_file));
+    environment.set("digest", Value(parts.environment_digest));
+    document.records.push_back(environment);
+
+    const std::vector<ArrangedSensor>& sensors = arrangement.sensors;
+    std::vector<bool> is_written(sensors.size());
+    const auto write = [&](std::size_t i) {
+        document.records.push_back(placedRecord(groups[sensors[i].group], sensors[i]));
+        is_written[i] = true;
+    };
+    const auto place_of = [&](const Record& record) {
+        std::size_t i = 0;
+        while (i < sensors.size() && (is_written[i] || !groups[sensors[i].group].is_pending ||
+                                      !(groups[sensors[i].group].record == record)))
+            ++i;
+        return i;
+    };
+    if (before != nullptr) {
+        for (const Record& record : before->records) {
+            if (record.schema().type == RecordType::Meta) continue;
+            if (const std::size_t i = place_of(record); i < sensors.size())
+                write(i);
+            else
+                document.records.push_back(record);
+        }
+    }
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        if (!is_written[i]) write(i);
+    document.records.push_back(resultRecord(parts, arrangement));
+    return document;
 }
 
 }  // namespace ispace

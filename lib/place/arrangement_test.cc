@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "place/strategy.h"
 #include "place/test_arrange.h"
-#include "solve/test_progress.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -248,7 +248,7 @@ TEST(Arrangement, WhatCannotBeIsSaid) {
     options.most_bytes = 1000;
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
     options = coarse();
-    options.worth.targets = {readZone("rect:100,100,101,101", scene.environment)};
+    options.weights.targets = {readZone("rect:100,100,101,101", scene.environment)};
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
     options = coarse();
     options.mount.on = MountOn::Frame;

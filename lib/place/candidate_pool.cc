@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-/// Places are whole nanometres: layouts are read by people, and what a sum leaves behind is noise.
+/// Places are whole nanometres: people read layouts, and rounding residues are noise.
 double onNanometres(double metres) {
     constexpr double kPerMetre = 1e9;
     return std::round(metres * kPerMetre) / kPerMetre;
@@ -48,16 +48,16 @@ struct CandidatePool::Data {
     const Environment& environment;
     Worlds& worlds;
     const Target& target;
-    CellWorth worth;
+    CandidateWeights weights;
     const ArrangeOptions& options;
     Progress& progress;
-    Sight sight;
-    std::map<double, std::unique_ptr<SiteJudge>> judges = {};
+    SliceSights sights;
+    std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::size_t bytes = 0;  // of the sets made so far
 
-    const SiteJudge& judgeAt(double height) {
-        std::unique_ptr<SiteJudge>& judge = judges[height];
-        if (judge != nullptr) return *judge;
+    const SiteValidity& validityAt(double height) {
+        std::unique_ptr<SiteValidity>& validity = validities[height];
+        if (validity != nullptr) return *validity;
         const MountRules& mount = options.mount;
         SiteRules rules;
         rules.height = height;
@@ -65,8 +65,8 @@ struct CandidatePool::Data {
         for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
         for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
         if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
-        judge = std::make_unique<SiteJudge>(environment, std::move(rules));
-        return *judge;
+        validity = std::make_unique<SiteValidity>(environment, std::move(rules));
+        return *validity;
     }
 
     [[nodiscard]] std::vector<double> heights() const {
@@ -103,7 +103,7 @@ struct CandidatePool::Data {
         return levels;
     }
 
-    /// Sites at all heights, those that are not valid left out.
+    /// The valid sites at all heights.
     std::vector<SitesAtHeight> levelsFor(const SensorClass& kind) {
         std::vector<SitesAtHeight> levels;
         if (options.mount.on == MountOn::Frame)
@@ -114,7 +114,7 @@ struct CandidatePool::Data {
         std::size_t proposed = 0, valid = 0;
         for (SitesAtHeight& level : levels) {
             proposed += level.sites.size();
-            level.sites = validSites(judgeAt(level.height), level.sites, progress);
+            level.sites = validSites(validityAt(level.height), level.sites, progress);
             valid += level.sites.size();
         }
         if (valid == 0) throw UnmetError(noPlaceText(kind, proposed));
@@ -162,7 +162,8 @@ struct CandidatePool::Data {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
-                const CandidateViews views(sight, target.grid, kind.model, mount, &worth.counted);
+                const CandidateViews views(environment, worlds, target.grid, options.plane,
+                                           kind.model, mount, &weights.counted, &sights);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
                                    share))
@@ -178,9 +179,8 @@ struct CandidatePool::Data {
         bool is_complete = true;  ///< false: progress said to stop before
     };
 
-    /// Valid random places; fewer where they are hard to find, and those found so far where
-    /// progress says stop. `needs_one`: then, too, one is looked for, but for no longer than for
-    /// one place.
+    /// Valid random places; fewer if they are hard to find or progress says stop. `needs_one`: even
+    /// then tries for one place as long as a single place allows.
     template <typename Draw>
     Drawn randomLevels(int count, bool needs_one, Draw draw) {
         constexpr std::uint64_t kTries = 1000;  // a place
@@ -189,7 +189,7 @@ struct CandidatePool::Data {
         std::uint64_t k = 0;
         progress.begin("drawing places", std::int64_t{count} * std::ssize(heights()));
         for (const double height : heights()) {
-            const SiteJudge& judge = judgeAt(height);
+            const SiteValidity& validity = validityAt(height);
             std::vector<Point2> places;
             for (std::uint64_t tries = 0;
                  tries < most_tries && places.size() < static_cast<std::size_t>(count); ++tries) {
@@ -199,7 +199,7 @@ struct CandidatePool::Data {
                     break;
                 }
                 const Point2 place = onNanometres(draw(k++));
-                if (!judge.isValid(place)) continue;
+                if (!validity.isValid(place)) continue;
                 places.push_back(place);
                 ++drawn.places;
                 progress.advance(1);
@@ -210,8 +210,8 @@ struct CandidatePool::Data {
         return drawn;
     }
 
-    /// Hierarchical Random: R1 places; for each sensor R2 more about the best one for it. Places
-    /// found for one sensor serve the others, too. False if progress says stop.
+    /// Hierarchical Random: R1 places; for each sensor R2 more about its best one. All sensors
+    /// share these places. False if progress says stop.
     bool addRandom(PosedCandidates& set, const SensorClass& kind) {
         const Drawn first = randomLevels(options.first_places, true, [&](std::uint64_t k) {
             return randomPlace(environment.limits(), options.seed, kind.id, k);
@@ -223,11 +223,11 @@ struct CandidatePool::Data {
         }
         if (!addLevels(set, kind, first.levels, kLeastPlaces) || !first.is_complete) return false;
         const double scope = options.scope.value_or(maxRange(kind.model) / kSegments);
-        std::vector<std::uint32_t> worth_left = worth.left;
+        std::vector<std::uint32_t> weights_left = weights.left;
         std::vector<std::uint32_t> values;
         const auto best = [&] {
             values.resize(set.size());
-            set.weighAll(WeightSums(worth_left), values);
+            set.weighAll(WeightSums(weights_left), values);
             return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
                                             values.begin());
         };
@@ -241,7 +241,7 @@ struct CandidatePool::Data {
             });
             if (!more.is_complete || !addLevels(set, kind, more.levels, 0)) return false;
             set.forEachRun(best(), [&](const CellRun& run) {
-                std::fill(worth_left.begin() + run.first, worth_left.begin() + run.end, 0U);
+                std::fill(weights_left.begin() + run.first, weights_left.begin() + run.end, 0U);
             });
         }
         return true;
@@ -249,14 +249,10 @@ struct CandidatePool::Data {
 };
 
 CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
-                             CellWorth worth, const ArrangeOptions& options, Progress& progress)
-    : data_(new Data{environment,
-                     worlds,
-                     target,
-                     std::move(worth),
-                     options,
-                     progress,
-                     {environment, options.plane, &worlds}}) {}
+                             CandidateWeights weights, const ArrangeOptions& options,
+                             Progress& progress)
+    : data_(new Data{environment, worlds, target, std::move(weights), options, progress,
+                     SliceSights(environment)}) {}
 
 CandidatePool::~CandidatePool() = default;
 
@@ -271,6 +267,6 @@ CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
     return made;
 }
 
-const SiteJudge& CandidatePool::judgeAt(double height) { return data_->judgeAt(height); }
+const SiteValidity& CandidatePool::validityAt(double height) { return data_->validityAt(height); }
 
 }  // namespace ispace

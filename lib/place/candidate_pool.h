@@ -13,10 +13,10 @@
 
 namespace ispace {
 
-/// What cells are worth to who makes candidates.
-struct CellWorth {
+/// Weights of the cells, as candidate generation sees them.
+struct CandidateWeights {
     CellSet counted;                  ///< cells that count at all
-    std::vector<std::uint32_t> left;  ///< weights of those that nobody covers yet, else 0
+    std::vector<std::uint32_t> left;  ///< weights of those not covered yet, else 0
 };
 
 /// Makes candidates by the strategy and the mount rules of the options.
@@ -24,22 +24,21 @@ class CandidatePool {
   public:
     /// Keeps references.
     CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
-                  CellWorth worth, const ArrangeOptions& options, Progress& progress);
+                  CandidateWeights weights, const ArrangeOptions& options, Progress& progress);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;
     CandidatePool& operator=(const CandidatePool&) = delete;
 
-    /// All candidates of a kind. False in `is_complete` where progress said to stop before: then
-    /// those made so far, spread over all places; some at least, unless no random place was found
-    /// yet.
+    /// All candidates of a kind. If progress said stop, `is_complete` is false and the set has
+    /// those made so far, spread over all places: at least some, unless no random place was found.
     /// \throws UnmetError if there is no valid place, UsageError for more memory than is allowed
     struct Made {
         std::unique_ptr<PosedCandidates> set;
         bool is_complete = true;
     };
     Made make(const SensorClass& kind);
-    /// The judge of the places that a sensor of this height may take.
-    const SiteJudge& judgeAt(double height);
+    /// The validity test for places at this height.
+    const SiteValidity& validityAt(double height);
 
   private:
     struct Data;

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "place/candidate_views.h"
 #include "place/test_arrange.h"
-#include "solve/test_progress.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -31,9 +31,9 @@ struct Pooled {
           worlds(scene.environment),
           target(makeTarget(scene.environment, CellCount{50, 50}, kScanHeight)),
           kinds(kindsOf(groupsOf(scene, {sensor}))) {
-        CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
-        target.indoor.forEach([&](std::size_t cell) { worth.left[cell] = 1; });
-        CandidatePool pool(scene.environment, worlds, target, std::move(worth), options, silent);
+        CandidateWeights weights{target.indoor, std::vector<std::uint32_t>(target.grid.size())};
+        target.indoor.forEach([&](std::size_t cell) { weights.left[cell] = 1; });
+        CandidatePool pool(scene.environment, worlds, target, std::move(weights), options, silent);
         set = pool.make(kinds.front()).set;
     }
 };
@@ -124,8 +124,9 @@ CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     options.first_places = count;
     options.mount.heights = {0.15, 1};
     options.mount.keep_in = {readZone(zone, scene.environment)};
-    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
-    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    const CandidateWeights weights{target.indoor,
+                                   std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, weights, options, progress);
     return pool.make(kindsOf(groupsOf(scene, {"laser:2"})).front());
 }
 
@@ -165,8 +166,9 @@ CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Pr
     ArrangeOptions options;
     options.density = {0.1, 0.1, 2};
     options.mount.heights = std::move(heights);
-    const CellWorth worth{target.indoor, std::vector<std::uint32_t>(target.grid.size(), 1)};
-    CandidatePool pool(scene.environment, worlds, target, worth, options, progress);
+    const CandidateWeights weights{target.indoor,
+                                   std::vector<std::uint32_t>(target.grid.size(), 1)};
+    CandidatePool pool(scene.environment, worlds, target, weights, options, progress);
     return pool.make(kindsOf(groupsOf(scene, {"laser,range=3"})).front());
 }
 
@@ -232,8 +234,8 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     for (const double tilt : {0, -30}) {  // in a slice, through the mesh
-        const Sight sight(scene.environment, 0, &worlds);
-        const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
+        const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
+                                   {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
         for (const int columns : {8, 16, 20, 32, 64, 89, 100, 160, 233})
             for (const int rows : {8, 30, 34, 64, 144}) {
                 const std::vector<Site> sites = latticeOf(columns, rows);
@@ -256,8 +258,8 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
     const Scene scene = roomScene();
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
-    const Sight sight(scene.environment, 0, &worlds);
-    const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(-30), {}});
+    const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
+                               {{0, 0, 1}, {}, Angle::degrees(-30), {}});
     const std::vector<Site> sites = latticeOf(60, 40);
     SilentProgress silent;
     PosedCandidates all(grid.size());
@@ -283,13 +285,14 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     for (const Point2 place : gridPlaces(room.limits(), {9, 9}))
         everywhere.push_back({place, headingsAround(8)});
     SilentProgress silent;
-    const std::vector<Site> inside = validSites(SiteJudge(room, SiteRules()), everywhere, silent);
+    const std::vector<Site> inside =
+        validSites(SiteValidity(room, SiteRules()), everywhere, silent);
     Worlds worlds(room);
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;
     laser.max_range = 4;
-    const Sight sight(room, 0, &worlds);
-    const CandidateViews views(sight, target.grid, laser, {{0, 0, kScanHeight}, {}, {}, {}});
+    const CandidateViews views(room, worlds, target.grid, 0, laser,
+                               {{0, 0, kScanHeight}, {}, {}, {}});
     // The thesis counts what lies within the limits, indoor or not.
     const WeightSums ones(std::vector<std::uint32_t>(target.grid.size(), 1));
     const auto best_of = [&](const std::vector<Site>& sites) {

@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kLeastWidth = 200, kMostWidth = 12000;
+constexpr int kMinWidth = 200, kMaxWidth = 12000;
 
 using palette::kFaintInk, palette::kInk;
 constexpr Color kGridLine = Color::rgb(0xE1E4E8);
@@ -51,12 +51,12 @@ Axis sensorAxis(const std::vector<CurvePoint>& points, double most_ticks) {
 
 /// Per cent from 0 to the next tick above everything.
 Axis shareAxis(const std::vector<CurvePoint>& points) {
-    constexpr double kMostTicks = 6;
+    constexpr double kMaxTicks = 6;
     double most = 0;
     for (const CurvePoint& point : points) most = std::max({most, point.value, point.bound});
     most = most > 0 ? std::clamp(100 * most, 0.1, 100.0) : 100;
     Axis axis;
-    axis.step = roundStep(most / kMostTicks);
+    axis.step = roundStep(most / kMaxTicks);
     axis.last = std::min(100.0, std::ceil(most / axis.step - 1e-9) * axis.step);
     return axis;
 }
@@ -106,7 +106,7 @@ void drawAxes(const Chart& chart) {
                        chart.text(Align::Center));
 }
 
-/// The figures beside their dots, where they have room.
+/// Values beside their dots, where there is room.
 void drawFigures(const Chart& chart) {
     const double em = chart.em;
     const double apart = chart.plot.width() / (chart.sensors.last - chart.sensors.first);
@@ -144,7 +144,7 @@ void drawLines(const Chart& chart) {
     for (const Point2 place : values) chart.picture.circle(place, dot, {valueColor()});
 }
 
-/// What is drawn how, in a line from `left` on.
+/// The key, in a line from `left` on.
 void drawKey(const Chart& chart, double left, double base) {
     const double em = chart.em, y = base - 0.36 * em;
     chart.picture.line({left, y}, {left + 1.6 * em, y}, {valueColor(), em / 7});
@@ -195,10 +195,10 @@ std::string curveText(const std::vector<CurvePoint>& points) {
 
 std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& title,
                       PictureFormat format, int width) {
-    if (width < kLeastWidth || width > kMostWidth)
+    if (width < kMinWidth || width > kMaxWidth)
         throw UsageError("a curve " + std::to_string(width) +
-                         " pixels wide cannot be drawn, wanted " + std::to_string(kLeastWidth) +
-                         " to " + std::to_string(kMostWidth));
+                         " pixels wide cannot be drawn, wanted " + std::to_string(kMinWidth) +
+                         " to " + std::to_string(kMaxWidth));
     std::vector<CurvePoint> sorted = points;
     std::stable_sort(sorted.begin(), sorted.end(), [](const CurvePoint& a, const CurvePoint& b) {
         return a.sensors < b.sensors;

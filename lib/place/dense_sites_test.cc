@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "geom/predicates.h"
 #include "place/sites.h"
-#include "place/test_room.h"
+#include "place/test_arrange.h"
 
 namespace ispace {
 namespace {

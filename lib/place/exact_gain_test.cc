@@ -60,7 +60,7 @@ TEST(ExactGain, IsWhatCoverageMeasures) {
     const std::vector<Movable> movables = threeLasers();
     const CoverageReport report = reportOf(scene, movables);
     for (const int demand : {1, 2, 3}) {
-        const ExactGain worth(scene, movables, {}, {.demand = demand});
+        const ExactGain worth(scene, movables, {}, {.multiplicity = demand});
         EXPECT_NEAR(worth.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
         EXPECT_NEAR(worth.total(), 48, 1e-9);
     }
@@ -123,14 +123,15 @@ TEST(ExactGain, GainsAreDifferencesOfValues) {
             const auto which = static_cast<std::size_t>(i) % 3;
             std::vector<double> values, gains;
             std::vector<Pose3> poses;
-            ExactGain moving(scene, movables, worth, {.demand = demand});
+            ExactGain moving(scene, movables, worth, {.multiplicity = demand});
             for (int k = 0; k < 2; ++k) {
                 Movable& own = movables[which];
                 own.pose.position.x = x(random);
                 own.pose.position.y = y(random);
                 own.pose.heading = Angle::degrees(h(random));
                 poses.push_back(own.pose);
-                values.push_back(ExactGain(scene, movables, worth, {.demand = demand}).value());
+                values.push_back(
+                    ExactGain(scene, movables, worth, {.multiplicity = demand}).value());
             }
             moving.take(which);
             gains = moving.gains(poses);
@@ -153,7 +154,7 @@ TEST(ExactGain, FourReceiversAreOneSensor) {
     movables.push_back(at("a", laserOfRange(3), 2, 0, 30));
     const CoverageReport report = reportOf(scene, movables);
     for (const int demand : {1, 2})
-        EXPECT_NEAR(ExactGain(scene, movables, {}, {.demand = demand}).value(),
+        EXPECT_NEAR(ExactGain(scene, movables, {}, {.multiplicity = demand}).value(),
                     seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
     ExactGain worth(scene, movables, {}, {});
     const double before = worth.value();

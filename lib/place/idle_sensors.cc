@@ -13,13 +13,13 @@ namespace ispace {
 
 namespace {
 
-/// What one sensor sees, and its share of a cell's demand.
+/// What one sensor sees, and the multiplicity it adds.
 struct CountedView {
     CellSet cells;
     int multiplicity = 1;
 };
 
-/// Shares that each cell has of the demand.
+/// Multiplicity of each cell.
 using Multiplicities = std::vector<int>;
 
 void count(const CountedView& view, int times, Multiplicities& achieved) {
@@ -35,8 +35,8 @@ bool isNeeded(const Problem& problem, const CountedView& view, const Multiplicit
     return is_needed;
 }
 
-/// The views without which the others are worth as much, ascending. `allows(left)`: whether these
-/// may be left alone; asked of what is not needed.
+/// The views without which the value stays the same, ascending. `allows(left)`: whether the views
+/// still in `left` may remain alone.
 std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const CountedView> views,
                                    const std::function<bool(const std::vector<bool>&)>& allows) {
     Multiplicities achieved(problem.achieved.begin(), problem.achieved.end());
@@ -63,7 +63,7 @@ CountedView viewOf(const Problem& problem, const Choice& choice) {
     return {kind.candidates->cellsOf(choice.candidate), kind.multiplicity};
 }
 
-/// The sites of a kind, as places for sensors that add nothing.
+/// The sites of a kind, as places for idle sensors.
 class SpareSites {
   public:
     SpareSites(const Problem& problem, std::size_t kind,
@@ -85,7 +85,7 @@ class SpareSites {
             distances_[site] = std::min(distances_[site], length(positions_[site] - place));
     }
 
-    /// The farthest from all sensors, the first among equals; nothing where each has one.
+    /// The site farthest from all sensors, the first among equals; nothing if each has one.
     [[nodiscard]] std::optional<std::size_t> farthest() const {
         std::optional<std::size_t> best;
         for (std::size_t site = 0; site < distances_.size(); ++site)
@@ -93,11 +93,11 @@ class SpareSites {
         return best;
     }
 
-    /// The candidate of a site that sees most at these prices.
-    [[nodiscard]] std::size_t bestAt(std::size_t site, const WeightSums& prices) const {
+    /// The candidate of a site that sees most by these weights.
+    [[nodiscard]] std::size_t bestAt(std::size_t site, const WeightSums& weights) const {
         const std::size_t first = candidates_.firstOf(site);
         std::vector<std::uint32_t> values(candidates_.firstOf(site + 1) - first);
-        candidates_.weighSite(site, prices, values);
+        candidates_.weighSite(site, weights, values);
         return first + static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
                                                 values.begin());
     }
@@ -113,7 +113,7 @@ class SpareSites {
     std::vector<bool> sees_;
 };
 
-/// Weights of the cells that few see: not even twice as many as they need.
+/// Weights of the cells with less than twice the required multiplicity.
 std::vector<std::uint32_t> weightsOfFew(const Problem& problem, const Multiplicities& achieved) {
     std::vector<std::uint32_t> weights = problem.weights;
     for (std::size_t i = 0; i < weights.size(); ++i)

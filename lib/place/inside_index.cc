@@ -13,11 +13,11 @@ namespace {
 
 /// About as many cells as keep building quick, and two or three to an edge.
 int cellsAcross(double extent, double other, std::size_t edges) {
-    constexpr double kFewest = 1024, kMost = 250'000, kMostAcross = 2000;
-    const double cells = std::clamp(3 * static_cast<double>(edges), kFewest, kMost);
+    constexpr double kFewest = 1024, kMax = 250'000, kMaxAcross = 2000;
+    const double cells = std::clamp(3 * static_cast<double>(edges), kFewest, kMax);
     const double across = std::sqrt(cells * extent / other);
     // Of what has no extent in one direction one gets a row.
-    return std::isfinite(across) ? static_cast<int>(std::clamp(across, 1.0, kMostAcross)) : 1;
+    return std::isfinite(across) ? static_cast<int>(std::clamp(across, 1.0, kMaxAcross)) : 1;
 }
 
 /// Cells a little beyond the box, by odd shares: their centres shall not lie on the round numbers

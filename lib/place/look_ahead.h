@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which sites are looked at before their turn, and where what is seen from them waits.
+// The sites that are evaluated ahead of their turn, and storage for their views until then.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 #include <span>
 #include <vector>
 
-#include "base/cell_set.h"
-#include "geom/box.h"
+#include "cover/sector_cells.h"
+#include "geom/point.h"
 #include "place/sites.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 
-/// The bits of a number of 16 bits at every second place.
+/// Spreads the 16 low bits to every second bit.
 inline std::uint32_t spreadOut(std::uint32_t x) {
     x = (x | x << 8U) & 0x00ff00ffU;
     x = (x | x << 4U) & 0x0f0f0f0fU;
@@ -24,8 +24,7 @@ inline std::uint32_t spreadOut(std::uint32_t x) {
     return (x | x << 1U) & 0x55555555U;
 }
 
-/// Where a place is along a curve through the whole box, on which neighbours mostly are near each
-/// other: the bits of both coordinates in turn (Morton order).
+/// Position of a place along a Morton curve through the box, on which neighbours are mostly close.
 inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
     const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
     const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
@@ -33,8 +32,8 @@ inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
     return spreadOut(x & 0xffffU) | spreadOut(y & 0xffffU) << 1U;
 }
 
-/// Some of the sites, and the order in which to take them so that those taken at any time are
-/// spread over the plan, however the sites are listed. O(n log n)
+/// A sample of the sites, in an order whose every prefix is spread over the plan, however the sites
+/// are listed. O(n log n)
 class Spread {
   public:
     /// \pre count <= sites.size() < 2^32
@@ -63,9 +62,9 @@ class Spread {
         std::sort(in_order_.begin(), in_order_.end());
     }
     [[nodiscard]] std::size_t size() const { return in_turn_.size(); }
-    /// The site whose turn is the k-th.
+    /// The k-th site in that order.
     [[nodiscard]] std::size_t turn(std::size_t k) const { return in_turn_[k]; }
-    /// The k-th of all as they are listed.
+    /// The k-th site of the sample in the order of the list.
     [[nodiscard]] std::size_t at(std::size_t k) const { return in_order_[k]; }
     [[nodiscard]] std::size_t slotOf(std::size_t site) const {
         return static_cast<std::size_t>(std::lower_bound(in_order_.begin(), in_order_.end(), site) -
@@ -76,8 +75,8 @@ class Spread {
     std::vector<std::size_t> in_turn_, in_order_;
 };
 
-/// What was seen from places before their turn. It lies together by some hundred neighbours, in
-/// pieces large enough to go back to the system once they are done with.
+/// Views that were found ahead of their turn, stored together for some hundred neighbours, in
+/// pieces large enough to be returned to the system when done.
 class Shelf {
   public:
     explicit Shelf(std::size_t size) : slots_(size), boards_(size / kTogether + 1) {}
@@ -97,11 +96,11 @@ class Shelf {
         parts.runs.assign(runs.begin(), runs.end());
         parts.first.assign(first.begin(), first.end());
     }
-    /// Those before k are not asked for any more.
+    /// Frees those before k.
     void dropBefore(std::size_t k) {
         for (; dropped_ < k / kTogether; ++dropped_) boards_[dropped_] = {};
     }
-    /// Of all that was put here.
+    /// Of all that was ever stored.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   private:

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// Candidates with their poses: those of one site differ in heading alone.
+/// Candidates with their poses; those of one site differ only in heading.
 class PosedCandidates : public CandidateSet {
   public:
     using CandidateSet::CandidateSet;

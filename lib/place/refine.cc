@@ -4,25 +4,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <optional>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cover/sight.h"
+#include "cover/visible.h"
 #include "place/exact_gain.h"
+#include "place/scene_problem.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr double kLeastStep = 0.001, kLeastTurn = 0.05;  // metres, degrees
+constexpr double kMinStep = 0.001, kMinTurn = 0.05;  // metres, degrees
 /// Steps lead to whole multiples of these: layouts are read by people.
 constexpr double kPerMetre = 1e4, kPerDegree = 1e3;
-/// Of all that counts: a step that gains no more is rounding.
-constexpr double kLeastGain = 1e-9;
-/// At one length of steps; a guard against rounding, which would have to win every time.
-constexpr std::size_t kMostRounds = 200;
+/// Share of the total: a smaller gain is rounding.
+constexpr double kMinGain = 1e-9;
+/// At one length of steps; a guard against endless gains by rounding.
+constexpr std::size_t kMaxRounds = 200;
 
 /// A step of one length along some of the axes.
 struct Way {
@@ -53,8 +55,8 @@ std::vector<Stride> stridesOf(const RefineOptions& options) {
     std::vector<Stride> strides;
     double step = options.step, turn = options.turn.degrees();
     for (;;) {
-        strides.push_back({std::max(step, kLeastStep), std::max(turn, kLeastTurn)});
-        if (step <= kLeastStep && turn <= kLeastTurn) return strides;
+        strides.push_back({std::max(step, kMinStep), std::max(turn, kMinTurn)});
+        if (step <= kMinStep && turn <= kMinTurn) return strides;
         step /= 2;
         turn /= 2;
     }
@@ -74,22 +76,22 @@ Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
 
 class Search {
   public:
-    Search(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& worth,
+    Search(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& weights,
            const RefineOptions& options,
            const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress)
         : sensors_(sensors),
           accept_(accept),
           progress_(progress),
           strides_(stridesOf(options)),
-          worth_(scene, sensors, worth, options),
-          total_(worth_.total()) {
+          gain_(scene, sensors, weights, options),
+          total_(gain_.total()) {
         poses_.reserve(sensors.size());
         for (const Movable& sensor : sensors) poses_.push_back(sensor.pose);
     }
 
     Refined run() {
         const std::vector<Pose3> start = poses_;
-        const double before = worth_.value();
+        const double before = gain_.value();
         ++evaluations_;
         value_ = before;
         progress_.begin("refining", static_cast<std::int64_t>(strides_.size()));
@@ -98,9 +100,9 @@ class Search {
             progress_.advance(1);
         }
         progress_.end();
-        const double after = worth_.value();
+        const double after = gain_.value();
         ++evaluations_;
-        // Gains were those of single sensors: all together have the last word.
+        // Gains were those of single sensors; the value of all together decides.
         if (after < before) return {start, before, before, evaluations_};
         return {poses_, before, after, evaluations_};
     }
@@ -110,16 +112,16 @@ class Search {
     void settle(const Stride& stride) {
         const std::size_t count = sensors_.size();
         std::size_t idle = 0;  // sensors in a row that stay where they are
-        for (std::size_t turn = 0; idle < count && turn < kMostRounds * count; ++turn)
+        for (std::size_t turn = 0; idle < count && turn < kMaxRounds * count; ++turn)
             idle = improve(turn % count, stride) ? 1 : idle + 1;
     }
 
     /// Steps of one sensor as long as they help; false if none did.
     bool improve(std::size_t sensor, const Stride& stride) {
         if (progress_.stopped()) return false;
-        worth_.take(sensor);
-        const std::vector<Way> ways = waysFor(worth_.turns(sensor));
-        double gain = worth_.gains(std::span(&poses_[sensor], 1))[0];
+        gain_.take(sensor);
+        const std::vector<Way> ways = waysFor(gain_.turns(sensor));
+        double gain = gain_.gains(std::span(&poses_[sensor], 1))[0];
         ++evaluations_;
         const double first = gain;
         while (const auto way = bestWay(sensor, ways, stride, gain)) {
@@ -127,7 +129,7 @@ class Search {
             while (bestWay(sensor, std::span(&*way, 1), stride, gain)) continue;
         }
         if (gain == first) return false;
-        worth_.put(poses_[sensor]);
+        gain_.put(poses_[sensor]);
         value_ += gain - first;
         if (total_ > 0)
             progress_.note("exact coverage " + formatFixed(100 * value_ / total_, 2) + " %");
@@ -150,7 +152,7 @@ class Search {
     std::optional<Way> bestOf(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
                               double& gain) {
         if (progress_.stopped()) return std::nullopt;
-        const SiteJudge* const judge = sensors_[sensor].judge;
+        const SiteValidity* const validity = sensors_[sensor].validity;
         std::vector<Pose3> trials;
         std::vector<Way> taken;
         trials.reserve(ways.size());
@@ -158,15 +160,16 @@ class Search {
         for (const Way& way : ways) {
             const Pose3 trial = stepped(poses_[sensor], way, stride);
             const bool moves = trial.position != poses_[sensor].position;
-            if (moves && judge != nullptr && !judge->isValid(trial.position.onFloor())) continue;
+            if (moves && validity != nullptr && !validity->isValid(trial.position.onFloor()))
+                continue;
             trials.push_back(trial);
             taken.push_back(way);
         }
         if (trials.empty()) return std::nullopt;
-        const std::vector<double> gains = worth_.gains(trials);
+        const std::vector<double> gains = gain_.gains(trials);
         evaluations_ += gains.size();
         std::optional<std::size_t> best;
-        double most = gain + kLeastGain * total_;
+        double most = gain + kMinGain * total_;
         for (std::size_t i = 0; i < gains.size(); ++i) {
             if (!(gains[i] > most) || !isAccepted(sensor, trials[i])) continue;
             most = gains[i];
@@ -189,7 +192,7 @@ class Search {
     const std::function<bool(const std::vector<Pose3>&)>& accept_;
     Progress& progress_;
     std::vector<Stride> strides_;
-    ExactGain worth_;
+    ExactGain gain_;
     double total_;
     double value_ = 0;
     std::vector<Pose3> poses_;
@@ -199,8 +202,8 @@ class Search {
 }  // namespace
 
 void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
-                     const FloorWeights& worth) {
-    if (worth.weights.size() > ExactGain::kMostZones)
+                     const FloorWeights& weights) {
+    if (weights.weights.size() > ExactGain::kMostZones)
         throw UsageError("--refine knows at most " + std::to_string(ExactGain::kMostZones) +
                          " weights");
     const auto refuse = [](const std::string& whose) {
@@ -217,10 +220,59 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                 refuse(laser->model.empty() ? "a laser" : laser->model);
 }
 
-Refined refine(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& worth,
+Refined refine(const Scene& scene, std::span<const Movable> sensors, const FloorWeights& weights,
                const RefineOptions& options,
                const std::function<bool(const std::vector<Pose3>&)>& accept, Progress& progress) {
-    return Search(scene, sensors, worth, options, accept, progress).run();
+    return Search(scene, sensors, weights, options, accept, progress).run();
+}
+
+namespace {
+
+constexpr double kApart = 0.05;  // metres
+
+bool areApart(const std::vector<ArrangedSensor>& before, const std::vector<Pose3>& poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+            const double least =
+                std::min(kApart, length(before[i].pose.position - before[k].pose.position));
+            if (length(poses[i].position - poses[k].position) < least) return false;
+        }
+    return true;
+}
+
+}  // namespace
+
+std::vector<ArrangedSensor> movedTo(std::vector<ArrangedSensor> sensors,
+                                    const std::vector<Pose3>& poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i) sensors[i].pose = poses[i];
+    return sensors;
+}
+
+Refined refineArranged(SceneProblem& model, const std::vector<ArrangedSensor>& sensors,
+                       std::uint64_t least, Progress& progress) {
+    std::vector<Movable> movables;
+    movables.reserve(sensors.size());
+    for (const ArrangedSensor& sensor : sensors)
+        movables.push_back({sensor.id, model.groups()[sensor.group].model, sensor.pose,
+                            &model.validityAt(sensor.pose.position.z)});
+    const auto refined = [&](const std::function<bool(const std::vector<Pose3>&)>& accept) {
+        const RefineOptions refining{.multiplicity = model.options().redundancy,
+                                     .plane = model.options().plane};
+        return refine(model.scene(), movables, model.options().weights, refining, accept, progress);
+    };
+    const auto is_kept = [&](const std::vector<Pose3>& poses) {
+        const Coverage coverage = model.coverageOf(movedTo(sensors, poses));
+        return model.valueOf(coverage) >= least &&
+               (!model.options().is_connected || model.isConnected(coverage));
+    };
+    const auto is_apart = [&](const std::vector<Pose3>& poses) { return areApart(sensors, poses); };
+    Refined best = refined(is_apart);
+    // The exact optimum may lose a cell on the grid by which results are compared, or break the
+    // connection: then each step is tested for that.
+    if (!is_kept(best.poses))
+        best = refined(
+            [&](const std::vector<Pose3>& poses) { return is_apart(poses) && is_kept(poses); });
+    return best;
 }
 
 }  // namespace ispace

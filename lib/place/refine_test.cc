@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "cover/test_scenes.h"
 #include "place/exact_gain.h"
-#include "solve/test_progress.h"
+#include "solve/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -46,9 +46,9 @@ bool isOnLattice(double value, double per_unit) {
 
 TEST(Refine, ADiscComesOutOfItsCorner) {
     const Scene scene = sceneOf("ispace size=8,6\n");
-    const SiteJudge judge(scene.environment, {});
+    const SiteValidity validity(scene.environment, {});
     const std::vector<Movable> one = {
-        {"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.91234567), &judge}};
+        {"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.91234567), &validity}};
     const Refined result = refined(scene, one);
     EXPECT_LT(result.before, 0.4 * result.after);
     EXPECT_NEAR(result.after, std::numbers::pi * 1.5 * 1.5, 1e-4);
@@ -86,23 +86,23 @@ TEST(Refine, HalfATurnTurnsToItsBestHeading) {
 TEST(Refine, NeverWorseAndEachStepHelped) {
     const Scene scene = sceneOf(
         "ispace size=8,6\ndesk at=2,1 heading=30 size=1.2,0.8,0.7\ncube at=-2,-1 size=0.6,0.6,1\n");
-    const SiteJudge judge(scene.environment, {});
+    const SiteValidity validity(scene.environment, {});
     std::mt19937 random(11);
     std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
     for (int round = 0; round < 6; ++round) {
         std::vector<Movable> movables;
         while (movables.size() < 2) {
             const Pose3 pose = poseAt(x(random), y(random), h(random));
-            if (judge.isValid(pose.position.onFloor()))
+            if (validity.isValid(pose.position.onFloor()))
                 movables.push_back(
-                    {std::to_string(movables.size()), laserOfRange(3), pose, &judge});
+                    {std::to_string(movables.size()), laserOfRange(3), pose, &validity});
         }
         const Refined result = refined(scene, movables);
         EXPECT_GE(result.after, result.before);
         EXPECT_NEAR(result.before, ExactGain(scene, movables, {}, {}).value(), 1e-9);
         for (std::size_t i = 0; i < movables.size(); ++i) {
             movables[i].pose = result.poses[i];
-            EXPECT_TRUE(judge.isValid(result.poses[i].position.onFloor()));
+            EXPECT_TRUE(validity.isValid(result.poses[i].position.onFloor()));
             EXPECT_LE(std::abs(result.poses[i].heading.degrees()), 180);
         }
         EXPECT_NEAR(result.after, ExactGain(scene, movables, {}, {}).value(), 1e-9);
@@ -159,8 +159,8 @@ TEST(Refine, InvalidPlacesAreNeverTaken) {
     const Scene scene = sceneOf("ispace size=8,6\n");
     SiteRules rules;
     rules.keep_out = {{{-3.5, -3}, {4, -3}, {4, 3}, {-3.5, 3}}};
-    const SiteJudge judge(scene.environment, std::move(rules));
-    const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), &judge}};
+    const SiteValidity validity(scene.environment, std::move(rules));
+    const std::vector<Movable> one = {{"a", laserOfRange(1.5, 360), poseAt(-3.9, -2.9), &validity}};
     const Refined result = refined(scene, one);
     EXPECT_LT(result.poses[0].position.x, -3.5);
     EXPECT_NEAR(result.poses[0].position.x, -3.5, 0.002);
@@ -187,7 +187,7 @@ TEST(Refine, DemandDrawsTogetherWhatElsePartsFromEachOther) {
     const Refined apart = refined(scene, one);
     EXPECT_NEAR(apart.after, 2 * std::numbers::pi, 0.02);
     EXPECT_GE(length(apart.poses[0].position.onFloor() - Point2{}), 1.98);
-    const Refined together = refined(scene, one, {}, {.demand = 2});
+    const Refined together = refined(scene, one, {}, {.multiplicity = 2});
     EXPECT_NEAR(together.after, std::numbers::pi, 0.02);
     EXPECT_LE(length(together.poses[0].position.onFloor() - Point2{}), 0.03);
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "place/scene_problem.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -11,6 +14,7 @@
 #include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "place/scene_value.h"
+#include "sense/scan.h"
 #include "sense/ultrasound.h"
 #include "solve/problem.h"
 
@@ -29,10 +33,10 @@ CoverageOptions searching(const ArrangeOptions& options) {
     return {.cells = searchCells(options), .plane = options.plane, .exact = false};
 }
 
-/// Why nothing counts. \pre all cells are worth 0
-std::string nothingText(const Target& target, FloorWeights worth) {
-    worth.weights.clear();
-    const std::vector<double> unweighted = weightsOfCells(target, worth);
+/// Why nothing counts. \pre all cells weigh 0
+std::string nothingText(const Target& target, FloorWeights weights) {
+    weights.weights.clear();
+    const std::vector<double> unweighted = weightsOfCells(target, weights);
     const bool is_weight =
         std::any_of(unweighted.begin(), unweighted.end(), [](double cell) { return cell > 0; });
     return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
@@ -50,17 +54,17 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
       worlds_(scene.environment),
       kinds_(kindsOf(groups)) {
     mustBeAffordable();
-    if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.worth);
+    if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.weights);
     const Coverage standing = coverageOf({});
     target_ = standing.target;
-    problem_.weights = integerWeights(weightsOfCells(target_, options.worth));
+    problem_.weights = integerWeights(weightsOfCells(target_, options.weights));
     total_ = problem_.totalWeight();
-    if (total_ == 0) throw UnmetError(nothingText(target_, options.worth));
-    setDemand(standing);
-    CellWorth worth{CellSet(target_.grid.size()), weightsLeft()};
+    if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
+    setMultiplicities(standing);
+    CandidateWeights weights{CellSet(target_.grid.size()), weightsLeft()};
     for (std::size_t i = 0; i < problem_.cells(); ++i)
-        if (problem_.weights[i] > 0) worth.counted.set(i);
-    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_, std::move(worth),
+        if (problem_.weights[i] > 0) weights.counted.set(i);
+    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_, std::move(weights),
                                             options, progress);
     addKinds();
 }
@@ -74,8 +78,8 @@ void SceneProblem::mustBeAffordable() const {
                          " buys nothing: the cheapest sensor costs " + formatDouble(least));
 }
 
-/// Receivers count four together; so others count as four each where there are receivers.
-void SceneProblem::setDemand(const Coverage& standing) {
+/// Four receivers count as one sensor; where there are receivers, others have multiplicity 4.
+void SceneProblem::setMultiplicities(const Coverage& standing) {
     const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
     const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
                          std::any_of(kinds_.begin(), kinds_.end(), is_partial);
@@ -174,8 +178,41 @@ void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
     ispace::spreadIdle(problem_, standing, position_of, chosen);
 }
 
-std::uint64_t SceneProblem::mostFromAnyPlace(const std::vector<int>& most) const {
-    return ispace::mostFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most, unit_);
+std::uint64_t SceneProblem::maxFromAnyPlace(const std::vector<int>& most) const {
+    return ispace::maxFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most, unit_);
+}
+
+namespace {
+
+void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> poses) {
+    for (const TriedPose& tried : poses) worlds.prepare(tried.pose);
+    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+        const Sensor placed{"", laser, poses[i].pose};
+        poses[i].slice_area = sliceArea(laser, castBeams(worlds.at(placed.pose), placed));
+    });
+}
+
+}  // namespace
+
+std::vector<TriedPose> SceneProblem::triedPoses(const std::vector<Choice>& chosen) {
+    const WeightSums weights(weightsLeft());
+    std::vector<TriedPose> all;
+    all.reserve(candidates());
+    for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+        const CandidateSet& set = *problem_.kinds[k].candidates;
+        const SensorClass& kind = kinds_[k];
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(weights, values);
+        const double part = static_cast<double>(problem_.kinds[k].multiplicity) / problem_.required;
+        const std::size_t first = all.size();
+        for (std::size_t i = 0; i < set.size(); ++i)
+            all.push_back({kind.id, poseOf({k, i}), part * share(values[i]), false});
+        for (const Choice& choice : chosen)
+            if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+        if (const auto* laser = std::get_if<Laser>(&kind.model))
+            addSliceAreas(worlds_, *laser, std::span(all).subspan(first));
+    }
+    return all;
 }
 
 }  // namespace ispace

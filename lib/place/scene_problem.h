@@ -10,19 +10,21 @@
 
 #include "base/progress.h"
 #include "cover/coverage.h"
+#include "cover/trace_file.h"
 #include "place/arrange_options.h"
-#include "place/arranged_sensor.h"
 #include "place/candidate_pool.h"
+#include "place/sensor_group.h"
 #include "solve/problem.h"
 #include "trace/worlds.h"
 
 namespace ispace {
 
-/// A scene with sensors to be placed as a problem in whole numbers, and the ways back from it.
+/// A scene with sensors to place as a weighted coverage problem, and the way back from its
+/// solutions.
 ///
-/// Sensors that are alike are one kind of the problem, with the candidates of the options'
-/// strategy; the target's cells weigh what options.worth says; what stands meets its share of the
-/// demand.
+/// Sensors that are alike are one kind of the problem, with candidates by the options' strategy.
+/// The target's cells have the weights of options.weights; sensors that stand already add to the
+/// multiplicity.
 class SceneProblem {
   public:
     /// Makes all candidates. Keeps references.
@@ -43,16 +45,16 @@ class SceneProblem {
     /// Of all kinds.
     [[nodiscard]] std::size_t candidates() const;
     [[nodiscard]] std::size_t bytes() const;
-    /// As the options have it, with the memory that candidates leave.
+    /// Those of the options, with the memory that the candidates leave.
     [[nodiscard]] SearchOptions searchOptions() const;
-    /// The judge of the places that a sensor of this height may take.
-    const SiteJudge& judgeAt(double height) { return pool_->judgeAt(height); }
+    /// The validity test for places at this height.
+    const SiteValidity& validityAt(double height) { return pool_->validityAt(height); }
 
-    /// A value of the problem as a share of all that counts.
+    /// A value of the problem as a share of the total weight.
     [[nodiscard]] double share(std::uint64_t value) const;
-    /// The least value that is this share, but for rounding.
+    /// The smallest value that is at least this share, up to rounding.
     [[nodiscard]] std::uint64_t valueFor(double share) const;
-    /// Weights of cells whose demand is not met by what stands; 0 for the others.
+    /// Weights of the cells not covered by what stands; 0 for the others.
     [[nodiscard]] std::vector<std::uint32_t> weightsLeft() const;
 
     [[nodiscard]] Pose3 poseOf(const Choice& choice) const {
@@ -64,17 +66,20 @@ class SceneProblem {
     [[nodiscard]] Coverage coverageOf(const std::vector<ArrangedSensor>& sensors);
     [[nodiscard]] std::uint64_t valueOf(const Coverage& coverage) const;
     [[nodiscard]] bool isConnected(const Coverage& coverage) const;
-    /// Ids of the arranged sensors that add nothing, see idleSensors().
+    /// Ids of arranged sensors that add nothing, see idleSensors().
     [[nodiscard]] std::vector<std::string> idleIn(const Coverage& coverage) const;
-    /// Moves choices that add nothing apart. Not for what is worth nothing at all: those choices
-    /// may be some of the many that a demand takes.
+    /// Spreads choices that add nothing. \pre the choices have a value: else they may be some of
+    /// the many that the required multiplicity takes
     void spreadIdle(std::vector<Choice>& chosen) const;
-    /// No sensors of these numbers, at whatever places, are worth more; `most` by kind.
-    [[nodiscard]] std::uint64_t mostFromAnyPlace(const std::vector<int>& most) const;
+    /// Every candidate with the share of the total weight that it would add to what stands and, for
+    /// a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
+    [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
+    /// Upper bound of the value of these numbers of sensors at any places; `most` by kind.
+    [[nodiscard]] std::uint64_t maxFromAnyPlace(const std::vector<int>& most) const;
 
   private:
     void mustBeAffordable() const;
-    void setDemand(const Coverage& standing);
+    void setMultiplicities(const Coverage& standing);
     void addKinds();
 
     const Scene& scene_;
@@ -82,7 +87,7 @@ class SceneProblem {
     const ArrangeOptions& options_;
     Worlds worlds_;
     std::vector<SensorClass> kinds_;
-    int unit_ = 1;  ///< share of the demand of a sensor that sees on its own
+    int unit_ = 1;  ///< multiplicity of sensors other than receivers
     Target target_;
     Problem problem_;
     std::uint64_t total_ = 0;

@@ -21,7 +21,7 @@ SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
     try {
         return sensorModelOf(record, devices);
     } catch (const FormatError& error) {
-        // What is wrong with the figures of --sensor is wrong on the command line.
+        // An error in the parameters of --sensor is one of the command line.
         throw UsageError(error.diagnostics().front().message);
     }
 }
@@ -43,7 +43,7 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
         const std::string id = record.writtenId();
         if (!id.empty() && !taken.insert(id).second)
             throw UsageError("the id `" + id + "` is taken in this scene");
-        const int most = count.value_or(open && id.empty() ? kMostOpen : 1);
+        const int most = count.value_or(open && id.empty() ? kMaxOpen : 1);
         groups.push_back({record, modelFor(record, devices), id, false, most});
     }
     return groups;
@@ -64,7 +64,7 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
             stays = true;
         }
         if (stays) continue;
-        // A sensor keeps the id by which others know it.
+        // A sensor keeps its id.
         if (record.writtenId().empty()) record.set("id", Value(ids[i]));
         record.erase("at");
         record.erase("heading");
@@ -94,7 +94,7 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups) {
         std::string id = group.id;
         if (id.empty()) {
             id = group.record.has("model") ? group.record.text("model") : group.record.keyword();
-            // Kinds that are called the same differ in figures: a number tells them apart.
+            // Kinds of the same name differ in parameters: a number tells them apart.
             const auto alike =
                 std::count_if(kinds.begin(), kinds.end(), [&id](const SensorClass& kind) {
                     return kind.id == id || kind.id.starts_with(id + '.');
@@ -111,6 +111,48 @@ std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group) {
         return std::find(one.groups.begin(), one.groups.end(), group) != one.groups.end();
     });
     return static_cast<std::size_t>(kind - kinds.begin());
+}
+
+std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
+                                            const std::vector<SensorGroup>& groups,
+                                            const std::vector<SensorClass>& kinds,
+                                            const std::vector<std::vector<Pose3>>& places) {
+    std::vector<std::size_t> used(kinds.size());
+    std::vector<ArrangedSensor> sensors;
+    std::vector<Record> records = scene.records;
+    std::vector<std::size_t> added;  // sensors without an id
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const std::size_t kind = kindOf(kinds, g);
+        for (int i = 0; i < groups[g].most && used[kind] < places[kind].size(); ++i) {
+            sensors.push_back({g, groups[g].id, places[kind][used[kind]++]});
+            if (groups[g].is_pending) continue;
+            records.push_back(groups[g].record);
+            added.push_back(sensors.size() - 1);
+        }
+    }
+    const std::vector<std::string> ids = assignIds(records);
+    for (std::size_t i = 0; i < added.size(); ++i)
+        sensors[added[i]].id = ids[scene.records.size() + i];
+    return sensors;
+}
+
+Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor) {
+    Record record = group.record;
+    const Point3& p = sensor.pose.position;
+    record.set("id", Value(sensor.id));
+    record.set("at", Value(Tuple{p.x, p.y, p.z}));
+    record.set("heading", Value(sensor.pose.heading.degrees()));
+    if (!(record.angle("tilt") == sensor.pose.tilt))
+        record.set("tilt", Value(sensor.pose.tilt.degrees()));
+    return record;
+}
+
+Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
+                   const std::vector<ArrangedSensor>& sensors) {
+    Scene whole = scene;
+    for (const auto& [group, id, pose] : sensors)
+        whole.sensors.push_back({id, groups[group].model, pose});
+    return whole;
 }
 
 }  // namespace ispace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,47 +13,68 @@
 
 namespace ispace {
 
-/// Most sensors of a group whose number is for the search to find.
-constexpr int kMostOpen = 1000;
+/// Maximum size of a group whose number the search finds.
+constexpr int kMaxOpen = 1000;
 
-/// Sensors that are alike, to be placed: one of the scene without a place, or those of one
-/// --sensor.
+/// Like sensors to be placed: one of the scene without a place, or those of one --sensor.
 struct SensorGroup {
     Record record;  ///< without place
     SensorModel model;
-    std::string id;           ///< of one that has one; else the next free ones of its keyword
+    std::string id;           ///< empty: the next free ones of its keyword
     bool is_pending = false;  ///< of the scene; else new
     int most = 1;
 };
 
-/// All sensors to be placed: those the scene has without place, then `added`. `open`: of an added
-/// one without count the search finds the number, up to kMostOpen.
+/// All sensors to be placed: those of the scene without a place, then `added`. `open`: the search
+/// finds the number of added ones without a count, up to kMaxOpen.
 /// \throws UsageError if an added record has a place or an id that is taken, FormatError as laserOf
 std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
                                        const DeviceCatalogue& devices, bool open);
 
-/// The layout with the places of its sensors taken away, but for those that one of the globs names
-/// and for those that ride on something: so they are placed anew.
-/// \throws UsageError for a glob that names no sensor with a place
+/// The layout without the places of its sensors, so that they are placed anew, except those that
+/// match one of the globs and those mounted on something that moves.
+/// \throws UsageError for a glob that matches no sensor with a place
 Document withoutPlaces(const Document& layout, std::span<const std::string> fixed);
 
-/// Sensors that choose from the same candidates: equal figures, mounted alike.
+/// Sensors that choose from the same candidates: equal parameters, mounted alike.
 struct SensorClass {
     SensorModel model;
     Record record;   ///< of the first of them
-    std::string id;  ///< names it in messages and seeds its random places
+    std::string id;  ///< for messages and as a seed of its random places
     double cost = 1;
     int most = 0;                          ///< of all its groups
     std::vector<std::size_t> groups = {};  ///< in their order
 };
 
-/// The kinds of these groups, in the order in which they first come.
+/// The kinds of these groups, in order of first appearance.
 std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups);
 
 /// The kind that a group is of. \pre it is of one
 std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group);
 
-/// True for what covers floor only together with others: receivers.
+/// True for sensors that cover floor only together with others: receivers.
 inline bool isPartial(const SensorModel& model) { return kindOf(model).together > 1; }
+
+/// A sensor at the place found for it.
+struct ArrangedSensor {
+    std::size_t group = 0;
+    std::string id;
+    Pose3 pose;
+};
+
+/// Assigns the places of each kind to the sensors of its groups, in order; sensors for which none
+/// is left are dropped. New sensors get the next free ids.
+std::vector<ArrangedSensor> arrangedSensors(const Scene& scene,
+                                            const std::vector<SensorGroup>& groups,
+                                            const std::vector<SensorClass>& kinds,
+                                            const std::vector<std::vector<Pose3>>& places);
+
+/// The record of a sensor at its place: `id`, `at` with z, `heading` and, if the search chose it,
+/// `tilt` are set.
+Record placedRecord(const SensorGroup& group, const ArrangedSensor& sensor);
+
+/// The scene with the arranged sensors placed.
+Scene withArranged(const Scene& scene, const std::vector<SensorGroup>& groups,
+                   const std::vector<ArrangedSensor>& sensors);
 
 }  // namespace ispace

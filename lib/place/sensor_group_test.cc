@@ -20,7 +20,7 @@ TEST(SensorGroups, RefuseIdsThatAreTakenAndPlacesThatAreGiven) {
 TEST(SensorGroups, CountsAreOpenOnlyWhereTheSearchFindsThem) {
     const Scene scene = roomScene();
     EXPECT_EQ(groupsOf(scene, {"laser"})[0].most, 1);
-    EXPECT_EQ(groupsOf(scene, {"laser"}, true)[0].most, kMostOpen);
+    EXPECT_EQ(groupsOf(scene, {"laser"}, true)[0].most, kMaxOpen);
     EXPECT_EQ(groupsOf(scene, {"laser:7"}, true)[0].most, 7);
     EXPECT_EQ(groupsOf(scene, {"laser,id=one"}, true)[0].most, 1);
 }

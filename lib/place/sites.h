@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-/// A place with the headings to try there, all different, the order of preference among equals.
+/// A place with the headings to try there: distinct, the preferred first among equals.
 struct Site {
     Point2 place;
     std::vector<Angle> headings;
@@ -24,8 +24,8 @@ struct Site {
 /// `count` headings 360 / count apart, the first 0.
 std::vector<Angle> headingsAround(int count);
 
-/// No strategy proposes more places than this at one height: nobody could wait for them.
-constexpr double kMostSites = 1e6;
+/// Limit of the places that a strategy proposes at one height.
+constexpr double kMaxSites = 1e6;
 
 // ---- Strategies of the thesis
 
@@ -44,27 +44,27 @@ GridSearch defaultGridSearch(const Box2& limits, double max_range);
 /// slowest.
 std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
 
-/// Along Wall (section 4.4.5): on every wall that a sensor at this height can hang on `times`
-/// places at equal distances (the first and last half a distance from its ends), `dist` from it
-/// along the inner normal, which is their heading. Walls are the lines of the indoor region's
-/// outline and holes, from corner to corner: pieces that go straight on, as where another wall ends
-/// on one, are one wall. Also both sides of walls that stand within the indoor region, as between
-/// rooms that open doors join; the faces of thick ones; and not across open doors, but where they
-/// lead out.
+/// Along Wall (section 4.4.5): on every wall that reaches this height `times` places at equal
+/// distances (the first and last half a distance from its ends), `dist` from it along the inner
+/// normal, which is their heading. Walls are the lines of the indoor region's outline and holes,
+/// from corner to corner: collinear pieces, as where another wall ends, are one wall. Walls within
+/// the indoor region, as between rooms joined by open doors, count on both sides, thick ones with
+/// their faces. Open doors count only where they lead out.
 ///
 /// "At the end of the wall line vector, concavity environment may ask for more candidates of
 /// orientation", says the thesis, and not which: the first and the last place of a wall also have
-/// the heading halfway to the neighbouring wall's normal and that normal. Around a corner that juts
-/// into the room a part of it lies behind the wall's line, where a sensor of 180 degrees that faces
-/// the normal does not look; in a corner of the room one with less than 180 degrees sees more
-/// across it. Valid or not: a place may lie beyond another wall. O(n (log n + times)) for n lines
-/// \pre times >= 0 \throws UsageError for more than kMostSites
+/// the heading halfway to the neighbouring wall's normal and that normal. Behind a corner that juts
+/// into the room, part of it lies beyond the wall's line, out of view of a sensor of 180 degrees
+/// that faces the normal; in a corner of the room a sensor of less than 180 degrees sees more when
+/// it faces across. Not tested for validity: a place may lie beyond another wall. O(n (log n +
+/// times)) for n lines
+/// \pre times >= 0 \throws UsageError for more than kMaxSites
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times);
 
 /// Hierarchical Random (section 4.4.3): place k of a sequence, anywhere within limits, or in the
 /// disc of radius `scope` about `center`, both evenly over the area. Draws from (seed, id of the
-/// sensor, stage): the same for any number of threads. Places that are not valid are drawn anew by
-/// the caller, who counts k on. \pre k < 2^54, stage < 2^32 - 1
+/// sensor, stage): the same for any number of threads. For places that are not valid the caller
+/// draws again with the next k. \pre k < 2^54, stage < 2^32 - 1
 Point2 randomPlace(const Box2& limits, std::uint64_t seed, const std::string& id, std::uint64_t k);
 Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const std::string& id,
                         std::uint64_t stage, std::uint64_t k);
@@ -72,16 +72,16 @@ Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const s
 // ---- Denser candidates
 
 /// Points of a lattice with this step that begins step / 2 inside the limits' lower corner, below
-/// the upper one; y runs slowest. \pre step > 0 \throws UsageError for more than kMostSites
+/// the upper one; y runs slowest. \pre step > 0 \throws UsageError for more than kMaxSites
 std::vector<Point2> latticePlaces(const Box2& limits, double step);
 
 /// About every `step` along the walls of the indoor region and the objects that touch or stand in
 /// it at this height, `off` from them on the free side: outline and holes of the free floor, edges
-/// in order. Over a line of at least `step` places are spread evenly, half a distance from its
-/// ends; shorter ones that follow each other, of round and ragged things, share theirs. Places may
-/// lie beyond another wall. Also on both sides of those `sheets` that stand in the free floor, of
-/// which it does not know: walls without thickness, as between rooms that open doors join.
-/// \pre step > 0 \throws UsageError for more than kMostSites
+/// in order. Places are spread evenly over lines of at least `step`, half a distance from the ends;
+/// consecutive shorter ones, of round and ragged objects, share theirs. Places may lie beyond
+/// another wall. Also on both sides of those `sheets` that stand in the free floor and are not part
+/// of its boundary: walls without thickness, as between rooms joined by open doors.
+/// \pre step > 0 \throws UsageError for more than kMaxSites
 std::vector<Point2> placesAlong(const std::vector<Region>& free_floor, double step, double off,
                                 std::span<const Segment2> sheets = {});
 
@@ -100,33 +100,33 @@ std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double s
 
 /// Sensors under a bar hang this far below it, in metres: bars are closed.
 constexpr double kUnderBar = 0.01;
-/// Under the bars of all `infra` frames, about every `step` of each bar, kUnderBar below it. In the
-/// order of the records, rows before columns. \pre step > 0 \throws UsageError for more than
-/// kMostSites
+/// Under the bars of all `infra` frames, about every `step` along each bar, kUnderBar below it. In
+/// the order of the records, rows before columns. \pre step > 0 \throws UsageError for more than
+/// kMaxSites
 std::vector<Point3> framePlaces(const Environment& environment, double step);
 
 // ---- Which places are valid
 
-/// Where sensors must not or only may stand. Distances are kept to within a micrometre
-/// (kWeldDistance), in the place's favour: what lies just as far off as is asked for is valid.
+/// Where sensors may stand. Distances hold to within a micrometre (kWeldDistance), in the place's
+/// favour: a place at exactly the required distance is valid.
 struct SiteRules {
     double height = kScanHeight;
     double clearance = 0;           ///< least distance from walls and objects at this height
     std::vector<Polygon> keep_out;  ///< closed
     std::vector<Polygon> keep_in;   ///< closed; if any: in one of them
-    /// Places must be this near to a wall that is there at this height (mounted on it).
+    /// Maximum distance from a wall that reaches this height (mounted on it).
     std::optional<double> wall_within;
 };
 
-/// Judges places against rules. Thread-safe once built. O(log n) typically.
-class SiteJudge {
+/// The validity test for places. Thread-safe once built. O(log n) typically.
+class SiteValidity {
   public:
-    SiteJudge(const Environment& environment, SiteRules rules);
-    ~SiteJudge();
-    SiteJudge(const SiteJudge&) = delete;
-    SiteJudge& operator=(const SiteJudge&) = delete;
-    /// Strictly indoors (Insider Judge), in no solid and on no wall at the height, and within the
-    /// rules. But for distances, exact.
+    SiteValidity(const Environment& environment, SiteRules rules);
+    ~SiteValidity();
+    SiteValidity(const SiteValidity&) = delete;
+    SiteValidity& operator=(const SiteValidity&) = delete;
+    /// Strictly indoors (the thesis' Insider Judge), in no solid and on no wall at the height, and
+    /// within the rules. Exact, except for distances.
     [[nodiscard]] bool isValid(Point2 place) const;
 
   private:
@@ -134,15 +134,15 @@ class SiteJudge {
     std::unique_ptr<const Data> data_;
 };
 
-/// Those that are valid, in their order; shared out over all cores. Each place once, where it comes
-/// first, with the headings of all.
-std::vector<Site> validSites(const SiteJudge& judge, const std::vector<Site>& sites,
+/// The valid sites, in order; tested in parallel. Each place occurs once, where it came first, with
+/// the headings of all its sites.
+std::vector<Site> validSites(const SiteValidity& validity, const std::vector<Site>& sites,
                              Progress& progress);
 
 /// A list of candidates from a CSV text: `x,y` or `x,y,heading` a line, in metres and degrees; `#`
-/// begins a comment, a header line `x,y…` before them is passed over. Lines without heading get
-/// `headings`; places with several lines are one site, where they come first.
-/// \throws FormatError with line and column of all that is wrong
+/// begins a comment; a header line `x,y…` is skipped. Lines without heading get `headings`; lines
+/// with the same place are one site, where it came first.
+/// \throws FormatError with line and column of all errors
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings);
 

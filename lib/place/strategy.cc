@@ -37,7 +37,7 @@ std::vector<Site> proposeGrid(const ProposalRequest& request) {
     GridSearch search = defaultGridSearch(limits, request.max_range);
     search.x = request.options.x.value_or(search.x);
     search.y = request.options.y.value_or(search.y);
-    if (static_cast<double>(search.x) * search.y > kMostSites)
+    if (static_cast<double>(search.x) * search.y > kMaxSites)
         throw UsageError("a grid of " + std::to_string(search.x) + " x " +
                          std::to_string(search.y) +
                          " places is more than a million: use fewer lines (-X, -Y)");
@@ -115,6 +115,27 @@ std::vector<Angle> headingsPerPlace(const ArrangeOptions& options) {
 
 std::string_view nameOf(Strategy strategy) { return rowOf(strategy).name; }
 
+std::string_view nameOf(MountOn mount) {
+    switch (mount) {
+        case MountOn::Floor:
+            return "floor";
+        case MountOn::Wall:
+            return "wall";
+        case MountOn::Frame:
+            return "frame";
+        case MountOn::Ceiling:
+            break;
+    }
+    return "ceiling";
+}
+
 bool isOfThesis(Strategy strategy) { return rowOf(strategy).is_of_thesis; }
+
+CellChoice searchCells(const ArrangeOptions& options) {
+    constexpr int kMaxSearched = 40'000;
+    if (options.cells) return *options.cells;
+    if (isOfThesis(options.strategy)) return CellCount{100, 100};
+    return RoomCells{kMaxSearched};
+}
 
 }  // namespace ispace

@@ -38,8 +38,8 @@ struct StrategyRow {
     std::string_view name;  ///< on the command line and in results
     std::string_view help;
     bool is_of_thesis;                        ///< defaults: its grid of cells and greedy search
-    int headings;                             ///< default per place; 0: of options.density
-    std::span<const StrategyOption> options;  ///< refused with any other strategy
+    int headings;                             ///< default number per place; 0: of options.density
+    std::span<const StrategyOption> options;  ///< refused with other strategies
     /// Proposes sites, valid or not. Strategy::Random proposes none: its places depend on the
     /// candidates made before, see CandidatePool.
     std::vector<Site> (*propose)(const ProposalRequest& request);

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "place/test_room.h"
+#include "place/test_arrange.h"
 
 namespace ispace {
 namespace {

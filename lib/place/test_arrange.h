@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A room and sensors from text, for the tests of arranging.
+// Environments, rooms and sensors from text, for the tests of this folder.
 #pragma once
 
 #include <initializer_list>
@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "cover/coverage.h"
+#include "env/environment.h"
+#include "env/schemas.h"
 #include "layout/schemas.h"
-#include "place/layout_document.h"
+#include "place/arrangement.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -72,5 +74,15 @@ inline CoverageReport reportOf(const Scene& scene, const std::vector<SensorGroup
     Worlds worlds(whole.environment);
     return measureCoverage(whole, worlds, {.exact = false}).report;
 }
+
+/// Of a whole file.
+inline Environment environmentOf(const std::string& text) {
+    static const Schemas kSchemas(environmentSchemas());
+    const Document document = readRecordText(text, "room.env", kSchemas);
+    return {document.records, assignIds(document.records)};
+}
+
+/// Of lines without the magic one.
+inline Environment roomOf(const std::string& lines) { return environmentOf("#env 1\n" + lines); }
 
 }  // namespace ispace

@@ -18,11 +18,11 @@ namespace ispace {
 namespace {
 
 int linesAlong(double extent, double max_range) {
-    constexpr double kMost = 10000;
+    constexpr double kMax = 10000;
     // A room that is moved is no smaller because its corners round.
     constexpr double kSlack = 1e-9;
     const double lines = std::floor(extent / max_range * kSegments - 1 + kSlack);
-    return static_cast<int>(std::clamp(lines, 1.0, kMost));
+    return static_cast<int>(std::clamp(lines, 1.0, kMax));
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ void addWallSites(const Polygon& corners, double dist, int times, std::vector<Si
 
 void mustBeFew(std::size_t walls, int times) {
     const double places = static_cast<double>(walls) * times;
-    if (places <= kMostSites) return;
+    if (places <= kMaxSites) return;
     throw UsageError(std::to_string(times) + " places along each of " + std::to_string(walls) +
                      " walls make " + formatFixed(places, 0) +
                      ": more than a million are too many, use fewer (--times)");

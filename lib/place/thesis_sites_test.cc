@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "place/sites.h"
-#include "place/test_room.h"
+#include "place/test_arrange.h"
 #include "place/wall_curves.h"
 
 namespace ispace {

@@ -33,8 +33,8 @@ Slice wallSlice(const Environment& environment, double height) {
 
 namespace {
 
-/// Lines, each walked in both directions: at its end one goes on with the line that comes next
-/// clockwise, which keeps what lies on the left on the left.
+/// Lines, each walked in both directions. At its end the walk takes the next line clockwise, so
+/// that the same face stays on the left.
 class Walk {
   public:
     /// An edge with the floor on its left.
@@ -42,8 +42,8 @@ class Walk {
     /// A line with the floor on both sides.
     void addSheet(const Segment2& line) { add(line, true); }
 
-    /// The curves of which every step has the floor on its left; nothing if some have it for a part
-    /// of their way.
+    /// The curves with the floor on the left of every step; false if a curve has it on the left of
+    /// some steps only.
     [[nodiscard]] bool trace(std::vector<Polygon>& curves) {
         sortByDirection();
         std::vector<char> is_done(steps_.size());
@@ -113,8 +113,7 @@ class Walk {
     std::vector<std::size_t> order_;
 };
 
-/// The sheets that stand in the floor and not on its boundary; where the middle is, there is the
-/// sheet.
+/// The sheets that stand in the floor, not on its boundary, by their midpoints.
 std::vector<Segment2> sheetsWithin(const std::vector<Region>& floor,
                                    std::span<const Segment2> edges,
                                    std::span<const Segment2> sheets) {

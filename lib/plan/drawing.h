@@ -9,7 +9,7 @@
 
 #include "draw/color.h"
 #include "draw/picture.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "layout/scene.h"
 #include "plan/elements.h"
 #include "sensor/kind.h"

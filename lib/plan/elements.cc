@@ -12,7 +12,7 @@
 #include "env/openings.h"
 #include "env/walls.h"
 #include "geom/boolean.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/predicates.h"
 #include "raster/contour.h"
 #include "raster/grid.h"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "geom/polygon.h"
 #include "geom/predicates.h"
-#include "geom/simplify.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {

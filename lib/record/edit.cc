@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/pose.h"
 #include "record/placing.h"
 #include "record/text.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,7 +15,6 @@
 #include "base/error.h"
 #include "base/program.h"
 #include "geom/pose.h"
-#include "geom/triangle_mesh.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -40,6 +40,14 @@ struct Place {
     }
     /// " (included from …)", or nothing for an operand.
     [[nodiscard]] std::string inclusion() const;
+};
+
+/// Triangles as a file of meshes holds them, in the file's own units and axes. Floats, as all those
+/// formats and their readers have them. Indices lie within `vertices`.
+struct TriangleMesh {
+    std::vector<std::array<float, 3>> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::string digest;  ///< sha256 over both, see meshDigest
 };
 
 /// One line `keyword key=value …`: checked against its schema, values in file units.

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "geom/angle.h"
+#include "geom/point.h"
 #include "record/record.h"
 
 namespace ispace {

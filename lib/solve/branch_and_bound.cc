@@ -19,7 +19,7 @@ namespace {
 
 // A node of a map takes some more than what is in it.
 constexpr std::size_t kOverhead = 160;
-// What is made of the nodes that are looked at together is at most about this part of the memory.
+// Children of the nodes processed together take at most about this part of the memory.
 constexpr std::size_t kBatchPart = 8;
 
 template <typename T>

@@ -27,7 +27,7 @@ class OpenNodes {
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
     void add(BranchNode node);
-    /// The next nodes to look at: at most `most`, fewer where they are large, but one at least.
+    /// The next nodes to process: at most `most`, fewer where they are large, at least one.
     std::vector<BranchNode> take(std::size_t most);
     /// Drops nodes with a bound of at most `cut`; returns the highest of these bounds, else 0.
     std::uint64_t dropUpTo(std::uint64_t cut);

@@ -6,10 +6,9 @@
 
 #include <limits>
 
+#include "solve/branch_node.h"
 #include "solve/lagrange.h"
-#include "solve/reduced_problem.h"
 #include "solve/test_problems.h"
-#include "solve/test_progress.h"
 
 namespace ispace {
 

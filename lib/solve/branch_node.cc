@@ -9,7 +9,6 @@
 #include <numeric>
 #include <utility>
 
-#include "solve/node_relaxation.h"
 #include "solve/relaxation.h"
 
 namespace ispace {
@@ -46,12 +45,12 @@ class SetSearch {
           reduced_(relaxed.problem()),
           groups_(relaxed.groups()),
           cut_(cut),
-          shares_(reduced_.cells(), 0),
+          multiplicities_(reduced_.cells(), 0),
           chosen_(node.fixed) {}
     /// The best solution above the cut.
     BranchResult search() {
         if (groups_.empty())
-            look();
+            check();
         else
             visit(0, 0, groups_[0].count);
         return std::move(result_);
@@ -60,7 +59,7 @@ class SetSearch {
   private:
     void visit(std::size_t group, std::size_t first, std::size_t left) {
         if (group == groups_.size()) {
-            look();
+            check();
             return;
         }
         const OpenGroup& own = groups_[group];
@@ -82,17 +81,17 @@ class SetSearch {
         const ReducedProblem::OfKind& own = reduced_.kinds[kind];
         own.candidates->forEachRun(candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i)
-                shares_[i] += sign * own.multiplicity;
+                multiplicities_[i] += sign * own.multiplicity;
         });
         if (sign > 0)
             chosen_.push_back({kind, own.original[candidate]});
         else
             chosen_.pop_back();
     }
-    void look() {
+    void check() {
         std::uint64_t value = reduced_.settled;
-        for (std::size_t i = 0; i < shares_.size(); ++i)
-            if (shares_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
+        for (std::size_t i = 0; i < multiplicities_.size(); ++i)
+            if (multiplicities_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
         if (value <= cut_) {
             // Once something is found, its value is above the others'.
             if (result_.found.empty()) result_.closed = std::max(result_.closed, value);
@@ -107,7 +106,7 @@ class SetSearch {
     const ReducedProblem& reduced_;
     const std::vector<OpenGroup>& groups_;
     std::uint64_t cut_;
-    std::vector<int> shares_;
+    std::vector<int> multiplicities_;
     std::vector<Choice> chosen_;
     BranchResult result_;
 };
@@ -242,7 +241,7 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
 namespace {
 
 constexpr int kTrials = 10;            // of the bound of each child
-constexpr int kSplitsPerGroup = 3;     // looked at
+constexpr int kSplitsPerGroup = 3;     // tried
 constexpr double kLevelsToClose = 10;  // a child that comes this part nearer halves its tree
 
 /// Where a node may be split.
@@ -255,9 +254,9 @@ struct Split {
 /// the others, those that see most of what it sees first.
 std::vector<std::uint32_t> byLikeness(NodeRelaxation& relaxed, std::size_t group,
                                       const std::vector<std::uint32_t>& multipliers) {
-    const std::vector<float>& shares = relaxed.shares()[group];
-    const auto pivot =
-        static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+    const std::vector<float>& frequencies = relaxed.frequencies()[group];
+    const auto pivot = static_cast<std::size_t>(
+        std::max_element(frequencies.begin(), frequencies.end()) - frequencies.begin());
     const std::vector<float> like =
         relaxed.likeness(group, relaxed.groups()[group].list[pivot], multipliers);
     std::vector<std::uint32_t> order(like.size());
@@ -284,13 +283,13 @@ void addSplitsOf(NodeRelaxation& relaxed, std::size_t g,
     const OpenGroup& group = relaxed.groups()[g];
     if (group.list.size() <= std::max<std::size_t>(group.count, 1)) return;
     const std::vector<std::uint32_t> order = byLikeness(relaxed, g, multipliers);
-    const std::vector<float>& shares = relaxed.shares()[g];
-    const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
+    const std::vector<float>& frequencies = relaxed.frequencies()[g];
+    const double total = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
     const double sensors = total > 0 ? static_cast<double>(group.count) / total : 0;
     double near = 0, wanted = 0.5;
     const std::size_t before = splits.size();
     for (std::size_t n = 1; n < order.size() && wanted < kSplitsPerGroup; ++n) {
-        near += static_cast<double>(shares[order[n - 1]]) * sensors;
+        near += static_cast<double>(frequencies[order[n - 1]]) * sensors;
         if (near < wanted) continue;
         splits.push_back(splitAt(g, order, n));
         wanted = std::floor(near + 0.5) + 0.5;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/solve: nodes of the search tree, the reduced problems they are about, and their
+// bounds.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +8,38 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "solve/reduced_problem.h"
+#include "solve/relaxation.h"
 
 namespace ispace {
+
+/// A problem reduced to the candidates that still matter: cells seen by the same candidates are
+/// merged, cells that none sees are dropped. Weights are in fine units, see RelaxedCells.
+struct ReducedProblem {
+    struct OfKind {
+        std::shared_ptr<const CandidateSet> candidates;
+        std::vector<std::uint32_t> original;  ///< candidates in the problem's set, ascending
+        std::uint16_t multiplicity = 1;
+    };
+    std::uint64_t settled = 0;  ///< weight of cells that are covered in any case
+    std::vector<std::uint32_t> weights;
+    std::vector<std::uint16_t> needs;
+    std::vector<OfKind> kinds;
+
+    [[nodiscard]] std::size_t cells() const { return weights.size(); }
+    [[nodiscard]] std::size_t candidates() const;
+    [[nodiscard]] std::size_t bytes() const;
+};
+
+/// The whole problem; `original` is left empty.
+ReducedProblem wholeProblem(const Problem& problem, const RelaxedCells& cells);
+
+/// Reduces a problem further, by hashes of the set of candidates that see a cell. O(cells + runs of
+/// the sites of those kept)
+/// \param kept per kind, the candidates to keep (of the sets of `from`), ascending
+/// \param multipliers of the cells; replaced by those of the merged cells, their sums
+ReducedProblem reduce(const ReducedProblem& from,
+                      const std::vector<std::vector<std::uint32_t>>& kept,
+                      std::vector<std::uint32_t>& multipliers);
 
 class NodeRelaxation;
 
@@ -45,7 +76,7 @@ struct BranchResult {
 BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_t cut,
                     const Progress& progress);
 
-/// A node in parts.
+/// A node split into children.
 struct SplitNode {
     std::vector<BranchNode> children;  ///< what may be better than the cut
     std::uint64_t closed = 0;          ///< upper bound of solutions in no child
@@ -57,12 +88,71 @@ struct SplitNode {
 /// smallest tree after a few steps of their bounds.
 ///
 /// Deterministic, unless progress says stop: then any split will do.
-/// \param relaxed of the node before it was cut down, the same groups and lists, with the shares of
-///        a search for its multipliers
+/// \param relaxed of the node before it was cut down, the same groups and lists, with the
+/// frequencies of a search for its multipliers
 /// \param multipliers the best that were found, of the cells of `relaxed`
 /// \pre a group has a candidate
 SplitNode splitNode(const BranchNode& node, NodeRelaxation& relaxed,
                     const std::vector<std::uint32_t>& multipliers, std::uint64_t cut,
                     const Progress& progress);
+
+/// What remains of a group of a node.
+struct OpenGroup {
+    std::size_t kind = 0;
+    std::size_t count = 0;
+    std::vector<std::uint32_t> list;  ///< candidates of the reduced problem, ascending
+};
+
+/// The Lagrangian relaxation of a node of the search tree: from each group its best candidates.
+class NodeRelaxation {
+  public:
+    explicit NodeRelaxation(const BranchNode& node);
+
+    /// The cells with what the fixed sensors leave of them.
+    [[nodiscard]] const ReducedProblem& problem() const { return problem_; }
+    [[nodiscard]] const std::vector<OpenGroup>& groups() const { return groups_; }
+    /// Cut to the weights that are left.
+    [[nodiscard]] std::vector<std::uint32_t> start(const BranchNode& node) const;
+
+    /// The bound for these multipliers; the members below refer to the last call.
+    std::uint64_t evaluate(const std::vector<std::uint32_t>& multipliers);
+    [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
+    /// The best of all groups, as named in the reduced problem.
+    [[nodiscard]] std::vector<Choice> chosen() const;
+    /// Reduced-cost fixing: drops candidates that are in no solution better than `cut`.
+    void ruleOut(std::uint64_t cut);
+    /// Candidates that are in every solution better than `cut`, as named in the reduced problem;
+    /// their groups have one to choose less.
+    std::vector<Choice> takeForced(std::uint64_t cut);
+    /// Upper bound of the solutions that the two have excluded, at most their cut.
+    [[nodiscard]] std::uint64_t ruledOut() const { return ruled_out_; }
+
+    /// Updates the running frequency with which each candidate is chosen.
+    void count(float part);
+    [[nodiscard]] const std::vector<std::vector<float>>& frequencies() const {
+        return frequencies_;
+    }
+    /// Overlap of the view of each candidate of a group with that of `pivot`, weighed by the
+    /// multipliers (not all 0): 1 for the pivot itself. Overwrites the reduced costs: call
+    /// evaluate() before anything but frequencies().
+    [[nodiscard]] std::vector<float> likeness(std::size_t group, std::uint32_t pivot,
+                                              const std::vector<std::uint32_t>& multipliers);
+
+  private:
+    void settle(const std::vector<Choice>& chosen);
+    void findSites();
+    void weigh(const std::vector<std::uint32_t>& multipliers);
+    void setCover();
+
+    ReducedProblem problem_;
+    std::vector<OpenGroup> groups_;
+    std::vector<std::vector<std::uint32_t>> sites_;          // per kind, to be weighed
+    std::vector<std::vector<std::uint32_t>> reduced_costs_;  // per kind and candidate
+    std::vector<std::vector<std::uint32_t>> top_;  // per group: the best, one more than wanted
+    std::vector<std::vector<float>> frequencies_;  // per group, beside its list
+    std::vector<std::uint32_t> cell_costs_;
+    std::vector<float> cover_;
+    std::uint64_t bound_ = 0, ruled_out_ = 0;
+};
 
 }  // namespace ispace

@@ -9,7 +9,6 @@
 
 #include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
-#include "solve/node_relaxation.h"
 #include "solve/relaxation.h"
 #include "solve/test_problems.h"
 

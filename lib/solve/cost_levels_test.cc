@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/cost_levels.h"
+#include "solve/problem.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "solve/problem.h"
 #include "solve/search.h"
-#include "solve/search_basis.h"
+#include "solve/search_state.h"
 
 namespace ispace {
 

@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "solve/search.h"
-#include "solve/search_basis.h"
+#include "solve/search_state.h"
 #include "solve/test_problems.h"
-#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

@@ -202,7 +202,7 @@ std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
 
 namespace {
 
-constexpr int kTrials = 20;        // between two looks at all candidates
+constexpr int kTrials = 20;        // between two evaluations of all candidates
 constexpr int kRoundsToJudge = 4;  // by what these gain
 
 bool isGood(const Bound& bound, const LagrangeLimits& limits) {

@@ -44,7 +44,7 @@ class RootRelaxation {
     struct OfKind {
         const CandidateSet* candidates = nullptr;
         std::vector<char> is_out;
-        std::vector<std::uint32_t> sites, working;  ///< with candidates left; to be priced
+        std::vector<std::uint32_t> sites, working;  ///< with candidates left; to be weighed
         std::vector<char> is_working;
         std::vector<std::uint32_t> reduced_costs;
         std::vector<std::uint32_t> top;  ///< the best, their number at most counts_.most()
@@ -59,8 +59,8 @@ class RootRelaxation {
     RelaxedCells cells_;
     CountChoice counts_;
     std::vector<OfKind> kinds_;
-    std::vector<WeightSums> reduced_costs_;  // per kind; of the first with the same share
-    std::vector<std::size_t> sums_of_;       // kind -> index in prices_
+    std::vector<WeightSums> reduced_costs_;  // per kind; of the first with the same multiplicity
+    std::vector<std::size_t> sums_of_;       // kind -> index in reduced_costs_
     std::vector<std::uint32_t> shared_;      // scratch: reduced costs for one multiplicity
     std::vector<std::vector<std::uint64_t>> sums_;
     std::uint64_t free_ = 0;  // what the bound is without sensors

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "solve/search_basis.h"
+#include "solve/search_state.h"
 
 namespace ispace {
 

@@ -5,10 +5,10 @@
 #include <tuple>
 
 #include "solve/branch_and_bound.h"
-#include "solve/cost_levels.h"
-#include "solve/coverage_state.h"
 #include "solve/lagrange.h"
+#include "solve/problem.h"
 #include "solve/search.h"
+#include "solve/search_state.h"
 
 namespace ispace {
 namespace {
@@ -124,7 +124,7 @@ Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t valu
         return problem_.kinds[a.kind].cost > problem_.kinds[b.kind].cost;
     });
     for (const Choice& choice : order) {
-        // Whether views hang together takes a look at all of them.
+        // Connection depends on all of them.
         if (problem_.is_connected && progress_.stopped()) break;
         const auto& now = state.chosen();
         const auto position =

@@ -7,7 +7,6 @@
 #include "base/number.h"
 #include "solve/search.h"
 #include "solve/test_problems.h"
-#include "solve/test_progress.h"
 
 namespace ispace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/node_relaxation.h"
+#include "solve/branch_node.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -18,8 +18,8 @@ NodeRelaxation::NodeRelaxation(const BranchNode& node)
     for (const auto& kind : problem_.kinds)
         reduced_costs_.emplace_back(kind.candidates->size(), 0U);
     top_.resize(groups_.size());
-    shares_.reserve(groups_.size());
-    for (const OpenGroup& group : groups_) shares_.emplace_back(group.list.size(), 0.0F);
+    frequencies_.reserve(groups_.size());
+    for (const OpenGroup& group : groups_) frequencies_.emplace_back(group.list.size(), 0.0F);
     findSites();
 }
 
@@ -151,11 +151,11 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
                 continue;
             }
             group.list[kept] = candidate;
-            shares_[g][kept++] = shares_[g][i];
+            frequencies_[g][kept++] = frequencies_[g][i];
         }
         is_any = is_any || kept < group.list.size();
         group.list.resize(kept);
-        shares_[g].resize(kept);
+        frequencies_[g].resize(kept);
     }
     if (is_any) findSites();
 }
@@ -175,12 +175,12 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
             forced.push_back({group.kind, candidate});
             --group.count;
             const auto at = std::lower_bound(group.list.begin(), group.list.end(), candidate);
-            shares_[g].erase(shares_[g].begin() + (at - group.list.begin()));
+            frequencies_[g].erase(frequencies_[g].begin() + (at - group.list.begin()));
             group.list.erase(at);
         }
         if (group.count == 0) {
             group.list.clear();
-            shares_[g].clear();
+            frequencies_[g].clear();
         }
     }
     return forced;
@@ -188,12 +188,12 @@ std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
 
 void NodeRelaxation::count(float part) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        for (float& multiplicity : shares_[g]) multiplicity *= 1.0F - part;
+        for (float& frequency : frequencies_[g]) frequency *= 1.0F - part;
         const auto& list = groups_[g].list;
         for (std::size_t n = 0; n < std::min(groups_[g].count, top_[g].size()); ++n) {
             const auto at = std::lower_bound(list.begin(), list.end(), top_[g][n]);
             if (at != list.end() && *at == top_[g][n])
-                shares_[g][static_cast<std::size_t>(at - list.begin())] += part;
+                frequencies_[g][static_cast<std::size_t>(at - list.begin())] += part;
         }
     }
 }

@@ -108,4 +108,35 @@ class Connection {
 /// \pre all are finite and not negative, and there are at most 2^28
 std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights);
 
+/// The costs that sets of sensors can have, each sensor on a candidate of its own: ascending from
+/// level 0, which costs nothing, up to some cost. Sums equal up to rounding (isCheaper) are one
+/// level. If there are more than 4000, the levels are even steps instead, rounded down to a few
+/// digits.
+class CostLevels {
+  public:
+    /// O(4000 * kinds * log of how many of each)
+    CostLevels(const std::vector<Kind>& kinds, double most);
+
+    [[nodiscard]] std::size_t size() const { return levels_.size(); }
+    [[nodiscard]] bool isEven() const { return is_even_; }
+    /// The budget that buys level i but not level i + 1.
+    [[nodiscard]] double at(std::size_t i) const { return levels_[i].most; }
+    /// The highest level that is cheaper; 0 if none is.
+    [[nodiscard]] std::size_t below(double cost) const;
+    /// The lowest cost that at(i) does not buy; infinite if level i is the last.
+    [[nodiscard]] double above(std::size_t i) const;
+
+  private:
+    /// Sums equal up to rounding.
+    struct Level {
+        double least = 0, most = 0;
+    };
+    /// Adds the sums with `count` more sensors of this cost.
+    void mayAdd(std::size_t count, double cost, double most);
+    void setEven(double most);
+
+    std::vector<Level> levels_ = {Level()};
+    bool is_even_ = false;
+};
+
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solve/reduced_problem.h"
+#include "solve/branch_node.h"
 
 #include <algorithm>
 #include <compare>

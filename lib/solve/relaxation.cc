@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxWays = 20'000;
 
 /// The largest multiplicity that all sensors together can give a cell.
-std::uint64_t mostSharesOf(const Problem& problem) {
+std::uint64_t maxMultiplicityOf(const Problem& problem) {
     std::uint64_t multiplicities = 0;
     for (const Kind& kind : problem.kinds) {
         auto most =
@@ -38,7 +38,7 @@ RelaxedCells::RelaxedCells(const Problem& problem)
     multiplicities.reserve(problem.kinds.size());
     for (const Kind& kind : problem.kinds)
         multiplicities.push_back(static_cast<std::uint16_t>(kind.multiplicity / common));
-    const std::uint64_t most_shares = mostSharesOf(problem);
+    const std::uint64_t max_multiplicity = maxMultiplicityOf(problem);
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
         const std::uint32_t weight = problem.weights[i] * scale;
@@ -46,7 +46,7 @@ RelaxedCells::RelaxedCells(const Problem& problem)
             settled += weight;
             continue;
         }
-        if (static_cast<std::uint64_t>(problem.required - achieved) > most_shares) continue;
+        if (static_cast<std::uint64_t>(problem.required - achieved) > max_multiplicity) continue;
         weights[i] = weight;
         needs[i] = static_cast<std::uint16_t>((problem.required - achieved + common - 1) / common);
     }

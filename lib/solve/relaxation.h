@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// The cells of a problem as a Lagrangian relaxation wants them: what standing sensors meet is
+/// The cells of a problem for a Lagrangian relaxation: those that standing sensors cover are
 /// settled, and weights are in finer units, as multipliers are fractions of them.
 ///
 /// Multiplicities and needs are divided by the greatest common divisor of the multiplicities, needs
@@ -34,22 +34,22 @@ struct RelaxedCells {
     }
 };
 
-/// What a sensor of that share gains for meeting part of a need of cells with this multiplier;
-/// rounded up, so that bounds hold. More than is needed counts as all of it.
+/// Reduced cost of a cell with this multiplier for a sensor that meets `multiplicity` of its need:
+/// at most the multiplier, rounded up so that bounds hold.
 inline std::uint32_t reducedCost(std::uint32_t multiplier, std::uint32_t multiplicity,
                                  std::uint32_t need) {
     if (multiplicity >= need) return multiplier;
     return static_cast<std::uint32_t>((std::uint64_t{multiplier} * multiplicity + need - 1) / need);
 }
 
-/// The part of a need that a sensor meets.
+/// The fraction of a need that a sensor meets.
 inline float partOf(std::uint32_t multiplicity, std::uint32_t need) {
     return multiplicity >= need ? 1.0F
                                 : static_cast<float>(multiplicity) / static_cast<float>(need);
 }
 
-/// How many sensors of each kind there may be, each on a candidate of its own: all ways that stay
-/// within `most` and the budget and leave no room for one more of the last kind.
+/// How many sensors of each kind may be placed, each on a candidate of its own: all ways within
+/// `most` and the budget that leave no room for one more of the last kind.
 class CountChoice {
   public:
     explicit CountChoice(const Problem& problem);
@@ -65,11 +65,10 @@ class CountChoice {
 
     /// The best counts for given reduced costs.
     struct Best {
-        std::uint64_t value = 0;  ///< no allowed counts give more
-        std::vector<std::size_t>
-            counts;  ///< of the best of each kind that are worth that, or nearly
-        std::vector<std::uint64_t> with;  ///< with[k] + the price of one of kind k: at most worth
-                                          ///< that if this one is chosen; less if none may be
+        std::uint64_t value = 0;          ///< no allowed counts give more
+        std::vector<std::size_t> counts;  ///< of each kind, for about that value
+        std::vector<std::uint64_t> with;  ///< with[k] + the reduced cost of a candidate of kind k
+                                          ///< bounds solutions with that candidate
         std::vector<char> may;            ///< may[k]: one of kind k fits at all
     };
     /// \param sums sums[k][n]: the n best reduced costs of kind k together, n up to most(k)
@@ -93,7 +92,7 @@ class CountChoice {
 /// only leads away.
 constexpr double kWarmFactor = 0.5;
 
-/// Looks for the Lagrange multipliers with the least bound, one trial after another: the volume
+/// Searches for the Lagrange multipliers with the lowest bound, trial by trial: the volume
 /// algorithm (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so
 /// far along an average of the subgradients, so that it neither swings between sensors that are
 /// nearly alike nor needs many steps.

@@ -43,6 +43,18 @@ std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) 
 
 }  // namespace
 
+std::string_view nameOf(Optimizer optimizer) {
+    switch (optimizer) {
+        case Optimizer::Greedy:
+            return "greedy";
+        case Optimizer::Swap:
+            return "swap";
+        case Optimizer::Exact:
+            break;
+    }
+    return "exact";
+}
+
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
     SearchResult result;
     result.bound = problem.totalWeight();

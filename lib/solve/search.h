@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "base/progress.h"
@@ -50,6 +51,9 @@ struct SearchResult {
 };
 
 enum class Optimizer { Greedy, Swap, Exact };
+constexpr Optimizer kOptimizers[] = {Optimizer::Greedy, Optimizer::Swap, Optimizer::Exact};
+/// As on the command line and in results.
+std::string_view nameOf(Optimizer optimizer);
 
 /// Default memory limit of the open nodes of a search tree.
 constexpr std::size_t kMaxTreeBytes = std::size_t{1} << 30U;

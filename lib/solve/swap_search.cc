@@ -21,7 +21,7 @@ namespace ispace {
 
 namespace {
 
-/// Tells the best value so far.
+/// Reports the best value so far.
 class BestReporter {
   public:
     BestReporter(const Problem& problem, Progress& progress)
@@ -42,7 +42,7 @@ class BestReporter {
     std::mutex mutex_;
 };
 
-/// Draws candidates, the more often the more they add alone.
+/// Draws candidates with probabilities in proportion to what they add alone.
 class RandomCandidates {
   public:
     explicit RandomCandidates(const SearchBasis& basis) {
@@ -95,8 +95,8 @@ struct End {
     }
 };
 
-/// Of the search from one start, which says nothing of how far it is: it ends with the whole search
-/// and once a start before it is worth enough.
+/// Silent progress of the search from one start, which ends with the whole search and once an
+/// earlier start has reached a sufficient value.
 class StartProgress final : public Progress {
   public:
     StartProgress(const Progress& whole, const std::atomic<std::size_t>& first, std::size_t start)
@@ -121,12 +121,11 @@ class SwapSearch {
           seed_(options.seed),
           enough_(options.enough),
           progress_(progress),
-          herald_(problem, progress) {}
+          reporter_(problem, progress) {}
 
-    /// From what is given (start 0), with demands that take several sensors of a kind from what
-    /// meets most parts of them one by one (start 1), and from random sensors. The ends up to the
-    /// first that is worth enough are the same for any number of threads; those after it are worth
-    /// nothing.
+    /// From the given solution (start 0); if cells take several sensors, from a greedy solution by
+    /// partial gains (start 1); and from random sensors. The ends up to the first with a sufficient
+    /// value are the same for any number of threads; those after it are empty.
     std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
         std::vector<End> ends(starts);
         // Starts in ascending order, whichever thread takes them.
@@ -147,15 +146,15 @@ class SwapSearch {
         return ends;
     }
 
-    /// Where sensors cost more and less: buys others for two, from an end on.
+    /// Continues from an end by exchanging two sensors for others, where costs differ.
     End searchByPairs(const End& end) {
         CoverageState state = stateOf(end);
         LocalSearch(basis_, cache_, enough_, progress_).improveByPairs(state);
-        herald_.report(state.value());
+        reporter_.report(state.value());
         End next(end.start, state);
         return end.isBetterThan(next) ? end : next;
     }
-    /// From an end on, by chance.
+    /// Continues from an end by random kicks.
     End searchAbout(const End& end) {
         CoverageState state = stateOf(end);
         LocalSearch search(basis_, cache_, enough_, progress_);
@@ -164,7 +163,7 @@ class SwapSearch {
             const std::vector<Choice> before = state.chosen();
             kickOut(state, {seed_, Purpose::Placement, kick, end.start});
             search.fill(state);
-            // What is left may be in parts that no candidate joins.
+            // What remains may fall into parts that no candidate joins.
             if (isFeasible(basis_.problem, state.chosen())) {
                 search.improve(state);
                 End next(end.start, state);
@@ -176,7 +175,7 @@ class SwapSearch {
             state.clear();
             for (const Choice& choice : before) state.add(choice);
         }
-        herald_.report(best.value);
+        reporter_.report(best.value);
         return best;
     }
 
@@ -191,8 +190,8 @@ class SwapSearch {
         if (start == 0) {
             for (const Choice& choice : given) state.add(choice);
         } else {
-            // Greedy placement goes for whole demands; from where parts of them count alike other
-            // places are reached.
+            // Greedy placement goes for complete cells; starting from partial gains reaches other
+            // solutions.
             if (start > 1 || !takesSteps(basis_.problem)) addRandomSensors(state, start);
             if (basis_.problem.required == 1)
                 search.fill(state);
@@ -200,7 +199,7 @@ class SwapSearch {
                 placeRest(basis_, false, state, progress);
         }
         search.improve(state);
-        herald_.report(state.value());
+        reporter_.report(state.value());
         return {start, state};
     }
 
@@ -210,8 +209,8 @@ class SwapSearch {
         return state;
     }
 
-    /// Adds a sensor of any kind that may be added, somewhere; not if it does not hang together
-    /// with the others and has to. Both numbers are in [0, 1).
+    /// Adds a random sensor of a random kind that may still be added, unless it would break a
+    /// required connection. Both numbers are in [0, 1).
     void addRandom(CoverageState& state, float which, float where) const {
         std::vector<std::size_t> kinds;
         kinds.reserve(basis_.limits.size());
@@ -248,11 +247,11 @@ class SwapSearch {
     RandomCandidates places_;
     std::uint64_t seed_, enough_;
     Progress& progress_;
-    BestReporter herald_;
+    BestReporter reporter_;
     ResponseCache cache_;
 };
 
-/// Those from which to search on: the best, each set of choices once.
+/// The best ends, each set of choices once.
 std::vector<End> bestOf(std::vector<End> ends, std::size_t count) {
     std::stable_sort(ends.begin(), ends.end(),
                      [](const End& a, const End& b) { return a.isBetterThan(b); });

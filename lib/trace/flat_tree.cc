@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "geom/box.h"
+#include "geom/point.h"
 
 namespace ispace {
 

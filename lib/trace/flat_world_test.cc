@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/file.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "layout/test_layout.h"
 #include "trace/test_scans.h"
 

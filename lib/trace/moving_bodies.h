@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/box.h"
+#include "geom/point.h"
 #include "geom/pose.h"
 #include "trace/rays.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "geom/box.h"
+#include "geom/point.h"
 #include "trace/embree_scene.h"
 #include "trace/flat_world.h"
 #include "trace/rays.h"

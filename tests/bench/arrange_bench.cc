@@ -33,7 +33,7 @@ double processorSeconds() {
 class Stopwatch final : public Progress {
   public:
     void begin(std::string_view phase, std::int64_t /*total*/) override {
-        is_setup_ = phase == "judging places" || phase == "scanning candidates";
+        is_setup_ = phase == "checking places" || phase == "scanning candidates";
         start_ = processorSeconds();
     }
     void advance(std::int64_t /*count*/) override {}

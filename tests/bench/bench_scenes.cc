@@ -178,7 +178,7 @@ std::vector<Sensor> fans(const Scene& scene, std::size_t count, bool level) {
     const double height = level ? kScanHeight : kHigh;
     SiteRules rules;
     rules.height = height;
-    const SiteJudge judge(scene.environment, rules);
+    const SiteValidity validity(scene.environment, rules);
     const Box2& limits = scene.environment.limits();
     std::mt19937_64 random(42);
     std::uniform_real_distribution<double> x(limits.low.x, limits.high.x);
@@ -187,7 +187,7 @@ std::vector<Sensor> fans(const Scene& scene, std::size_t count, bool level) {
     std::vector<Sensor> sensors;
     while (sensors.size() < count) {
         const Point2 place{x(random), y(random)};
-        if (!judge.isValid(place)) continue;
+        if (!validity.isValid(place)) continue;
         Sensor sensor;
         sensor.id = "l" + std::to_string(sensors.size() + 1);
         sensor.as<Laser>().max_range = 30;

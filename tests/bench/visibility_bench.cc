@@ -22,9 +22,8 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "geom/predicates.h"
+#include "geom/test_plans.h"
 #include "geom/visibility.h"
-#include "geom/visibility_oracle.h"
-#include "geom/visibility_test_plans.h"
 
 namespace {
 

@@ -48,7 +48,7 @@ TEST(Sites, ThatAreValidStandIndoorsAndClear) {
     for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
         const Environment plan = environmentOf(randomPlan(optionsOf(seed)));
         const Slice slice = plan.slice(kScanHeight);
-        const SiteJudge judge(plan, {});
+        const SiteValidity validity(plan, {});
         const std::vector<Site> sites = allSites(plan);
         std::size_t valid = 0;
         for (const Site& site : sites) {
@@ -58,10 +58,10 @@ TEST(Sites, ThatAreValidStandIndoorsAndClear) {
                 std::none_of(slice.sheets.begin(), slice.sheets.end(), [p](const Segment2& sheet) {
                     return intersects(sheet, {p, p});
                 });
-            ASSERT_EQ(judge.isValid(p), is_valid) << seed << ": " << p.x << ' ' << p.y;
+            ASSERT_EQ(validity.isValid(p), is_valid) << seed << ": " << p.x << ' ' << p.y;
             valid += is_valid ? 1 : 0;
         }
-        const std::vector<Site> kept = validSites(judge, sites, progress);
+        const std::vector<Site> kept = validSites(validity, sites, progress);
         EXPECT_LE(kept.size(), valid);
         EXPECT_GE(kept.size(), sites.size() / 3);
     }
@@ -70,15 +70,15 @@ TEST(Sites, ThatAreValidStandIndoorsAndClear) {
 TEST(Sites, AlongWallsAreFreeButNearCorners) {
     for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
         const Environment plan = environmentOf(randomPlan(optionsOf(seed)));
-        const SiteJudge judge(plan, {});
+        const SiteValidity validity(plan, {});
         const std::vector<Region> floor = plan.freeFloor(kScanHeight);
         const std::vector<Segment2> sheets = plan.slice(kScanHeight).sheets;
         const std::vector<Point2> places = placesAlong(floor, 0.25, 0.02, sheets);
         const auto valid = std::count_if(places.begin(), places.end(),
-                                         [&](Point2 place) { return judge.isValid(place); });
+                                         [&](Point2 place) { return validity.isValid(place); });
         EXPECT_GE(static_cast<double>(valid), 0.97 * static_cast<double>(places.size())) << seed;
         for (const Point2 place : medialPlaces(floor, 0.3, sheets))
-            ASSERT_TRUE(judge.isValid(place)) << seed;
+            ASSERT_TRUE(validity.isValid(place)) << seed;
     }
 }
 
@@ -87,7 +87,7 @@ TEST(Sites, KeepTheirClearance) {
     SiteRules rules;
     rules.clearance = 0.2503;
     rules.wall_within = 0.6007;
-    const SiteJudge judge(plan, rules), free_of_rules(plan, {});
+    const SiteValidity validity(plan, rules), free_of_rules(plan, {});
     std::vector<Segment2> walls, lines;
     plan.indoor().forEachEdge([&](const Segment2& edge) { walls.push_back(edge); });
     const Slice slice = plan.slice(kScanHeight);
@@ -100,7 +100,7 @@ TEST(Sites, KeepTheirClearance) {
         return least;
     };
     for (const Point2 p : latticePlaces(plan.limits(), 0.17))
-        ASSERT_EQ(judge.isValid(p), free_of_rules.isValid(p) && nearest(lines, p) >= 0.2503 &&
+        ASSERT_EQ(validity.isValid(p), free_of_rules.isValid(p) && nearest(lines, p) >= 0.2503 &&
                                         nearest(walls, p) <= 0.6007);
 }
 

@@ -15,7 +15,7 @@
 #include "cli/run_tool.h"
 #include "layout/left_out.h"
 #include "layout/schemas.h"
-#include "place/layout_document.h"
+#include "place/arrangement.h"
 #include "record/text.h"
 #include "sense/ultrasound.h"
 #include "solve/problem.h"
@@ -54,14 +54,14 @@ void readZones(const ArrangeToolOptions& options, const Environment& environment
                ArrangeOptions& how) {
     const ZoneWords& words = options.zones;
     for (const std::string& text : words.targets)
-        how.worth.targets.push_back(zoneOf(options, text, environment));
+        how.weights.targets.push_back(zoneOf(options, text, environment));
     for (const std::string& text : words.keep_out)
         how.mount.keep_out.push_back(zoneOf(options, text, environment));
     for (const std::string& text : words.keep_in)
         how.mount.keep_in.push_back(zoneOf(options, text, environment));
     for (const std::string& text : words.weights) {
         const auto [zone, weight] = splitWeight(text);
-        how.worth.weights.emplace_back(zoneOf(options, zone, environment), weight);
+        how.weights.weights.emplace_back(zoneOf(options, zone, environment), weight);
     }
 }
 
