@@ -11,7 +11,7 @@
 #include "base/number.h"
 #include "cover/target.h"
 #include "env/body.h"
-#include "env/crossing.h"
+#include "env/walls.h"
 #include "record/schema.h"
 
 namespace ispace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "env/material.h"
 #include "env/mesh.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "env/info.h"
-#include "env/texts.h"
 #include "geom/predicates.h"
 
 namespace ispace {

@@ -11,8 +11,8 @@
 #include "env/enclosure.h"
 #include "env/info.h"
 #include "env/level.h"
-#include "env/mesh_cut.h"
 #include "env/openings.h"
+#include "env/slice.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
 

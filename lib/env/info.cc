@@ -7,8 +7,8 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "base/program.h"
-#include "env/crossing.h"
 #include "env/mesh.h"
+#include "env/walls.h"
 #include "geom/boolean.h"
 
 namespace ispace {
@@ -125,6 +125,16 @@ void checkShape(const Record& record, const Body& body, Diagnostics& findings) {
     if (!hasExtent(body))
         findings.add(record.finding(record.keyword() + " is too small for its distance from the "
                                                        "origin: no area is left of it"));
+}
+
+std::string nameOf(const Element& element) { return element.record.keyword() + ' ' + element.id; }
+
+std::string lengthText(double length) {
+    int decimals = 3;
+    while (decimals < 12 && length * std::pow(10, decimals) < 10) ++decimals;
+    std::string text = formatFixed(length, decimals);
+    while (text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
+    return text;
 }
 
 }  // namespace ispace

@@ -37,4 +37,10 @@ void checkShape(const Record& record, const Body& body, Diagnostics& findings);
 /// "(4.1, 2.0)": a place as people find it on a plan, to the centimetre.
 std::string placeText(Point2 p);
 
+/// "wall w3", "door d1": how findings name an element.
+std::string nameOf(const Element& element);
+
+/// A length as findings give it: at least millimetres and at least two digits: "0.12", "0.0012".
+std::string lengthText(double length);
+
 }  // namespace ispace

@@ -6,10 +6,48 @@
 #include <vector>
 
 #include "base/error.h"
-#include "env/material.h"
 #include "geom/polygon.h"
 
 namespace ispace {
+
+/// What a surface is made of, as far as pictures and viewers care.
+enum class Material {
+    Floor,
+    FloorDark,
+    Wall,
+    Wood,
+    WoodDark,
+    Brick,
+    Concrete,
+    Metal,
+    Fabric,
+    Barrier,
+    Box,
+    Pillar,
+    Ceiling,
+    Glass,
+    Screen,
+    Sensor,
+    Robot,
+    Skin,
+    Cloth,
+    Mat,
+    Mesh,
+    View  ///< what a sensor looks at
+};
+
+/// How a material looks: colour (linear RGB, opacity), metallic share and roughness.
+struct Look {
+    const char* name;
+    std::array<double, 3> color;
+    double opacity, metallic, roughness;
+};
+
+const Look& lookOf(Material material);
+
+/// Name of what sensors look at in models: nothing that stands there, so it is left out where a
+/// model is read as a mesh.
+inline constexpr const char* kViewMaterial = "sensor-view";
 
 struct Body;
 struct Plate;

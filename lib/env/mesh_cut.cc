@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/mesh_cut.h"
+#include "env/slice.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "env/body.h"
 #include "env/mesh_loops.h"
 
 namespace ispace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/mesh_cut.h"
+#include "env/slice.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "env/body.h"
 #include "env/test_mesh.h"
 #include "env/test_scene.h"
 #include "geom/predicates.h"

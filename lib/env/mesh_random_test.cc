@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cuts of meshes that nobody would draw.
 #include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 #include <random>
 #include <utility>
 
-#include "env/mesh_cut.h"
+#include "env/body.h"
+#include "env/slice.h"
 #include "env/test_mesh.h"
 #include "env/test_scene.h"
 #include "geom/boolean.h"

@@ -7,7 +7,6 @@
 
 #include "env/info.h"
 #include "env/openings.h"
-#include "env/texts.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {

@@ -9,7 +9,6 @@
 #include "base/message.h"
 #include "env/info.h"
 #include "env/openings.h"
-#include "env/texts.h"
 #include "geom/predicates.h"
 
 namespace ispace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "env/info.h"
 #include "env/opening_sites.h"
-#include "env/texts.h"
 
 namespace ispace {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "base/number.h"
+#include "env/info.h"
 #include "env/test_scene.h"
-#include "env/texts.h"
 
 namespace ispace {
 namespace {

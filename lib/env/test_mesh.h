@@ -10,8 +10,8 @@
 
 #include "env/body.h"
 #include "env/mesh.h"
-#include "env/mesh_cut.h"
 #include "env/schemas.h"
+#include "env/slice.h"
 #include "geom/boolean.h"
 #include "record/record.h"
 #include "record/text.h"

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "env/body.h"
 #include "geom/planar_map.h"
+#include "geom/polygon.h"
 
 namespace ispace {
 
@@ -73,5 +75,9 @@ struct WallCrossing {
 /// one another do not count, nor do rooms (`ispace`) side by side that share a wall. Takes as long
 /// as weld.
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);
+
+/// A place where two edges of the closed curve cross, or nothing. Edges that only
+/// touch or overlap do not cross. Sweeps along x: O(n log n) for short edges, O(n^2) at worst.
+std::optional<Point2> selfCrossing(const Polygon& polygon);
 
 }  // namespace ispace

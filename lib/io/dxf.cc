@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "env/texts.h"
+#include "env/info.h"
 #include "io/dxf_drawing.h"
 #include "io/importers.h"
 #include "io/line_plan.h"

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "env/material.h"
+#include "env/mesh.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"

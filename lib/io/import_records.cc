@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "base/number.h"
-#include "env/crossing.h"
+#include "env/walls.h"
 
 namespace ispace {
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "env/texts.h"
+#include "env/info.h"
 #include "geom/predicates.h"
 #include "io/plan_rooms.h"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/number.h"
-#include "env/material.h"
+#include "env/mesh.h"
 #include "io/exporters.h"
 #include "layout/bodies.h"
 #include "plan/elements.h"

@@ -10,7 +10,6 @@
 
 #include "base/number.h"
 #include "env/info.h"
-#include "env/texts.h"
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
 

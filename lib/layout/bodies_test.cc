@@ -2,12 +2,12 @@
 #include "layout/bodies.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "env/mesh_cut.h"
+#include "env/body.h"
+#include "env/slice.h"
 #include "layout/test_layout.h"
 #include "sensor/drawing.h"
 

@@ -12,7 +12,7 @@
 #include "env/info.h"
 #include "env/point_location.h"
 #include "env/walls.h"
-#include "layout/parts.h"
+#include "layout/overlap.h"
 #include "layout/scene.h"
 
 namespace ispace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/number.h"
-#include "env/mesh_cut.h"
+#include "env/slice.h"
 #include "geom/predicates.h"
 #include "layout/bodies.h"
 #include "layout/check_parts.h"

@@ -1,18 +1,84 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/scene.h"
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "layout/carriers.h"
+#include "base/message.h"
+#include "env/body.h"
+#include "layout/robot.h"
 #include "record/digest.h"
+#include "record/record.h"
 #include "record/text.h"
 #include "sensor/keys.h"
 #include "sensor/kind.h"
+#include "sensor/sensor.h"
 
 namespace ispace {
 
 namespace {
+
+/// Everything in a scene by its id: what `on` of a sensor may mean.
+class Carriers {
+  public:
+    Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids);
+
+    struct Place {
+        Pose3 pose;  ///< in the world; on a robot where that starts
+        std::optional<Mount> mount;
+    };
+    /// Where a sensor with `on` is. \throws FormatError if that names no carrier
+    [[nodiscard]] Place place(const Record& sensor);
+
+  private:
+    struct Thing {
+        const Record* record;
+        std::size_t robot;  // index among the robots, if it is one
+        std::optional<double> top = {};
+    };
+
+    std::map<std::string, Thing> things_;
+    std::vector<std::string> candidates_;  // ids, for hints
+};
+
+/// Furniture, pillars and the like: they have a top, and stand somewhere.
+bool isObject(const Record& record) {
+    const RecordType type = record.schema().type;
+    return type == RecordType::Other || type == RecordType::Infra;
+}
+
+bool isCarrier(const Record& record) { return record.keyword() == "robot" || isObject(record); }
+
+Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
+    std::size_t robots = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        things_.emplace(ids[i], Thing{&records[i], robots});
+        if (records[i].keyword() == "robot") ++robots;
+        if (isCarrier(records[i])) candidates_.push_back(ids[i]);
+    }
+}
+
+Carriers::Place Carriers::place(const Record& sensor) {
+    const std::string& on = sensor.text("on");
+    const auto found = things_.find(on);
+    if (found == things_.end())
+        throw FormatError(sensor.finding(
+            "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
+    auto& [record, robot, top] = found->second;
+    if (!isCarrier(*record))
+        throw FormatError(sensor.finding("on", "`on`: `" + on + "` is a `" + record->keyword() +
+                                                   "`; only robots and objects carry sensors"));
+    const Pose2 carrier = floorPoseOf(*record);
+    Pose3 local = poseOf(sensor);
+    if (record->keyword() == "robot") return {mountedPose(carrier, local), Mount{robot, local}};
+    if (!top) top = topOf(bodyOf(*record));
+    local.position.z += *top;
+    return {mountedPose(carrier, local), std::nullopt};
+}
 
 bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
 
@@ -173,6 +239,32 @@ std::optional<EnvironmentReference> environmentReference(const Document& layout)
                                          record.has("digest") ? record.text("digest") : "", record};
     }
     return reference;
+}
+
+std::string leftOutText(std::string_view name, std::string_view done,
+                        const std::vector<std::string>& ids) {
+    constexpr std::size_t kMost = 3;
+    std::string text = "`";
+    text.append(name).append("` is not ").append(done).append(" yet, left out: ");
+    for (std::size_t i = 0; i < std::min(kMost, ids.size()); ++i)
+        text.append(i == 0 ? "" : ", ").append(ids[i]);
+    if (ids.size() > kMost)
+        text.append(" and ").append(std::to_string(ids.size() - kMost)).append(" more");
+    return text;
+}
+
+std::vector<std::string> leftOut(const Scene& scene, std::span<const std::string_view> keywords,
+                                 std::string_view done,
+                                 const std::function<bool(std::size_t)>& is_meant) {
+    std::vector<std::string> phrases;
+    for (const std::string_view keyword : keywords) {
+        std::vector<std::string> ids;
+        for (std::size_t i = 0; i < scene.records.size(); ++i)
+            if (scene.records[i].keyword() == keyword && (!is_meant || is_meant(i)))
+                ids.push_back(scene.ids[i]);
+        if (!ids.empty()) phrases.push_back(leftOutText(keyword, done, ids));
+    }
+    return phrases;
 }
 
 }  // namespace ispace

@@ -8,7 +8,6 @@
 #include "draw/color.h"
 #include "env/body.h"
 #include "env/environment.h"
-#include "env/material.h"
 #include "env/mesh.h"
 #include "geom/polygon.h"
 

@@ -13,7 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
-#include "layout/left_out.h"
+#include "layout/scene.h"
 #include "layout/schemas.h"
 #include "place/arrangement.h"
 #include "record/text.h"

@@ -16,7 +16,7 @@
 #include "cover/coverage_formats.h"
 #include "cover/trace_file.h"
 #include "coverage/options.h"
-#include "layout/left_out.h"
+#include "layout/scene.h"
 #include "sense/doubts.h"
 #include "sense/ultrasound.h"
 

@@ -10,7 +10,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
-#include "layout/left_out.h"
+#include "layout/scene.h"
 #include "scan/delivery.h"
 #include "scan/options.h"
 #include "scan/pose_sensor.h"

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "base/number.h"
-#include "layout/left_out.h"
+#include "layout/scene.h"
 
 namespace ispace {
 

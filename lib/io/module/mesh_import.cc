@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "base/message.h"
-#include "env/material.h"
+#include "env/mesh.h"
 #include "io/module/handed_files.h"
 
 // Debian builds assimp with its assertions, which abort the program on some damaged files. This

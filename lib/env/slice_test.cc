@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
 
-#include "env/mesh_cut.h"
+#include "env/body.h"
+#include "env/slice.h"
 #include "env/test_mesh.h"
 #include "env/test_scene.h"
 #include "geom/boolean.h"
