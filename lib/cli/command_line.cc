@@ -198,7 +198,7 @@ void CommandLine::ordered(const std::string& names, const std::string& value,
 
 void CommandLine::dependencies(DependencyOptions& options, const std::string& output) {
     data_->check = [&options, &output] { checkDependencies(options, output); };
-    flag("--MD", options.wanted, "write a rule for make that names all files read, too",
+    flag("--MD", options.wanted, "also write a rule for make that names all files read",
          Enters::Nothing);
     file("--MF", "FILE", options.file,
          "write that rule there (default: the product's name with .d)", Enters::Nothing);

@@ -63,8 +63,8 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
         };
         line.parsed("-o,--output", "FILE", take_output, output_help, Enters::Nothing);
     }
-    line.flag("-q,--quiet", options.quiet, "say nothing but errors", Enters::Nothing);
-    line.flag("-v,--verbose", options.verbose, "say more about the work", Enters::Nothing);
+    line.flag("-q,--quiet", options.quiet, "print nothing but errors", Enters::Nothing);
+    line.flag("-v,--verbose", options.verbose, "print more about the work", Enters::Nothing);
     line.count("-j,--threads", "N", options.threads, 0, kMaxThreads,
                "worker threads, 0 for all cores; the result does not depend on it",
                Enters::Nothing);
@@ -194,8 +194,8 @@ void addCellOptions(CommandLine& line, CellWords& words, const std::string& purp
 }
 
 void addAnyEnvironmentOption(CommandLine& line, bool& any_environment) {
-    line.flag("--any-environment", any_environment,
-              "go on if LAYOUT was made for another ENV than this one", Enters::History);
+    line.flag("--any-environment", any_environment, "continue if LAYOUT was made for another ENV",
+              Enters::History);
 }
 
 std::uint64_t byteCount(const std::string& text) {

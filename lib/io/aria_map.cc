@@ -25,10 +25,10 @@ namespace {
 
 constexpr std::string_view kMagic = "2D-Map";
 constexpr double kCell = 0.05;      // edge of an obstacle made of points
-constexpr double kEchoReach = 0.1;  // points this near to a line are the line
+constexpr double kEchoReach = 0.1;  // points this close to a line are its echoes
 constexpr std::size_t kMaxCubes = 100'000;
 
-/// Words between blanks; a word in quotes may have blanks.
+/// Words separated by blanks; a quoted word may contain blanks.
 std::vector<std::string_view> wordsOf(std::string_view line) {
     constexpr std::string_view kBlanks = " \t\r";
     std::vector<std::string_view> words;
@@ -44,7 +44,7 @@ std::vector<std::string_view> wordsOf(std::string_view line) {
     }
 }
 
-/// A rectangle about the map's origin, turned as a whole.
+/// A rectangle, rotated about the map's origin.
 struct ForbiddenArea {
     std::string name;
     Angle heading;
@@ -171,7 +171,8 @@ struct Cells {
     std::int64_t left, right, bottom, top;
 };
 
-/// The cells of the points, runs of a row made one, and equal runs of rows above each other.
+/// The cells of the points in blocks: runs within a row, merged where adjacent rows have the same
+/// run.
 std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
     using Cell = std::pair<std::int64_t, std::int64_t>;  // row, column
     std::vector<Cell> cells;
@@ -184,7 +185,7 @@ std::vector<Cells> cellsOf(const std::vector<Point2>& points) {
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     std::vector<Cells> blocks;
-    std::map<Cell, std::size_t> open;  // block that ends with the run from left to right, by those
+    std::map<Cell, std::size_t> open;  // block whose top run spans these columns
     for (std::size_t i = 0; i < cells.size();) {
         const auto [row, left] = cells[i];
         std::int64_t right = left;

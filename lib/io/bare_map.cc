@@ -18,12 +18,12 @@ namespace ispace {
 
 namespace {
 
-/// Pixels with less opacity show what is behind them.
+/// Pixels less opaque than this show what is behind them.
 constexpr std::uint8_t kOpaque = 128;
 /// What map_server writes for unknown, of 255.
 constexpr int kUnknown = 205;
 
-/// Transparent pixels as unknown ones, and no opacity any more.
+/// The picture with its transparent pixels unknown.
 GreyPicture onUnknown(GreyPicture image) {
     const auto unknown = static_cast<std::uint16_t>(image.max_value * kUnknown / 255);
     for (std::size_t i = 0; i < image.opacity.size(); ++i)

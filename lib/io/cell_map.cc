@@ -19,34 +19,35 @@ namespace ispace {
 
 namespace {
 
-/// Cells that outlines move by default: half for stairs, see outline.h, and the rest for noise.
+/// How far outlines may move by default, in cells: half for staircases (see contour.h), the rest
+/// for noise.
 constexpr double kDefaultSimplify = 1;
 constexpr double kRaggedSimplify = 2;  ///< where walls are ragged by a cell on each side
 
-/// Metres: beyond it numbers are no metres, or the map is no plan of a building.
+/// Metres; a larger map is not in metres, or not of a building.
 constexpr double kMaxExtent = 10000;
 
 /// Of the bounding boxes of all rooms that are kept.
 constexpr double kMaxCellsOfRooms = 1e9;
 
-/// Metres; rooms beyond have a resolution that is hardly meant.
+/// Metres; a room outside these limits has probably a wrong resolution.
 constexpr double kSmallRoom = 2, kLargeRoom = 2000;
 
-/// A point that says which room is meant.
+/// A point that selects a room.
 struct Choice {
     Point2 point;
-    bool is_option = false;  ///< of --inside, not of a record that comes from elsewhere
+    bool is_option = false;  ///< from --inside, not from a record of another input
     CellPlace place;
 };
 
-/// Turns cells into records, one step after the other.
+/// Turns cells into records, step by step.
 class CellMapImport {
   public:
     CellMapImport(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out)
         : map_(map), source_(source), options_(options), out_(out), floor_(map.free) {
         for (const Point2 p : options.inside) choices_.push_back({p, true, map.placeOf(p)});
-        // Records from elsewhere may be about another room.
+        // Records of other inputs may be about another room.
         for (const Point2 p : options.known_inside)
             if (isInGrid(map.placeOf(p))) choices_.push_back({p, false, map.placeOf(p)});
     }
@@ -72,7 +73,7 @@ class CellMapImport {
 
     // Choice of the rooms
 
-    /// Walls of others stand in the floor while the rooms are chosen.
+    /// Walls of other inputs block the floor while rooms are chosen.
     void raiseBarriers() {
         if (options_.known_walls.empty()) return;
         std::vector<Segment2> lines;
@@ -82,8 +83,8 @@ class CellMapImport {
         floor_ = difference(floor_, *barrier_);
     }
 
-    /// Keeps the rooms of the map whose gaps are closed; nothing if these are open to the border
-    /// nevertheless: then it was their inner doors that closed.
+    /// Keeps the rooms of the map with its gaps closed. False if these still reach the border: then
+    /// only inner doors were closed.
     bool keepClosedRooms() {
         const MapCells cut = gapCells(floor_, *options_.close_gaps / map_.resolution);
         const MapCells closed = difference(floor_, cut);
@@ -149,7 +150,7 @@ class CellMapImport {
         tellCleaning(map_, cleaning, out_);
     }
 
-    /// Each room costs as much as its bounding box, and rooms may lie around each other.
+    /// The cost of a room is its bounding box, and rooms may enclose each other.
     void checkWork(const CellPieces& pieces, const std::vector<std::size_t>& rooms) const {
         double cells = 0;
         for (const std::size_t room : rooms) {
@@ -211,14 +212,14 @@ class CellMapImport {
         return cells;
     }
 
-    /// Cells of a room's grid within two of walls that were added. Nothing moves there, so that
-    /// these reach the walls of the map as they were drawn to.
+    /// Cells within two of an added wall. Nothing moves there, so that added walls still meet those
+    /// of the map.
     [[nodiscard]] std::optional<MapCells> besideBarriers(const MapRoom& room) const {
         if (!barrier_) return std::nullopt;
         return grown(cutOf(*barrier_, room.floor, room.offset), 2);
     }
 
-    /// With a rim for what is given back.
+    /// With a rim for giveBack().
     [[nodiscard]] MapRoom cutOut(const CellPieces& pieces, std::size_t piece) const {
         constexpr int kRim = 3;
         const CellPiece& box = pieces[piece];
@@ -245,7 +246,7 @@ class CellMapImport {
                   radius + " reaches dropped");
     }
 
-    /// The floor under walls that were added, and a cell beyond, so that they are the border.
+    /// Adds the floor under added walls and one cell beyond, so that these walls are the border.
     void giveBack(MapRoom& room) const {
         const MapCells free = cutOf(map_.free, room.floor, room.offset);
         const MapCells near = grown(room.floor, 1);
@@ -256,7 +257,7 @@ class CellMapImport {
         grown(under, 1).forEach([&](int x, int y) {
             if (free.contains(x, y)) room.floor.insert(x, y);
         });
-        // Cells that touch by a corner alone are no part of it.
+        // Cells that touch only at a corner are not part of the room.
         const CellPieces pieces(room.floor, CellPieces::Joined::BySides);
         const auto& list = pieces.list();
         const auto largest = std::max_element(
@@ -271,7 +272,7 @@ class CellMapImport {
         Region region = vectorised(room.floor, tolerance, rigid ? &*rigid : nullptr);
         const CellPlace widest = widestPlace(room.floor);
         const Point2 middle{widest.x + 0.5, widest.y + 0.5};
-        // Where simplification took the widest place away, another point of the room.
+        // Simplification may have removed the widest place.
         const Point2 within =
             region.locate(middle) == Side::Inside ? middle : interiorPoint(region);
         const auto moved = [&](Point2 p) {

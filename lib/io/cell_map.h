@@ -24,7 +24,7 @@ struct CellMap {
     /// metres, and back.
     [[nodiscard]] Point2 inMap(Point2 cells) const;
     [[nodiscard]] Point2 inCells(Point2 point) const;
-    /// Of a cell that is perhaps not in the grid.
+    /// The cell of a point, which may lie outside the grid.
     [[nodiscard]] CellPlace placeOf(Point2 point) const;
     [[nodiscard]] Point2 middleOf(CellPlace place) const {
         return inMap({place.x + 0.5, place.y + 0.5});
@@ -38,10 +38,10 @@ struct CellMap {
 /// Refuses maps of more than 10 km. \throws FormatError
 void checkCellMap(int width, int height, double resolution, const std::string& file);
 
-/// What messages say about where a map comes from.
+/// How messages name the source of a map.
 struct CellMapSource {
-    std::string file;             ///< that errors name
-    std::string hint_if_no_free;  ///< what helps where no cell is free
+    std::string file;             ///< named in errors
+    std::string hint_if_no_free;  ///< advice where no cell is free
 };
 
 /// Writes the rooms of a map: free regions (4-connected; unknown is not free), outlines and holes
@@ -52,7 +52,7 @@ struct CellMapSource {
 ///    of at most `close_gaps` are closed (gapCells()).
 /// 2. The rooms are the regions with the points of `inside` and `known_inside`; without any the
 ///    likeliest one (likeliestRoom()) or, with RoomChoice::All, all that are closed.
-/// 3. What is below the map's noise goes (cleanRoom()), what is smaller than `clean`.
+/// 3. Noise smaller than `clean` is removed (cleanRoom()).
 /// 4. With `reachable` the floor is what a disc of that radius reaches.
 /// 5. Outlines follow the cells' edges, simplified by at most `simplify` (default one cell: slanted
 ///    walls become straight lines through their stairs; two where the map is noisy).
@@ -67,22 +67,22 @@ struct CellMapSource {
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,
                   ImportRecords& out);
 
-/// What the import of a map of cells tells about the rooms that it chose; see writeCellMap().
+/// Messages about the rooms that writeCellMap() chose.
 
-/// Of the free cells that are not kept: warns where they are more than half of those that are not
-/// outside and nobody chose the rooms, else notes.
+/// Reports free cells that are not kept: a warning if they are more than half of the indoor cells
+/// and nobody chose the rooms, else a note.
 void tellRest(const CellMap& map, const CellPieces& pieces, const std::vector<std::size_t>& rooms,
               const ImportOptions& options, ImportRecords& out);
 
-/// Warns of a room that leaves the picture by an opening of 0.5 m or more. A room along most of the
-/// border, whose walls the picture's edges may well be, is warned of only where closing its doors
-/// would part a room from it.
+/// Warns of a room that leaves the picture through an opening of 0.5 m or more. Along most of the
+/// border the picture's edges may be its walls: then the warning comes only if closing doors would
+/// separate a room from it.
 void warnOfBorder(const CellMap& map, const MapRoom& room, double border_share, ImportRecords& out);
 
-/// Notes what was cleaned out of all rooms.
+/// Notes what cleaning removed from all rooms.
 void tellCleaning(const CellMap& map, const Cleaning& cleaning, ImportRecords& out);
 
-/// Notes the gaps beside the rooms that were closed.
+/// Notes the gaps closed beside the rooms.
 void tellGaps(const CellMap& map, const MapCells& cut, const CellPieces& pieces,
               const std::vector<std::size_t>& rooms, double widest, ImportRecords& out);
 

@@ -16,16 +16,16 @@ namespace {
 
 constexpr double kMinOpening = 0.5;       ///< metres of the picture's border
 constexpr double kWidestDoor = 1.2;       ///< metres
-constexpr double kShareBehindDoor = 0.1;  ///< of the floor, that is worth a warning
+constexpr double kShareBehindDoor = 0.1;  ///< of the floor, for a warning
 
-/// For each piece whether it is one of the rooms.
+/// Whether each piece is one of the rooms.
 std::vector<bool> areRooms(const CellPieces& pieces, const std::vector<std::size_t>& rooms) {
     std::vector<bool> are(pieces.size());
     for (const std::size_t room : rooms) are[room] = true;
     return are;
 }
 
-/// As an option takes it.
+/// As options take it.
 std::string pointText(Point2 p) { return formatFixed(p.x, 2) + ',' + formatFixed(p.y, 2); }
 
 /// A run of floor along an edge of the picture.
@@ -61,7 +61,7 @@ std::vector<Opening> openingsOf(const CellMap& map, const MapRoom& room) {
     return openings;
 }
 
-/// The largest part of a room that closed doors would part from the picture's border.
+/// The largest part of a room that closing doors would separate from the picture's border.
 struct BehindDoor {
     std::size_t cells = 0;
     CellPlace place;

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Points of one frame in another; linear, so circles may become ellipses.
+/// An affine map between frames; circles may become ellipses.
 struct Affine {
     Vec2 x{1, 0}, y{0, 1};
     Vec2 origin;
@@ -33,15 +33,15 @@ struct Affine {
 /// How far straight pieces may be off their curve, in metres.
 constexpr double kCurveSagitta = 0.001;
 
-/// In how many straight pieces an arc of so many radians is cut: within kCurveSagitta for radii to
+/// Number of straight pieces of an arc of `sweep` radians: within kCurveSagitta for radii to
 /// 10 km, none longer than an eighth of the circle.
 int arcPieces(double sweep, double radius);
 
 /// A cubic Bézier curve in metres.
 using CubicCurve = std::array<Point2, 4>;
 
-/// Adds the points behind the first that stand for the curve within kCurveSagitta; the last is the
-/// curve's own.
+/// Appends points after the first that follow the curve within kCurveSagitta; the last is the
+/// curve's end.
 void appendCubic(const CubicCurve& curve, Polygon& points);
 
 /// A B-spline in metres, rational where weights differ.
@@ -55,11 +55,11 @@ struct SplineCurve {
 /// What is wrong with the numbers of a spline, or "".
 std::string splineFault(const SplineCurve& spline);
 
-/// Points of the spline from its begin to its end, with straight pieces within kCurveSagitta; stops
-/// behind `most`. \pre splineFault() is ""
+/// Points along the spline whose straight pieces are within kCurveSagitta of it; stops after
+/// `most`. \pre splineFault() is ""
 Polygon splinePoints(const SplineCurve& spline, std::size_t most);
 
-/// The centre, where the curve is as good as an arc of a circle, as drawing programs write them.
+/// The centre if the curve is practically an arc of a circle, as drawing programs write them.
 std::optional<Point2> arcCenter(const CubicCurve& curve);
 
 }  // namespace ispace

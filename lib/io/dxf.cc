@@ -27,7 +27,7 @@ constexpr std::size_t kPointsPerEntity = 1000;  // … and for each entity in it
 /// Blocks that are in no file (an outside reference that was not bound), and how often.
 using MissingBlocks = std::map<std::string, std::size_t>;
 
-/// Beyond these a bulge is a straight line, or a circle of which an end is missing.
+/// Beyond these a bulge is a straight line, or a full circle.
 constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
@@ -172,7 +172,7 @@ class Expander {
     }
 
     void addArc(const DxfEntity& entity, const DxfArc& arc, const Affine& frame) {
-        if (arc.radius == 0) return;  // shows nothing, as a line of no length
+        if (arc.radius == 0) return;  // shows nothing, like a line without length
         if (!(arc.radius > 0)) fail(entity, "a radius of " + formatDouble(arc.radius));
         const bool full = arc.from == Angle() && arc.to == Angle::degrees(360);
         double degrees = std::fmod(arc.to.degrees() - arc.from.degrees(), 360);

@@ -15,13 +15,14 @@
 
 namespace ispace {
 
-/// What of a DXF file a plan is made of, checked, and written so that dxflib reads it without harm.
+/// The parts of a DXF file that make a plan, checked and rewritten so that dxflib can read them
+/// safely.
 ///
-/// dxflib trusts its input: group 42 before the first vertex writes beside its array, counts are
-/// allocated as they stand, a line of more than 1024 characters is read for ever, and the value of
-/// a number that is none is left to chance. So only groups that are needed are handed on, with
-/// numbers that are numbers and counts that were counted; polylines of both kinds as LWPOLYLINE,
-/// and group 5 (the handle) of each entity holds the line of the file it began on.
+/// dxflib trusts its input: group 42 before the first vertex writes out of bounds, counts are
+/// allocated unchecked, a line of more than 1024 characters never ends, and a malformed number has
+/// any value. So only the groups that are needed are passed on, with valid numbers and true counts;
+/// polylines of both kinds become LWPOLYLINE, and group 5 (the handle) of each entity holds its
+/// line in the file.
 struct DxfText {
     std::string text;
     std::map<std::string, std::size_t> left_out;  ///< entities not handed on, by type or reason
@@ -58,7 +59,7 @@ struct DxfEllipse {
 /// A spline by its control points; its numbers are sound, see splineFault().
 using DxfSpline = SplineCurve;
 
-/// A block put somewhere, perhaps many times in a grid.
+/// A block inserted somewhere, perhaps repeated in a grid.
 struct DxfInsert {
     std::string block;
     Point2 at;
@@ -71,7 +72,7 @@ struct DxfInsert {
 struct DxfEntity {
     std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert> shape;
     std::string layer;
-    bool mirrored = false;  ///< seen from below: x is turned about
+    bool mirrored = false;  ///< seen from below: x is mirrored
     int line = 0;           ///< of the file
 };
 

@@ -52,38 +52,36 @@ std::span<const ExportFormat> exportFormats();
 /// \pre exportFormats() has one of this name
 const ExportFormat& exportFormat(std::string_view name);
 
-/// The plan as a GeoJSON FeatureCollection (RFC 7946) in metres of the plan, as its foreign member
+/// The plan as a GeoJSON FeatureCollection (RFC 7946) in metres, as its foreign member
 /// `"coordinate_system": "local-metres"` says; outlines counter-clockwise, holes clockwise, doubles
 /// in shortest form.
 ///
 /// Features, each with `id`, `keyword`, `type` and the values of its record: the indoor region and
 /// the free floor at kScanHeight (Polygons), then every element: walls, doors and windows as lines
-/// (with `height`, `thickness`), zones and floors as Polygons, things as what they cover of the
-/// floor, with `bottom` and `top`; inside points, sensors, tags, robots and people as Points with
-/// `heading`, mats as Polygons, gates as lines.
+/// (with `height`, `thickness`), zones and floors as Polygons, things by their footprints, with
+/// `bottom` and `top`; inside points, sensors, tags, robots and people as Points with `heading`,
+/// mats as Polygons, gates as lines.
 ///
-/// With a height, only what the slice has there: free floor, lines of walls without thickness, and
-/// solids as Polygons, each with the `id` of its element.
+/// With a height, only the slice there: free floor, lines of walls without thickness, and solids as
+/// Polygons, each with the `id` of its element.
 std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height);
 
 /// The scene as Wavefront OBJ: metres, z up, one object `o` per element, placed sensor, robot and
 /// person, named by its id, and the floor; faces by material, with a normal each, counter-clockwise
 /// seen from outside. Coordinates are the shortest decimals that read back as the same doubles.
 ///
-/// Sheets (walls without thickness, panes, floors) are there once, as surfaces to be seen from both
-/// sides: viewers that leave out back faces show them from one side only. Faces without area are
-/// left out. Equal scenes give equal bytes. O(triangles).
-/// \param mtl_name how the model names the file of its materials; "": it names none, and has no
-///        materials
+/// Sheets (walls without thickness, panes, floors) are single surfaces: viewers that cull back
+/// faces show them from one side only. Faces without area are left out. Equal scenes give equal
+/// bytes. O(triangles). \param mtl_name the file of materials, as the model names it; "": no
+/// materials
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
 
 /// The scene as binary STL: metres, z up, all elements, placed sensors, robots, people and the
 /// floor in one surface; 80 bytes of header, a count, then per triangle its unit normal, three
 /// corners (counter-clockwise seen from outside; 32-bit floats, little-endian) and two bytes 0.
 ///
-/// Sheets (walls without thickness, panes, floors) are there once, as surfaces to be seen from both
-/// sides. Triangles that have no area, or none left in floats, are left out. Equal scenes give
-/// equal bytes. O(triangles).
+/// Sheets (walls without thickness, panes, floors) are single surfaces. Triangles without area in
+/// floats are left out. Equal scenes give equal bytes. O(triangles).
 std::string writeStl(const Scene& scene);
 
 /// Cells of a map along a side, and in all.
@@ -92,14 +90,13 @@ constexpr std::int64_t kMaxMapCells = 400'000'000;
 
 /// The obstacle map at a height, as ROS' map_server reads and writes it: map.yaml, and beside it
 /// the picture (P5, 254 free, 0 occupied, 205 unknown). Cell edges lie on multiples of the
-/// resolution, with a rim of some unknown cells; the room alone is on it, not what lies outside.
+/// resolution, with a rim of unknown cells; only the room is on it.
 ///
 /// A cell is free if its middle lies on the free floor (strictly inside the indoor region, in no
-/// solid). No wall is lost for being thin: where a sheet or the edge of a solid passes between two
-/// free middles that are neighbours, the nearer cell is occupied, so that floor on both sides is
-/// not joined (by sides) through it, and every solid and every hole of the region has at least
-/// one occupied cell. Cells that touch free ones are free or occupied, never unknown. So an import
-/// of the map gives the region back within one cell.
+/// solid). Thin walls are kept: where a sheet or the edge of a solid passes between neighbouring
+/// free middles, the nearer cell is occupied, so floor on both sides is not connected (by sides),
+/// and every solid and hole of the region has at least one occupied cell. Cells beside free ones
+/// are never unknown. An import of the map returns the region within one cell.
 ///
 /// free_thresh is 0.196, which keeps 205 (darkness 0.19608) unknown for every reader.
 /// O(cells + cells along all lines).

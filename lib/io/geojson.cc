@@ -26,8 +26,8 @@ std::string_view typeName(RecordType type) {
     return kNames[static_cast<std::size_t>(type)];
 }
 
-/// The values of a record besides its id, its place, and what is told otherwise: written ones and
-/// defaults, in the units of files (metres, degrees).
+/// The values of a record, written or default, except its id, its place and those `known`
+/// otherwise; in the units of files (metres, degrees).
 void addValues(JsonWriter& json, const Record& record,
                std::initializer_list<std::string_view> known) {
     for (const KeySpec& key : record.schema().keys) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/io: file formats of others, and the compiled form. Uses layout; tinygltf inside.
+// lib/io: file formats of others, and the compiled form. Uses plan and what is below it.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace ispace {
 /// True if the bytes begin as a binary glTF does.
 bool isGlb(std::string_view bytes);
 
-/// False for a binary glTF file that is sound and holds no records of ours: a mesh that somebody
-/// else made. Of damaged files readGlb says what is wrong. \pre isGlb(bytes)
+/// False for a sound binary glTF file without our records: a mesh of another program. True for
+/// damaged files, which readGlb() explains. \pre isGlb(bytes)
 bool glbHasRecords(std::string_view bytes);
 
 /// The compiled form: binary glTF 2.0, one named node per element (and sensor body), shared
@@ -28,9 +28,9 @@ bool glbHasRecords(std::string_view bytes);
 /// \throws FormatError for a model of more than 2 GiB
 std::string writeGlb(const Scene& scene, const Document& document);
 
-/// The records of a compiled file, meshes loaded, bit by bit as they were. Reads the JSON without a
-/// tree, and no more of it than it needs; what is drawn not at all. O(records + meshes).
-/// \throws FormatError for truncated, foreign ("no ispace records") or damaged files
+/// The records of a compiled file, meshes loaded, bit by bit as they were. The JSON is streamed, no
+/// further than needed; what is only drawn is not read. O(records + meshes). \throws FormatError
+/// for truncated, foreign ("no ispace records") or damaged files
 Document readGlb(std::string_view bytes, const std::string& name, const Schemas& schemas);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the writer of GLB consists of: see glb_write.cc.
+// The container of GLB files, and the builder that glb_write.cc writes them with.
 #pragma once
 
 #include <array>
@@ -65,8 +65,8 @@ struct GlbNode {
     std::unique_ptr<const Frame> frame;
 };
 
-/// Collects nodes, meshes and data of a file, and writes it. The JSON has what a reader of the
-/// records wants at its beginning.
+/// Collects nodes, meshes and data of a file, and writes it. The JSON begins with what readers of
+/// the records need.
 class GlbBuilder {
   public:
     struct Primitive {

@@ -23,9 +23,9 @@ namespace ispace {
 
 namespace {
 
-/// Takes the few numbers we need out of glTF's JSON as it streams by: the top level's extras and
-/// bufferViews. The parser keeps no tree and its depth costs no stack, so that neither size nor
-/// nesting of a hostile file matters; it stops once it has both.
+/// Picks the few numbers we need from glTF's JSON as it streams by: extras and bufferViews of the
+/// top level. There is no tree and no recursion, so neither size nor nesting of a hostile file
+/// matters; parsing stops once both are known.
 class Finder : public nlohmann::json_sax<nlohmann::json> {
   public:
     struct View {

@@ -51,7 +51,7 @@ class GlbScene {
 
   private:
     using Primitives = std::vector<GlbBuilder::Primitive>;
-    /// All that makes a figure, to tell equal ones; figures are small.
+    /// All that makes a body, to find equal ones; bodies are small.
     using Figure = std::vector<std::tuple<Material, std::vector<std::array<double, 3>>,
                                           std::vector<std::array<std::uint32_t, 3>>>>;
 

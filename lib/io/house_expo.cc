@@ -36,7 +36,7 @@ struct HousePlan {
     std::vector<Box> boxes;
 };
 
-/// An iterator over bytes that tells how far a parser that holds copies of it has come.
+/// An iterator over bytes that reports how far a parser has come, which holds copies of it.
 class CountingIterator {
   public:
     // NOLINTBEGIN(readability-identifier-naming): names that the standard library wants
@@ -67,8 +67,7 @@ class CountingIterator {
     const char** farthest_;
 };
 
-/// Receives the JSON piece by piece: nothing of what is not wanted is kept, and depth costs a
-/// counter.
+/// Receives the JSON piece by piece: only what is wanted is kept, and depth is a counter.
 class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
   public:
     HousePlanHandler(std::string_view bytes, const std::string& name)
@@ -138,7 +137,7 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     [[nodiscard]] bool wanted() const {
         return key_ == "verts" || key_ == "holes" || key_ == "room_category";
     }
-    /// At what depth the lists of numbers are: [x, y] in `verts` is the third list or object.
+    /// Depth of the lists of numbers: [x, y] in `verts` is the third list or object.
     [[nodiscard]] int tupleDepth() const { return key_ == "verts" ? 3 : 4; }
     [[nodiscard]] std::string wantedShape() const {
         if (key_ == "verts") return "wanted a list of [x, y] in metres";
@@ -206,7 +205,7 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     Polygon ring_;
 };
 
-/// The rings as the options want them; what has no area is gone.
+/// The rings after snapping and simplifying; those without area are dropped.
 std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportOptions& options) {
     std::vector<PlanPath> paths;
     paths.reserve(rings.size());
@@ -218,8 +217,7 @@ std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportO
     return result;
 }
 
-/// The region that is the room: of the faces within the outline and outside of the holes the
-/// largest.
+/// Finds the room: the largest face within the outline and outside the holes.
 class RoomFinder {
   public:
     RoomFinder(const HousePlan& plan, const std::string& name, const ImportOptions& options)

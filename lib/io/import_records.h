@@ -24,7 +24,7 @@ class ImportRecords {
     /// A fence of the options' height and thickness; `id` may be "". A closed path that crosses
     /// itself, which no closed fence may, becomes an open one that ends where it begins.
     void fence(const PlanPath& path, const std::string& id = "");
-    /// The same as a wall.
+    /// The same as a `wall`.
     void wall(const Segment2& line, const std::string& id, int file_line);
     /// Outline and holes as closed fences.
     void outline(const Region& region);
@@ -40,12 +40,12 @@ class ImportRecords {
     /// Sets a key of x,y.
     static void setPoint(Record& record, const char* key, Point2 point);
 
-    /// An id that is not yet taken, made of a name in a file: letters, digits and _ - . stay,
-    /// others become -; "", "-2", "-3" … behind it. `fallback` where nothing readable is left.
+    /// A free id made from a name in a file: letters, digits and _ - . stay, others become -; then
+    /// "", "-2", "-3" … `fallback` if nothing readable is left.
     std::string freeId(std::string_view name, const std::string& fallback);
 
     void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
-    /// Shown without being asked for; `line` of the file, 0 for the file as a whole.
+    /// Shown without -v; `line` of the file, 0 for the file as a whole.
     void warn(std::string sentence, int line = 0) {
         document_.warnings.push_back(
             {*place_.file, line, 0, std::move(sentence), Severity::Warning});
@@ -61,7 +61,7 @@ class ImportRecords {
     Document document_;
 };
 
-/// What `read` returns; errors of it that tell no file, as those of the geometry, get this one.
+/// Returns what `read` returns; its errors without a file, such as those of geometry, get this one.
 template <typename Read>
 auto withFileName(const std::string& name, Read read) {
     try {
@@ -74,8 +74,8 @@ auto withFileName(const std::string& name, Read read) {
     }
 }
 
-/// Why a file that another one names is not read, or "": it is not there, or it is no regular
-/// file; devices and pipes may have no end.
+/// Why a file named by another one cannot be read: it is missing, or not a regular file (devices
+/// and pipes may never end); "" if it can.
 std::string reasonNotToRead(const std::string& path);
 
 /// A unit of drawings.
@@ -85,13 +85,13 @@ struct LengthUnit {
     int insunits;  ///< its code in DXF, $INSUNITS
 };
 constexpr std::array<LengthUnit, 8> kLengthUnits{{{"m", 1, 6},
-                                                   {"cm", 0.01, 5},
-                                                   {"mm", 0.001, 4},
-                                                   {"inch", 0.0254, 1},
-                                                   {"foot", 0.3048, 2},
-                                                   {"km", 1000, 7},
-                                                   {"yard", 0.9144, 10},
-                                                   {"dm", 0.1, 14}}};
+                                                  {"cm", 0.01, 5},
+                                                  {"mm", 0.001, 4},
+                                                  {"inch", 0.0254, 1},
+                                                  {"foot", 0.3048, 2},
+                                                  {"km", 1000, 7},
+                                                  {"yard", 0.9144, 10},
+                                                  {"dm", 0.1, 14}}};
 
 /// The text without blanks and line breaks around.
 std::string_view trimmed(std::string_view text);

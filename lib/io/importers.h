@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Importers of what others make, one a format: what tells it, and what becomes of it. input.cc has
-// their table.
+// One importer per foreign format: how the format is recognised, and what becomes of it. Their
+// table is in input.cc.
 #pragma once
 
 #include <string>
@@ -14,22 +14,22 @@ namespace ispace {
 /// True if the first line is `2D-Map`.
 bool isAriaMap(std::string_view bytes);
 
-/// Reads a map of ARIA and MobileSim: the LINES, in millimetres, become walls (lines that meet end
-/// to end one fence; points within ImportOptions::snap, default 5 mm, are one). Of the region that
-/// encloses Home, else the largest, are kept the lines that bound it or lie in it, and an `inside`
-/// point, Home where it is in the region; where nothing is enclosed all lines are kept.
+/// Reads a map of ARIA and MobileSim: the LINES, in millimetres, become walls: lines that meet end
+/// to end are one fence, points within ImportOptions::snap (default 5 mm) are one. Kept are the
+/// lines that bound or lie in the region around Home, else the largest one, with an `inside` point,
+/// Home if it lies there. If nothing is enclosed all lines are kept.
 ///
 /// Forbidden areas become zones, `forbidden-NAME` or `forbidden`; forbidden lines and other
 /// cairns are counted in Document::notes. With ImportOptions::points the points of DATA become
-/// cubes on a grid of 0.05 m, as high as the walls, but for those within 0.1 m of a line, which is
-/// what they are echoes of.
-/// \throws FormatError with the line: truncated, no number where one is due, no lines
+/// cubes on a grid of 0.05 m, as high as the walls, except those within 0.1 m of a line, whose
+/// echoes they are. \throws FormatError with the line: truncated, no number where one is due, no
+/// lines
 Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
 
-/// Reads the plan in a picture that comes alone: pixels of ImportOptions::resolution, the lower
-/// left corner at ImportOptions::origin. What is lighter than 80.4 % is free, as map_server has it
-/// without thresholds; what is mostly transparent is unknown. See readRosMap for the rest.
+/// Reads the plan in a picture without map.yaml: pixels are ImportOptions::resolution wide, the
+/// lower left corner lies at ImportOptions::origin. Pixels lighter than 80.4 % are free, the
+/// default of map_server; mostly transparent ones are unknown. See readRosMap() for the rest.
 /// \throws FormatError: no resolution is given, no free pixel, a bad picture
 Document readBarePicture(std::string_view bytes, const std::string& name,
                          const ImportOptions& options, const Schemas& schemas);
@@ -65,20 +65,19 @@ bool isDxf(std::string_view bytes);
 
 /// Reads a plan from ASCII DXF: LINE, LWPOLYLINE and POLYLINE with bulges, ARC, CIRCLE, ELLIPSE
 /// and SPLINE in model space, and INSERTs of blocks with them, in the unit of ImportOptions::units,
-/// else of
-/// `$INSUNITS`.
+/// else of `$INSUNITS`.
 ///
-/// - Layers: those that a glob of door_layers or window_layers names hold such symbols, those of
-///   wall_layers (by default all others) walls; what is on others, or on layers that are off or
-///   frozen, is left out. Names are compared without case.
-/// - Points within ImportOptions::snap (default 5 mm) of each other are one, ends that near to
-///   another line lie on it; lines drawn twice are one; lines that meet end to end become one
-///   fence, of the options' height and thickness. Arcs are cut to pieces 1 mm off at most (radii to
-///   10 km). With ImportOptions::simplify lines lose points, see simplifiedPaths().
+/// - Layers: globs of door_layers and window_layers name those with symbols, wall_layers those with
+/// walls (default: all others). Other layers are left out, and so are layers that are off or
+/// frozen. Case does not matter.
+/// - Points within ImportOptions::snap (default 5 mm) of each other become one, and ends that close
+/// to another line end on it; lines drawn twice count once; lines that meet end to end become one
+/// fence of the options' height and thickness. Arcs become straight pieces within 1 mm (radii to 10
+/// km). With ImportOptions::simplify lines lose points, see simplifiedPaths().
 /// - Doors (open=yes) and windows, see findOpenings(): across a gap they come with a wall that
-///   closes it.
-/// - Of all this only the largest region that is enclosed, rooms joined by doors, is kept: lines
-///   that bound it or lie in it; with an `inside` point. Where nothing is enclosed all is kept.
+/// closes it.
+/// - Only the largest enclosed region is kept, with rooms joined by doors: the lines that bound it
+/// or lie in it, and an `inside` point. If nothing is enclosed everything is kept.
 ///
 /// What is left out is counted in Document::notes.
 /// \throws FormatError: damaged, no unit, no line on the layers, places beyond 900 km, more than
@@ -90,17 +89,17 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
 bool isSvg(std::string_view bytes);
 
 /// Reads a plan from SVG: path, line, polyline, polygon, rect, circle and ellipse, in groups and
-/// where `use` puts them, with all transforms. The plan's y points up; the lower left corner of
-/// the page is the origin.
+/// through `use`, with all transforms. The plan's y points up; the lower left corner of the page is
+/// the origin.
 ///
 /// - Scale: `width` and `height` against `viewBox`, with pixels of 1/96 inch;
-///   ImportOptions::units instead says what one unit of the drawing's own coordinates is.
-/// - Layers: the innermost group that a glob names, by label (Inkscape) or id, else the Inkscape
-///   layer, else the outermost group that has a name.
-/// - What shows nothing is left out: `display: none`, hidden, drawn with neither stroke nor fill
+///   ImportOptions::units overrides the unit of the drawing's coordinates.
+/// - Layers: the innermost group whose label (Inkscape) or id matches a glob, else the Inkscape
+/// layer, else the outermost named group.
+/// - Invisible elements are left out: `display: none`, hidden, drawn with neither stroke nor fill
 ///   (also by rules of `style` elements with one name, class or id);
-///   so are definitions, text, pictures, and a rectangle that is the page's background.
-/// - Curves are cut to pieces 1 mm off at most.
+///   so are definitions, text, pictures, and a rectangle as the page's background.
+/// - Curves become straight pieces within 1 mm.
 ///
 /// See readDxf for what becomes of the lines. Neither documents nor entities are fetched.
 /// \throws FormatError with the line: damaged, no size, no line on the layers of walls, places
@@ -111,30 +110,30 @@ Document readSvg(std::string_view bytes, const std::string& name, const ImportOp
 /// True if the bytes are YAML with the top-level keys `image` and `resolution`.
 bool isRosMap(std::string_view bytes);
 
-/// Reads a ROS map (map_server's map.yaml and its picture, see parsePicture); writeCellMap() tells
-/// what becomes of it. Warns if shades of unknown count as free. \param name the map.yaml; `image`
-/// is relative to its folder (for "-" to the current one) \throws FormatError with place in YAML or
+/// Reads a ROS map (map_server's map.yaml and its picture, see parsePicture); see writeCellMap()
+/// for the result. Warns if shades of unknown count as free. \param name the map.yaml; `image` is
+/// relative to its folder (for "-" to the current one) \throws FormatError with place in YAML or
 /// image, std::system_error for a missing image
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas);
 
-/// Reads the plan that a mesh of a room or a building is at ImportOptions::slice_walls, a height of
-/// the mesh after `units` and `up`: what the cut meets becomes walls, solids that meet one, and
-/// the room is chosen as readDxf does. Lines lose points that are within a millimetre of the
-/// straight, unless ImportOptions::simplify says otherwise.
-/// \throws FormatError: nothing stands at this height, and as meshDocument and loadMesh
+/// Reads the plan in the cut through a mesh of a room or building at ImportOptions::slice_walls, a
+/// height after `units` and `up`: cuts become walls, solids that meet become one, and the room is
+/// chosen as in readDxf(). Lines are simplified by at most a millimetre unless
+/// ImportOptions::simplify says otherwise. \throws FormatError: nothing stands at this height, and
+/// as meshDocument and loadMesh
 Document readMeshWalls(const std::string& operand, const ImportOptions& options,
                        const Schemas& schemas);
 
 /// True for the text of a STEP file with a schema of IFC.
 bool isIfc(std::string_view bytes);
 
-/// Reads a storey of an IFC building, through assimp: walls, columns and what else stands like them
-/// are cut 1.2 m above the lowest storey that has walls, or at ImportOptions::slice_walls (the
-/// building's own height); the classes of IFC are layers. By default IfcWall, IfcCurtainWall,
-/// IfcColumn, IfcPlate, IfcMember, IfcBuildingElementProxy and their kinds are walls, IfcDoor and
-/// IfcWindow doors and windows, across the width they have in the cut. Openings of walls are cut
-/// out by assimp. \throws FormatError: cut off, nothing stands at this height, and as loadMesh
+/// Reads a storey of an IFC building, through assimp: walls, columns and the like are cut 1.2 m
+/// above the lowest storey that has walls, or at ImportOptions::slice_walls (the building's own
+/// height); the classes of IFC are layers. By default IfcWall, IfcCurtainWall, IfcColumn, IfcPlate,
+/// IfcMember, IfcBuildingElementProxy and their kinds are walls, IfcDoor and IfcWindow doors and
+/// windows, across the width they have in the cut. Openings of walls are cut out by assimp. \throws
+/// FormatError: cut off, nothing stands at this height, and as loadMesh
 Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
                  const Schemas& schemas);
 

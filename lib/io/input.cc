@@ -64,7 +64,7 @@ bool isRecordLine(std::string_view line, const Schemas& schemas) {
     return equals != 0 && equals < rest.find_first_of(" \t:{[\"'");
 }
 
-/// First bytes of files that are known but not read, and what they are.
+/// First bytes of known files that are not read, and what they are.
 constexpr std::pair<std::string_view, const char*> kForeign[] = {
     {"%PDF-",
      "a PDF: if it was drawn, not scanned, convert it to SVG, for example with `pdftocairo -svg "
@@ -89,7 +89,7 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
     {"\x1f\x8b", "compressed with gzip: unpack it with `gunzip` (a .svgz becomes .svg)"},
 };
 
-/// What a well-known foreign file is, with the way in; "" for others.
+/// What a well-known foreign file is and how to convert it; "" for others.
 std::string foreignFile(std::string_view bytes) {
     if (bytes.starts_with("AutoCAD Binary DXF"))
         return "binary DXF: save it as ASCII DXF, for example with LibreCAD or FreeCAD";
@@ -100,7 +100,7 @@ std::string foreignFile(std::string_view bytes) {
     return "";
 }
 
-/// JSON of others that is valid YAML, too.
+/// Names foreign JSON, which would pass as YAML.
 std::string foreignJson(std::string_view bytes) {
     if (bytes.find("\"FeatureCollection\"") != std::string_view::npos)
         return "GeoJSON, which is written but not read";
@@ -160,7 +160,7 @@ bool isHouseExpo(const Source& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
 }
 
-/// Formats that their first bytes tell, text or not.
+/// Formats recognised by their first bytes.
 constexpr InputFormat kFormatsByMagic[] = {
     {true, isCutMesh, readWalls},
     {false, holdsBytes<isGlb>, readGlbOrMesh},
@@ -174,7 +174,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {false, holdsBytes<isMeshFile>, readMesh},
 };
 
-/// Formats of plain text that a look into it tells; the last takes everything.
+/// Formats recognised within plain text; the last takes everything.
 constexpr InputFormat kFormatsOfText[] = {
     {true, isHouseExpo, importPlan<readHouseExpo>},
     {true, holdsBytes<isRosMap>, importPlan<readRosMap>},

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Places of plans lie no farther from the origin, in metres; records end at 1000 km.
+/// Plans may reach this far from the origin, in metres; records end at 1000 km.
 constexpr double kFarthestPlan = 900'000;
 
 /// Which of the closed regions of a plan or map are imported.
@@ -27,13 +27,13 @@ struct ImportOptions {
     double wall_height = 2.5;   ///< metres, of walls in plans without heights
     double wall_thickness = 0;  ///< metres, of lines in plans; 0: the line is the face
     RoomChoice rooms = RoomChoice::Largest;
-    std::vector<Point2> inside;  ///< points in the rooms that are meant; they win over `rooms`
-    std::vector<Point2> known_inside;   ///< the same, of `inside` records that come from elsewhere
-    std::vector<Segment2> known_walls;  ///< wall lines that edits or other inputs add
+    std::vector<Point2> inside;         ///< points in the rooms to keep; they win over `rooms`
+    std::vector<Point2> known_inside;   ///< the same, from `inside` records of other inputs
+    std::vector<Segment2> known_walls;  ///< walls that edits or other inputs add
     std::optional<double> close_gaps;   ///< metres up to which gaps between walls are closed;
-                                        ///< default: as little as the importer gets by with
-    std::optional<double> reachable;    ///< radius of the disc that has to reach the floor
-    std::optional<double> resolution;   ///< metres a pixel of a picture that comes alone
+                                        ///< default: the least that encloses a room
+    std::optional<double> reachable;    ///< radius of a disc that has to reach the floor
+    std::optional<double> resolution;   ///< metres per pixel of a picture without map.yaml
     Pose2 origin;                       ///< of the lower left corner of such a picture
     std::optional<double> slice_walls;  ///< height at which a mesh of a building is cut into walls
     std::optional<double> snap;      ///< metres within which ends of lines are joined; default: the
@@ -51,26 +51,25 @@ struct ImportOptions {
     bool load_meshes = true;                 ///< false: `mesh` records keep their file unread
 };
 
-/// Reads any environment or layout the library knows, told apart by content: GLB, `#env`, `#3dm`,
+/// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`,
 /// YAML, ROS map YAML, pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and
-/// meshes, which become a `mesh`
-/// record (also GLB without records of ours); what no content tells is a mesh if its suffix says
-/// so. `operand` is a file name or "-". Loads the files of `mesh` records unless
-/// ImportOptions::load_meshes is false. \throws FormatError (also: empty input, or no format we
-/// know, with a hint), std::system_error
+/// meshes, also GLB without our records, which become a `mesh` record. What content does not tell
+/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files of `mesh`
+/// records unless ImportOptions::load_meshes is false. \throws FormatError (also: empty input, or
+/// no format we know, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
-/// True if the bytes are a plan, map or drawing: an importer chooses the rooms of it, so what other
-/// inputs and edits know of walls and inside points has to be known to it before (ImportOptions).
+/// True if the bytes are a plan, map or drawing. Its importer chooses rooms, so it must know the
+/// walls and inside points of other inputs and edits beforehand (ImportOptions).
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
             const Schemas& schemas);
 
-/// The same for bytes already read.
+/// The same as readDocument() for bytes already read.
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);
 
-/// Refuses a file as a whole, or for what stands in a line of it. \throws FormatError
+/// Refuses a file as a whole, or because of one line of it. \throws FormatError
 [[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);
 
 }  // namespace ispace

@@ -19,12 +19,12 @@ namespace ispace {
 namespace {
 
 constexpr double kMaxExtent = 10000;    // metres
-constexpr double kOpeningReach = 1e-5;  // from its end to the wall it was put on
+constexpr double kOpeningReach = 1e-5;  // from its end to its wall
 
-/// What openings are if the walls are high enough.
+/// Sizes of openings where walls are high enough.
 constexpr double kDoorHeight = 2, kSill = 0.9, kWindowHeight = 1.2;
 
-/// A plan's lines and what is kept of them.
+/// The lines of a plan, and those of them that are kept.
 class LinePlan {
   public:
     LinePlan(const LayerSorter::Sorted& shapes, const std::string& name,
@@ -47,7 +47,7 @@ class LinePlan {
 
     void write(ImportRecords& out, const ImportOptions& options) {
         if (!rooms_.reached.empty()) {
-            // Doors have no walls to be in: they are where the floor goes on.
+            // Without walls doors are where the floor goes on.
             writeRooms(rooms_, options, out);
             return note(out);
         }
@@ -81,7 +81,7 @@ class LinePlan {
                      "out, for example with --wall-layer 'A-WALL*'");
     }
 
-    /// Pieces on which openings lie, or to which they reach, stay.
+    /// Pieces that openings lie on or touch stay.
     void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
         paths_ = joinedAtEnds(paths_);
         pieces_ = pathPieces(paths_);
@@ -95,7 +95,7 @@ class LinePlan {
         pieces_ = pathPieces(paths_);
     }
 
-    /// Lines that close the gaps of openings, behind those of walls.
+    /// Walls, then lines that close the gaps of openings.
     [[nodiscard]] std::vector<Segment2> allPieces() const {
         std::vector<Segment2> all(pieces_);
         for (const PlanOpening& opening : openings_)

@@ -18,16 +18,16 @@
 
 namespace ispace {
 
-/// From one end of a straight piece or an arc to the other; an arc has its centre, about which a
-/// door turns.
+/// The line between the ends of a straight piece or an arc; an arc also has its centre, the hinge
+/// of a door.
 struct PlanChord {
     Segment2 line;
     std::optional<Point2> center;
 };
 
-/// An entity of a drawing as it lies in the plan, in metres.
+/// An entity of a drawing in the plan's frame, in metres.
 struct PlanShape {
-    PlanPath path;  ///< arcs as straight pieces, a millimetre off at most (radii to 10 km)
+    PlanPath path;  ///< arcs as straight pieces within a millimetre (radii to 10 km)
     std::vector<PlanChord> chords;
     std::string layer;
 };
@@ -40,19 +40,19 @@ struct PlanOpening {
     int drawn_on = 0;  ///< line of the file
 };
 
-/// What the symbols of doors and windows mean.
+/// The openings found.
 struct PlanOpenings {
     std::vector<PlanOpening> openings;
     std::size_t unused = 0;  ///< symbols that span nothing
 };
 
-/// Finds the openings that symbols stand for, doors first.
+/// Finds the openings that symbols of doors and windows mean, doors first.
 ///
 /// A straight piece is an opening where both of its ends are at walls (within 0.1 m): across a gap,
 /// or along one wall. An arc is the swing of a leaf, hinged at its centre: the opening runs from
-/// there to that end of the arc which is at a wall, and lines to its other end are the leaf; two
-/// arcs that meet in the air are a double door, open from hinge to hinge. Openings are 0.4 m wide
-/// or more; none is found twice, and none overlaps another on its wall.
+/// there to the end of the arc that is at a wall, and lines to the other end are the leaf; two arcs
+/// that meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or more;
+/// none is found twice, and none overlaps another on its wall.
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls);
 

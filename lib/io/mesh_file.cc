@@ -20,7 +20,7 @@ std::string folderOf(const std::string& operand) {
     return operand == "-" ? "" : std::filesystem::path(operand).parent_path().string();
 }
 
-/// "No such file or directory" of an error that names the file, too.
+/// The reason alone, without the file that the error names.
 std::string reasonOf(const std::system_error& error) { return error.code().message(); }
 
 /// Loads files, each once.
@@ -58,7 +58,7 @@ class MeshLoader {
         }
     }
 
-    /// An operand is named by the finding's place already.
+    /// The place of a finding already names an operand.
     void addFinding(const Record& record, const std::string& path, const std::string& what) {
         const bool is_operand = path == operand_ && what.starts_with(": ");
         findings_.add(record.finding(

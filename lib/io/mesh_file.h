@@ -11,29 +11,29 @@
 
 namespace ispace {
 
-/// How a file of meshes is read.
+/// How a mesh file is read.
 struct MeshOptions {
-    /// auto: turned so that z points up: glTF and IFC from y, COLLADA from what it says; files of
-    /// other formats stay as they are. x, y or z: the file's own axes, whatever it says of them.
+    /// auto: rotated so that z points up, glTF and IFC from y, COLLADA from the axis it names;
+    /// other formats stay as they are. x, y or z: the upward axis, whatever the file says.
     std::string up = "auto";
-    /// The files that it names may lie anywhere, not only in its folder and below.
+    /// Files that it names may lie anywhere, not only in its folder and below.
     bool side_files_anywhere = false;
 };
 
 /// Reads the triangles of a file: OBJ, STL, PLY, COLLADA, glTF, GLB and IFC, by content, else by
-/// suffix. All parts are put where their nodes are, polygons cut into triangles, points and lines
-/// left out, equal vertices joined, triangles without area dropped. COLLADA and IFC come in metres,
-/// others in their own units. The bytes are parsed by a program of their own,
-/// `lib/ispace/read-mesh` beside the one that runs, which has bounds on memory and time and no
-/// rights; a file that makes it crash, grow or hang is a bad file like any other. \param side_files
-/// what the file names is appended: buffers of glTF; materials of OBJ that exist,
+/// suffix. All parts are placed by their nodes, polygons triangulated, equal vertices joined;
+/// points, lines and triangles without area are dropped. COLLADA and IFC come in metres, others in
+/// their own units. A separate program, `lib/ispace/read-mesh`, parses the bytes with bounds on
+/// memory and time and without rights; a file that makes it crash, grow or hang is an ordinary bad
+/// file. \param side_files what the file names is appended: buffers of glTF; materials of OBJ that
+/// exist,
 ///        though their content is not read
 /// \throws FormatError: nothing of the above, no triangles, NaN, more than kMaxMesh…, a side file
 ///         where none may be; std::system_error if the file cannot be opened
 std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
                                              std::vector<std::string>* side_files = nullptr);
 
-/// The same node by node, for files whose nodes tell what they are.
+/// The same node by node, for formats whose nodes say what they are.
 std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& options);
 
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
@@ -43,9 +43,8 @@ std::vector<MeshPart> loadMeshParts(const std::string& path, const MeshOptions& 
 ///         `digest` says
 void loadMeshes(Document& document, const std::string& operand);
 
-/// A document of one `mesh` record that names the operand, not loaded; its id is the file's name if
-/// that can be one.
-/// \throws FormatError for "-": other files may belong to it, and records name it
+/// A document of one `mesh` record that names the operand, not loaded; its id comes from the file's
+/// name. \throws FormatError for "-": records need a name, and other files may belong to it
 Document meshDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 

@@ -29,7 +29,7 @@ constexpr std::array<MeshSuffix, 7> kMeshSuffixes{{{".obj", MeshFormat::Obj},
                                                    {".glb", MeshFormat::Glb},
                                                    {".ifc", MeshFormat::Ifc}}};
 
-/// What the bytes say they are: OBJ, STL, PLY or COLLADA, or nothing of these.
+/// OBJ, STL, PLY or COLLADA by content; nothing for other bytes.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
 
 /// True if the bytes are OBJ, STL, PLY or COLLADA.
@@ -41,21 +41,22 @@ bool hasMeshSuffix(const std::string& operand);
 /// In lower case: ".obj".
 std::string meshSuffix(const std::string& path);
 
-/// What a mesh is by its suffix that is not read, and what helps: "a .3ds mesh, …"; "" for others.
+/// For suffixes of meshes that are not read, what they are and how to convert them: "a .3ds mesh:
+/// …"; "" for others.
 std::string foreignMesh(const std::string& path);
 
-/// What is read of one file at most; more is refused.
+/// Limits of one file; more is refused.
 constexpr std::size_t kMaxMeshTriangles = 50'000'000;
 constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
 constexpr std::size_t kMaxMeshNodeDepth = 1000;
 
-/// A node that a part hangs on.
+/// A node above a part.
 struct MeshNode {
     std::string name;
     double height = 0;  ///< of its origin, as the vertices
 };
 
-/// What hangs on one node.
+/// The triangles of one node.
 struct MeshPart {
     std::vector<MeshNode> nodes;  ///< the part's own first, the root last
     TriangleMesh mesh;            ///< in the world; without digest
@@ -71,8 +72,8 @@ struct MeshLimits {
 /// quarters of the memory there is beyond that.
 MeshLimits meshLimits(std::size_t file_bytes, bool is_building);
 
-/// What lib/ispace/read-mesh says to the program that started it: a kind, the size of what follows
-/// as eight bytes of this machine, and that.
+/// Messages of lib/ispace/read-mesh to the program that started it: a kind, the size of the rest in
+/// eight native bytes, and the rest.
 enum class MeshAnswer : char {
     WantsFile = 'F',    ///< its name as the mesh gives it; the reply is a byte, see MeshReply
     Parts = 'P',        ///< packedParts(); the last
@@ -87,7 +88,7 @@ constexpr std::size_t kMeshAnswerHead = 1 + sizeof(std::uint64_t);
 
 std::string packedParts(const std::vector<MeshPart>& parts);
 
-/// Reads it back, whoever wrote it: indices lie within the vertices, and vertices are finite.
+/// Reads packed parts and trusts nothing: on return indices are valid and vertices finite.
 /// \param path the mesh, for messages
 /// \throws FormatError: the bytes are not what packedParts writes
 std::vector<MeshPart> unpackedParts(std::string_view bytes, const std::string& path);

@@ -32,15 +32,14 @@
 
 namespace ispace {
 
-/// Which parts read-mesh gives.
+/// What read-mesh returns.
 enum class MeshShape {
-    Whole,  ///< one, all in it
+    Whole,  ///< one part with everything
     Parts,  ///< one for each node that has triangles
 };
 
-/// Runs read-mesh on a file: starts it, hands it the files that the mesh names as far as it may
-/// have them, and takes its answer, which is trusted in nothing. Nothing is left running.
-/// \throws as loadMesh
+/// Runs read-mesh on a file, hands it the files that the mesh names if they are allowed, and checks
+/// all of its answer. No process is left behind. \throws as loadMesh
 std::vector<MeshPart> readMeshInChild(const std::string& path, const MeshOptions& options,
                                       MeshShape shape, std::vector<std::string>* side_files);
 
@@ -51,14 +50,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxNames = 1000;       // of side files
 constexpr std::size_t kMaxName = 4096;        // bytes
 constexpr std::size_t kMaxMessage = 1 << 16;  // bytes
-/// A child that does nothing is waited for this many times its processor time.
+/// An idle child is given this many times its processor time.
 constexpr std::size_t kPatience = 5;
 
 std::string ownProgram() {
     return (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "read-mesh").string();
 }
 
-/// The running program, and the socket to it. What still runs at the end is killed.
+/// The running program and the socket to it. The destructor kills it if it still runs.
 class Child {
   public:
     Child(const std::string& program, std::vector<std::string> arguments, int file) : socket_(-1) {
@@ -76,7 +75,7 @@ class Child {
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Why it could not be started, or 0.
+    /// errno of a failed start, or 0.
     [[nodiscard]] int startError() const { return error_; }
     [[nodiscard]] int socket() const { return socket_; }
     [[nodiscard]] pid_t process() const { return process_; }
@@ -99,7 +98,7 @@ class Child {
         argv.reserve(arguments.size() + 1);
         for (std::string& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);
-        // Copies first: one of them may be a number that is to be taken.
+        // Copies first: one of them may have a number that is needed.
         const OpenFile file_copy(::fcntl(file, F_DUPFD_CLOEXEC, 3));
         const OpenFile other_copy(::fcntl(other, F_DUPFD_CLOEXEC, 3));
         if (file_copy.fd() < 0 || other_copy.fd() < 0) return errno;
@@ -311,7 +310,7 @@ class Reading {
         failFile(path_, "bad mesh file: it takes more than " + std::to_string(limits_.seconds) +
                             " s" + forThisSize());
     }
-    /// It is dead, or says what it never should.
+    /// It died, or broke the protocol.
     [[noreturn]] void noAnswer() {
         const int status = child_.end();
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;

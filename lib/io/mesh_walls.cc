@@ -28,7 +28,7 @@ namespace {
 
 constexpr double kAboveStorey = 1.2;    // metres: over most sills, under most lintels
 constexpr double kStraight = 0.001;     // floats of a file wobble by less
-constexpr double kNarrowOpening = 0.1;  // what is less is a frame without a pane
+constexpr double kNarrowOpening = 0.1;  // narrower ones are frames without a pane
 
 bool edgesMeet(const Polygon& a, const Polygon& b) {
     bool meet = false;
@@ -38,8 +38,8 @@ bool edgesMeet(const Polygon& a, const Polygon& b) {
     return meet;
 }
 
-/// Solids whose edges meet become one: walls that run into each other. What lies within another
-/// stays, as furniture does in a room that is modelled by its inner surface.
+/// Unites solids whose edges meet, as walls that run into each other. One inside another stays, as
+/// furniture in a room modelled by its inner surface.
 class Joiner {
   public:
     explicit Joiner(std::vector<Polygon> solids) : solids_(std::move(solids)) {
@@ -52,7 +52,7 @@ class Joiner {
         for (std::size_t i = 0; i < solids_.size(); ++i)
             groups[rootOf(i)].push_back(std::move(solids_[i]));
         std::vector<Polygon> outlines;
-        // United alone, too: a cavity, joined to its outline by a seam, becomes a curve of its own.
+        // Even single ones: a cavity joined to its outline by a seam becomes a curve of its own.
         for (const auto& [root, group] : groups)
             for (Region& region : unite(group)) {
                 outlines.push_back(std::move(region.outline));
@@ -91,8 +91,8 @@ class Joiner {
     std::vector<std::size_t> group_;
 };
 
-/// Where openings are cut out, faces of assimp's solids no longer share their edges: lines that
-/// meet within what floats wobble are one curve again, and those that close are solids.
+/// Where openings are cut out, faces of assimp's solids no longer share edges: lines that meet
+/// within float rounding are joined again, and closed ones are solids.
 void closeLoops(Slice& slice) {
     std::vector<PlanPath> lines;
     for (const Segment2& sheet : slice.sheets) lines.push_back({{sheet.a, sheet.b}, false, 0});
@@ -106,9 +106,9 @@ void closeLoops(Slice& slice) {
     }
 }
 
-/// What of a layer is cut, as lines of the plan.
+/// The cut through a layer as lines of the plan.
 void addShapes(Slice slice, const std::string& layer, std::vector<PlanShape>& shapes) {
-    // Points where triangles end are no corners: openings would be fitted to them.
+    // Ends of triangles are not corners: openings would be fitted to them.
     for (Polygon& outline : simplified(Joiner(std::move(slice.solids)).join(), kStraight)) {
         PlanShape& shape = shapes.emplace_back();
         shape.path = {std::move(outline), true, 0};
@@ -121,7 +121,7 @@ void addShapes(Slice slice, const std::string& layer, std::vector<PlanShape>& sh
     }
 }
 
-/// From side to side of what is cut, along its longest edge: where a door or window spans.
+/// The span of a door or window: its cut from side to side, along the longest edge.
 std::optional<PlanShape> spanOf(const Slice& slice, const std::string& layer) {
     std::vector<Segment2> lines;
     slice.forEachLine([&](const Segment2& line) { lines.push_back(line); });
@@ -175,7 +175,7 @@ Mesh meshOf(const TriangleMesh& triangles) {
     return mesh;
 }
 
-/// A wall, a door, a chair: all parts on the node of one product.
+/// All parts below the node of one product: a wall, a door, a chair.
 struct Product {
     std::string kind;  ///< its class in IFC
     Body body;
@@ -238,7 +238,7 @@ class IfcReader {
         }
     }
 
-    /// Of those that have walls; without any the foot of the building.
+    /// The lowest storey with walls, else the foot of the building.
     double lowestStorey(ImportRecords& out) const {
         std::optional<double> lowest;
         for (const auto& [name, product] : products_)

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-/// One named thing of a model, as triangles: what the writers of GLB, OBJ and STL have in common.
+/// One named thing of a model as triangles, for the writers of GLB, OBJ and STL.
 struct ModelNode {
     std::string id;
     std::string keyword;        ///< "" for the floor of the indoor region, whose id is "floor"
@@ -25,10 +25,10 @@ struct ModelNode {
 
 /// Elements in the order of their records, the floor behind them, then what is placed: sensors,
 /// robots, people. Elements without a body (zones, inside points) are left out.
-/// The nodes point into the scene. `with_views`: sensors with what they look at.
+/// The nodes point into the scene. `with_views`: sensors with their fields of view.
 std::vector<ModelNode> modelOf(const Scene& scene, bool with_views = false);
 
-/// Takes places of a node's meshes to the world.
+/// From the frame of a node's meshes to the world's.
 class NodeFrame {
   public:
     explicit NodeFrame(const ModelNode& node) : placed_(node.pose.has_value()) {

@@ -44,11 +44,10 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
 
 namespace {
 
-/// Points are whole micrometres: what reaches less far reaches nothing.
+/// Points are whole micrometres: a smaller reach finds nothing.
 constexpr double kMinSnap = 1e-6;
 
-/// Finds for each point the one that stands for all within a distance of it: the nearest earlier
-/// one in reach, else itself.
+/// Finds the representative of each point: the nearest earlier one within reach, else itself.
 class PointWelder {
   public:
     explicit PointWelder(double reach) : reach_(reach) {}
@@ -84,7 +83,7 @@ class PointWelder {
     std::multimap<Cell, Point2> points_;  // standing points are apart: few in a cell
 };
 
-/// Without neighbours that are equal; nothing left of a path without extent.
+/// Merges equal neighbours and drops paths without extent.
 void dropRepeatedPoints(std::vector<PlanPath>& paths) {
     for (PlanPath& path : paths) {
         path.points.erase(std::unique(path.points.begin(), path.points.end()), path.points.end());
@@ -95,7 +94,7 @@ void dropRepeatedPoints(std::vector<PlanPath>& paths) {
     std::erase_if(paths, [](const PlanPath& path) { return path.points.size() < 2; });
 }
 
-/// Where an end goes that lies on no other path: onto the nearest piece in reach, or nowhere.
+/// Moves ends that lie on no other path onto the nearest piece within reach.
 class EndMover {
   public:
     EndMover(const std::vector<PlanPath>& paths, double reach)

@@ -11,8 +11,7 @@
 
 namespace ispace {
 
-/// Finds segments near a place, however unevenly they are spread: one line far out does not make
-/// the search slow for the others. O(n log n) to build.
+/// Finds segments near a place, however unevenly they are spread. O(n log n) to build.
 class NearSegments {
   public:
     explicit NearSegments(std::span<const Segment2> segments);
@@ -39,10 +38,11 @@ struct PlanPath {
     friend bool operator==(const PlanPath&, const PlanPath&) = default;
 };
 
-/// What drawings of lines are joined by, in metres, unless ImportOptions::snap says otherwise.
+/// Points of drawings closer than this are one, in metres, unless ImportOptions::snap says
+/// otherwise.
 constexpr double kDefaultSnap = 0.005;
 
-/// Metres on whole micrometres, which keeps the text short and moves nothing visibly.
+/// Rounds metres to whole micrometres, which keeps text short.
 double wholeMicrometres(double metres);
 inline Point2 wholeMicrometres(Point2 p) { return {wholeMicrometres(p.x), wholeMicrometres(p.y)}; }
 
@@ -53,39 +53,38 @@ struct LexLess {
     bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
 };
 
-/// Puts points on whole micrometres and joins what was meant to meet: points within `snap` of an
+/// Rounds points to whole micrometres and joins what was meant to meet: points within `snap` of an
 /// earlier one move onto it, then ends of open paths within `snap` of another path onto that.
-/// Points that fall together are one; paths without two different points are dropped. With less
-/// than a micrometre only equal points are one. O(n log n) unless most lines lie in one place.
+/// Equal neighbours are merged, and paths without two different points dropped. Below a micrometre
+/// `snap` joins only equal points. O(n log n) unless most lines lie in one place.
 std::vector<PlanPath> snapped(const std::vector<PlanPath>& paths, double snap);
 
-/// The paths, and behind them a short one from each loose end of a line to the nearest point of
-/// another within `reach`: nothing moves, and nothing new crosses. O(n log n).
+/// The paths, followed by a short one from each loose end to the nearest point of another line
+/// within `reach`. Nothing moves, and bridges cross nothing. O(n log n).
 std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
 
-/// Lines as people draw them, ready to be walls: points within 5 mm (or `snap`, if that is less)
-/// are one, loose ends are bridged within `snap`, and nothing is there twice.
+/// Turns lines as people draw them into walls: points within 5 mm (or `snap`, if less) become one,
+/// loose ends are bridged within `snap`, and repeated pieces dropped.
 std::vector<PlanPath> normalisedLines(const std::vector<PlanPath>& paths, double snap);
 
 /// All pieces of all paths, in order.
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths);
 
-/// The paths less the pieces whose `keep` is false, in the order of pathPieces: what is left of a
-/// path may be several.
+/// The paths without the pieces whose `keep` is false (in the order of pathPieces()); one path may
+/// become several.
 std::vector<PlanPath> withPieces(const std::vector<PlanPath>& paths, const std::vector<bool>& keep);
 
 /// Without pieces that an earlier one repeats, in either direction.
 std::vector<PlanPath> withoutRepeats(const std::vector<PlanPath>& paths);
 
-/// Open paths made one where exactly two of their ends meet, so that a room drawn line by line is
-/// one closed path; it stands where its first part stood, and has that one's `line`. O(n log n).
+/// Joins open paths where exactly two ends meet, so that a room drawn line by line is one closed
+/// path, in the place and with the `line` of its first part. O(n log n).
 std::vector<PlanPath> joinedAtEnds(const std::vector<PlanPath>& paths);
 
-/// The paths with fewer points, and moved by no more than `tolerance` metres: between
-/// joints by Douglas and Peucker. Joints stay: ends of open paths, points that several paths share,
-/// both ends of a piece that another one meets, and those of the pieces in `fixed`. No path crosses
-/// another, or itself, that did not before, and none changes sides; a closed path keeps three
-/// corners. \param fixed indices of pieces as in pathPieces
+/// Simplifies paths by at most `tolerance` metres, between joints by Douglas and Peucker. Joints
+/// stay: ends of open paths, points that paths share, both ends of a piece that another one meets,
+/// and of pieces in `fixed`. No new crossings appear, no path changes sides, and closed paths keep
+/// three corners. \param fixed indices of pieces as in pathPieces
 std::vector<PlanPath> simplifiedPaths(const std::vector<PlanPath>& paths, double tolerance,
                                       std::span<const std::size_t> fixed = {});
 

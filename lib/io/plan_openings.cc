@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
 constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
-constexpr double kNarrowest = 0.4;  // metres; what is less is a frame or a jamb
+constexpr double kNarrowest = 0.4;  // metres; narrower ones are frames and jambs
 
-/// Each is compared with each other: more are no doors.
+/// Every pair is compared: more are not doors.
 constexpr std::size_t kMaxOpenSwings = 4000;
 
 bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
@@ -51,7 +51,7 @@ class Walls {
         return corner ? corner : foot;
     }
 
-    /// The wall piece upon which both ends lie.
+    /// The wall piece on which both ends lie.
     [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line) const {
         for (const std::size_t i : search_.near(line.a, kOnWall))
             if (distance(line.a, walls_[i]) <= kOnWall && distance(line.b, walls_[i]) <= kOnWall)
@@ -97,7 +97,7 @@ class Finder {
     PlanOpenings take() { return std::move(found_); }
 
   private:
-    /// The opening that a line stands for, and how far its ends are off the walls.
+    /// The opening that a line means, and how far its ends are off the walls.
     struct Candidate {
         PlanOpening opening;
         double apart = 0;
@@ -162,7 +162,7 @@ class Finder {
         addLeaf({hinge, takes_first ? b : a});
     }
 
-    /// Arcs that end in the air: two that meet there are a double door.
+    /// Arcs that end off the walls: two that meet are a double door.
     void joinDoubleDoors() {
         if (open_swings_.size() > kMaxOpenSwings) {
             found_.unused += open_swings_.size();

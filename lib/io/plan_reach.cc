@@ -22,11 +22,11 @@ constexpr double kOnLine = 3 * kWeldDistance;
 /// Chords to half a circle.
 constexpr int kChords = 16;
 
-/// The disc's radius is met up to this share: half of it goes to chords and simpler outlines.
+/// The disc's radius is met within this share; half of it goes to chords and simpler outlines.
 constexpr double kTolerance = 0.01;
 
-/// What rounding leaves between a wall and what was pushed off it and back again is thinner than
-/// this share of the radius.
+/// Slivers that rounding leaves between a wall and an offset of it are thinner than this share of
+/// the radius.
 constexpr double kSliver = 0.01;
 
 /// Outlines may move by this, in metres.
@@ -48,7 +48,7 @@ Polygon capsule(const Segment2& s, double radius) {
     return outline;
 }
 
-/// The region in pieces without holes.
+/// Appends the region as triangles, which have no holes.
 void appendTriangles(const Region& region, std::vector<Polygon>& solids) {
     const Triangulation all = triangulate(region);
     for (const auto& [a, b, c] : all.triangles)
@@ -59,7 +59,7 @@ bool isSliver(const Region& region, double radius) {
     return 2 * region.area() < kSliver * radius * region.boundaryLength();
 }
 
-/// With fewer corners, and without the many that lie upon each other where arcs were cut.
+/// With fewer corners, and without the coinciding ones where arcs were cut.
 Region normalised(const Region& region, double tolerance) {
     std::vector<Polygon> curves = simplified(curvesOf(region), tolerance);
     const auto are_one = [](Point2 a, Point2 b) { return distance(a, b) <= kSimplify; };
@@ -99,7 +99,7 @@ std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const 
         return piece.locate(start) != Side::Outside;
     });
     if (home == pieces.end()) return {};
-    // Its arcs need no more corners than the tolerance wants; the sweep makes up for that.
+    // Arcs keep only the corners that the tolerance needs; the sweep makes up for that.
     const Region centre = normalised(*home, kTolerance / 2 * radius);
     const double sweep = (1 + kTolerance) * radius;
     std::vector<Polygon> swept;

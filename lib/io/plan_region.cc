@@ -16,22 +16,21 @@ namespace ispace {
 
 namespace {
 
-/// How far beside a door the rooms on its sides are looked for: less than any wall is thick.
+/// Rooms beside a door are found at this distance: less than any wall is thick.
 constexpr double kBesideDoor = 0.005;
 
 /// Both the region and the line were welded, which moves each by that distance.
 constexpr double kOnLine = 3 * kWeldDistance;
 
-/// No disc of this diameter fits between the two lines of a wall; in plans of any scale none of
-/// this share of the plan's extent.
+/// No disc of this diameter fits between the two lines of a wall, nor one of this share of the
+/// plan's extent, whatever its scale.
 constexpr double kNarrowestRoom = 0.5, kWallShare = 12;
 
-/// An inside point nearer than this to a line that stands free is exchanged for the clearest of a
-/// grid of points.
+/// An inside point closer than this to a free-standing line is replaced by the clearest of a grid.
 constexpr double kClear = 0.05;
 constexpr int kClearSteps = 12;
 
-/// Where a line is looked at that bounds nothing: not at its ends, which often lie on walls.
+/// Where lines that bound nothing are tested: not at the ends, which often lie on walls.
 constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 
 /// Walls cross a few others; hatching and terrain cross hundreds.
@@ -44,8 +43,8 @@ bool contains(const Box2& box, Point2 p) {
 
 Point2 middleOf(const Segment2& s) { return s.a + 0.5 * (s.b - s.a); }
 
-/// Says for many points whether they lie in one of several regions that do not overlap: an edge is
-/// looked at only where it passes a point's level.
+/// Tells for many points whether they lie in one of several disjoint regions; only edges at a
+/// point's level are tested.
 class RegionLocator {
   public:
     explicit RegionLocator(const std::vector<Region>& regions) {
@@ -62,7 +61,7 @@ class RegionLocator {
         }
     }
 
-    /// Even-odd over all edges: an edge between two of the regions counts twice. Off the edges.
+    /// Even-odd over all edges: an edge between two regions counts twice. \pre p is off the edges
     [[nodiscard]] bool holds(Point2 p) const {
         if (!contains(box_, p)) return false;
         bool inside = false;
@@ -94,7 +93,7 @@ double distanceTo(std::span<const Segment2> lines, Point2 p) {
     return nearest;
 }
 
-/// A point of the face that stands on no line within it either.
+/// A point of the face away from its edges and lines within it.
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     Point2 best = interiorPoint(face);
     double best_clear = distanceTo(lines, best);

@@ -17,32 +17,29 @@ namespace ispace {
 
 namespace {
 
-/// Widths up to which gaps are closed, tried in this order where the user names none.
+/// Widths of gaps to close, tried in this order unless the user gives one.
 constexpr std::array kSmallGaps{0.01, 0.02, 0.05, 0.1, 0.2};
 constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
 
-/// Drawings with more lines or faces are not tried again and again: heaps of lines that cross take
-/// long enough once.
+/// Drawings with more lines or faces are tried only once: many crossing lines take long enough.
 constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 
-/// A room of less than this share of the drawing's extent, or of what could be enclosed, is
-/// doubted.
+/// A room below this share of the drawing's extent, or of what could be enclosed, is uncertain.
 constexpr double kSmallShare = 0.5;
 
-/// What closes gaps wider than this is a doorway: corners of thick walls count as well.
+/// Wider gaps are doorways, between corners of thick walls, too.
 constexpr double kNarrowestDoorway = 0.3;
 
-/// Where all rooms are kept: smaller ones are shafts, and smaller ones that stand within another
-/// room things.
+/// If all rooms are kept, smaller ones are shafts, and smaller ones inside another room are things.
 constexpr double kMinRoom = 1, kMinInnerRoom = 4;
 
-/// Metres: what is smaller or larger is in other units.
+/// Metres; smaller and larger plans are in other units.
 constexpr double kMinPlan = 2, kMaxPlan = 2000;
 
-/// Rooms that were left out are counted up to here.
+/// Rooms left out are counted up to here.
 constexpr std::size_t kMaxGroups = 500;
 
-constexpr std::size_t kMaxPlaces = 6;  // that one message names
+constexpr std::size_t kMaxPlaces = 6;  // in one message
 
 double areaOf(const Box2& box) { return box.width() * box.depth(); }
 
@@ -68,7 +65,7 @@ class RoomChooser {
                       (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
         const double width = options_.close_gaps.value_or(0);
         Attempt best = attempt(width, waysUpTo(width));
-        if (!options_.close_gaps && isDoubtful(best)) best = closed(std::move(best));
+        if (!options_.close_gaps && isUncertain(best)) best = closed(std::move(best));
         PlanRooms rooms;
         rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
         if (best.groups.empty()) {
@@ -95,7 +92,7 @@ class RoomChooser {
         PlanFaces faces;
         std::vector<const PlanFaces::Group*> groups = {};
         double area = 0;
-        bool is_whole = false;  ///< every point that was asked for is in a room
+        bool is_whole = false;  ///< every requested point is in a room
     };
 
     [[nodiscard]] bool isRoom(const PlanFaces& faces, const PlanFaces::Group& group) const {
@@ -103,8 +100,7 @@ class RoomChooser {
         return !plan_.is_floor || plan_.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
     }
 
-    /// Lines that could close gaps of at most a width, the narrowest first: those of a smaller
-    /// width come first of those of a larger.
+    /// Lines that could close gaps, the narrowest first, so that those up to a width are a prefix.
     struct Ways {
         std::vector<Segment2> lines;
         std::vector<double> widths;  // of the gaps, that grow
@@ -181,14 +177,14 @@ class RoomChooser {
         }
     }
 
-    [[nodiscard]] bool isDoubtful(const Attempt& attempt) const {
-        if (is_odd_) return false;  // one doubt at a time
+    [[nodiscard]] bool isUncertain(const Attempt& attempt) const {
+        if (is_odd_) return false;  // one warning at a time
         return attempt.groups.empty() || !attempt.is_whole ||
                attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
     }
 
-    /// Attempts to compare: lines and closings are cut where they cross, once for all widths, so
-    /// that faces are found by a walk. The rooms are those of attempt() but for rounding.
+    /// Attempts to compare: lines and closings are cut where they cross once for all widths, so
+    /// that finding faces is a walk. Rooms are those of attempt() up to rounding.
     class Trials {
       public:
         Trials(const RoomChooser& chooser, const Ways& ways) : chooser_(chooser), ways_(ways) {
@@ -221,10 +217,11 @@ class RoomChooser {
         const RoomChooser& chooser_;
         const Ways& ways_;
         PlanFaces::Pieces pieces_;
-        std::vector<std::size_t> needs_;  // how many gaps are closed where a piece is there; grows
+        std::vector<std::size_t>
+            needs_;  // number of closed gaps from which a piece exists; ascending
     };
 
-    /// Of the widths the smallest that comes to half of the best, where that is better.
+    /// The attempt with the smallest width that encloses half of the best, if that is better.
     template <typename Widths>
     std::optional<Attempt> smallestGood(const Widths& widths, const Attempt& open) {
         std::vector<Attempt> attempts;
@@ -233,7 +230,7 @@ class RoomChooser {
         const Ways ways = waysUpTo(widths.back());
         const Trials trials(*this, ways);
         for (const double width : widths) {
-            // Where no gap comes in, the rooms are those of the width before.
+            // Without a new gap the rooms are those of the width before.
             const std::size_t count = ways.upTo(width).size();
             if (!attempts.empty() && attempts.back().closings == count) continue;
             attempts.push_back(trials.at(width));
@@ -255,7 +252,7 @@ class RoomChooser {
         if (lines_.size() > kMaxLinesTried || open.faces.faces().size() > kMaxFacesTried)
             return open;
         if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
-        if (!isDoubtful(open)) return open;
+        if (!isUncertain(open)) return open;
         auto wide = smallestGood(kDoorways, open);
         if (!wide) return open;
         if (open.groups.empty() || !open.is_whole) return *std::move(wide);
@@ -354,10 +351,10 @@ class RoomChooser {
     const PlanWalls& plan_;
     const ImportOptions& options_;
     ImportRecords& out_;
-    std::vector<Segment2> lines_;  // with those that others bring
+    std::vector<Segment2> lines_;  // with those of other inputs
     std::vector<Point2> points_;
-    bool is_odd_ = false;                             // of a size that no plan has
-    std::optional<std::pair<double, double>> wider_;  // width and area of what is not done
+    bool is_odd_ = false;                             // its size is no plan's
+    std::optional<std::pair<double, double>> wider_;  // width and area of the attempt not taken
 };
 
 }  // namespace

@@ -20,28 +20,29 @@ struct PlanRegion {
     [[nodiscard]] double area() const;
 };
 
-/// The faces of a plan's lines, those that doors join taken together.
+/// The faces of a plan's lines, grouped where doors join them.
 class PlanFaces {
   public:
-    /// Welded pieces: of walls, and of closings where no wall lies on them, in the order of these.
+    /// Welded pieces of walls, and of closings where no wall lies on them, in the order of the
+    /// closings.
     struct Pieces {
         std::vector<Segment2> walls, closings;
         std::vector<std::size_t> closing_of;  ///< index of the closing that a piece comes from
     };
     static Pieces weldedPieces(std::span<const Segment2> walls, std::span<const Segment2> closings);
 
-    /// Faces that hang together: indices of faces(), the largest first.
+    /// Faces joined by doors: indices of faces(), the largest first.
     struct Group {
         std::vector<std::size_t> faces;
         double area = 0;
     };
 
-    /// \param doors lines across which one can pass: among the walls, or on them
-    /// \param closings lines across gaps between walls: they bound what they separate from the
-    ///        outside of everything, and nothing else
+    /// \param doors lines that can be crossed: among the walls, or on them
+    /// \param closings lines across gaps between walls; they bound only faces that they separate
+    /// from the outside
     explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {},
                        std::span<const Segment2> closings = {});
-    /// The same of pieces, with the first so many pieces of closings.
+    /// The same from welded pieces, with the first `closing_pieces` of the closings.
     PlanFaces(const Pieces& pieces, std::span<const Segment2> doors, std::size_t closing_pieces);
 
     [[nodiscard]] const std::vector<Region>& faces() const { return faces_; }
@@ -49,8 +50,8 @@ class PlanFaces {
     [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
     /// The group that holds the point strictly inside one of its faces.
     [[nodiscard]] const Group* groupAt(Point2 p) const;
-    /// True if nothing wider than a wall fits into any of its faces: what lies between the two
-    /// lines of a wall, and never a room.
+    /// True if nothing wider than a wall fits into any of its faces: the space between the two
+    /// lines of a wall.
     [[nodiscard]] bool isHollow(const Group& group) const;
     /// Corners of the solid between the two lines of a wall, as seen from the floor.
     [[nodiscard]] std::vector<Point2> wallCorners() const;
@@ -71,33 +72,32 @@ class PlanFaces {
     double thinnest_ = 0;  // radius of the disc that fits into a room
 };
 
-/// For each line, whether it bounds one of the regions' rooms or lies in it, with its middle or an
-/// end.
+/// Whether each line bounds a room of the regions, or lies in one with its middle or an end.
 std::vector<bool> belongsTo(std::span<const PlanRegion> regions, std::span<const Segment2> lines);
 
-/// True if the lines cross each other so often that their faces would take hours: no plan does.
+/// True if the lines cross so often that finding their faces would take hours, as in no plan.
 /// An estimate from a sample, the same one at every call.
 bool crossTooOften(std::span<const Segment2> lines);
 
-/// The floor that a disc covers which moves from `start` without crossing a wall: the pieces of
-/// `rooms` that it sweeps. Corners of rooms are rounded accordingly; the radius is met
-/// up to 1 %. Empty where the disc does not fit at `start`.
-/// \param walls what the disc must not cross, among them the rooms' boundaries; doors left out
+/// The floor that a disc sweeps when it moves from `start` without crossing a wall, as pieces of
+/// `rooms` with rounded corners; the radius is met within 1 %. Empty if the disc does not fit at
+/// `start`. \param walls what the disc must not cross, among them the rooms' boundaries; doors left
+/// out
 std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
                                  Point2 start, double radius);
 
-/// The lines without the parts on which a passage lies, as doors lie on walls.
+/// The lines without the parts that passages cover, as doors cover walls.
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
                                       std::span<const Segment2> passages);
 
 /// A plan of lines before its rooms are chosen.
 struct PlanWalls {
     std::vector<Segment2> lines;  ///< of walls, with what closes the gaps of doors and windows
-    std::vector<Segment2> doors;  ///< across which rooms hang together: among the lines, or on them
-    std::optional<Point2> home;   ///< a place that the plan itself has in the room
-    /// False for a point of what is no floor though it is enclosed, as a hole; may be empty.
+    std::vector<Segment2> doors;  ///< that join rooms: among the lines, or on them
+    std::optional<Point2> home;   ///< a place in the room that the plan names
+    /// False for an enclosed point that is not floor, as in a hole; may be empty.
     std::function<bool(Point2)> is_floor = {};
-    /// What helps where a plan of this extent (metres) cannot be one; may be empty.
+    /// Advice for a plan of an unlikely extent (metres); may be empty.
     std::function<std::string(double)> unit_hint = {};
 };
 
@@ -105,29 +105,29 @@ struct PlanWalls {
 struct PlanRooms {
     std::vector<PlanRegion> regions;  ///< empty: nothing is enclosed
     std::vector<Segment2> closing;    ///< lines that close gaps in their walls
-    std::vector<Region> reached;      ///< floor that a disc reaches, if that was asked for
+    std::vector<Region> reached;      ///< floor that a disc reaches, if wanted
     bool writes_inside = true;        ///< false: inside points come from elsewhere
 
     [[nodiscard]] double area() const;
 };
 
-/// Chooses the rooms that are meant (ImportOptions::inside, rooms) and closes gaps for that.
+/// Chooses the rooms to keep (ImportOptions::inside, rooms), closing gaps where needed.
 ///
 /// A room is a face of the lines, or several that doors join, into which a disc of 0.5 m fits:
-/// what is thinner is the hollow of a wall drawn as two lines. With points (ImportOptions::inside,
-/// known_inside) the rooms that hold them are meant; without, the one with PlanWalls::home, else
-/// the largest, or all.
+/// thinner ones lie between the two lines of a wall. With points (ImportOptions::inside,
+/// known_inside) the rooms that hold them are kept; without, the one with PlanWalls::home, else the
+/// largest, or all.
 ///
 /// With ImportOptions::close_gaps, gaps up to that width between loose ends of walls, and between
-/// corners of walls drawn as two lines, are closed where they part a room from the outside of all.
-/// Without it they are closed where the plan needs it: up to 0.2 m if that encloses twice as much
-/// or the home, up to 2.5 m if nothing is enclosed else; of the widths tried the smallest is taken
-/// that comes to half of the best. What is closed is told as a warning, and so is a room that is
-/// small against the drawing, and a drawing of less than 2 m or more than 2 km.
+/// corners of walls drawn as two lines, are closed where they separate a room from the outside.
+/// Without it they are closed as needed: up to 0.2 m if that encloses twice as much, or the home,
+/// and up to 2.5 m if nothing is enclosed otherwise; the smallest width tried wins that encloses
+/// half of the best. Warnings tell closed gaps, rooms that are small in their drawing, and drawings
+/// of less than 2 m or more than 2 km.
 PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out);
 
-/// Adds the lines that close gaps as fences, and the inside points. Where only what a disc reaches
-/// is kept, its outlines: then the importer writes no walls of its own.
+/// Adds lines that close gaps as fences, and the inside points; with PlanRooms::reached only its
+/// outlines, and the importer writes no walls.
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out);
 
 }  // namespace ispace

@@ -12,10 +12,10 @@ namespace ispace {
 
 namespace {
 
-/// Runs are cut after so many pieces: the method takes the square of their number at worst.
+/// Longest run in pieces; the method is quadratic at worst.
 constexpr std::size_t kMaxRun = 500;
 
-/// Lines this near to each other may become one when the plan is compiled.
+/// Lines this close may become one when the plan is compiled.
 constexpr double kTouching = 2 * kWeldDistance;
 
 bool touch(const Segment2& s, const Segment2& t) {
@@ -101,7 +101,7 @@ class Simplifier {
         return path_->points[(start_ + i) % path_->points.size()];
     }
 
-    /// Adds the points behind `begin`, up to `end`, that stay.
+    /// Appends the points after `begin`, up to `end`, that stay.
     void addRun(std::size_t begin, std::size_t end, Polygon& points) const {
         std::vector<std::pair<std::size_t, std::size_t>> open{{begin, end}};
         while (!open.empty()) {
@@ -127,7 +127,8 @@ class Simplifier {
         return best;
     }
 
-    /// True if nothing else lies between the run and the line that would replace it, or upon that.
+    /// True if nothing else lies between the run and the line that would replace it, or on that
+    /// line.
     [[nodiscard]] bool isFree(std::size_t from, std::size_t to) const {
         const Segment2 line{point(from), point(to)};
         if (line.a == line.b) return false;

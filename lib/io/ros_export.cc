@@ -19,15 +19,15 @@ namespace ispace {
 namespace {
 
 constexpr char kFree = static_cast<char>(254), kOccupied = 0, kUnknown = static_cast<char>(205);
-constexpr int kRim = 4;  ///< unknown cells around the room, the occupied ones among them
-constexpr double kFinest = 0.001, kCoarsest = 1000;  // what readRosMap takes
+constexpr int kRim = 4;                              ///< cells around the room, unknown or occupied
+constexpr double kFinest = 0.001, kCoarsest = 1000;  // as readRosMap() accepts
 
-/// The multiple of `size` at or below, in decimals that read well: -2.05, not -2.0500000000000003.
+/// The multiple of `size` at or below `value`, in short decimals: -2.05, not -2.0500000000000003.
 double multipleBelow(double value, double size) {
     return std::round(std::floor(value / size) * size * 1e9) / 1e9;
 }
 
-/// A resolution of one or two digits that keeps this many times as many cells within the limits.
+/// A resolution of one or two digits, at least `times` coarser.
 double coarserResolution(double resolution, double times) {
     const double least = resolution * times;
     const double digit = std::pow(10, std::floor(std::log10(least)) - 1);
@@ -55,7 +55,7 @@ Grid gridOf(const Box2& box, double resolution) {
     return gridOf(origin, resolution, static_cast<int>(columns), static_cast<int>(rows));
 }
 
-/// Paints the cells, straight into the bytes of the picture, whose top row comes first.
+/// Paints cells directly into the bytes of the picture, top row first.
 class MapPainter {
   public:
     explicit MapPainter(const Grid& grid) : grid_(grid) {
@@ -76,14 +76,14 @@ class MapPainter {
         forEachEdge(solid, [this](const Segment2& edge) { addMiddlesOn(edge); });
     }
 
-    /// After all solids: what stands has been painted, and what is left is too thin for middles.
+    /// After all solids: a line that no painted cell stands for occupies the nearer cell.
     void addLine(const Segment2& line) {
         for (const CellPair& pair : crossingsOf(line))
             if (isFree(pair.near_column, pair.near_row) && isFree(pair.far_column, pair.far_row))
                 *cell(pair.near_column, pair.near_row) = kOccupied;
     }
 
-    /// A body so small that it lies between the middles of cells.
+    /// A body that is small enough to lie between the middles of cells.
     void addSmall(const Polygon& body) {
         bool has_cells = false;
         forEachEdge(body, [&](const Segment2& edge) {
@@ -95,7 +95,7 @@ class MapPainter {
         if (!has_cells && isFree(column, row)) *cell(column, row) = kOccupied;
     }
 
-    /// What touches free cells, at a side or a corner, is known to be no floor.
+    /// Unknown cells that touch free ones, at a side or a corner, are occupied.
     void closeRim() {
         for (int row = 0; row < grid_.rows; ++row) {
             const char* const begin = cell(0, row);
@@ -149,8 +149,7 @@ class MapPainter {
     std::vector<CellPair> crossings_;
 };
 
-/// Names that YAML takes for something else than text, or ends early, are quoted; JSON's strings
-/// are YAML's.
+/// Quotes names that YAML would not read as text; JSON strings are YAML strings.
 std::string yamlText(const std::string& text) {
     const auto is_plain = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

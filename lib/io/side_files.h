@@ -15,17 +15,17 @@ struct RegularFile {
     std::size_t size = 0;
 };
 
-/// Opens a file that must be regular, and waits for no pipe. \throws FormatError for devices, pipes
-/// and sockets; std::system_error if it cannot be opened, also for a folder
+/// Opens a file that must be regular, without waiting for pipes. \throws FormatError for devices,
+/// pipes and sockets; std::system_error if it cannot be opened, also for a folder
 RegularFile openRegular(const std::string& path);
 
-/// The file that another one names, by a name relative to that one's folder, or nothing if there is
-/// none. \param anywhere false: it must lie in that folder or below, links followed
-/// \throws FormatError for `path` if it may not be read there or is no regular file
+/// The file that `path` names, relative to its folder; nothing if it does not exist. \param
+/// anywhere false: it must lie in that folder or below, links followed \throws FormatError for
+/// `path` if the file may not lie there or is not regular
 std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
                                         bool anywhere);
 
-/// Where openSideFile looks.
+/// The path that openSideFile() opens.
 std::string sideFilePath(const std::string& path, const std::string& name);
 
 }  // namespace ispace

@@ -52,7 +52,7 @@ bool isOneOf(const List& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Of the page; what is larger is no background but a drawing with a bad page.
+/// Of the page; a larger rectangle is a drawing with a wrong page.
 constexpr double kMaxBackground = 1.1;
 
 double metresOf(const std::string& unit) {
@@ -104,8 +104,8 @@ class SvgReader {
         }
     }
 
-    /// Elements by id, how many there are, and rules of style; a list instead of recursion, for
-    /// deep nests.
+    /// Collects ids, rules of style, and the number of elements, without recursion for deep
+    /// nesting.
     void listElements(pugi::xml_node root) {
         for (pugi::xml_node node = root; node;) {
             if (node.type() == pugi::node_element) {
@@ -185,7 +185,7 @@ class SvgReader {
         names_.pop_back();
     }
 
-    /// How an inner `svg` or a `symbol` shows its view box where `placed` says.
+    /// The frame of the view box of an inner `svg` or a `symbol` at `placed`.
     static Affine viewportOf(pugi::xml_node node, pugi::xml_node placed) {
         const bool is_use = node != placed;
         const Affine corner{

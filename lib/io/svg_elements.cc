@@ -25,7 +25,7 @@ double radius(pugi::xml_node node, const char* key) {
     return value;
 }
 
-/// Rules of drawings are short; files may try to make each look-up a long one.
+/// Bytes; rules of drawings are short, hostile ones may be long.
 constexpr std::size_t kMaxRule = 4096;
 
 /// The value of a property in `a: b; c: d`, or ""; the last one counts.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/io only: the small languages in SVG's attributes.
-// Inside lib/io only: what the attributes of SVG's elements say.
+// For lib/io only: the small languages in SVG's attributes, and what attributes of elements mean.
 #pragma once
 
 #include <functional>
@@ -48,7 +47,7 @@ struct SvgSubpath {
 /// The data of a `path`: M L H V C S Q T A Z, absolute and relative. \throws SvgError
 std::vector<SvgSubpath> parseSvgPath(std::string_view data);
 
-/// Numbers apart by blanks and commas. \throws SvgError
+/// Numbers separated by blanks and commas. \throws SvgError
 std::vector<double> parseSvgNumbers(std::string_view text);
 
 /// The value of `transform`. \throws SvgError
@@ -65,20 +64,20 @@ SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
 SvgSubpath svgRectangle(Point2 corner, double width, double height, double radius_x,
                         double radius_y);
 
-/// What is inherited, as far as it makes things show.
+/// Inherited properties that decide what is visible.
 struct SvgStyle {
     bool visible = true;
-    bool no_fill = false, no_stroke = false;  ///< where it is said: no word is no reason
+    bool no_fill = false, no_stroke = false;  ///< said explicitly: unset means drawn
     bool has_stroke = false;
 };
 
 /// Rules of `style` elements with one plain selector: an element's name, .class or #id.
 class SvgSheet {
   public:
-    /// Adds the rules of a style element; others than those are passed over.
+    /// Adds the rules of a style element, ignoring other selectors.
     void add(std::string_view css);
-    /// What they say of a property; "" if nothing. Ids win over classes, these over names, later
-    /// rules over earlier ones.
+    /// The value of a property by these rules; "" if none. Ids win over classes, these over names,
+    /// later rules over earlier ones.
     [[nodiscard]] std::string_view property(pugi::xml_node node, std::string_view key) const;
 
   private:
@@ -88,17 +87,17 @@ class SvgSheet {
 /// Without the prefix of a name space.
 std::string_view svgName(pugi::xml_node node);
 
-/// A property, of `style`, by rules or as an attribute; "" if it is not set.
+/// A property from `style`, rules or an attribute; "" if unset.
 std::string_view svgProperty(pugi::xml_node node, std::string_view key, const SvgSheet& sheet);
 
-/// The style of an element in one with this style.
+/// The style of an element within one of this style.
 SvgStyle svgStyle(pugi::xml_node node, SvgStyle style, const SvgSheet& sheet);
 
 /// An attribute in the element's own coordinates; lengths with units come in pixels.
 /// \throws SvgError
 double svgNumber(pugi::xml_node node, const char* key, double standard = 0);
 
-/// Rectangle that is seen, in the coordinates inside of it.
+/// A visible rectangle in its inner coordinates.
 struct SvgBox {
     double x = 0, y = 0, width = 0, height = 0;
 };

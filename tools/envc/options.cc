@@ -38,15 +38,15 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
     line.parsed("--slice", "M", take_slice, "write the map of obstacles at this height instead",
                 Enters::History);
     line.meters("--resolution", options.import.resolution, 0.001, 100,
-                "of a picture: metres a pixel; of a ROS map to write: edge of its cells "
-                "(default 0.05 m)",
+                "metres per pixel of a picture, or per cell of a ROS map that is written "
+                "(there 0.05 m by default)",
                 Enters::History);
     line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
     line.flag("--check", options.check,
-              "explain what is wrong with the environment, and with what stands in it",
+              "list errors and warnings about the environment and what stands in it",
               Enters::Nothing);
 }
 
@@ -59,10 +59,10 @@ void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
     };
     edit(Edit::Kind::Add, "RECORD", "add a record");
     edit(Edit::Kind::Fence, "PATH", "add a fence along x,y;x,y;...");
-    edit(Edit::Kind::Set, "ID.KEY=VALUE", "set a key, or without VALUE leave it out");
+    edit(Edit::Kind::Set, "ID.KEY=VALUE", "set a key; without VALUE, remove it");
     edit(Edit::Kind::Move, "ID:DX,DY[,DZ]", "move along the axes");
     edit(Edit::Kind::Forward, "ID:M", "move along its heading");
-    edit(Edit::Kind::Rotate, "ID:DEG", "turn counter-clockwise about its place");
+    edit(Edit::Kind::Rotate, "ID:DEG", "rotate counter-clockwise about its place");
     edit(Edit::Kind::Tilt, "ID:DEG", "tilt a sensor up");
     edit(Edit::Kind::Delete, "ID", "remove");
 }
@@ -97,7 +97,7 @@ void addRoomOptions(CommandLine& line, EnvcOptions& options) {
     const auto take_inside = [&import](const std::string& text) {
         import.inside.push_back(pointFrom(text));
     };
-    line.ordered("--inside", "X,Y", take_inside, "a point in the room that is meant");
+    line.ordered("--inside", "X,Y", take_inside, "a point in a room to keep");
     line.choice("--rooms", options.rooms, {"largest", "all"},
                 "which closed rooms of a plan are kept (default largest)", Enters::History);
     line.meters("--close-gaps", import.close_gaps, 0, 100,
@@ -111,7 +111,7 @@ void addRoomOptions(CommandLine& line, EnvcOptions& options) {
 void addImportOptions(CommandLine& line, ImportOptions& import) {
     const auto take_origin = [&import](const std::string& text) { import.origin = poseFrom(text); };
     line.parsed("--origin", "X,Y[,DEG]", take_origin,
-                "place of a picture's lower left corner, and its turn about it (default 0,0)",
+                "position of a picture's lower left corner, and rotation about it (default 0,0)",
                 Enters::History);
     line.meters("--wall-height", import.wall_height, 0.001, 1000, "height of walls of plans",
                 Enters::History);
@@ -119,16 +119,17 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 "thickness of walls of plans that are drawn as lines", Enters::History);
     line.meters(
         "--snap", import.snap, 0, 100,
-        "join ends of a plan's lines that are this near (default: 5 mm in DXF and ARIA maps)",
+        "join ends of a plan's lines that are this close (default: 5 mm in DXF and ARIA maps)",
         Enters::History);
     line.meters("--simplify", import.simplify, 0, 1000,
-                "outlines of plans may move by this (default: one cell of a map, else 0)",
+                "simplify outlines of plans by at most this (default: one cell of a map, else 0)",
                 Enters::History);
-    line.meters("--clean", import.clean, 0, 100,
-                "what is smaller on a map made by a robot is noise (default: 0.5 m; 0: none)",
-                Enters::History);
+    line.meters(
+        "--clean", import.clean, 0, 100,
+        "remove noise below this size from maps made by robots (default 0.5 m; 0: keep all)",
+        Enters::History);
     line.choice("--units", import.units, kUnits, "unit of a drawing or a mesh", Enters::History);
-    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "axis of a mesh that points up",
+    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "upward axis of a mesh",
                 Enters::History);
     const auto take_cut = [&import](const std::string& text) {
         import.slice_walls = heightFrom(text);
@@ -143,7 +144,8 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                Enters::History);
     line.texts("--window-layer", "GLOB", import.window_layers, "layers that hold windows",
                Enters::History);
-    line.flag("--points", import.points, "points of an ARIA map become obstacles", Enters::History);
+    line.flag("--points", import.points, "turn points of an ARIA map into obstacles",
+              Enters::History);
 }
 
 void checkCombination(const CommandLine& line, const EnvcOptions& options) {

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// Sends a message to the program that started this one, whole. Ends this one if it is gone.
+/// Sends a whole message to the program that started this one; exits if that is gone.
 void tell(MeshAnswer kind, std::string_view bytes);
 
 /// An open file of a size that was told, for assimp.
@@ -36,12 +36,13 @@ class HandedFile : public Assimp::IOStream {
     bool owned_;
 };
 
-/// All that assimp may open: the mesh, and what the program that started this one hands over.
+/// All that assimp may open: the mesh, and files handed over by the parent.
 class HandedFiles : public Assimp::IOSystem {
   public:
     /// \param size of the mesh, which is open as standard input
     /// \param format "obj" and the like: the suffix of its name here
-    /// \param reads_side_files false: they are asked for, so that they are known, and kept closed
+    /// \param reads_side_files false: they are requested, so that the parent knows them, but not
+    /// read
     HandedFiles(std::size_t size, const std::string& format, bool reads_side_files);
 
     /// The name of the mesh. No file can name it.

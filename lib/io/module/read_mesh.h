@@ -10,19 +10,18 @@
 
 namespace ispace {
 
-/// Takes from this process what a reader of strangers' bytes does not need: memory and time beyond
-/// the limits, files (those that are open stay), programs, the network, a core, and its life when
-/// the parent ends. Where the system has no seccomp, or refuses it, the limits hold all the same.
-/// Under sanitizers, which need more, only time is limited.
+/// Restricts this process to what reading untrusted bytes needs: no memory or time beyond the
+/// limits, no files but open ones, no programs, network or core dumps; it ends with its parent.
+/// Where the system has no seccomp, or refuses it, the limits hold all the same. Under sanitizers,
+/// which need more, only time is limited.
 void confine(const MeshLimits& limits, int parent);
 
-/// By content; where that leaves it open by suffix (".obj", lower case).
+/// By content, else by suffix (".obj", lower case).
 /// \throws std::runtime_error if neither tells
 MeshFormat meshFormat(std::string_view bytes, const std::string& suffix);
 
-/// Where assimp 5.2 crashes, hangs or takes what the file says for true, and where a look
-/// beforehand gives a better message than its end: headers of PLY, chunks of GLB, and the nodes of
-/// glTF and COLLADA, which may hang on each other in a circle, too deep, or too many times. \throws
+/// Checks beforehand what crashes or hangs assimp 5.2, or what it trusts: headers of PLY, chunks of
+/// GLB, and nodes of glTF and COLLADA that form circles or are too deep or too many. \throws
 /// std::runtime_error
 void checkMesh(MeshFormat format, std::string_view bytes);
 
