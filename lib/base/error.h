@@ -55,13 +55,13 @@ class FormatError : public std::runtime_error {
 class Diagnostics {
   public:
     /// Printed at most; what lies beyond is counted, not kept.
-    static constexpr std::size_t kMost = 20;
+    static constexpr std::size_t kMax = 20;
 
     void add(Diagnostic diagnostic);
     /// Takes over the findings of a caught error.
     void add(const FormatError& error);
     [[nodiscard]] bool empty() const { return kept_.empty(); }
-    [[nodiscard]] bool full() const { return kept_.size() >= kMost; }
+    [[nodiscard]] bool full() const { return kept_.size() >= kMax; }
     /// Throws FormatError if there is any finding.
     void throwIfAny() const;
 

@@ -70,10 +70,10 @@ std::size_t readSome(int fd, std::span<char> bytes, const std::string& name) {
 /// process may have left its file, and its number comes again.
 template <typename Make>
 std::string makeStandIn(const std::string& folder, Make make) {
-    constexpr int kMostTries = 1000;
+    constexpr int kMaxTries = 1000;
     const std::string stem =
         (fs::path(folder) / (".ispace.tmp." + std::to_string(::getpid()) + '.')).string();
-    for (int i = 0; i < kMostTries; ++i) {
+    for (int i = 0; i < kMaxTries; ++i) {
         std::string name = stem + std::to_string(i);
         if (make(name) == 0) return name;
         if (errno != EEXIST) break;
@@ -84,10 +84,10 @@ std::string makeStandIn(const std::string& folder, Make make) {
 std::string pathOf(const OpenFile& file) { return "/proc/self/fd/" + std::to_string(file.fd()); }
 
 [[noreturn]] void refuseLength(const std::string& operand, bool regular) {
-    const std::string file = std::to_string(kMostFileBytes);
+    const std::string file = std::to_string(kMaxFileBytes);
     throw FormatError({displayName(operand), 0, 0,
                        regular ? "more than " + file + " bytes, the most that an input may have"
-                               : "more than " + std::to_string(kMostStreamBytes) +
+                               : "more than " + std::to_string(kMaxStreamBytes) +
                                      " bytes, the most that a pipe or a device may bring; a file "
                                      "may have " +
                                      file});
@@ -114,7 +114,7 @@ std::string readAll(const std::string& operand) {
     struct stat info {};
     const OpenFile file = openInput(operand, info);
     const bool regular = S_ISREG(info.st_mode);
-    const std::uint64_t most = regular ? kMostFileBytes : kMostStreamBytes;
+    const std::uint64_t most = regular ? kMaxFileBytes : kMaxStreamBytes;
     if (regular && static_cast<std::uint64_t>(info.st_size) > most) refuseLength(operand, regular);
     std::string bytes;
     constexpr std::size_t kChunk = 1 << 16;

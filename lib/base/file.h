@@ -11,8 +11,8 @@ namespace ispace {
 
 /// Bytes that an input may have: a file, and what comes from a pipe or a device, which may never
 /// end.
-constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U,
-                        kMostStreamBytes = std::uint64_t{1} << 30U;
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30U,
+                        kMaxStreamBytes = std::uint64_t{1} << 30U;
 
 /// A file descriptor, closed at the end unless it is of a standard stream.
 class OpenFile {

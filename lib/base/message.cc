@@ -42,13 +42,13 @@ std::string printable(std::string_view text) {
 }
 
 std::string excerpt(std::string_view text) {
-    constexpr std::size_t kMost = 60;
-    if (text.size() <= kMost) return '`' + printable(text) + '`';
+    constexpr std::size_t kMax = 60;
+    if (text.size() <= kMax) return '`' + printable(text) + '`';
     std::size_t end = 0;
     while (true) {
         const std::size_t length = utf8Length(text.substr(end));
         const std::size_t step = length == 0 ? 1 : length;
-        if (end + step > kMost) break;
+        if (end + step > kMax) break;
         end += step;
     }
     return '`' + printable(text.substr(0, end)) + "...`";

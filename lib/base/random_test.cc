@@ -87,7 +87,7 @@ double normalShare(float x) { return 0.5 * std::erfc(-static_cast<double>(x) / s
 double identity(float x) { return static_cast<double>(x); }
 
 /// Of 64 bins, 63 degrees of freedom: beyond it lies one sample in 10^9.
-constexpr double kMostChiSquare = 145;
+constexpr double kMaxChiSquare = 145;
 /// Standard deviations beyond which a fixed seed shall not come.
 constexpr double kSigmas = 5;
 constexpr std::size_t kMany = 1'000'000;
@@ -267,7 +267,7 @@ TEST(Draw, NormalsAreNormal) {
         EXPECT_NEAR(sum2 / n, 1, kSigmas * std::sqrt(2 / n));
         EXPECT_NEAR(sum3 / n, 0, kSigmas * std::sqrt(15 / n));
         EXPECT_NEAR(sum4 / n, 3, kSigmas * std::sqrt(96 / n));
-        EXPECT_LT(chiSquare(*values, 64, normalShare), kMostChiSquare);
+        EXPECT_LT(chiSquare(*values, 64, normalShare), kMaxChiSquare);
         const auto is_beyond = [](float limit) {
             return [limit](float x) { return std::abs(x) > limit; };
         };
@@ -281,13 +281,13 @@ TEST(Draw, NormalsAreNormal) {
 
 TEST(Draw, UniformsAreUniform) {
     const Drawn drawn = drawAll({2, Purpose::Range, hashOf("l1"), 4}, 0, kMany);
-    EXPECT_LT(chiSquare(drawn.uniform, 64, identity), kMostChiSquare);
+    EXPECT_LT(chiSquare(drawn.uniform, 64, identity), kMaxChiSquare);
     EXPECT_GE(*std::min_element(drawn.uniform.begin(), drawn.uniform.end()), 0);
     EXPECT_LT(*std::max_element(drawn.uniform.begin(), drawn.uniform.end()), 1);
     // The lowest bits, too.
     Floats low = drawn.uniform;
     for (float& value : low) value = value * 0x1p18F - std::floor(value * 0x1p18F);
-    EXPECT_LT(chiSquare(low, 64, identity), kMostChiSquare);
+    EXPECT_LT(chiSquare(low, 64, identity), kMaxChiSquare);
 }
 
 TEST(Draw, AllAreIndependent) {

@@ -186,10 +186,10 @@ void OpenOutput::check() const {
 }
 
 std::string followLinks(const std::string& target) {
-    constexpr int kMostLinks = 40;  // as the kernel
+    constexpr int kMaxLinks = 40;  // as the kernel
     fs::path path(target);
     std::error_code error;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+    for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i) {
         const fs::path next = fs::read_symlink(path, error);
         if (error) break;
         path = path.parent_path() / next;  // an absolute one replaces the folder

@@ -93,7 +93,7 @@ class SceneCheck {
   public:
     explicit SceneCheck(const Scene& scene)
         : context_(scene), things_(context_), placed_(context_) {
-        crossings_ = wallCrossings(scene.environment.elements(), Diagnostics::kMost + 1);
+        crossings_ = wallCrossings(scene.environment.elements(), Diagnostics::kMax + 1);
         blocked_ = blockedDoors(scene.environment);
     }
 

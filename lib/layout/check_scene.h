@@ -7,7 +7,7 @@
 namespace ispace {
 
 /// What is wrong with a scene though it can be compiled: each finding with its place and a cure, in
-/// the order of the records, one for each pair, at most Diagnostics::kMost (looking ends there).
+/// the order of the records, one for each pair, at most Diagnostics::kMax (looking ends there).
 ///
 /// - Objects (furniture, pillars, ceiling frames, meshes) that share space with each other or with
 ///   a wall, in 3-D: a chair under a table is fine, and so is what touches within 1 um. What

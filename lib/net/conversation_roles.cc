@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 /// Far more than anybody waits for; sums of them stay far from overflow.
-constexpr std::int64_t kMostCount = 1'000'000'000;
+constexpr std::int64_t kMaxCount = 1'000'000'000;
 
 std::string measured(double value) { return formatFixed(value, 3); }
 
@@ -24,7 +24,7 @@ std::string headingText(Angle heading) {
     return text;
 }
 
-/// A whole number from 1 to kMostCount, or what is wrong with it.
+/// A whole number from 1 to kMaxCount, or what is wrong with it.
 struct Count {
     std::int64_t value = 0;
     int code = 0;  // of the error; 0: none
@@ -40,8 +40,8 @@ Count parseCount(std::string_view text, std::string_view what) {
     const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
     if (!is_whole || text.empty())
         return {0, 400, message.append(" is a whole number").append(found)};
-    if (!value || *value < 1 || *value > kMostCount) {
-        message.append(" is from 1 to ").append(std::to_string(kMostCount)).append(found);
+    if (!value || *value < 1 || *value > kMaxCount) {
+        message.append(" is from 1 to ").append(std::to_string(kMaxCount)).append(found);
         return {0, 416, message};
     }
     return {*value, 0, ""};

@@ -39,9 +39,9 @@ void appendRange(std::string& out, float range) {
     }
     // A float times 1000 is exact in a double, so rounding it half to even is what a correctly
     // rounded conversion to three decimals does.
-    constexpr double kMost = 1e9;
+    constexpr double kMax = 1e9;
     const double value = range;
-    if (!(value >= 0 && value < kMost)) {
+    if (!(value >= 0 && value < kMax)) {
         out += formatFixed(value, 3);
         return;
     }

@@ -35,7 +35,7 @@ constexpr auto kTurn = std::chrono::milliseconds(2);
 /// What the system may hold for a client: much of it would be scans that are no longer new.
 constexpr int kSendBuffer = 1 << 16;
 /// Connections beyond those that are served, which are told of their end.
-constexpr std::size_t kMostLingering = 64;
+constexpr std::size_t kMaxLingering = 64;
 /// A peer that is gone without a word: asked after a minute of silence, given up after another.
 constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
@@ -105,7 +105,7 @@ void Server::Data::welcome(tcp::socket socket) {
     prepare(socket);
     sweep();
     const bool full = serving >= limits.clients && !makeRoom();
-    if (sessions.size() >= limits.clients + kMostLingering) {
+    if (sessions.size() >= limits.clients + kMaxLingering) {
         // Of those that only have to close, the oldest has had the most time for it.
         const auto told = std::find_if(sessions.begin(), sessions.end(),
                                        [](const auto& session) { return session->told(); });
@@ -159,7 +159,7 @@ void Server::Data::relieve() {
     std::size_t replies = 0;
     for (const auto& session : sessions) replies += session->memory();
     if (replies + hall.staleBytes() <= limits.unread) return;
-    const std::size_t share = limits.unread / (limits.clients + kMostLingering);
+    const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
     std::vector<std::shared_ptr<Session>> slow;
     for (const auto& session : sessions)
         if (session->holds() > share) slow.push_back(session);

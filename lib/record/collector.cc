@@ -95,9 +95,9 @@ Record RecordCollector::finish() {
 
 void RecordCollector::end() {
     records_.push_back(finish());
-    if (records_.size() > kMostRecords)
+    if (records_.size() > kMaxRecords)
         throw FormatError(
-            records_.back().place().finding("more than " + std::to_string(kMostRecords) +
+            records_.back().place().finding("more than " + std::to_string(kMaxRecords) +
                                             " records, the most that an input may have"));
 }
 

@@ -30,7 +30,7 @@ std::string knownWords(std::string_view word, const std::vector<std::string>& kn
 class RecordCollector {
   public:
     /// Records that one input may have: some gigabytes.
-    static constexpr std::size_t kMostRecords = 1'000'000;
+    static constexpr std::size_t kMaxRecords = 1'000'000;
 
     RecordCollector(const std::string& name, const Schemas& schemas)
         : file_{std::make_shared<const std::string>(name)}, schemas_(&schemas) {}
@@ -54,7 +54,7 @@ class RecordCollector {
     void value(const KeySpec& key, Value value, Spot spot);
     /// Ends the record: keys it must have. \return it, whatever is wrong with it
     Record finish();
-    /// finish(), and keeps the record. \throws FormatError for more than kMostRecords
+    /// finish(), and keeps the record. \throws FormatError for more than kMaxRecords
     void end();
 
     /// Adds a finding. `message` is a function that makes its text, called only if it is kept:

@@ -24,17 +24,17 @@ std::string noKey(const Schema& schema, std::string_view key) {
 }  // namespace
 
 std::string Place::inclusion() const {
-    constexpr int kMostShown = 5;
+    constexpr int kMaxShown = 5;
     std::string text;
     int left = 0;
     for (const Place* place = included_from.get(); place != nullptr;
          place = place->included_from.get()) {
-        if (++left > kMostShown) continue;
+        if (++left > kMaxShown) continue;
         text += left == 1 ? " (included from " : ", from ";
         text += place->file ? displayName(*place->file) : "a program";
         text += ':' + std::to_string(place->line) + ':' + std::to_string(place->column);
     }
-    if (left > kMostShown) text += " and " + std::to_string(left - kMostShown) + " more";
+    if (left > kMaxShown) text += " and " + std::to_string(left - kMaxShown) + " more";
     return text.empty() ? text : text + ')';
 }
 

@@ -37,11 +37,11 @@ class PartCheck {
             const auto open = std::find(open_.begin(), open_.end(), item.part);
             if (open != open_.end())
                 refuseCycle(item, open);
-            else if (open_.size() >= kMostPartDepth)
+            else if (open_.size() >= kMaxPartDepth)
                 refuse(item, tooDeep());
             else
                 depth = std::max(depth, depthOf(*item.part) + 1);
-            if (depth > kMostPartDepth) refuse(item, tooDeep());
+            if (depth > kMaxPartDepth) refuse(item, tooDeep());
             if (!is_sound_) break;
         }
         open_.pop_back();
@@ -50,7 +50,7 @@ class PartCheck {
 
     static std::string tooDeep() {
         return "parts are placed in each other too deep, more than " +
-               std::to_string(kMostPartDepth);
+               std::to_string(kMaxPartDepth);
     }
 
     void refuseCycle(const YamlItem& item, std::vector<const YamlPart*>::iterator first) {
@@ -259,9 +259,9 @@ class Expander {
     void spend(const Place& place, std::size_t records, std::size_t bytes) {
         made_ += records;
         bytes_ += bytes;
-        if (made_ > kMostMadeRecords) stop(place, std::to_string(kMostMadeRecords) + " records");
-        if (bytes_ > kMostMadeBytes)
-            stop(place, std::to_string(kMostMadeBytes / 1'000'000) + " MB of records");
+        if (made_ > kMaxMadeRecords) stop(place, std::to_string(kMaxMadeRecords) + " records");
+        if (bytes_ > kMaxMadeBytes)
+            stop(place, std::to_string(kMaxMadeBytes / 1'000'000) + " MB of records");
     }
 
     void stop(const Place& place, const std::string& limit) {

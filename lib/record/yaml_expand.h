@@ -11,9 +11,9 @@ namespace ispace {
 
 /// What parts and repetitions may make, beside what is written as it is: a small file shall not
 /// fill the memory.
-constexpr std::size_t kMostMadeRecords = 50'000, kMostMadeBytes = 64'000'000;
+constexpr std::size_t kMaxMadeRecords = 50'000, kMaxMadeBytes = 64'000'000;
 /// Parts in parts, at most.
-constexpr std::size_t kMostPartDepth = 32;
+constexpr std::size_t kMaxPartDepth = 32;
 
 /// The records of a scene: copies made, parts placed, in the order of the items.
 ///

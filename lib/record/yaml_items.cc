@@ -79,9 +79,9 @@ void YamlValues::spend(std::size_t nodes, std::size_t bytes, Spot at) {
         collector_->finding(at, [&] { return "aliases expand to more than " + what; });
         collector_->findings().throwIfAny();
     };
-    if (nodes_ > most_nodes_) refuse(std::to_string(kMostNodes) + " nodes");
+    if (nodes_ > most_nodes_) refuse(std::to_string(kMaxNodes) + " nodes");
     if (bytes_ > most_bytes_)
-        refuse(std::to_string(kMostBytes / 1'000'000) + " MB, together with defaults");
+        refuse(std::to_string(kMaxBytes / 1'000'000) + " MB, together with defaults");
 }
 
 void YamlValues::visit(const YamlNode& node) {
@@ -176,7 +176,7 @@ using Kind = YamlNode::Kind;
 
 constexpr const char* kRepeat = "repeat";
 constexpr double kFarthest = 1e6;  // metres and degrees, as in the records
-constexpr double kMostCopies = 1e6;
+constexpr double kMaxCopies = 1e6;
 
 KeySpec numberKey(std::string name, Unit unit, std::string help) {
     return {.name = std::move(name),
@@ -190,7 +190,7 @@ KeySpec numberKey(std::string name, Unit unit, std::string help) {
 KeySpec countKey(std::string name, std::string help) {
     KeySpec key = numberKey(std::move(name), Unit::None, std::move(help));
     key.lower = 1;
-    key.upper = kMostCopies;
+    key.upper = kMaxCopies;
     key.whole = true;
     return key;
 }

@@ -27,15 +27,15 @@ class YamlValues {
   public:
     /// Nodes, and bytes of values, that aliases and defaults may add to what is written; files
     /// without them are never refused.
-    static constexpr std::size_t kMostNodes = 1'000'000, kMostBytes = 64'000'000;
+    static constexpr std::size_t kMaxNodes = 1'000'000, kMaxBytes = 64'000'000;
 
     explicit YamlValues(RecordCollector& collector) : collector_(&collector) {}
 
     /// Another file of so many bytes will be walked.
     void grant(std::size_t bytes);
     /// Counts a node; aliases can make a small file endless. A tag of one's own is a finding.
-    /// \throws FormatError, with all findings so far, if aliases add more than kMostNodes or
-    /// kMostBytes, in all files together
+    /// \throws FormatError, with all findings so far, if aliases add more than kMaxNodes or
+    /// kMaxBytes, in all files together
     void visit(const YamlNode& node);
     /// Counts the copy of a default. \throws as visit
     void visit(const Value& value, Spot at);
@@ -76,7 +76,7 @@ class YamlValues {
     std::optional<TupleList> readTupleList(const KeySpec& key, const YamlNode& node);
 
     RecordCollector* collector_;
-    std::size_t most_nodes_ = kMostNodes, most_bytes_ = kMostBytes;
+    std::size_t most_nodes_ = kMaxNodes, most_bytes_ = kMaxBytes;
     std::size_t nodes_ = 0, bytes_ = 0;
 };
 

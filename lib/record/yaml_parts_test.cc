@@ -281,9 +281,9 @@ TEST(YamlExpansion, BoundsTheDepthOfParts) {
                 "  p" + std::to_string(i) + ": [place: {part: p" + std::to_string(i - 1) + "}]\n";
         return text + "place: {part: p" + std::to_string(length - 1) + "}\n";
     };
-    constexpr int kMost = static_cast<int>(kMostPartDepth);
-    EXPECT_EQ(records(chain(kMost)), Texts{"desk"});
-    for (const int length : {kMost + 1, 20000}) {
+    constexpr int kMax = static_cast<int>(kMaxPartDepth);
+    EXPECT_EQ(records(chain(kMax)), Texts{"desk"});
+    for (const int length : {kMax + 1, 20000}) {
         const Texts found = findings(chain(length));
         ASSERT_EQ(found.size(), 1U);
         EXPECT_NE(found[0].find("parts are placed in each other too deep, more than 32"),
@@ -320,7 +320,7 @@ TEST(YamlExpansion, DamagedYamlIsReadOrRefused) {
             EXPECT_EQ(readYaml(writeYaml(document), "b", placedSchemas()).records,
                       document.records);
         } catch (const FormatError& error) {
-            EXPECT_LE(error.diagnostics().size(), Diagnostics::kMost);
+            EXPECT_LE(error.diagnostics().size(), Diagnostics::kMax);
         }
     }
     EXPECT_GT(accepted, 500);

@@ -79,9 +79,9 @@ class YamlTreeBuilder final : public YAML::EventHandler {
 
     void open(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
               YAML::anchor_t anchor) {
-        if (open_.size() >= YamlTree::kMostDepth)
+        if (open_.size() >= YamlTree::kMaxDepth)
             fail(mark, "lists and maps are nested too deep, more than " +
-                           std::to_string(YamlTree::kMostDepth) + " in each other");
+                           std::to_string(YamlTree::kMaxDepth) + " in each other");
         open_.push_back(&add(kind, mark, tag, anchor));
     }
 
@@ -93,10 +93,10 @@ class YamlTreeBuilder final : public YAML::EventHandler {
 };
 
 YamlTree::YamlTree(std::string_view bytes, const std::string& name) {
-    if (bytes.size() > kMostBytes)
+    if (bytes.size() > kMaxBytes)
         throw FormatError({name, 0, 0,
                            std::to_string(bytes.size()) + " bytes of YAML, wanted at most " +
-                               std::to_string(kMostBytes) + "; records in .env may have more"});
+                               std::to_string(kMaxBytes) + "; records in .env may have more"});
     // yaml-cpp takes the end of the file for the end of an open quote, but not a document's end.
     const std::string text =
         std::string(bytes) + (bytes.empty() || bytes.ends_with('\n') ? "...\n" : "\n...\n");
@@ -138,7 +138,7 @@ std::string readRegularFile(const std::string& name) {
     if (error) throw std::system_error(error);
     if (!fs::is_regular_file(status)) refuse("it is no regular file");
     const auto size = static_cast<std::size_t>(fs::file_size(name));
-    if (size > YamlIncludes::kMostBytes) refuse("it holds more than all included files may");
+    if (size > YamlIncludes::kMaxBytes) refuse("it holds more than all included files may");
     noteInput(name);
     errno = 0;
     std::ifstream stream(name, std::ios::binary);
@@ -176,11 +176,11 @@ std::string YamlIncludes::enter(const std::string& file) {
     Open next{joined(parent, file), joined(from.folder, fs::path(file).parent_path().string()), ""};
     next.identity = identityOf(next.name);
     checkCycle(next);
-    if (open_.size() > kMostDepth)
-        refuse("includes are nested too deep, more than " + std::to_string(kMostDepth) +
+    if (open_.size() > kMaxDepth)
+        refuse("includes are nested too deep, more than " + std::to_string(kMaxDepth) +
                " in each other");
-    if (++count_ > kMostFiles)
-        exhaust("more than " + std::to_string(kMostFiles) + " files are included");
+    if (++count_ > kMaxFiles)
+        exhaust("more than " + std::to_string(kMaxFiles) + " files are included");
     std::string bytes = read(next.name);
     spend(next, bytes.size());
     if (std::find(files_.begin(), files_.end(), next.name) == files_.end())
@@ -225,8 +225,8 @@ void YamlIncludes::spend(const Open& file, std::size_t size) {
     };
     bytes_ += size;
     if (!identities_.insert(file.identity).second) again_ += size;
-    if (bytes_ > kMostBytes) exhaust("the included files hold " + megabytes(kMostBytes));
-    if (again_ > kMostAgain) exhaust("files included more than once hold " + megabytes(kMostAgain));
+    if (bytes_ > kMaxBytes) exhaust("the included files hold " + megabytes(kMaxBytes));
+    if (again_ > kMaxAgain) exhaust("files included more than once hold " + megabytes(kMaxAgain));
 }
 
 void YamlIncludes::exhaust(const std::string& message) {

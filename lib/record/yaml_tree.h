@@ -28,9 +28,9 @@ struct YamlNode {
 class YamlTree {
   public:
     /// Lists and maps in each other, at most: far more than records have, far less than a stack.
-    static constexpr int kMostDepth = 64;
+    static constexpr int kMaxDepth = 64;
     /// Of a file: more take minutes.
-    static constexpr std::size_t kMostBytes = 64'000'000;
+    static constexpr std::size_t kMaxBytes = 64'000'000;
 
     /// \throws FormatError with one finding, also for a second document. O(bytes)
     YamlTree(std::string_view bytes, const std::string& name);
@@ -50,9 +50,9 @@ class YamlTree {
 /// within bounds.
 class YamlIncludes {
   public:
-    static constexpr std::size_t kMostDepth = 32, kMostFiles = 1000, kMostBytes = 256'000'000;
+    static constexpr std::size_t kMaxDepth = 32, kMaxFiles = 1000, kMaxBytes = 256'000'000;
     /// Of files that are included once more.
-    static constexpr std::size_t kMostAgain = 16'000'000;
+    static constexpr std::size_t kMaxAgain = 16'000'000;
 
     /// \param operand the file read first; "-" lies in the current folder
     /// \param read gives the content of files; without it they are read from the disk

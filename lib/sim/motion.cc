@@ -44,7 +44,7 @@ constexpr double kInstant = 1e-13;
 constexpr double kStopTolerance = 1e-12;
 /// A piece of quadrature turns by at most so many radians, and its rate changes at most so much
 /// (square root of the radians that makes): five points are then good to 1e-14 of the way.
-constexpr double kMostTurn = 0.25, kMostBend = 0.3;
+constexpr double kMaxTurn = 0.25, kMaxBend = 0.3;
 
 /// A time of constant acceleration.
 struct Phase {
@@ -191,7 +191,7 @@ Vec2 quadrature(double speed, double accel, double rate, double rate_accel, doub
                                                 0.2369268850561891};
     const double fastest = std::max(std::abs(rate), std::abs(rate + rate_accel * time));
     const double pieces = std::ceil(std::max(
-        {1.0, fastest * time / kMostTurn, std::sqrt(std::abs(rate_accel)) * time / kMostBend}));
+        {1.0, fastest * time / kMaxTurn, std::sqrt(std::abs(rate_accel)) * time / kMaxBend}));
     const double half = time / pieces / 2;
     Vec2 sum;
     for (double piece = 0; piece < pieces; ++piece) {

@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::int64_t kMost = kLongestTime.count();
+constexpr std::int64_t kMax = kLongestTime.count();
 constexpr int kNanoseconds = 9;  // powers of ten to a second
 constexpr std::uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;
 
@@ -86,9 +86,9 @@ std::optional<SimTime> parseSimTime(std::string_view text) {
     if (!unit || text.starts_with('-')) return std::nullopt;
     const int exponent = unit->exponent + kNanoseconds;
     const auto rough = parseScaled(text, exponent);
-    if (!rough || *rough * unit->factor > 2.0 * static_cast<double>(kMost)) return std::nullopt;
+    if (!rough || *rough * unit->factor > 2.0 * static_cast<double>(kMax)) return std::nullopt;
     const auto nanoseconds = scaledInteger(text, exponent, static_cast<std::int64_t>(unit->factor));
-    if (nanoseconds > kMost) return std::nullopt;
+    if (nanoseconds > kMax) return std::nullopt;
     return SimTime(nanoseconds);
 }
 

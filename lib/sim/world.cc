@@ -18,7 +18,7 @@ namespace {
 
 /// Ends of commands that were given between two steps are kept up to so many and one a robot: a
 /// client that never lets the world go on must not fill the memory.
-constexpr std::size_t kMostEnds = 4096;
+constexpr std::size_t kMaxEnds = 4096;
 
 /// Metres around a robot within which obstacles are looked for: farther ones are looked for again
 /// when it has gone as far.
@@ -259,7 +259,7 @@ int World::command(std::size_t robot, const Command& command) {
     Data& data = *data_;
     Mover& mover = data.movers[robot];
     if (mover.running != 0) {
-        if (data.ends.size() >= kMostEnds + data.movers.size()) data.ends.erase(data.ends.begin());
+        if (data.ends.size() >= kMaxEnds + data.movers.size()) data.ends.erase(data.ends.begin());
         data.end(robot, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
     }
     mover.stall = false;

@@ -58,7 +58,7 @@ TriangleSet::TriangleSet(const TriangleSoup& soup)
 
 std::array<std::array<float, 3>, 3> TriangleSet::enlarged(std::size_t triangle) const {
     // Sharper corners would move far away.
-    constexpr double kLeastSine = 1.0 / 16;
+    constexpr double kMinSine = 1.0 / 16;
     const std::array<Point3, 3>& corners = corners_[triangle];
     std::array<std::array<float, 3>, 3> moved{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ std::array<std::array<float, 3>, 3> TriangleSet::enlarged(std::size_t triangle) 
         // The tolerance over the sine of half the angle, along the line that halves it.
         const double sine = length({left.x - right.x, left.y - right.y, left.z - right.z}) / 2;
         const Vec3 between{left.x + right.x, left.y + right.y, left.z + right.z};
-        const Point3 q = p + (-tolerance_ / std::max(sine, kLeastSine)) * unit(between);
+        const Point3 q = p + (-tolerance_ / std::max(sine, kMinSine)) * unit(between);
         moved[i] = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
     }
     return moved;
