@@ -11,9 +11,9 @@
 #include "base/error.h"
 #include "cover/plane_view.h"
 #include "cover/visible.h"
-#include "sense/doubts.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
+#include "sense/warnings.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -145,14 +145,14 @@ class Viewer {
     std::vector<SensorView> views_;
 };
 
-/// Where at least kLeastReceivers hear.
+/// Where at least kMinReceivers hear.
 SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
     SeenSet set;
     set.cells = CellSet(grid.size());
     std::vector<std::uint16_t> heard(grid.size());
     for (const SensorView* view : receivers)
         view->cells.forEach([&](std::size_t cell) {
-            if (++heard[cell] == kLeastReceivers) set.cells.set(cell);
+            if (++heard[cell] == kMinReceivers) set.cells.set(cell);
         });
     set.region = regionHeardByEnough(receivers);
     return set;
@@ -175,7 +175,7 @@ std::optional<std::vector<Curve>> regionHeardByEnough(
     }
     try {
         return Overlay(layers).curves([](const LayerLabel& label) {
-            return label.count >= static_cast<std::int32_t>(kLeastReceivers);
+            return label.count >= static_cast<std::int32_t>(kMinReceivers);
         });
     } catch (const FormatError&) {
         return std::nullopt;

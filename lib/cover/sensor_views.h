@@ -14,7 +14,7 @@ namespace ispace {
 std::vector<SensorView> viewsOf(const Scene& scene, Worlds& worlds, const Grid& grid,
                                 const CoverageOptions& options);
 
-/// The region that at least kLeastReceivers of these hear; nothing if it is not known.
+/// The region that at least kMinReceivers of these hear; nothing if it is not known.
 std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers);
 
 /// The sets that count, of these views: each laser and ranger, then all receivers together.

@@ -10,7 +10,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "sense/pose_json.h"
+#include "sense/reading_text.h"
 
 namespace ispace {
 

@@ -201,15 +201,14 @@ struct ExactGain::Data {
     }
 
     [[nodiscard]] static std::int64_t setsAt(const LayerLabel& label) {
-        const bool heard =
-            label.numbers / kOneReceiver >= static_cast<std::int64_t>(kLeastReceivers);
+        const bool heard = label.numbers / kOneReceiver >= static_cast<std::int64_t>(kMinReceivers);
         return label.numbers % kOneReceiver + (heard ? 1 : 0);
     }
     /// True where one more sensor of this kind makes the floor count.
     [[nodiscard]] bool lacksOne(const LayerLabel& label, bool is_receiver) const {
         if (setsAt(label) != options.multiplicity - 1) return false;
         return !is_receiver ||
-               label.numbers / kOneReceiver == static_cast<std::int64_t>(kLeastReceivers) - 1;
+               label.numbers / kOneReceiver == static_cast<std::int64_t>(kMinReceivers) - 1;
     }
 
     static void addFloors(const std::vector<Floor>& floors, std::vector<Layer>& layers) {

@@ -83,7 +83,7 @@ void SceneProblem::setMultiplicities(const Coverage& standing) {
     const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
     const bool listens = std::any_of(scene_.sensors.begin(), scene_.sensors.end(), is_partial) ||
                          std::any_of(kinds_.begin(), kinds_.end(), is_partial);
-    unit_ = listens ? static_cast<int>(kLeastReceivers) : 1;
+    unit_ = listens ? static_cast<int>(kMinReceivers) : 1;
     problem_.required = unit_ * options_.redundancy;
     problem_.achieved.assign(target_.grid.size(), 0);
     problem_.standing = CellSet(target_.grid.size());

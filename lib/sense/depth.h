@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "sense/point_cloud.h"
 #include "sense/scan.h"
 #include "sensor/sensor.h"
 
@@ -26,13 +24,5 @@ struct DepthFrame {
 /// `environment` is that of the mesh.
 DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
                      const Pose3& pose, int frame, const ReadingOptions& options);
-
-/// Which frame the points of a cloud are in.
-enum class Coordinates { World, Sensor };
-
-/// The picture as an organised cloud, columns wide and rows high.
-PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, Coordinates in);
-/// Scans of one laser as one cloud: a row a scan. In the sensor's frame that of the first scan.
-PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates in);
 
 }  // namespace ispace

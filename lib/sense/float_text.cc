@@ -17,12 +17,12 @@ namespace {
 constexpr int kMantissaBits = 23, kExponentBias = 127;
 constexpr std::uint32_t kSignBit = 0x80000000U, kMantissaMask = 0x7FFFFFU;
 // Exponents of two between which the short way works: 2^-13 up to 2^23.
-constexpr int kLeastExponent = -13, kEndExponent = 23;
+constexpr int kMinExponent = -13, kEndExponent = 23;
 // Most decimals then; a float times 10^12 is exact in double: 24 bits and the 28 of 5^12.
-constexpr int kMostDecimals = 12;
+constexpr int kMaxDecimals = 12;
 
 constexpr auto kPowers = [] {
-    std::array<double, kMostDecimals + 1> powers{};
+    std::array<double, kMaxDecimals + 1> powers{};
     double power = 1;
     for (double& p : powers) {
         p = power;
@@ -38,8 +38,8 @@ struct Binade {
 };
 
 constexpr auto kBinades = [] {
-    std::array<Binade, kEndExponent - kLeastExponent> binades{};
-    double ulp = 1.0 / static_cast<double>(1ULL << (kMantissaBits - kLeastExponent));
+    std::array<Binade, kEndExponent - kMinExponent> binades{};
+    double ulp = 1.0 / static_cast<double>(1ULL << (kMantissaBits - kMinExponent));
     for (Binade& binade : binades) {
         binade.half_ulp = ulp / 2;
         while (kPowers[static_cast<std::size_t>(binade.decimals)] * ulp < 1) ++binade.decimals;
@@ -97,8 +97,8 @@ char* writeShortest(char* to, float value) {
 }  // namespace
 
 double nineDecimals(double value) {
-    constexpr double kUnits = 1e9, kMostExact = 1e6;
-    return std::fabs(value) < kMostExact ? std::round(value * kUnits) / kUnits : value;
+    constexpr double kUnits = 1e9, kMaxExact = 1e6;
+    return std::fabs(value) < kMaxExact ? std::round(value * kUnits) / kUnits : value;
 }
 
 char* writeFloat(char* to, float value) {
@@ -108,14 +108,14 @@ char* writeFloat(char* to, float value) {
         kExponentBias;
     // Neighbours of a power of two stand at unequal distances: left to the library, with all that
     // is very small or large.
-    if (exponent < kLeastExponent || exponent >= kEndExponent || (bits & kMantissaMask) == 0)
+    if (exponent < kMinExponent || exponent >= kEndExponent || (bits & kMantissaMask) == 0)
         return writeShortest(to, value);
 
     // The shortest text is the multiple of 10^-d nearest to the value, with the least d for which
     // it is nearer to the value than half way to a neighbour. All numbers here are exact. Nothing
     // is decided where two are equally near.
     const double size = std::fabs(static_cast<double>(value));
-    const Binade& binade = kBinades[static_cast<std::size_t>(exponent - kLeastExponent)];
+    const Binade& binade = kBinades[static_cast<std::size_t>(exponent - kMinExponent)];
     int decimals = -1;
     double number = 0;
     const auto try_decimals = [&](int d) {
@@ -141,10 +141,10 @@ char* writeFloat(char* to, float value) {
 
 char* writeNineDecimals(char* to, double value) {
     // So many units that all digits are exact; fewer than the least are written with exponent.
-    constexpr double kUnits = 1e9, kLeast = 1e4, kEnd = 1e15;
+    constexpr double kUnits = 1e9, kMin = 1e4, kEnd = 1e15;
     constexpr int kDecimals = 9;
     const double units = std::round(std::fabs(value) * kUnits);
-    if (!(units >= kLeast && units < kEnd)) {
+    if (!(units >= kMin && units < kEnd)) {
         const std::string text = formatDouble(nineDecimals(value));
         return to + text.copy(to, text.size());
     }

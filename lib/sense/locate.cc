@@ -85,13 +85,13 @@ Linearised linearise(const Layout& layout, std::span<const double> distances, co
 /// Levenberg-Marquardt with the damping of Nielsen (Madsen, Nielsen, Tingleff: Methods for
 /// Non-Linear Least Squares Problems, 2004, algorithm 3.16).
 Vector3d refine(const Layout& layout, std::span<const double> distances, Vector3d x) {
-    constexpr int kMostSteps = 200;
+    constexpr int kMaxSteps = 200;
     const double tiny =
         1e-13 * (layout.extent() + *std::max_element(distances.begin(), distances.end()));
     Linearised here = linearise(layout, distances, x);
     double damping = 1e-6;
     double growth = 2;
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMaxSteps; ++i) {
         const Matrix3d damped = here.normal + damping * Matrix3d::Identity();
         const Vector3d step = damped.ldlt().solve(-here.gradient);
         if (!(step.norm() > tiny)) break;
@@ -314,7 +314,7 @@ class Search {
 }  // namespace
 
 std::optional<Fix> locate(std::span<const Hearing> heard) {
-    if (heard.size() < kLeastReceivers) return std::nullopt;
+    if (heard.size() < kMinReceivers) return std::nullopt;
     return Search(heard).run();
 }
 

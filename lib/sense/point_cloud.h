@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "geom/pose.h"
+#include "sense/depth.h"
+#include "sense/scan.h"
 
 namespace ispace {
 
@@ -19,6 +22,27 @@ struct PointCloud {
     [[nodiscard]] std::size_t size() const { return width * height; }
 };
 
+/// The frame that the points of a cloud are in.
+enum class Coordinates { World, Sensor };
+
+/// A depth picture as an organised cloud, columns wide and rows high.
+PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, Coordinates in);
+/// Scans of one laser as one cloud, a row per scan. The sensor's frame is that of the first scan.
+PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates in);
+
+/// Clouds one below the other. Rows stay rows if all are equally wide; else points without return
+/// are dropped and the rest is one row. \pre clouds are in the world frame
+class CloudPile {
+  public:
+    void add(PointCloud cloud);
+    /// Everything added so far; the pile is empty afterwards.
+    PointCloud take();
+
+  private:
+    PointCloud all_;
+    bool organised_ = true;
+};
+
 enum class Encoding { Binary, Ascii };
 
 /// PCD 0.7: x y z as float32, the viewpoint as translation and quaternion, organised as the cloud
@@ -26,8 +50,8 @@ enum class Encoding { Binary, Ascii };
 std::string pcdOf(const PointCloud& cloud, Encoding encoding);
 
 /// PLY 1.0: x y z as float, vertices in order. Missing points are left out; an organised cloud
-/// keeps its rows by `obj_info num_cols`, `num_rows` and an element range_grid, as Stanford's range
-/// scans do.
+/// keeps its rows through `obj_info num_cols`, `num_rows` and an element range_grid, as Stanford's
+/// range scans do.
 std::string plyOf(const PointCloud& cloud, Encoding encoding);
 
 }  // namespace ispace

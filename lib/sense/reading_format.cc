@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <cassert>
 #include <cstring>
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/carmen_log.h"
-#include "sense/depth_picture.h"
-#include "sense/obstacle_map.h"
-#include "sense/reading_csv.h"
-#include "sense/reading_jsonl.h"
+#include "sense/depth_png.h"
+#include "sense/reading_picture.h"
+#include "sense/reading_text.h"
 #include "sensor/kind.h"
 
 namespace ispace {
@@ -28,11 +26,7 @@ class Base : public ReadingFormat {
 
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
-        std::string bytes = header();
-        append(bytes, index, reading);
-        std::vector<ReadingFile> files;
-        files.push_back({ending_, std::move(bytes)});
-        return files;
+        return {{ending_, whole(index, reading)}};
     }
 
     [[nodiscard]] std::vector<std::string> endings() const override { return {ending_}; }
@@ -51,6 +45,12 @@ class Base : public ReadingFormat {
                          " is a " + std::string(kindOf(one.model).keyword) +
                          "; choose sensors with --select, or another format with --to");
     }
+    /// A reading as a file of its own.
+    [[nodiscard]] virtual std::string whole(std::size_t index, const Reading& reading) const {
+        std::string bytes = header();
+        append(bytes, index, reading);
+        return bytes;
+    }
     static bool hasRanges(const Sensor& one) { return !one.is<Tag>(); }
 
     const Sensors& sensors_;
@@ -68,13 +68,9 @@ class Jsonl final : public Base {
         return scanHeaderLine(options_.history, options_.seed);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            for (const Scan& scan : *scans) appendScanLine(out, sensor(index), scan);
-        } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            appendDepthLine(out, sensor(index), *frame);
-        } else {
-            appendBurstLine(out, sensor(index), std::get<Burst>(reading), sensors_.receivers);
-        }
+        std::visit(
+            [&](const auto& one) { appendLines(out, sensor(index), one, sensors_.receivers); },
+            reading);
     }
 };
 
@@ -82,35 +78,23 @@ class Csv final : public Base {
   public:
     Csv(const Sensors& sensors, FormatOptions options)
         : Base(sensors, std::move(options), ".csv") {}
-    [[nodiscard]] std::string header() const override { return headerOf(sensors_.read.front()); }
+    [[nodiscard]] std::string header() const override { return csvHeader(sensors_.read.front()); }
     void checkStream() const override {
         for (const Sensor& one : sensors_.read)
             if (one.model.index() != sensors_.read.front().model.index())
                 refuse("csv", "sensors of one kind", one);
     }
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
-                                                 const Reading& reading) const override {
-        std::string bytes = headerOf(sensor(index));
+    [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
+        std::string bytes = csvHeader(sensor(index));
         append(bytes, index, reading);
-        std::vector<ReadingFile> files;
-        files.push_back({endings().front(), std::move(bytes)});
-        return files;
+        return bytes;
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            appendLaserRows(out, sensor(index), *scans, options_.coordinates);
-        } else if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
-            appendRangerRows(out, sensor(index), *frame, options_.coordinates);
-        } else {
-            appendBurstRow(out, sensor(index), std::get<Burst>(reading), sensors_.receivers);
-        }
-    }
-
-  private:
-    static std::string headerOf(const Sensor& one) {
-        return one.is<Laser>()    ? laserCsvHeader()
-               : one.is<Ranger>() ? rangerCsvHeader()
-                                  : ultrasoundCsvHeader();
+        std::visit(
+            [&](const auto& one) {
+                appendRows(out, sensor(index), one, options_.coordinates, sensors_.receivers);
+            },
+            reading);
     }
 };
 
@@ -138,21 +122,32 @@ class Raw final : public Base {
     }
 };
 
-class Cloud final : public Base {
+/// Points, as `write` puts them into a file.
+class Cloud : public Base {
   public:
-    Cloud(const Sensors& sensors, FormatOptions options, bool is_pcd)
-        : Base(sensors, std::move(options), is_pcd ? ".pcd" : ".ply"), is_pcd_(is_pcd) {
-        accept(is_pcd ? "pcd" : "ply", "points", hasRanges);
+    using Writer = std::string (*)(const PointCloud& cloud, Encoding encoding);
+    Cloud(const Sensors& sensors, FormatOptions options, const std::string& name, Writer write)
+        : Base(sensors, std::move(options), "." + name), write_(write) {
+        accept(name, "points", hasRanges);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        const PointCloud cloud = cloudOf(sensors_, index, reading, options_.coordinates);
-        out += is_pcd_ ? pcdOf(cloud, options_.encoding) : plyOf(cloud, options_.encoding);
+        out += write_(cloudOf(sensors_, index, reading, options_.coordinates), options_.encoding);
     }
     [[nodiscard]] bool isStream() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return options_.encoding == Encoding::Binary; }
 
   private:
-    bool is_pcd_;
+    Writer write_;
+};
+
+struct Pcd final : Cloud {
+    Pcd(const Sensors& sensors, FormatOptions options)
+        : Cloud(sensors, std::move(options), "pcd", pcdOf) {}
+};
+
+struct Ply final : Cloud {
+    Ply(const Sensors& sensors, FormatOptions options)
+        : Cloud(sensors, std::move(options), "ply", plyOf) {}
 };
 
 class Carmen final : public Base {
@@ -172,18 +167,15 @@ class Carmen final : public Base {
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         append(out, index + 1, sensor(index), std::get<std::vector<Scan>>(reading));
     }
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
-                                                 const Reading& reading) const override {
+    [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
         std::string bytes = header();
         append(bytes, 1, sensor(index), std::get<std::vector<Scan>>(reading));
-        std::vector<ReadingFile> files;
-        files.push_back({endings().front(), std::move(bytes)});
-        return files;
+        return bytes;
     }
     void checkStream() const override {
         // ROBOTLASER1 and ROBOTLASER2: readers know no more.
-        constexpr std::size_t kMost = 2;
-        if (sensors_.read.size() > kMost)
+        constexpr std::size_t kMaxLasers = 2;
+        if (sensors_.read.size() > kMaxLasers)
             throw UsageError("a CARMEN log tells two lasers apart, and these are " +
                              std::to_string(sensors_.read.size()) +
                              ": name a folder (-o DIR/), or choose some with --select");
@@ -241,20 +233,20 @@ class Png final : public Base {
         }
         return files;
     }
-    [[nodiscard]] std::vector<std::string> doubts() const override {
-        std::vector<std::string> doubts;
-        const double farthest = kMostDepth / options_.depth_per_metre;
+    [[nodiscard]] std::vector<std::string> warnings() const override {
+        std::vector<std::string> found;
+        const double farthest = kMaxDepth / options_.depth_per_metre;
         for (const Sensor& placed : sensors_.read) {
             if (!placed.is<Ranger>()) continue;
             const Ranger& ranger = placed.as<Ranger>();
             const double most = ranger.ambiguity > 0 ? std::min(ranger.ambiguity, ranger.max_range)
                                                      : ranger.max_range;
             if (most > farthest)
-                doubts.push_back(placed.id + " sees as far as " + formatDouble(most) +
-                                 " m, and 16 bits end at " + formatDouble(farthest) +
-                                 " m, beyond which depths are 0; lower --depth-scale");
+                found.push_back(placed.id + " sees as far as " + formatDouble(most) +
+                                " m, and 16 bits end at " + formatDouble(farthest) +
+                                " m, beyond which depths are 0; lower --depth-scale");
         }
-        return doubts;
+        return found;
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
         std::vector<std::string> endings = Base::endings();
@@ -269,27 +261,37 @@ class Png final : public Base {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
-    static constexpr double kMostDepth = 65535;
+    static constexpr double kMaxDepth = 65535;
     static constexpr const char *kColor = "-color.png", *kCameraInfo = ".yaml";
 };
 
+using Maker = std::unique_ptr<ReadingFormat> (*)(const Sensors& sensors, FormatOptions options);
+
+template <typename Format>
+std::unique_ptr<ReadingFormat> make(const Sensors& sensors, FormatOptions options) {
+    return std::make_unique<Format>(sensors, std::move(options));
+}
+
+/// The table: a new format is a class above and a row here.
+constexpr std::pair<std::string_view, Maker> kFormats[] = {
+    {"jsonl", make<Jsonl>}, {"csv", make<Csv>},       {"raw", make<Raw>}, {"pcd", make<Pcd>},
+    {"ply", make<Ply>},     {"carmen", make<Carmen>}, {"png", make<Png>}};
+
 }  // namespace
 
-const std::vector<std::string>& readingFormats() {
-    static const std::vector<std::string> names = {"jsonl", "csv",    "raw", "pcd",
-                                                   "ply",   "carmen", "png"};
+std::vector<std::string> readingFormats() {
+    std::vector<std::string> names;
+    for (const auto& format : kFormats) names.emplace_back(format.first);
     return names;
 }
 
 std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
                                           FormatOptions options) {
-    if (name == "csv") return std::make_unique<Csv>(sensors, std::move(options));
-    if (name == "raw") return std::make_unique<Raw>(sensors, std::move(options));
-    if (name == "pcd") return std::make_unique<Cloud>(sensors, std::move(options), true);
-    if (name == "ply") return std::make_unique<Cloud>(sensors, std::move(options), false);
-    if (name == "carmen") return std::make_unique<Carmen>(sensors, std::move(options));
-    if (name == "png") return std::make_unique<Png>(sensors, std::move(options));
-    return std::make_unique<Jsonl>(sensors, std::move(options));
+    const auto* const found =
+        std::find_if(std::begin(kFormats), std::end(kFormats),
+                     [&](const auto& format) { return format.first == name; });
+    assert(found != std::end(kFormats));
+    return found->second(sensors, std::move(options));
 }
 
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
@@ -300,43 +302,6 @@ PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& re
     if (const auto* frame = std::get_if<DepthFrame>(&reading))
         return cloudOf(one.as<Ranger>(), *frame, in);
     return {};
-}
-
-namespace {
-
-void appendReturns(std::vector<float>& to, const std::vector<float>& xyz) {
-    for (std::size_t i = 0; i < xyz.size(); i += 3)
-        if (!std::isnan(xyz[i])) to.insert(to.end(), {xyz[i], xyz[i + 1], xyz[i + 2]});
-}
-
-}  // namespace
-
-void CloudPile::add(PointCloud cloud) {
-    if (all_.width == 0 && all_.xyz.empty()) {
-        all_ = std::move(cloud);
-        return;
-    }
-    if (organised_ && cloud.width != all_.width) {
-        organised_ = false;
-        std::vector<float> returns;
-        appendReturns(returns, all_.xyz);
-        all_.xyz = std::move(returns);
-    }
-    if (organised_) {
-        all_.height += cloud.height;
-        all_.xyz.insert(all_.xyz.end(), cloud.xyz.begin(), cloud.xyz.end());
-    } else {
-        appendReturns(all_.xyz, cloud.xyz);
-    }
-}
-
-PointCloud CloudPile::take() {
-    if (!organised_) {
-        all_.width = all_.xyz.size() / 3;
-        all_.height = 1;
-    }
-    organised_ = true;
-    return std::exchange(all_, PointCloud());
 }
 
 }  // namespace ispace

@@ -38,7 +38,7 @@ class ReadingFormat {
     /// \throws UsageError if one file cannot hold the readings of all these sensors
     virtual void checkStream() const {}
     /// What of the readings it may lose, a phrase each.
-    [[nodiscard]] virtual std::vector<std::string> doubts() const { return {}; }
+    [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
     /// Bytes, not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };
@@ -53,25 +53,13 @@ struct FormatOptions {
     int map_pixels = 800;                          ///< of png: side of an obstacle map
 };
 
-/// Names of the formats: jsonl, csv, raw, pcd, ply, carmen, png.
-const std::vector<std::string>& readingFormats();
+/// Names of the formats.
+std::vector<std::string> readingFormats();
 
 /// \throws UsageError for sensors that the format cannot hold
+/// \pre the name is one of readingFormats()
 std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
                                           FormatOptions options);
-
-/// Clouds one below the other: a row of one stays a row if all are equally wide, else points
-/// without return are left out and the rest is one row. \pre clouds are in the world's frame
-class CloudPile {
-  public:
-    void add(PointCloud cloud);
-    /// Everything; nothing is left.
-    PointCloud take();
-
-  private:
-    PointCloud all_;
-    bool organised_ = true;
-};
 
 /// The points of a reading; empty for a burst.
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,

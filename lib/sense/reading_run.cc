@@ -4,12 +4,154 @@
 #include <tbb/concurrent_queue.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <memory>
 
+#include "base/error.h"
+#include "base/number.h"
+
 namespace ispace {
+
+namespace {
+
+/// A line longer than this is no pose.
+constexpr std::size_t kLongestLine = 4096;
+
+constexpr int kLastFrame = std::numeric_limits<int>::max();
+
+}  // namespace
+
+std::int64_t StillSource::count() const {
+    return static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(sensors_->read.size());
+}
+
+void StillSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    while (batch.size() < most && frame_ < frames_ && !sensors_->read.empty()) {
+        const Sensor& sensor = sensors_->read[sensor_];
+        batch.push_back({.sensor = sensor_,
+                         .frame = frame_,
+                         .time = wholeNanoseconds(frame_ / readingRate(sensor.model)),
+                         .pose = sensor.pose,
+                         .way = {}});
+        if (++sensor_ == sensors_->read.size()) {
+            sensor_ = 0;
+            ++frame_;
+        }
+    }
+}
+
+FormatError PoseLines::error(const std::string& message) const {
+    return FormatError({name_, line_, 0, message});
+}
+
+std::optional<std::string_view> PoseLines::nextLine(Wait wait) {
+    std::size_t end = buffer_.find('\n', begin_);
+    while (end == std::string::npos && !done_) {
+        if (wait == Wait::No) return std::nullopt;
+        buffer_.erase(0, begin_);
+        begin_ = 0;
+        if (buffer_.size() > kLongestLine) {
+            ++line_;
+            throw error("a line of more than " + std::to_string(kLongestLine) +
+                        " bytes; a pose is `t x y z qx qy qz qw`");
+        }
+        const std::size_t searched = buffer_.size();
+        done_ = !read_(buffer_);
+        end = buffer_.find('\n', searched);
+    }
+    if (end == std::string::npos) {
+        if (begin_ == buffer_.size()) return std::nullopt;
+        end = buffer_.size();  // the last line, without newline
+    }
+    std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
+    begin_ = std::min(end + 1, buffer_.size());
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (line_++ == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    return line;
+}
+
+std::optional<TimedPose> PoseLines::next(Wait wait) {
+    while (const auto line = nextLine(wait)) {
+        try {
+            if (auto pose = parseTumLine(*line)) return pose;
+        } catch (const FormatError& bad) {
+            Diagnostic finding = bad.diagnostics().front();
+            finding.file = name_;
+            finding.line = line_;
+            throw FormatError(finding);
+        }
+    }
+    return std::nullopt;
+}
+
+void PoseSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    // Whoever writes a pose and waits for its scan gets it.
+    using Wait = PoseLines::Wait;
+    while (batch.size() < most) {
+        const auto timed = poses_.next(batch.empty() ? Wait::Yes : Wait::No);
+        if (!timed) return;
+        batch.push_back(
+            {.sensor = 0, .frame = frame_, .time = timed->time, .pose = timed->pose, .way = {}});
+        if (frame_ < kLastFrame) ++frame_;
+    }
+}
+
+/// Checks the next pose beside the last one.
+void MotionSource::follow(const TimedPose& timed) {
+    const double last = window_.back().time;
+    if (timed.time <= last)
+        throw poses_.error("time does not grow; a sensor in motion is at one place at a time");
+    const double readings = (timed.time - last) * rate_;
+    if (frames_ || readings <= kMaxBetween) return;
+    throw poses_.error("from t=" + formatDouble(last) + " to t=" + formatDouble(timed.time) +
+                       " are " + formatDouble(std::round(readings)) + " readings at " +
+                       formatDouble(rate_) + " Hz, wanted at most " + std::to_string(kMaxBetween) +
+                       " between two poses; are times in seconds? --frames N takes as many as N");
+}
+
+/// Reads on until the way from `begin` on reaches a time; false if it ends before, or has not come
+/// so far.
+bool MotionSource::reach(double begin, double time, PoseLines::Wait wait) {
+    while (window_.empty() || window_.back().time < time) {
+        const auto timed = poses_.next(wait);
+        if (!timed) return false;
+        if (!window_.empty()) follow(*timed);
+        // What lies before the pose that the sensor comes from is of no use.
+        if (window_.size() > 1 && window_[1].time <= begin) window_.pop_front();
+        window_.push_back(*timed);
+    }
+    return true;
+}
+
+void MotionSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    if (window_.empty()) {
+        const auto first = poses_.next();
+        if (!first) return;
+        window_.push_back(*first);
+        begin_ = first->time;
+    }
+    using Wait = PoseLines::Wait;
+    while (batch.size() < most && !(frames_ && frame_ >= *frames_)) {
+        const double time = wholeNanoseconds(begin_ + frame_ / rate_);
+        if (!reach(time, time + duration_, batch.empty() ? Wait::Yes : Wait::No)) return;
+        // What lies behind is of no use any more, but for the pose it comes from.
+        while (window_.size() > 1 && window_[1].time <= time) window_.pop_front();
+        ReadingJob job{.sensor = 0, .frame = frame_, .time = time, .pose = {}, .way = {}};
+        for (const TimedPose& timed : window_) {
+            job.way.push_back(timed);
+            if (timed.time >= time + duration_) break;
+        }
+        job.pose = poseAlong(job.way, time);
+        batch.push_back(std::move(job));
+        if (frame_ < kLastFrame) ++frame_;
+    }
+}
 
 namespace {
 

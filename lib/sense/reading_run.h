@@ -1,15 +1,105 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/progress.h"
+#include "sense/reading.h"
 #include "sense/reading_format.h"
-#include "sense/reading_source.h"
 
 namespace ispace {
+
+/// Says what is to be read, in order, bit by bit.
+class ReadingSource {
+  public:
+    virtual ~ReadingSource() = default;
+    /// Puts the next jobs into `batch`, about `most` of them at most, as soon as there are some;
+    /// none at the end. Memory does not grow with what was said. Where it throws, `batch` has what
+    /// comes before.
+    virtual void next(std::size_t most, std::vector<ReadingJob>& batch) = 0;
+};
+
+/// Placed sensors, each at its rate from time 0 on: frame by frame, in each the sensors in order.
+class StillSource final : public ReadingSource {
+  public:
+    StillSource(const Sensors& sensors, int frames) : sensors_(&sensors), frames_(frames) {}
+    void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+    /// All jobs.
+    [[nodiscard]] std::int64_t count() const;
+
+  private:
+    const Sensors* sensors_;
+    int frames_;
+    int frame_ = 0;
+    std::size_t sensor_ = 0;
+};
+
+/// Reads more bytes to the end of a buffer; false at the end of the file.
+using ByteReader = std::function<bool(std::string& buffer)>;
+
+/// The poses of a TUM trajectory, line by line.
+class PoseLines {
+  public:
+    /// `name` is that of the file, for messages.
+    PoseLines(ByteReader read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
+    enum class Wait { Yes, No };
+    /// The next pose; nothing at the end, or, where it must not wait, if none has come yet.
+    /// \throws FormatError with file and line
+    std::optional<TimedPose> next(Wait wait = Wait::Yes);
+    [[nodiscard]] int line() const { return line_; }
+    [[nodiscard]] FormatError error(const std::string& message) const;
+
+  private:
+    std::optional<std::string_view> nextLine(Wait wait);
+
+    ByteReader read_;
+    std::string name_;
+    std::string buffer_;
+    std::size_t begin_ = 0;
+    int line_ = 0;
+    bool done_ = false;
+};
+
+/// One sensor, at each pose of a trajectory once: frame k at pose k and its time.
+class PoseSource final : public ReadingSource {
+  public:
+    explicit PoseSource(PoseLines poses) : poses_(std::move(poses)) {}
+    void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+
+  private:
+    PoseLines poses_;
+    int frame_ = 0;
+};
+
+/// One sensor that drives along a trajectory: frame k at the first pose's time + k / rate, as long
+/// as it is done before the last pose. Times must grow; with a number of frames it ends after them,
+/// without one there are at most kMaxBetween between two poses: a mistyped time would be
+/// millions. \throws FormatError where it is not so
+class MotionSource final : public ReadingSource {
+  public:
+    static constexpr int kMaxBetween = 100'000;
+
+    MotionSource(PoseLines poses, double rate, double duration, std::optional<int> frames = {})
+        : poses_(std::move(poses)), rate_(rate), duration_(duration), frames_(frames) {}
+    void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+
+  private:
+    bool reach(double begin, double time, PoseLines::Wait wait);
+    void follow(const TimedPose& timed);
+
+    PoseLines poses_;
+    double rate_, duration_;
+    std::optional<int> frames_;
+    double begin_ = 0;
+    std::deque<TimedPose> window_;
+    int frame_ = 0;
+};
 
 /// Some readings, ready to be written: in the order of their jobs.
 struct Readings {

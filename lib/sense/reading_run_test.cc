@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/doubts.h"
 #include "sense/test_readings.h"
+#include "sense/warnings.h"
 
 namespace ispace {
 
@@ -161,19 +161,19 @@ TEST(CloudPile, KeepsRowsOfOneWidthAndDropsMissingPointsElse) {
     EXPECT_EQ(pile.take().size(), 0U);
 }
 
-TEST(Doubts, SensorsWithoutPlaceAndInsideSolids) {
+TEST(SensorWarnings, SensorsWithoutPlaceAndInsideSolids) {
     const Scene scene = testing::scene(kRoom + "cube id=c at=6,1 size=1,1,1\n",
                                        "laser id=a\nranger id=b\nlaser id=in at=6,1\n"
                                        "laser id=on at=6,0.5\nlaser id=touching at=6,0.50005\n"
                                        "laser id=over at=6,1,1.2\n"
                                        "tag at=1,1\nultrasound id=u at=6,1,0.9\n");
-    const std::vector<std::string> all = doubtsAbout(scene, sensorsOf(scene, {}), {});
+    const std::vector<std::string> all = sensorWarnings(scene, sensorsOf(scene, {}), {});
     ASSERT_EQ(all.size(), 4U);
     EXPECT_EQ(all[0].substr(0, 15), "a has no place ");
     EXPECT_EQ(all[1].substr(0, 15), "b has no place ");
     EXPECT_EQ(all[2], "in stands inside something solid at 6,1,0.15");
     EXPECT_EQ(all[3], "u stands inside something solid at 6,1,0.9");
-    EXPECT_TRUE(doubtsAbout(scene, sensorsOf(scene, {"o*"}), {"o*"}).empty());
+    EXPECT_TRUE(sensorWarnings(scene, sensorsOf(scene, {"o*"}), {"o*"}).empty());
 }
 
 /// A trajectory as a source would read it, in pieces of some bytes.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "layout/test_layout.h"
-#include "sense/bodies.h"
+#include "sense/sensors.h"
 #include "sense/test_readings.h"
 
 namespace ispace {

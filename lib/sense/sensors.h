@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "layout/scene.h"
+#include "trace/moving_bodies.h"
 
 namespace ispace {
 
@@ -32,5 +34,13 @@ bool isSelected(const std::string& id, const std::vector<std::string>& globs);
 
 /// A time in seconds as the nearest whole nanosecond, which prints as short as it should.
 double wholeNanoseconds(double seconds);
+
+/// The robots and people of a scene where they start; those of a robot are owned by its index in
+/// Scene::robots.
+std::vector<MovingBody> bodiesOf(const Scene& scene);
+
+MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
+/// A person's legs, trunk, arms and head.
+std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner);
 
 }  // namespace ispace

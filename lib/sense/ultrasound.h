@@ -52,7 +52,7 @@ struct Hearing {
 /// - and if both are, that on the side to which the axes of the receivers point on average is
 ///   taken, and the dilution of precision tells that there is another.
 ///
-/// Nothing with fewer than kLeastReceivers, where they do not fix a place (in one line), where no
+/// Nothing with fewer than kMinReceivers, where they do not fix a place (in one line), where no
 /// place is left, or where two are and the axes point along the plane. A place in the plane of the
 /// receivers has a dilution of precision beyond all bounds across that plane, which may be
 /// +infinity. \pre distances are finite

@@ -96,7 +96,7 @@ TEST(Burst, ANoiseFreeTagIsFoundAnywhereInTheRoom) {
             const double y = 0.25 + 0.5 * row;
             for (const double z : {0.0, 0.15, 1.0, 2.3, 2.39}) {
                 const Burst burst = burstOf(world, tagAt({x, y, z}), receivers);
-                if (burst.heard.size() < kLeastReceivers) continue;  // beside flat cones
+                if (burst.heard.size() < kMinReceivers) continue;  // beside flat cones
                 ASSERT_TRUE(burst.fix);
                 ASSERT_LT(length(burst.fix->position - Point3{x, y, z}), 1e-3)
                     << x << ' ' << y << ' ' << z;
@@ -351,7 +351,7 @@ TEST(SimpleModel, IsTheTruePlaceWithoutNoise) {
     // What receivers hear of it is told all the same, but not used.
     const Burst heard = burstOf(room(), tag, ceiling());
     EXPECT_EQ(heard.simple, (Point2{3, 2}));
-    EXPECT_GE(heard.heard.size(), kLeastReceivers);
+    EXPECT_GE(heard.heard.size(), kMinReceivers);
     EXPECT_FALSE(heard.fix);
 }
 

@@ -8,20 +8,20 @@
 namespace ispace {
 
 void addNoiseKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMost = 1e3;
+    constexpr double kMax = 1e3;
     keys.push_back({.name = "bias",
                     .type = KeyType::Number,
                     .unit = Unit::Length,
                     .help = "added to each distance measured, with scan --noise (as all of these)",
-                    .lower = -kMost,
-                    .upper = kMost});
+                    .lower = -kMax,
+                    .upper = kMax});
     keys.push_back({.name = "sigma",
                     .type = KeyType::Tuple,
                     .help = "s0,s1,s2: at distance r its standard deviation is s0 + s1 r + s2 r^2",
                     .min_count = 1,
                     .max_count = 3,
-                    .lower = -kMost,
-                    .upper = kMost});
+                    .lower = -kMax,
+                    .upper = kMax});
     keys.push_back({.name = "angle_sigma",
                     .type = KeyType::Number,
                     .unit = Unit::Angle,
@@ -48,7 +48,7 @@ void addNoiseKeys(std::vector<KeySpec>& keys) {
                     .unit = Unit::Length,
                     .help = "distances are whole multiples of this; 0: any",
                     .lower = 0,
-                    .upper = kMost});
+                    .upper = kMax});
 }
 
 void applyNoise(const Record& record, RangeNoise& noise, Diagnostics& findings) {

@@ -130,7 +130,7 @@ const SensorKind kUltrasoundKind = {
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,
-    .together = kLeastReceivers};
+    .together = kMinReceivers};
 
 const SensorKind kTagKind = {.keyword = "tag",
                              .noun = "tag",

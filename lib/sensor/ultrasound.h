@@ -13,7 +13,7 @@
 namespace ispace {
 
 /// Least receivers that together locate a tag (thesis 3.4.3): where so many hear, floor is covered.
-constexpr std::size_t kLeastReceivers = 4;
+constexpr std::size_t kMinReceivers = 4;
 
 /// An ultrasonic receiver: hears a tag that is in reach, within a cone about its axis, and in
 /// sight.

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "sense/bodies.h"
+#include "sense/sensors.h"
 
 namespace ispace {
 
@@ -45,8 +45,8 @@ std::int64_t Periods::newest(SimTime time) const {
 SimTime Periods::begin(std::int64_t k) const {
     if (numerator_ == 0) return k == 0 ? SimTime(0) : SimTime::max();
     const __int128 begin = (k * denominator_ + numerator_ - 1) / numerator_;
-    constexpr __int128 kMost = std::numeric_limits<SimTime::rep>::max();
-    return SimTime(static_cast<SimTime::rep>(std::min(begin, kMost)));
+    constexpr __int128 kMax = std::numeric_limits<SimTime::rep>::max();
+    return SimTime(static_cast<SimTime::rep>(std::min(begin, kMax)));
 }
 
 LaserReader::LaserReader(const Scene& scene)

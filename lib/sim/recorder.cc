@@ -19,7 +19,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/reading_jsonl.h"
+#include "sense/reading_text.h"
 
 namespace ispace {
 
@@ -28,7 +28,7 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kFlushEvery = std::chrono::milliseconds(100);
-constexpr std::size_t kMostPending = std::size_t{1} << 20;  // bytes of a file
+constexpr std::size_t kMaxPending = std::size_t{1} << 20;  // bytes of a file
 
 [[noreturn]] void fail(const std::string& name, int error) {
     throw std::system_error(error, std::generic_category(), name);
@@ -260,7 +260,7 @@ void Recorder::Data::appendScans(const World& world) {
         const SensorReading& reading = world.reading(laser);
         appendScanLine(scans.pending, reading.sensor, reading.scan);
         // One step of many lasers may be more than should be held.
-        if (scans.pending.size() > kMostPending) scans.flush();
+        if (scans.pending.size() > kMaxPending) scans.flush();
     }
     scans.endStep(world.steps());
 }
@@ -353,7 +353,7 @@ void Recorder::record(const World& world) {
         data.endEarly();
         throw;
     }
-    const bool much = data.robots.pending.size() > kMostPending;
+    const bool much = data.robots.pending.size() > kMaxPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
 

@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "layout/test_layout.h"
-#include "sense/reading_jsonl.h"
+#include "sense/reading_text.h"
 
 namespace ispace {
 namespace {

@@ -143,10 +143,10 @@ Numbers numbersOf(const Work& work) {
 /// Why nothing is covered; "" where something is.
 std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
     const auto [receivers, others] = numbersOf(work);
-    const std::size_t together = others + receivers / kLeastReceivers;
+    const std::size_t together = others + receivers / kMinReceivers;
     const auto times = static_cast<std::size_t>(work.how.redundancy);
-    if (receivers > 0 && receivers < kLeastReceivers)
-        return "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
+    if (receivers > 0 && receivers < kMinReceivers)
+        return "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
                " receivers have to hear a tag, here are " + std::to_string(receivers);
     if (times > 1 && together < times)
         return "nothing counts: floor has to be seen by " + std::to_string(times) +

@@ -17,7 +17,6 @@
 #include "cover/trace_file.h"
 #include "coverage/options.h"
 #include "layout/scene.h"
-#include "sense/doubts.h"
 #include "sense/ultrasound.h"
 
 namespace {
@@ -36,11 +35,11 @@ void warn(const CoverageToolOptions& options, const std::string& text) {
 
 /// Of what a user may not have meant, and of what is left out.
 void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
-    for (const std::string& doubt : doubtsAbout(scene, sensorsOf(scene, {}), {}, true))
+    for (const std::string& doubt : sensorWarnings(scene, sensorsOf(scene, {}), {}, true))
         warn(options, doubt);
     if (const std::size_t count = sensorsOf<Receiver>(scene).size();
-        count > 0 && count < kLeastReceivers)
-        warn(options, "ultrasound covers nothing: at least " + std::to_string(kLeastReceivers) +
+        count > 0 && count < kMinReceivers)
+        warn(options, "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
                           " receivers have to hear a tag, here are " + std::to_string(count));
     constexpr std::string_view kUnmeasured[] = {"camera"};
     for (const std::string& phrase : leftOut(scene, kUnmeasured, "measured")) warn(options, phrase);

@@ -14,8 +14,8 @@
 #include "scan/delivery.h"
 #include "scan/options.h"
 #include "scan/pose_sensor.h"
-#include "sense/bodies.h"
-#include "sense/doubts.h"
+#include "sense/sensors.h"
+#include "sense/warnings.h"
 
 namespace {
 
@@ -124,9 +124,9 @@ void scan(const ScanCommand& command) {
     if (!moves) warn(options, leftOut(scene, kUnread, "simulated", is_selected));
     const Sensors sensors =
         moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
-    if (!moves) warn(options, doubtsAbout(scene, sensors, options.select));
+    if (!moves) warn(options, sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
-    warn(options, format->doubts());
+    warn(options, format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
 
     Worlds worlds(scene.environment);

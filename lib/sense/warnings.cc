@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/doubts.h"
+#include "sense/warnings.h"
 
 #include <map>
 
@@ -16,10 +16,10 @@ struct SolidJudge::Data {
 
     /// The solids of one height.
     const SolidTree* at(double height) {
-        constexpr std::size_t kMostLevels = 64;
+        constexpr std::size_t kMaxLevels = 64;
         const auto known = levels.find(height);
         if (known != levels.end()) return &known->second;
-        if (levels.size() == kMostLevels) return nullptr;
+        if (levels.size() == kMaxLevels) return nullptr;
         return &levels.emplace(height, environment.slice(height).solids).first->second;
     }
 };
@@ -33,17 +33,18 @@ bool SolidJudge::isInside(Point3 place) {
     return level != nullptr && level->isInside(place.onFloor(), kRayEpsilon);
 }
 
-std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
-                                     const std::vector<std::string>& globs, bool with_receivers) {
-    std::vector<std::string> doubts;
+std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& sensors,
+                                        const std::vector<std::string>& globs,
+                                        bool with_receivers) {
+    std::vector<std::string> warnings;
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
         const SensorKind* kind = sensorKind(record.keyword());
         if (kind == nullptr || !kind->is_read || record.has("at") || record.has("on") ||
             !isSelected(scene.ids[i], globs))
             continue;
-        doubts.push_back(scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
-                         (record.keyword() == "laser" ? ", or let arrange place it" : ""));
+        warnings.push_back(scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
+                           (record.keyword() == "laser" ? ", or let arrange place it" : ""));
     }
     SolidJudge judge(scene.environment);
     bool listens = with_receivers;
@@ -59,7 +60,7 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
         for (const double part : {place.x, place.y, place.z})
             phrase.append(formatDouble(part)).append(",");
         phrase.pop_back();
-        doubts.push_back(std::move(phrase));
+        warnings.push_back(std::move(phrase));
     };
     for (const Sensor& sensor : sensors.read) {
         check(sensor);
@@ -67,7 +68,7 @@ std::vector<std::string> doubtsAbout(const Scene& scene, const Sensors& sensors,
     }
     if (listens)
         for (const Sensor& receiver : sensors.receivers) check(receiver);
-    return doubts;
+    return warnings;
 }
 
 }  // namespace ispace

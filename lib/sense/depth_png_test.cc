@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/depth_picture.h"
+#include "sense/depth_png.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -7,8 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "draw/picture.h"
-#include "sense/sample_readings.h"
+#include "sense/test_readings.h"
 
 namespace ispace {
 namespace {
@@ -64,57 +63,6 @@ TEST(DepthPng, HoldsNothingButThePicture) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double millimetres = double{frame.depths[i]} * 1000;
         ASSERT_EQ(samples[i], std::isinf(millimetres) ? 0 : std::lround(millimetres)) << i;
-    }
-}
-
-struct Rgb {
-    int red, green, blue;
-};
-Rgb rgbAt(const Image& image, int x, int y) {
-    const std::uint32_t pixel = image.at(x, y);
-    return {static_cast<int>(pixel >> 16U), static_cast<int>(pixel >> 8U & 0xFFU),
-            static_cast<int>(pixel & 0xFFU)};
-}
-
-TEST(ColorDepth, NearIsWarmFarIsColdNoReturnIsBlack) {
-    Sensor sensor = smallRanger(Projection::Pinhole, 176, 144);
-    DepthFrame frame;
-    frame.depths.assign(sensor.as<Ranger>().pixels(), kNone);
-    for (std::size_t i = 0; i < frame.depths.size(); ++i) {
-        if (i % 176 < 60) frame.depths[i] = 0.3F;
-        if (i % 176 > 115) frame.depths[i] = 4.8F;
-    }
-    const std::string png = colorDepthPng(sensor, frame);
-    EXPECT_EQ(png, colorDepthPng(sensor, frame));
-    const Image image = decodePng(png);
-    ASSERT_GT(image.width, 3 * 176);
-    ASSERT_GT(image.height, 3 * 144);
-    const int middle = image.height / 2;
-    EXPECT_GT(rgbAt(image, 16 + 3 * 30, middle).red, 120);
-    EXPECT_LT(rgbAt(image, 16 + 3 * 30, middle).blue, 60);
-    EXPECT_EQ(image.at(16 + 3 * 88, middle), 0U);
-    EXPECT_GT(rgbAt(image, 16 + 3 * 150, middle).blue, 120);
-    EXPECT_LT(rgbAt(image, 16 + 3 * 150, middle).red, 100);
-    // Pixels are shown sharp, and no farther than they reach.
-    EXPECT_EQ(image.at(16 + 3 * 60 - 1, middle), image.at(16, middle));
-    EXPECT_EQ(image.at(16 + 3 * 60, middle), 0U);
-    EXPECT_EQ(image.at(16 + 3 * 176, middle), 0xFFFFFFU);
-}
-
-TEST(ColorDepth, OddRangersAreDrawn) {
-    for (const Projection projection : {Projection::Pinhole, Projection::Spherical}) {
-        for (const auto& [columns, rows] :
-             {std::pair{1, 1}, std::pair{5000, 2}, std::pair{3, 5000}}) {
-            Sensor sensor = smallRanger(projection, columns, rows);
-            sensor.id = std::string(300, 'x');
-            sensor.as<Ranger>().min_range = sensor.as<Ranger>().max_range = 0;
-            DepthFrame frame;
-            frame.depths.assign(sensor.as<Ranger>().pixels(), 0.0F);
-            EXPECT_GT(decodePng(colorDepthPng(sensor, frame)).height, 100);
-            sensor.as<Ranger>().max_range = 1e4;
-            frame.depths.front() = 1e4F;
-            EXPECT_GT(decodePng(colorDepthPng(sensor, frame)).height, 100);
-        }
     }
 }
 
