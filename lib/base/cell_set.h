@@ -46,14 +46,14 @@ void CellSet::forEach(Visit visit) const {
             visit(i * 64 + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
-/// Cells next to each other, in the order of the grid: first, first + 1, ..., end - 1. A run may
-/// go on from the end of a row to the beginning of the next.
+/// Consecutive cells of a grid: first, first + 1, ..., end - 1. A run may continue from the end of
+/// a row at the beginning of the next.
 struct CellRun {
     std::uint32_t first = 0, end = 0;
     friend bool operator==(const CellRun&, const CellRun&) = default;
 };
 
-/// Cells in parts, each part a list of disjoint runs, ascending.
+/// Cells in parts; each part is a list of disjoint runs in ascending order.
 struct CellParts {
     std::vector<CellRun> runs;
     std::vector<std::uint32_t> first;  ///< part k: runs [first[k], first[k + 1])
@@ -61,7 +61,7 @@ struct CellParts {
     [[nodiscard]] std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
 };
 
-/// The runs of a set, one part. O(cells / 64 + runs)
+/// The set as one part. O(cells / 64 + runs)
 CellParts partOf(const CellSet& cells);
 
 }  // namespace ispace

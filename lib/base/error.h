@@ -23,8 +23,7 @@ class UnmetError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// How bad a finding is. A warning tells of what is probably not meant; the data are good all the
-/// same.
+/// How bad a finding is. A warning points at what was probably not meant; the data are usable.
 enum class Severity { Error, Warning };
 
 /// One finding in an input: `file:line:column: error: message`.
@@ -54,11 +53,11 @@ class FormatError : public std::runtime_error {
 /// Collects findings so that several are reported together.
 class Diagnostics {
   public:
-    /// Printed at most; what lies beyond is counted, not kept.
+    /// Findings kept; any more are only counted.
     static constexpr std::size_t kMax = 20;
 
     void add(Diagnostic diagnostic);
-    /// Takes over the findings of a caught error.
+    /// Adds the findings of a caught error.
     void add(const FormatError& error);
     [[nodiscard]] bool empty() const { return kept_.empty(); }
     [[nodiscard]] bool full() const { return kept_.size() >= kMax; }

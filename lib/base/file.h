@@ -9,12 +9,11 @@
 
 namespace ispace {
 
-/// Bytes that an input may have: a file, and what comes from a pipe or a device, which may never
-/// end.
+/// Most bytes of an input: of a file, and of a pipe or device, which may never end.
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30U,
                         kMaxStreamBytes = std::uint64_t{1} << 30U;
 
-/// A file descriptor, closed at the end unless it is of a standard stream.
+/// Owns a file descriptor; those of standard streams are never closed.
 class OpenFile {
   public:
     explicit OpenFile(int fd = -1) : fd_(fd) {}
@@ -25,17 +24,17 @@ class OpenFile {
     OpenFile& operator=(const OpenFile&) = delete;
 
     [[nodiscard]] int fd() const { return fd_; }
-    /// False, with errno set, if the system could not write all of it.
+    /// False, with errno set, if the system could not write everything.
     bool close();
 
   private:
     int fd_;
 };
 
-/// Everything in a file, or on standard input for "-".
+/// The content of a file, or of standard input for "-".
 /// \throws std::system_error naming the file; also for a directory
-/// \throws FormatError naming the file for more bytes than an input may have, and for a pipe or a
-/// device that begins with 64 KiB of zeros
+/// \throws FormatError naming the file if it is too large, or is a pipe or device that begins with
+/// 64 KiB of zeros
 std::string readAll(const std::string& operand);
 
 /// A file, or standard input for "-", read piece by piece.
@@ -44,7 +43,7 @@ class InputFile {
     /// \throws std::system_error naming the file; also for a directory
     explicit InputFile(const std::string& operand);
 
-    /// Appends what is there, and waits only if there is nothing; false at the end.
+    /// Appends what is available, waiting only if nothing is; false at the end.
     bool read(std::string& bytes);
 
   private:
@@ -52,16 +51,15 @@ class InputFile {
     OpenFile file_;
 };
 
-/// A product on its way to its place: a regular file is written beside its target and renamed by
-/// commit(), so that a reader never sees half of it; without commit() (an error, a signal) the old
-/// file stays and nothing is left behind. "-" is standard output; a device, a pipe and
-/// everything else that is no regular file is written directly. A symbolic link stays, its target
-/// is replaced; an existing file's permissions are kept. Where a run keeps RunFiles, no input is
-/// replaced.
+/// Writes a file atomically: a regular file is written beside its target and renamed by commit(),
+/// so a reader never sees half of it. Without commit() (an error, a signal) the old file stays and
+/// nothing is left behind. "-" is standard output; devices, pipes and anything else that is not a
+/// regular file are written directly. A symbolic link stays and its target is replaced; an existing
+/// file keeps its permissions. While RunFiles lives, no input is replaced.
 ///
-/// TERM, INT and HUP leave nothing behind either; KILL may if it falls into commit(), and so may
-/// any signal on a file system without O_TMPFILE. There is no fsync: the rename is safe against the
-/// end of the process, not against that of the machine.
+/// TERM, INT and HUP leave nothing behind either. KILL may, during commit(), and so may any signal
+/// on a file system without O_TMPFILE. There is no fsync: the rename survives the end of the
+/// process, not a crash of the machine.
 class OutputFile {
   public:
     /// \throws std::system_error if the file cannot be made there; UsageError if it is an input
@@ -72,10 +70,10 @@ class OutputFile {
 
     /// \throws std::system_error naming the target, a full disk included
     void write(std::string_view bytes);
-    /// Puts the file in its place. Nothing can be written afterwards.
+    /// Moves the file to its place. Nothing can be written afterwards.
     void commit();
-    /// The same for files that belong together: all are in their places, or none. The file that
-    /// names the others comes last, so that it never names what is not there.
+    /// The same for files that belong together: all get to their places, or none. Pass the file
+    /// that names the others last, so that it never names a missing one.
     static void commitTogether(std::span<OutputFile* const> files);
 
   private:
@@ -83,11 +81,11 @@ class OutputFile {
     std::unique_ptr<State> state_;
 };
 
-/// Tells early what would fail late: that a file can be made there. Leaves nothing behind; streams,
-/// devices and pipes are left alone. \throws std::system_error as OutputFile
+/// Checks early that a file can be made there, and leaves nothing behind. Streams, devices and
+/// pipes pass. \throws std::system_error as OutputFile
 void mustBeWritable(const std::string& target);
 
-/// OutputFile for a product that is whole in memory.
+/// Writes a whole file from memory, as OutputFile does.
 void writeAll(const std::string& target, std::string_view bytes);
 
 struct NamedBytes {
@@ -95,7 +93,7 @@ struct NamedBytes {
     std::string_view bytes;
 };
 
-/// Files that belong together, the one that names the others last: OutputFile::commitTogether.
+/// Writes files that belong together, in the order that OutputFile::commitTogether wants.
 void writeTogether(std::span<const NamedBytes> products);
 
 /// `file` with this suffix (".pgm") in place of its own.

@@ -6,10 +6,9 @@
 
 namespace ispace {
 
-/// TERM, INT and HUP wait while it lives, whichever thread they reach, and arrive at its end: for
-/// the few system calls between which a process must not end. Handlers get what was meant for
-/// them; signals that are ignored stay ignored. Those who want it at the same time wait for each
-/// other.
+/// Delays TERM, INT and HUP, whichever thread they reach, until its end: for the few system calls
+/// between which a process must not end. Handlers then get their signals; ignored signals stay
+/// ignored. One lives at a time; others wait.
 class HeldSignals {
   public:
     HeldSignals();

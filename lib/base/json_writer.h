@@ -20,10 +20,10 @@ class JsonWriter {
     JsonWriter& beginArray();
     JsonWriter& endArray();
     JsonWriter& key(std::string_view name);
-    /// Invalid UTF-8 is replaced by U+FFFD, so that the result always is valid JSON.
+    /// Invalid UTF-8 becomes U+FFFD, so the result is always valid JSON.
     JsonWriter& value(std::string_view text);
     JsonWriter& value(const char* text) { return value(std::string_view(text)); }
-    /// A number that is not finite becomes null: JSON has no other word for it.
+    /// A number that is not finite becomes null, as JSON has no word for it.
     JsonWriter& value(double number);
     JsonWriter& value(float number);
     JsonWriter& value(std::int64_t number);

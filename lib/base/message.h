@@ -12,11 +12,11 @@ namespace ispace {
 /// for overlong forms, surrogates, and what lies beyond U+10FFFF).
 std::size_t utf8Length(std::string_view text);
 
-/// `text` fit for one line of a message or of history: control characters and bytes that are no
-/// UTF-8 become '?'.
+/// `text` made fit for one line of a message or of history: control characters and bytes that are
+/// not UTF-8 become '?'.
 std::string printable(std::string_view text);
 
-/// What a message shows of an input: "`text`", printable, and cut with "..." where it is long.
+/// A piece of input as messages quote it: "`text`", printable, and cut off with "..." if long.
 std::string excerpt(std::string_view text);
 
 /// The known word a person most likely meant, or "" if none is near: at most a third of the
@@ -24,7 +24,7 @@ std::string excerpt(std::string_view text);
 /// case.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
-/// ", did you mean `height`?" or, with nothing near, "": to be put behind a message.
+/// ", did you mean `height`?", or "" if no word is near: to be appended to a message.
 std::string didYouMean(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace ispace

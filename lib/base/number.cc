@@ -98,14 +98,14 @@ std::string formatFixed(double value, int decimals) {
     return text;
 }
 
-double tidy(double figure, int digits) {
-    if (!std::isfinite(figure)) return figure;
+double tidy(double value, int digits) {
+    if (!std::isfinite(value)) return value;
     std::array<char, kBuffer> buffer;
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), figure,
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                    std::chars_format::scientific, digits - 1)
                          .ptr;
-    std::from_chars(buffer.data(), end, figure);
-    return figure;
+    std::from_chars(buffer.data(), end, value);
+    return value;
 }
 
 std::string formatBytes(std::size_t bytes) {

@@ -11,7 +11,7 @@
 namespace ispace {
 
 /// The whole text as a finite number: no blanks, no trailing junk, no locale, no NaN or infinity.
-/// A leading '+' is allowed. Values beyond the range of double give nothing.
+/// A leading '+' is allowed. Nothing for values beyond the range of double.
 std::optional<double> parseDouble(std::string_view text);
 
 /// The same times 10^exponent, rounded once: ("30.1", -2) is the double nearest to 0.301.
@@ -32,16 +32,15 @@ std::string formatFloat(float value);
 /// Appends formatFloat(value); for long lists.
 void appendFloat(std::string& out, float value);
 
-/// Fixed number of decimals; a result of minus zero is written without sign.
+/// Text with a fixed number of decimals; minus zero is written without sign.
 std::string formatFixed(double value, int decimals);
 
-/// A computed figure as reports write it: the nearest number of so many significant digits. Sums of
-/// areas and shares carry some 1e-15 of themselves as rounding, which would show as digits that
-/// mean nothing: 16.819200000000002 is 16.8192. Never changes the order of two figures, and what is
-/// no finite number stays what it is.
-double tidy(double figure, int digits = 12);
+/// Rounds a computed value to so many significant digits, for reports. Sums of areas and shares
+/// carry relative rounding errors of some 1e-15, which would show as meaningless digits:
+/// 16.819200000000002 becomes 16.8192. Monotonic; infinities and NaN stay as they are.
+double tidy(double value, int digits = 12);
 
-/// A size of memory for people, by powers of 1024: "812 bytes", "19.5 MB", "8 GB".
+/// A size of memory as people read it, in powers of 1024: "812 bytes", "19.5 MB", "8 GB".
 std::string formatBytes(std::size_t bytes);
 
 /// Shortest percentage that parseShare reads back as the same fraction: 0.974 is "97.4%".
@@ -72,7 +71,7 @@ struct UnitSuffix {
     double factor = 1;  ///< whole for all but angles
 };
 
-/// The first has neither exponent nor factor; empty for None and Share.
+/// Suffixes of a unit, the plain one first; empty for None and Share.
 std::span<const UnitSuffix> suffixesOf(Unit unit);
 
 /// "m, km, cm or mm"

@@ -7,8 +7,8 @@
 
 namespace ispace {
 
-/// The folder above the one that holds the running program (`PREFIX` of `PREFIX/bin/envc`): what
-/// comes with the program is found from there, installed, moved or in the build. "" if unknown.
+/// The folder above that of the running program (`PREFIX` of `PREFIX/bin/envc`), from which its
+/// data files are found, whether installed, moved or in a build tree. "" if unknown.
 std::string programPrefix();
 
 class JsonWriter;
@@ -21,13 +21,12 @@ JsonWriter& beginReport(JsonWriter& json, std::string_view schema, std::string_v
 
 /// The commands that touched a stream, oldest first, without the leading "# ".
 ///
-/// A line holds the tool, its operands by base name and the options that change the result, so
-/// that equal work gives equal bytes wherever it is done.
+/// A line holds the tool, the base names of its operands and the options that change the result, so
+/// equal work gives equal bytes wherever it is done.
 using History = std::vector<std::string>;
 
-/// `word` as a shell would need it: quoted if it holds anything but plain characters; control
-/// characters and bytes that are no UTF-8 become '?', so that a history line stays one line of
-/// text.
+/// `word` as a shell needs it, quoted unless all its characters are plain. Control characters and
+/// bytes that are not UTF-8 become '?', so that a history line stays one line of text.
 std::string shellQuote(std::string_view word);
 
 /// The operand as history names it: the base name, "-" for a stream.

@@ -6,24 +6,24 @@
 
 namespace ispace {
 
-/// Where long work reports how far it is, and hears that it should end; the library calls it, the
-/// tool decides what is shown.
+/// Long work reports its progress here and learns whether to stop. The library calls it; the tool
+/// decides what to show.
 class Progress {
   public:
     virtual ~Progress() = default;
-    /// A new phase of `total` units begins; 0: nobody knows how many.
+    /// Begins a phase of `total` units; 0 if unknown.
     virtual void begin(std::string_view phase, std::int64_t total) = 0;
-    /// `count` more units are done. May be called from any thread.
+    /// Counts units done. Callable from any thread.
     virtual void advance(std::int64_t count) = 0;
-    /// What there is so far, in a few words: "best 85.7 %, at most 85.9 %". From any thread.
+    /// The state in a few words: "best 85.7 %, at most 85.9 %". Callable from any thread.
     virtual void note(std::string_view /*text*/) {}
     virtual void end() = 0;
-    /// True once a search should end with the best it has: a signal came, or time is up. Cheap,
-    /// from any thread.
+    /// True once a search should return the best it has, after a signal or at a time limit. Cheap;
+    /// callable from any thread.
     [[nodiscard]] virtual bool stopped() const { return false; }
 };
 
-/// Says nothing.
+/// Shows nothing.
 class SilentProgress final : public Progress {
   public:
     void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// What random numbers are for: those of different purposes are independent.
+/// What random numbers are for; different purposes have independent sequences.
 enum class Purpose : std::uint32_t { Range = 1, Ultrasound = 2, Placement = 3, Candidates = 4 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.
@@ -36,8 +36,8 @@ struct RandomKey {
     std::uint64_t frame = 0;   ///< below 2^56
 };
 
-/// Elements first, first + 1, ... of a sequence; the arrays are of one size, or empty if not
-/// wanted.
+/// Elements first, first + 1, ... of a sequence. All arrays have one size; those not wanted are
+/// empty.
 struct RandomDraws {
     std::span<float> normal = {};   ///< N(0, 1)
     std::span<float> other = {};    ///< N(0, 1), independent of it

@@ -5,13 +5,13 @@
 
 namespace ispace {
 
-/// What a run reads and writes, so that no output replaces an input: while this lives, every
-/// regular file that readAll, InputFile or noteInput meet is known by device and inode, whatever
-/// link it goes by, and so is every target of OutputFile and claimOutput. The second of two that
-/// are the same file is refused by a UsageError.
+/// Keeps a run from overwriting its inputs. While this lives, every regular file that readAll,
+/// InputFile or noteInput meet is known by device and inode, whatever links lead to it, and so is
+/// every target of OutputFile and claimOutput. If two are the same file, the second is refused with
+/// a UsageError.
 ///
-/// One at a time in a process; runTool has it. It is global on purpose: a reader that had to be
-/// handed it could do without. Without one nothing is kept and nothing refused.
+/// One at a time per process; runTool holds it. It is global on purpose, so that no reader can
+/// forget it. Without one nothing is recorded and nothing refused.
 class RunFiles {
   public:
     RunFiles();
@@ -20,22 +20,22 @@ class RunFiles {
     RunFiles& operator=(const RunFiles&) = delete;
 };
 
-/// Tells of a file that is read by other means than readAll and InputFile: call it before the
-/// file is opened. Streams, devices and what is not there do not count.
-/// \throws UsageError if an output goes there
+/// Records a file that is read by other means than readAll and InputFile; call it before opening
+/// the file. Streams, devices and missing files do not count. \throws UsageError if an output goes
+/// there
 void noteInput(const std::string& name);
-/// The same of a file that is open.
+/// The same for an open file.
 void noteInput(int descriptor);
 
-/// Tells early of an output, before work is spent on what it cannot hold; "-" and "" do not count.
+/// Announces an output early, before work is spent in vain; "-" and "" do not count.
 /// \param role for messages: `--report`
 /// \throws UsageError if it is an input, or the target of another claim
 void claimOutput(const std::string& target, const std::string& role);
 
-/// An output that is being written; OutputFile has one.
+/// An output being written; OutputFile holds one.
 class OpenOutput {
   public:
-    /// \param target where the file is going to be, its links resolved; "-" is standard output
+    /// \param target its final path, with links resolved; "-" is standard output
     /// \param name as the user wrote it
     /// \throws UsageError if it is an input, or another output that is open or was claimed and
     ///         written
@@ -44,9 +44,9 @@ class OpenOutput {
     OpenOutput(const OpenOutput&) = delete;
     OpenOutput& operator=(const OpenOutput&) = delete;
 
-    /// Looks again, right before the target is replaced. \throws UsageError
+    /// Checks again, right before the target is replaced. \throws UsageError
     void check() const;
-    /// It is in its place: what it replaced is no output any more.
+    /// Says that the file is in its place.
     void done();
 
   private:
@@ -55,7 +55,7 @@ class OpenOutput {
     bool is_done_ = false;
 };
 
-/// The file that a chain of links names, which need not exist. Keeps relative paths relative.
+/// The file at the end of a chain of links; it need not exist. Relative paths stay relative.
 /// \throws std::system_error for a circle of links
 std::string followLinks(const std::string& target);
 

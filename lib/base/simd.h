@@ -5,14 +5,14 @@
 #include <cstddef>  // defines __GLIBC__ where it is
 #include <cstdint>
 
-/// Before a function: it is compiled for several generations of the processor, and the program
-/// takes the fastest that runs here. Loops in it must be plain enough for the compiler to
-/// vectorise; what it calls must be inlined (ISPACE_INLINE) to profit. Results do not depend on the
-/// choice, as operations of IEEE arithmetic are the same in vectors of any width and none are
+/// Put before a function, compiles it for several generations of the processor; the program runs
+/// the fastest one the machine supports. Its loops must be plain enough for the compiler to
+/// vectorise, and what it calls must be inlined (ISPACE_INLINE) to profit. Results do not depend on
+/// the choice: IEEE arithmetic is the same in vectors of any width, and no operations are
 /// contracted.
 ///
-/// Nothing where resolvers do not work (other processors and C libraries, Clang, sanitizers) or the
-/// compiler does not know those generations (GCC before 12).
+/// Expands to nothing where resolvers do not work (other processors and C libraries, Clang,
+/// sanitizers) or the compiler does not know those generations (GCC before 12).
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     __GNUC__ >= 12 && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define ISPACE_SIMD_CLONES \
@@ -21,12 +21,12 @@
 #define ISPACE_SIMD_CLONES
 #endif
 
-/// Inlined into its callers whatever the compiler thinks.
+/// Inlines a function into its callers whatever the compiler thinks.
 #define ISPACE_INLINE [[gnu::always_inline]] inline
 
-/// Elementary functions of float for loops that the compiler vectorises: additions, multiplications
-/// and operations on bits alone, so that they give the same bits on any processor and in vectors of
-/// any width. Polynomials of the logarithm, sine and cosine are those of Moshier's Cephes library.
+/// Elementary functions of float for loops that the compiler vectorises. They use additions,
+/// multiplications and bit operations only, so they give the same bits on any processor and in
+/// vectors of any width. The polynomials of logarithm, sine and cosine are from Moshier's Cephes.
 namespace ispace::simd {
 
 /// `a` if `first`, else `b`, without a branch that would keep a loop from being vectorised.

@@ -15,7 +15,6 @@
 #include "io/input.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
-#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "layout/schemas.h"
-#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -38,7 +38,7 @@ std::size_t countNeeding(const Coverage& coverage, const CellSet& heard_by_this,
     const CellSet& joint = coverage.sets.back().cells;
     std::size_t count = 0;
     heard_by_this.forEach([&](std::size_t cell) {
-        count += joint.test(cell) && heard[cell] == kLeastReceivers && times[cell] == 1 ? 1 : 0;
+        count += joint.test(cell) && heard[cell] == kMinReceivers && times[cell] == 1 ? 1 : 0;
     });
     return count;
 }

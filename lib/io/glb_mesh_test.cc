@@ -15,7 +15,6 @@
 #include "io/model.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
-#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {

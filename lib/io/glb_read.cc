@@ -16,7 +16,6 @@
 #include "io/glb.h"
 #include "io/glb_file.h"
 #include "io/input.h"
-#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace {

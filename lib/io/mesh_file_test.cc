@@ -11,7 +11,7 @@
 #include "io/input.h"
 #include "io/mesh_parts.h"
 #include "io/test_import.h"
-#include "record/digest.h"
+#include "record/text.h"
 
 namespace ispace {
 namespace {

@@ -28,7 +28,7 @@
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
 #include "io/side_files.h"
-#include "record/digest.h"
+#include "record/text.h"
 
 namespace ispace {
 

@@ -12,7 +12,7 @@
 #include "geom/boolean.h"
 #include "layout/test_check.h"
 #include "layout/test_layout.h"
-#include "record/digest.h"
+#include "record/text.h"
 
 namespace ispace {
 

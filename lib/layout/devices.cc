@@ -30,7 +30,7 @@ void checkFigures(const Record& device, Diagnostics& findings) {
         if (const SensorKind* kind = sensorKind(device.keyword()))
             static_cast<void>(kind->read(device, &device));
         else
-            withFigures(RobotModel(), device);
+            withParameters(RobotModel(), device);
     } catch (const FormatError& error) {
         findings.add(error);
     }

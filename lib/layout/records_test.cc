@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "layout/schemas.h"
-#include "record/digest.h"
 #include "record/test_random_records.h"
 #include "record/text.h"
 #include "record/yaml.h"

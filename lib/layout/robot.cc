@@ -47,7 +47,7 @@ void applySpeed(const SpeedKeys& keys, double& speed, double& greatest, const Re
 
 }  // namespace
 
-RobotModel withFigures(RobotModel base, const Record& record) {
+RobotModel withParameters(RobotModel base, const Record& record) {
     Diagnostics findings;
     applyBody(base, record);
     applySpeed({"speed", "max_speed", "m/s"}, base.speed, base.max_speed, record, findings);
@@ -62,7 +62,7 @@ RobotModel withFigures(RobotModel base, const Record& record) {
 }
 
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices) {
-    return figuresOf<RobotModel>(record, deviceOf(record, devices));
+    return parametersOf<RobotModel>(record, deviceOf(record, devices));
 }
 
 Pose2 floorPoseOf(const Record& record) {

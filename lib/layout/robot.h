@@ -44,7 +44,7 @@ RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
 /// `base` with the figures written in a record put in place of its own; the model stays. A written
 /// max_speed below the speed of `base` lowers that; the same holds for the turn.
 /// \throws FormatError as robotOf
-RobotModel withFigures(RobotModel base, const Record& record);
+RobotModel withParameters(RobotModel base, const Record& record);
 
 /// Pose of a `robot` record, or of any other with `at` and `heading`; without `at` at 0,0.
 Pose2 floorPoseOf(const Record& record);

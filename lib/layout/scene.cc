@@ -11,7 +11,6 @@
 #include "base/message.h"
 #include "env/body.h"
 #include "layout/robot.h"
-#include "record/digest.h"
 #include "record/record.h"
 #include "record/text.h"
 #include "sensor/keys.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "layout/test_layout.h"
-#include "record/digest.h"
+#include "record/text.h"
 
 namespace ispace {
 

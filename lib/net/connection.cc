@@ -93,7 +93,7 @@ bool wouldBlock(const std::error_code& error) {
 }  // namespace
 
 /// Ends the connection if it does not take a role in time.
-void Session::expectRole() {
+void Connection::expectRole() {
     timer_.expires_at(heard_ + limits_.roleless);
     timer_.async_wait([self = shared_from_this()](auto aborted) {
         if (aborted || !self->roleless()) return;
@@ -102,7 +102,7 @@ void Session::expectRole() {
     });
 }
 
-void Session::makeWay(WallTime since) {
+void Connection::makeWay(WallTime since) {
     if (!roleless() || heard_ > since) return;
     catchUp();
     if (!roleless() || heard_ > since) return;
@@ -110,31 +110,31 @@ void Session::makeWay(WallTime since) {
 }
 
 /// Reads what has come: while the world took its time, nobody looked.
-void Session::catchUp() {
+void Connection::catchUp() {
     if (mayAnswer() && !lines_.ready() && !eof_) receive();
 }
 
-void Session::cutOff(std::string_view text) {
+void Connection::cutOff(std::string_view text) {
     if (out_.abandon()) out_.append("\n");
     owed_ = 0;
     refuse(text);
 }
 
 /// Does all that can be done now, and arranges to be called when more can.
-void Session::pump() {
+void Connection::pump() {
     answer();
     flush();
     if (closed()) return;
-    if (conversation_ && !conversation_->waiting()) {
+    if (session_ && !session_->waiting()) {
         const bool left = eof_ && !lines_.ready();
-        if (left || conversation_->closing()) conversation_.reset();
+        if (left || session_->closing()) session_.reset();
     }
-    if (!conversation_) return linger();
+    if (!session_) return linger();
     if (mayAnswer() && lines_.ready()) return pumpLater();
     listen();
 }
 
-void Session::pumpLater() {
+void Connection::pumpLater() {
     if (std::exchange(posted_, true)) return;
     asio::post(socket_.get_executor(), [self = shared_from_this()] {
         self->posted_ = false;
@@ -142,38 +142,38 @@ void Session::pumpLater() {
     });
 }
 
-void Session::answer() {
+void Connection::answer() {
     const auto end = steady_clock::now() + kTurn;
     for (int i = 0; i < kRequestsInTurn && mayAnswer() && steady_clock::now() < end; ++i) {
         if (lines_.tooLong())
-            conversation_->tooLong(limits_.line);
+            session_->tooLong(limits_.line);
         else if (lines_.ready())
-            conversation_->request(lines_.take());
+            session_->request(lines_.take());
         else
             return;
-        const std::string reply = conversation_->take();
+        const std::string reply = session_->take();
         if (!reply.empty()) heard_ = steady_clock::now();
         out_.append(reply);
     }
 }
 
-void Session::stepped() {
-    if (!conversation_) return;
-    const bool waited = conversation_->waiting();
-    conversation_->stepped();
-    out_.append(conversation_->take());
+void Connection::stepped() {
+    if (!session_) return;
+    const bool waited = session_->waiting();
+    session_->stepped();
+    out_.append(session_->take());
     flush();
-    if (waited && !closed() && !conversation_->waiting()) pumpLater();
+    if (waited && !closed() && !session_->waiting()) pumpLater();
 }
 
 /// What to send next; a scan only when there is nothing else.
-std::string_view Session::nextPiece() {
-    if (out_.front().empty() && conversation_) out_.put(conversation_->takeScan());
+std::string_view Connection::nextPiece() {
+    if (out_.front().empty() && session_) out_.put(session_->takeScan());
     return out_.front();
 }
 
 /// Writes as much as the system takes; a handler goes on with the rest.
-void Session::flush() {
+void Connection::flush() {
     while (!writing_ && !closed()) {
         const std::string_view piece = nextPiece();
         if (piece.empty()) return;
@@ -197,18 +197,18 @@ void Session::flush() {
     }
 }
 
-void Session::listen() {
+void Connection::listen() {
     // While a STEP is under way only to see the end of the connection, as long as there is room.
     const bool waits = waiting() && !lines_.ready() && !lines_.tooLong();
     if (reading_ || eof_ || !(mayAnswer() || waits)) return;
     reading_ = true;
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
         self->reading_ = false;
-        if (!failed && !self->closed() && self->conversation_) self->receive();
+        if (!failed && !self->closed() && self->session_) self->receive();
     });
 }
 
-void Session::receive() {
+void Connection::receive() {
     std::array<char, kBlock> block;
     std::error_code error;
     const std::size_t size = socket_.read_some(asio::buffer(block), error);
@@ -222,7 +222,7 @@ void Session::receive() {
 
 /// Sends what there is; then closes. With unread input that would reset the
 /// connection, and the other side might lose what it was told last.
-void Session::linger() {
+void Connection::linger() {
     if (!std::exchange(ending_, true)) closeAfter(limits_.patience);
     if (writing_ || std::exchange(discarding_, true)) return;
     if (eof_) return close();
@@ -232,14 +232,14 @@ void Session::linger() {
     discard();
 }
 
-void Session::closeAfter(std::chrono::nanoseconds time) {
+void Connection::closeAfter(std::chrono::nanoseconds time) {
     timer_.expires_after(time);
     timer_.async_wait([self = shared_from_this()](auto aborted) {
         if (!aborted) self->close();
     });
 }
 
-void Session::discard() {
+void Connection::discard() {
     constexpr int kBlocksInTurn = 16;
     std::array<char, kBlock> block;
     for (int i = 0; i < kBlocksInTurn; ++i) {
@@ -254,22 +254,22 @@ void Session::discard() {
     });
 }
 
-void Session::end() {
+void Connection::end() {
     last_ = true;
-    if (conversation_) {
-        conversation_->finish();
-        out_.append(conversation_->take());
-        conversation_.reset();
+    if (session_) {
+        session_->finish();
+        out_.append(session_->take());
+        session_.reset();
     }
     if (closed()) return;
     discarding_ ? discard() : pump();
 }
 
-void Session::close() {
+void Connection::close() {
     std::error_code ignored;
     timer_.cancel();
     socket_.close(ignored);
-    conversation_.reset();
+    session_.reset();
 }
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/net only: it brings Asio.
+// Private to lib/net, since it includes Asio.
 #pragma once
 
 #include <asio/ip/tcp.hpp>
@@ -11,13 +11,13 @@
 #include <string>
 #include <string_view>
 
-#include "net/conversation.h"
 #include "net/server.h"
+#include "net/session.h"
 
 namespace ispace {
 
-/// Cuts a stream of bytes into lines that end in LF or CRLF. Never holds more than a line of the
-/// greatest length and one block, if lines are taken before more is appended.
+/// Cuts a stream of bytes into lines that end in LF or CRLF. Holds at most one line of the greatest
+/// length and one block, provided that lines are taken before more is appended.
 class LineBuffer {
   public:
     /// `limit`: bytes of a line without its end.
@@ -40,19 +40,18 @@ class LineBuffer {
     std::size_t end_ = std::string::npos;  // its LF
 };
 
-/// What a connection still has to be sent: replies in order, and a scan that many connections
+/// What is still to be sent on a connection: replies in order, and a scan that many connections
 /// share.
 class Outbox {
   public:
     void append(std::string_view text);
     /// \pre front() is empty
     void put(std::shared_ptr<const std::string> scan) { scan_ = std::move(scan); }
-    /// What is to be sent next, in one piece; "" if there is nothing. Valid until the next call of
-    /// another function.
+    /// The next piece to send, "" if there is none. Valid until the next call of another function.
     [[nodiscard]] std::string_view front() const;
     /// The first bytes of front() are sent.
     void pop(std::size_t bytes);
-    /// Forgets all that is not sent yet. True if that cuts a line.
+    /// Drops everything not sent yet. True if that cuts a line.
     bool abandon();
     /// Bytes of replies.
     [[nodiscard]] std::size_t unsent() const { return text_.size() - (scan_ ? 0 : sent_); }
@@ -68,60 +67,61 @@ class Outbox {
     bool in_line_ = false;  // the last byte sent did not end a line
 };
 
-/// One connection. It reads, answers, writes, and at the end waits for the other side to close;
-/// handlers keep it alive until then.
-class Session : public std::enable_shared_from_this<Session> {
+/// The transport of one session. It reads, answers, writes, and at the end waits for the other side
+/// to close; handlers keep it alive until then.
+class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Session(asio::ip::tcp::socket socket, const ServerLimits& limits)
+    Connection(asio::ip::tcp::socket socket, const ServerLimits& limits)
         : socket_(std::move(socket)),
           timer_(socket_.get_executor()),
           limits_(limits),
           lines_(limits.line) {}
 
-    void serve(Hall& hall) {
-        conversation_.emplace(hall);
-        out_.append(Conversation::greeting());
+    void serve(ServerState& state) {
+        session_.emplace(state);
+        out_.append(Session::greeting());
         heard_ = std::chrono::steady_clock::now();
         expectRole();
         pump();
     }
-    /// Sends a text, a whole line, behind what is pending, and closes.
+    /// Sends a whole line after what is pending, and closes.
     void refuse(std::string_view text) {
         out_.append(text);
-        conversation_.reset();
+        session_.reset();
         pump();
     }
-    /// The same, but what is pending is not sent.
+    /// The same, but drops what is pending.
     void cutOff(std::string_view text);
-    /// Ends if it is still without a role though it was asked for nothing since that time.
+    /// Ends the connection if it has no role and made no request since that time.
     void makeWay(WallTime since);
     /// The world took a step.
     void stepped();
-    [[nodiscard]] bool waiting() const { return conversation_ && conversation_->waiting(); }
-    /// One that waits for STEP and will not ask for more takes nobody's place: it may be gone.
-    [[nodiscard]] bool serving() const { return conversation_ && !(eof_ && waiting()); }
-    [[nodiscard]] bool roleless() const { return conversation_ && !conversation_->hasRole(); }
-    /// When it was last asked for something; its begin, if it never was.
+    [[nodiscard]] bool waiting() const { return session_ && session_->waiting(); }
+    /// False also for one that awaits a STEP and has finished sending: its client may be gone, so
+    /// it takes no place.
+    [[nodiscard]] bool serving() const { return session_ && !(eof_ && waiting()); }
+    [[nodiscard]] bool roleless() const { return session_ && !session_->hasRole(); }
+    /// Time of its last request, or of its beginning.
     [[nodiscard]] WallTime heard() const { return heard_; }
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
-    /// True if it was told of its end and waits for the other side to close.
+    /// True once everything is sent and it only waits for the other side to close.
     [[nodiscard]] bool told() const { return discarding_; }
 
     /// Memory of its own.
     [[nodiscard]] std::size_t memory() const { return out_.textMemory() + lines_.memory(); }
     /// The same with scans, which others may hold too.
     [[nodiscard]] std::size_t holds() const {
-        return memory() + out_.scanBytes() + (conversation_ ? conversation_->scanBytes() : 0);
+        return memory() + out_.scanBytes() + (session_ ? session_->scanBytes() : 0);
     }
-    /// How long some of what it holds is waiting at least.
+    /// Since when the oldest unsent byte has been waiting, or a little later.
     [[nodiscard]] WallTime waitingSince() const { return waiting_since_; }
-    /// Sends what is pending and closes, without waiting for the other side.
+    /// Sends what is pending and closes without waiting for the other side.
     void end();
     void close();
 
   private:
     [[nodiscard]] bool mayAnswer() const {
-        return conversation_ && !conversation_->waiting() && !conversation_->closing() &&
+        return session_ && !session_->waiting() && !session_->closing() &&
                out_.unsent() <= limits_.pending;
     }
     void expectRole();
@@ -141,7 +141,7 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::steady_timer timer_;  // of taking a role; then of lingering
     ServerLimits limits_;
     LineBuffer lines_;
-    std::optional<Conversation> conversation_;  // none: the connection is about to end
+    std::optional<Session> session_;  // none: the connection is about to end
     Outbox out_;
     WallTime heard_{};
     // What was to be sent at a time and is not yet: the age of the oldest byte, or a little less.

@@ -59,7 +59,7 @@ void prepare(tcp::socket& socket) {
 
 struct Server::Data {
     Data(Simulation& the_simulation, const ServerLimits& the_limits)
-        : simulation(the_simulation), limits(the_limits), hall(the_simulation, the_limits) {}
+        : simulation(the_simulation), limits(the_limits), state(the_simulation, the_limits) {}
     ~Data() { closeAll(); }
 
     void accept();
@@ -75,14 +75,14 @@ struct Server::Data {
 
     Simulation& simulation;
     ServerLimits limits;
-    Hall hall;
+    ServerState state;
     asio::io_context io{1};  // one thread runs it
     tcp::acceptor acceptor{io};
     asio::steady_timer accept_pause{io}, alarm{io};
     asio::posix::stream_descriptor stopper{io};
     std::optional<WallTime> alarm_time;
     tcp::endpoint local;
-    std::vector<std::shared_ptr<Session>> sessions;  // in the order of their coming
+    std::vector<std::shared_ptr<Connection>> connections;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
 };
 
@@ -105,20 +105,21 @@ void Server::Data::welcome(tcp::socket socket) {
     prepare(socket);
     sweep();
     const bool full = serving >= limits.clients && !makeRoom();
-    if (sessions.size() >= limits.clients + kMaxLingering) {
+    if (connections.size() >= limits.clients + kMaxLingering) {
         // Of those that only have to close, the oldest has had the most time for it.
-        const auto told = std::find_if(sessions.begin(), sessions.end(),
-                                       [](const auto& session) { return session->told(); });
-        if (told == sessions.end()) return;
+        const auto told = std::find_if(connections.begin(), connections.end(),
+                                       [](const auto& connection) { return connection->told(); });
+        if (told == connections.end()) return;
         (*told)->close();
     }
-    const auto session = std::make_shared<Session>(std::move(socket), limits);
-    sessions.push_back(session);
+    const auto connection = std::make_shared<Connection>(std::move(socket), limits);
+    connections.push_back(connection);
     if (!full) {
-        session->serve(hall);
+        connection->serve(state);
     } else {
         std::string text = "ERR 429 too many clients (";
-        session->refuse(text.append(std::to_string(limits.clients)).append("): try again later\n"));
+        connection->refuse(
+            text.append(std::to_string(limits.clients)).append("): try again later\n"));
     }
     sweep();
 }
@@ -126,13 +127,13 @@ void Server::Data::welcome(tcp::socket socket) {
 /// Ends the connection that has gone longest without a role. True if there is a place now.
 bool Server::Data::makeRoom() {
     const WallTime since = steady_clock::now() - limits.roleless_grace;
-    std::vector<std::shared_ptr<Session>> idle;
-    for (const auto& session : sessions)
-        if (session->roleless() && session->heard() <= since) idle.push_back(session);
+    std::vector<std::shared_ptr<Connection>> idle;
+    for (const auto& connection : connections)
+        if (connection->roleless() && connection->heard() <= since) idle.push_back(connection);
     std::sort(idle.begin(), idle.end(),
               [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
-    for (const auto& session : idle) {
-        session->makeWay(since);
+    for (const auto& connection : idle) {
+        connection->makeWay(since);
         sweep();
         if (serving < limits.clients) return true;
     }
@@ -140,15 +141,15 @@ bool Server::Data::makeRoom() {
 }
 
 void Server::Data::stepped() {
-    for (const auto& session : sessions) session->stepped();
+    for (const auto& connection : connections) connection->stepped();
 }
 
 /// Runs handlers that are ready, for one turn at most.
 void Server::Data::serveClients() {
     const WallTime end = steady_clock::now() + kTurn;
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
-    for (const auto& session : sessions)
-        if (session->waiting()) session->stepped();
+    for (const auto& connection : connections)
+        if (connection->waiting()) connection->stepped();
     relieve();
     sweep();
 }
@@ -157,19 +158,19 @@ void Server::Data::serveClients() {
 /// more than an equal share: all others then exceed theirs.
 void Server::Data::relieve() {
     std::size_t replies = 0;
-    for (const auto& session : sessions) replies += session->memory();
-    if (replies + hall.staleBytes() <= limits.unread) return;
+    for (const auto& connection : connections) replies += connection->memory();
+    if (replies + state.staleBytes() <= limits.unread) return;
     const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
-    std::vector<std::shared_ptr<Session>> slow;
-    for (const auto& session : sessions)
-        if (session->holds() > share) slow.push_back(session);
+    std::vector<std::shared_ptr<Connection>> slow;
+    for (const auto& connection : connections)
+        if (connection->holds() > share) slow.push_back(connection);
     std::sort(slow.begin(), slow.end(),
               [](const auto& a, const auto& b) { return a->waitingSince() < b->waitingSince(); });
-    for (const auto& session : slow) {
-        if (replies + hall.staleBytes() <= limits.unread) return;
-        replies -= session->memory();
-        session->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
-        replies += session->memory();
+    for (const auto& connection : slow) {
+        if (replies + state.staleBytes() <= limits.unread) return;
+        replies -= connection->memory();
+        connection->cutOff("ERR 429 too much unread: the slowest readers are disconnected\n");
+        replies += connection->memory();
     }
 }
 
@@ -186,9 +187,10 @@ void Server::Data::sleepUntil(WallTime time) {
 
 /// Forgets connections that are closed.
 void Server::Data::sweep() {
-    std::erase_if(sessions, [](const auto& session) { return session->closed(); });
-    serving = static_cast<std::size_t>(std::count_if(
-        sessions.begin(), sessions.end(), [](const auto& session) { return session->serving(); }));
+    std::erase_if(connections, [](const auto& connection) { return connection->closed(); });
+    serving = static_cast<std::size_t>(
+        std::count_if(connections.begin(), connections.end(),
+                      [](const auto& connection) { return connection->serving(); }));
 }
 
 void Server::Data::end() {
@@ -196,10 +198,10 @@ void Server::Data::end() {
     acceptor.close(ignored);
     accept_pause.cancel();
     stopper.close(ignored);
-    for (const auto& session : sessions) session->end();
+    for (const auto& connection : connections) connection->end();
     sweep();
     const WallTime deadline = steady_clock::now() + kLastFlush;
-    while (!sessions.empty() && steady_clock::now() < deadline) {
+    while (!connections.empty() && steady_clock::now() < deadline) {
         io.run_one_until(deadline);
         sweep();
     }
@@ -207,7 +209,7 @@ void Server::Data::end() {
 }
 
 void Server::Data::closeAll() {
-    for (const auto& session : sessions) session->close();
+    for (const auto& connection : connections) connection->close();
     sweep();
 }
 

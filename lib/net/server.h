@@ -2,17 +2,17 @@
 // lib/net: the Simulator TCP Protocol and its server. Uses sim and below; Asio inside.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 
-#include "net/limits.h"
 #include "sim/simulation.h"
 
 namespace ispace {
 
-/// A TCP endpoint "127.0.0.1:0"; port 0: one the system gives.
+/// A TCP endpoint; port 0 lets the system choose.
 struct Endpoint {
     std::string address = "127.0.0.1";
     std::uint16_t port = 0;
@@ -21,12 +21,40 @@ struct Endpoint {
 /// \throws UsageError, also for an address beyond this machine
 Endpoint parseEndpoint(const std::string& text);
 
-/// Serves a simulation to many clients, and runs it: one thread does both in turn, so that a world
-/// never changes while a client is answered; sensors are read on all cores.
+/// How often something may be asked for: `rate` a second in the long run, `burst` at once.
+struct RationLimits {
+    double rate = 0;
+    double burst = 0;
+};
+
+/// Limits that keep one client from harming the others.
+struct ServerLimits {
+    std::size_t clients = 256;  ///< the next one is answered ERR 429 and closed
+    std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
+    /// Replies in bytes that a client may leave unread before its requests have to wait.
+    std::size_t pending = std::size_t{1} << 18;
+    /// What all clients together may leave unread, in bytes: replies and scans that are no longer
+    /// the newest. Beyond it the slowest of those that hold more than an equal share have to go.
+    std::size_t unread = std::size_t{1} << 27;
+    /// How long a connection that is to end may take to read what it was sent.
+    std::chrono::nanoseconds patience = std::chrono::seconds(10);
+    /// A connection without a role ends this long after its last request (or its begin), and makes
+    /// room for a new one as soon as `roleless_grace` after it when all places are taken.
+    std::chrono::nanoseconds roleless = std::chrono::seconds(60);
+    std::chrono::nanoseconds roleless_grace = std::chrono::seconds(1);
+    /// PAUSE, and RESUME while running: for one client, and for all together.
+    RationLimits pauses = {100, 100}, all_pauses = {200, 200};
+    /// What each client still may ask for once all together have used up theirs.
+    RationLimits spare_pauses = {1, 1};
+    bool shutdown = true;  ///< clients may end the run
+};
+
+/// Runs a simulation and serves it to many clients. One thread does both in turn, so the world
+/// never changes while a request is answered; sensors are read on all cores.
 ///
-/// Writing never waits: a client that does not read gets the newest scan when it does, and its
-/// requests wait while it leaves replies unread. What clients together leave unread is bounded; so
-/// is the time in which a connection takes a role.
+/// Writing never blocks: a slow reader gets the newest scan once it reads, and its requests wait
+/// while it leaves replies unread. What all clients together leave unread is bounded, and so is the
+/// time a connection may take to choose a role.
 class Server {
   public:
     /// Listens at once. \throws std::system_error naming the endpoint
@@ -38,16 +66,17 @@ class Server {
     /// "127.0.0.1:40123"
     [[nodiscard]] std::string address() const;
     [[nodiscard]] std::uint16_t port() const;
-    /// Those that are served now; may be asked from any thread.
+    /// Number of clients served now; callable from any thread.
     [[nodiscard]] std::size_t clients() const;
 
-    /// Runs, once, until the simulation is finished; then sends what clients are still to get, for
-    /// half a second at most, and closes.
+    /// Runs until the simulation is finished, then sends what is pending for at most half a second
+    /// and closes. Call once.
     void run();
-    /// Finishes the simulation, from any thread; also before run(), which then ends at once.
+    /// Finishes the simulation. Callable from any thread, and before run(), which then returns at
+    /// once.
     void stop();
-    /// The same as soon as there is something to be read from `descriptor`, which stays open while
-    /// run() does its work, and is not read.
+    /// The same as soon as `descriptor` is readable. It must stay open during run() and is not
+    /// read.
     void stopOn(int descriptor);
 
   private:

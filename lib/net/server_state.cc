@@ -2,11 +2,25 @@
 #include "net/server_state.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
-#include "net/scan_text.h"
+#include "base/number.h"
 
 namespace ispace {
+
+bool Ration::has(WallTime now) {
+    if (now > filled_) {
+        const double seconds = std::chrono::duration<double>(now - filled_).count();
+        left_ = std::min(limits_.burst, left_ + limits_.rate * seconds);
+        filled_ = now;
+    }
+    return left_ >= 1;
+}
 
 StepQueue::StepQueue(Simulation& simulation)
     : simulation_(&simulation), seen_(simulation.world().steps()) {}
@@ -51,7 +65,7 @@ void StepQueue::drop(const std::shared_ptr<const Ticket>& ticket) {
     tickets_.erase(found);
 }
 
-Hall::Hall(Simulation& simulation, const ServerLimits& limits)
+ServerState::ServerState(Simulation& simulation, const ServerLimits& limits)
     : simulation_(&simulation),
       limits_(limits),
       steps_(simulation),
@@ -59,18 +73,18 @@ Hall::Hall(Simulation& simulation, const ServerLimits& limits)
       pauses_(limits.all_pauses),
       texts_(simulation.world().lasers().size()) {}
 
-bool Hall::hold(std::size_t robot) {
+bool ServerState::hold(std::size_t robot) {
     if (held_[robot]) return false;
     held_[robot] = true;
     return true;
 }
 
-void Hall::release(std::size_t robot) {
+void ServerState::release(std::size_t robot) {
     held_[robot] = false;
     simulation_->world().command(robot, {Verb::Stop, 0});
 }
 
-std::shared_ptr<const std::string> Hall::scan(std::size_t laser, bool stream, bool binary) {
+std::shared_ptr<const std::string> ServerState::scan(std::size_t laser, bool stream, bool binary) {
     const SensorReading& reading = simulation_->world().reading(laser);
     Text& text = texts_[laser][(stream ? 1U : 0U) + (binary ? 2U : 0U)];
     if (text.seq == reading.seq && text.bytes) return text.bytes;
@@ -79,7 +93,7 @@ std::shared_ptr<const std::string> Hall::scan(std::size_t laser, bool stream, bo
     return bytes;
 }
 
-std::shared_ptr<const std::string> Hall::counted(std::string text) const {
+std::shared_ptr<const std::string> ServerState::counted(std::string text) const {
     text.shrink_to_fit();
     *alive_ += text.size();
     return {new std::string(std::move(text)), [alive = alive_](const std::string* old) {
@@ -88,7 +102,7 @@ std::shared_ptr<const std::string> Hall::counted(std::string text) const {
             }};
 }
 
-void Hall::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes) {
+void ServerState::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes) {
     const auto size_of = [](const Text& kept) { return kept.bytes ? kept.bytes->size() : 0; };
     kept_ += bytes->size() - size_of(text);
     text = {seq, std::move(bytes)};
@@ -98,6 +112,72 @@ void Hall::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string>
     for (auto& forms : texts_)
         for (Text& other : forms)
             if (&other != &text) other = {};
+}
+
+namespace {
+
+void appendHead(std::string& out, const SensorReading& reading, bool stream) {
+    const Laser& laser = reading.sensor.as<Laser>();
+    out.append("SCAN ").append(reading.sensor.id);
+    out.append(" t=").append(formatMilliseconds(reading.time));
+    out.append(" seq=").append(std::to_string(reading.seq));
+    out.append(" angle_min=").append(formatDouble(laser.first.degrees()));
+    out.append(" angle_max=").append(formatDouble(laser.last().degrees()));
+    out.append(" step=").append(formatDouble(laser.step.degrees()));
+    out.append(" n=").append(std::to_string(reading.scan.ranges.size()));
+    if (stream) out += " stream=1";
+}
+
+void appendLittleEndian(std::string& out, float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((bits >> shift) & 0xffu);
+}
+
+}  // namespace
+
+void appendRange(std::string& out, float range) {
+    if (std::isinf(range)) {
+        out += '-';
+        return;
+    }
+    // A float times 1000 is exact in a double, so rounding it half to even is what a correctly
+    // rounded conversion to three decimals does.
+    constexpr double kMax = 1e9;
+    const double value = range;
+    if (!(value >= 0 && value < kMax)) {
+        out += formatFixed(value, 3);
+        return;
+    }
+    const auto millimetres = std::llrint(value * 1000);
+    std::array<char, 24> digits;
+    char* const end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), millimetres / 1000).ptr;
+    const auto rest = static_cast<int>(millimetres % 1000);
+    end[0] = '.';
+    end[1] = static_cast<char>('0' + rest / 100);
+    end[2] = static_cast<char>('0' + rest / 10 % 10);
+    end[3] = static_cast<char>('0' + rest % 10);
+    out.append(digits.data(), end + 4);
+}
+
+std::string scanText(const SensorReading& reading, bool stream, bool binary) {
+    const auto& ranges = reading.scan.ranges;
+    constexpr std::size_t kHead = 192, kTextRange = sizeof "12.345,", kBinaryRange = 4;
+    std::string out;
+    out.reserve(kHead + ranges.size() * (binary ? kBinaryRange : kTextRange));
+    appendHead(out, reading, stream);
+    if (binary) {
+        out.append(" bytes=").append(std::to_string(ranges.size() * kBinaryRange)).append("\n");
+        for (const float range : ranges) appendLittleEndian(out, range);
+        return out;
+    }
+    out += " r=";
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        if (i > 0) out += ',';
+        appendRange(out, ranges[i]);
+    }
+    out += '\n';
+    return out;
 }
 
 }  // namespace ispace

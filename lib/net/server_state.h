@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/net only: names in replies.
+// Private to lib/net: what the sessions of a server share.
 #pragma once
 
 #include <array>
@@ -11,8 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "net/limits.h"
+#include "net/server.h"
 #include "sim/simulation.h"
+#include "sim/world.h"
 
 namespace ispace {
 
@@ -34,11 +35,28 @@ inline std::string joined(const std::vector<std::string>& words, std::string_vie
     return out;
 }
 
-/// The steps that clients ask of a paused world: taken one client's after the other's, in the order
-/// of asking.
+/// A token bucket: what is left of something that may be asked for only so often.
+class Ration {
+  public:
+    /// Full. \pre rate > 0, burst >= 1
+    explicit Ration(const RationLimits& limits) : limits_(limits), left_(limits.burst) {}
+    /// Empty at that time.
+    Ration(const RationLimits& limits, WallTime now) : limits_(limits), filled_(now) {}
+    /// True if one can be taken now.
+    bool has(WallTime now);
+    /// \pre has(now)
+    void take() { left_ -= 1; }
+
+  private:
+    RationLimits limits_;
+    double left_ = 0;
+    WallTime filled_{};  // when left_ was right
+};
+
+/// The steps that clients ask of a paused world, taken in the order of asking.
 class StepQueue {
   public:
-    /// What one STEP came to so far.
+    /// Progress of one STEP.
     struct Ticket {
         std::int64_t count = 0, left = 0;
         bool over = false;  ///< to be answered: all are taken, or no more will be
@@ -49,9 +67,9 @@ class StepQueue {
     std::shared_ptr<const Ticket> ask(std::int64_t count);
     /// Counts the steps taken since the last call.
     void settle();
-    /// PAUSE, RESUME, the end: what is not taken by now will not be.
+    /// Drops the steps not yet taken, at PAUSE, RESUME or the end.
     void cut();
-    /// Nobody waits for these any more: they are not taken. Null is allowed.
+    /// Drops the steps of one ticket; null is allowed.
     void drop(const std::shared_ptr<const Ticket>& ticket);
 
   private:
@@ -62,11 +80,11 @@ class StepQueue {
     std::deque<std::shared_ptr<Ticket>> tickets_;
 };
 
-/// What all clients share: who holds which robot, and the text of the newest scans, made once for
+/// What all sessions share: which robots are held, and the text of the newest scans, made once for
 /// all readers.
-class Hall {
+class ServerState {
   public:
-    explicit Hall(Simulation& simulation, const ServerLimits& limits = {});
+    explicit ServerState(Simulation& simulation, const ServerLimits& limits = {});
     [[nodiscard]] Simulation& simulation() { return *simulation_; }
     [[nodiscard]] const ServerLimits& limits() const { return limits_; }
 
@@ -79,10 +97,9 @@ class Hall {
     /// Of all clients together.
     [[nodiscard]] Ration& pauses() { return pauses_; }
 
-    /// The newest scan of a laser as scanText writes it. Until there is a newer one all readers get
-    /// the same string.
+    /// The newest scan of a laser as scanText writes it; all readers share one string.
     std::shared_ptr<const std::string> scan(std::size_t laser, bool stream, bool binary);
-    /// Bytes of scans that only those hold who have still to send them.
+    /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
   private:
@@ -103,5 +120,13 @@ class Hall {
     // Bytes of all texts that somebody has; it outlives them.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
 };
+
+/// Appends a range as replies have it: three decimals as formatFixed writes them, `-` for no
+/// return.
+void appendRange(std::string& out, float range);
+
+/// A reading as a SCAN line with its newline; `stream` marks one sent unasked. Binary: the line has
+/// bytes=N in place of r=, and N bytes of little-endian float32 follow, +inf for no return.
+std::string scanText(const SensorReading& reading, bool stream, bool binary);
 
 }  // namespace ispace

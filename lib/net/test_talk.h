@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: conversations without a transport.
+// For the tests of this folder: sessions without a transport.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,38 +10,38 @@
 #include <string>
 #include <string_view>
 
-#include "net/conversation.h"
-#include "net/scan_text.h"
+#include "net/server_state.h"
+#include "net/session.h"
 #include "net/test_world.h"
 
 namespace ispace::testing {
 
 constexpr std::chrono::nanoseconds kLong = std::chrono::hours(1);
 
-/// A hall and who is in it.
+/// A server without a transport: its state and its sessions.
 struct Talk {
     explicit Talk(Clock clock = {Clock::Kind::Step, 1}, std::optional<SimTime> until = {},
                   const std::string& script = "", const ServerLimits& limits = {})
-        : room(clock, until, script), hall(room.simulation, limits) {
+        : room(clock, until, script), state(room.simulation, limits) {
         room.simulation.onStep([this] {
-            for (Conversation& client : clients) client.stepped();
+            for (Session& client : clients) client.stepped();
         });
     }
-    Conversation& client(std::string_view role = "") {
-        Conversation& added = clients.emplace_back(hall);
+    Session& client(std::string_view role = "") {
+        Session& added = clients.emplace_back(state);
         if (!role.empty()) {
             EXPECT_TRUE(ask(added, role).starts_with("OK "));
         }
         return added;
     }
-    static std::string ask(Conversation& client, std::string_view request) {
+    static std::string ask(Session& client, std::string_view request) {
         client.request(request);
         return client.take();
     }
     /// Takes the steps that are allowed.
     void run() {
         room.simulation.run(WallTime{}, kLong);
-        for (Conversation& client : clients)
+        for (Session& client : clients)
             if (client.waiting()) client.stepped();
     }
     void step(std::int64_t count) {
@@ -53,11 +53,11 @@ struct Talk {
     }
 
     TestWorld room;
-    Hall hall;
-    std::list<Conversation> clients;
+    ServerState state;
+    std::list<Session> clients;
 };
 
-inline std::string streamed(Conversation& client) {
+inline std::string streamed(Session& client) {
     const auto scan = client.takeScan();
     return scan ? *scan : "";
 }

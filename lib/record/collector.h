@@ -20,8 +20,8 @@ std::string otherPlace(const Place& other, const Place& here);
 /// ", did you mean …?" with the nearest of the known words, or ", known: " and all of them.
 std::string knownWords(std::string_view word, const std::vector<std::string>& known);
 
-/// Makes checked records of keywords, keys and values, and collects what is wrong with them: what
-/// the readers of text and of YAML have in common.
+/// Builds checked records from keywords, keys and values and collects errors: the common part of
+/// the readers of text and of YAML.
 ///
 ///     if (collector.begin("desk", spot)) {
 ///         if (const KeySpec* key = collector.key("height", spot)) collector.text(*key, "5cm",
@@ -29,36 +29,35 @@ std::string knownWords(std::string_view word, const std::vector<std::string>& kn
 ///     }
 class RecordCollector {
   public:
-    /// Records that one input may have: some gigabytes.
+    /// Most records of one input: some gigabytes.
     static constexpr std::size_t kMaxRecords = 1'000'000;
 
     RecordCollector(const std::string& name, const Schemas& schemas)
         : file_{std::make_shared<const std::string>(name)}, schemas_(&schemas) {}
 
-    /// What follows is in this file; its line and column do not count.
+    /// Sets the file of what follows; the line and column of `file` do not count.
     void setFile(Place file) { file_ = std::move(file); }
     [[nodiscard]] const Place& file() const { return file_; }
     [[nodiscard]] const Schemas& schemas() const { return *schemas_; }
 
-    /// Starts a record. False if there is no such keyword, which becomes a finding.
+    /// Starts a record. False, and a finding, if the keyword is unknown.
     bool begin(std::string_view keyword, Spot spot);
     void begin(const Schema& schema, Spot spot);
-    /// The key of the record begun; null, and a finding, if it is unknown or there for the second
-    /// time.
+    /// A key of the current record; null, and a finding, if it is unknown or doubled.
     const KeySpec* key(std::string_view name, Spot spot);
-    /// True if the record begun has the key, be it with the default or a bad value.
+    /// True if the current record gives the key, even with its default or a bad value.
     [[nodiscard]] bool isGiven(const KeySpec& key) const;
     /// Sets a key from its text.
     void text(const KeySpec& key, std::string_view text, Spot spot);
     /// Sets a key. \pre the value is good
     void value(const KeySpec& key, Value value, Spot spot);
-    /// Ends the record: keys it must have. \return it, whatever is wrong with it
+    /// Ends the record and checks that required keys are there. \return it, even with findings
     Record finish();
     /// finish(), and keeps the record. \throws FormatError for more than kMaxRecords
     void end();
 
-    /// Adds a finding. `message` is a function that makes its text, called only if it is kept:
-    /// hints cost time, and a hostile file has many errors.
+    /// Adds a finding. `message` is a function that makes its text, called only if the finding is
+    /// kept: hints take time, and a hostile file has many errors.
     template <typename Message>
     void finding(const Place& place, Message message) {
         findings_.add(findings_.full() ? Diagnostic{} : place.finding(message()));
@@ -70,8 +69,7 @@ class RecordCollector {
     void add(const FormatError& error) { findings_.add(error); }
     [[nodiscard]] Diagnostics& findings() { return findings_; }
 
-    /// The records, in order. \throws FormatError with all findings if there are any, last doubled
-    /// ids
+    /// The records, in order. \throws FormatError with all findings, those of doubled ids last
     std::vector<Record> take();
 
   private:

@@ -35,11 +35,11 @@ struct Edit {
 /// Name of the option: "--move".
 std::string optionOf(Edit::Kind kind);
 
-/// Takes an edit's text apart. \throws UsageError, FormatError for numbers, both without the
-/// option's name
+/// Parses an edit's text. \throws UsageError, FormatError for numbers, both without the option's
+/// name
 Edit parseEdit(Edit::Kind kind, std::string_view text);
 
-/// What --add and --fence add, in their order. \throws FormatError as edited
+/// The records that --add and --fence add, in order. \throws FormatError as edited
 std::vector<Record> addedRecords(std::span<const Edit> edits, const Schemas& schemas);
 
 /// The records after all edits in their order.

@@ -8,12 +8,12 @@
 
 namespace ispace {
 
-/// a + b + c as a person adds decimals: 0.1 + 0.2 is 0.3. A sum within rounding errors (a picometre
-/// for terms of up to a kilometre, more for larger ones) of a number of at most nine decimals is
-/// that number. Never minus zero.
+/// a + b + c in decimal arithmetic: 0.1 + 0.2 is 0.3. A sum within rounding errors (a picometre for
+/// terms of up to a kilometre, more for larger ones) of a number with at most nine decimals is that
+/// number. Never minus zero.
 double decimalSum(double a, double b, double c = 0);
 
-/// A heading that is turned: the decimalSum of both within (-180, 180], in degrees.
+/// A turned heading: the decimalSum of both in (-180, 180], in degrees.
 double turnedHeading(double degrees, Angle turn);
 
 /// Puts a record that stands in a frame into the frame's parent, by the roles of its keys.
@@ -44,7 +44,7 @@ void moveInFrame(Record& record, const Pose2& motion, double dz = 0);
 /// place.
 std::optional<Point2> placeOf(const Record& record);
 
-/// False if placeIn and moveInFrame would move the record but cannot lift it.
+/// False if placeIn and moveInFrame can move the record but not lift it.
 bool canRise(const Record& record);
 
 /// The motion that turns about a point and then moves by an offset.

@@ -31,10 +31,10 @@ struct Place {
     /// The include that brought the file in; null: the file is an operand.
     std::shared_ptr<const Place> included_from = nullptr;
 
-    /// The message with this place. Behind it the chain of includes, the nearest first:
+    /// A finding at this place. The message is followed by the chain of includes, nearest first:
     /// " (included from b.yaml:2:3, from a.yaml:1:1)".
     [[nodiscard]] Diagnostic finding(std::string message) const;
-    /// The same with a spot in the same file.
+    /// Another spot in the same file.
     [[nodiscard]] Place at(Spot spot) const {
         return {file, spot.line, spot.column, included_from};
     }
@@ -64,17 +64,17 @@ class Record {
     [[nodiscard]] std::string writtenId() const;
 
     /// True if the key is written. A value equal to the schema's default counts as left out, as in
-    /// the canonical form: a key whose mere presence means something must have no default.
+    /// the canonical form, so a key whose mere presence matters must have no default.
     [[nodiscard]] bool has(std::string_view key) const;
     /// Sets or replaces a value. \pre the schema has the key and the value its type
     /// \throws FormatError with the value's place if the value is out of the key's bounds
     void set(std::string_view key, Value value, const Place& place = {});
-    /// The same for a value known to be good that was read in the file of the record.
+    /// The same for a checked value read from the record's own file.
     /// \pre `key` is one of the schema's, the value passes checkValue
     void setRead(const KeySpec& key, Value value, Spot spot);
     void erase(std::string_view key);
 
-    /// The value written, else the schema's default. \pre one of them exists and has this type
+    /// The written value, else the schema's default. \pre one of them exists and has this type
     [[nodiscard]] bool flag(std::string_view key) const;
     [[nodiscard]] double number(std::string_view key) const;
     [[nodiscard]] const std::string& text(std::string_view key) const;
@@ -89,23 +89,22 @@ class Record {
         for (const Entry& entry : entries_) visit(schema_->keys[entry.key], entry.value);
     }
 
-    /// Where the key's value was read, else where the record was.
+    /// Where the key's value was read, or else the record.
     [[nodiscard]] Place keyPlace(std::string_view key) const;
-    /// A finding with the place of this record, or of the value of one of its keys if it is
-    /// written. The message is taken as it is.
+    /// A finding at the place of this record, or of the written value of one of its keys.
     [[nodiscard]] Diagnostic finding(std::string message) const;
     [[nodiscard]] Diagnostic finding(std::string_view key, std::string message) const;
 
-    /// Says that the file the record was read from is included there.
+    /// Says where the record's file was included.
     void setIncludedFrom(std::shared_ptr<const Place> place) {
         place_.included_from = std::move(place);
     }
 
-    /// True if it is one of many that a repetition or a part has made, not one that is written.
+    /// True if a repetition or a part made it; false if it is written.
     [[nodiscard]] bool isMade() const { return made_; }
     void setMade() { made_ = true; }
 
-    /// The content of the file that the record names, once somebody has loaded it; else null.
+    /// The content of the file that the record names; null until it is loaded.
     [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
     void setMesh(std::shared_ptr<const TriangleMesh> mesh) { mesh_ = std::move(mesh); }
 
@@ -142,21 +141,21 @@ struct Document {
     std::vector<Record> records;  ///< in file order
     /// Files read besides the operand, each once: includes, pictures, meshes. Paths as opened.
     std::vector<std::string> sources = {};
-    /// What an importer had to decide, a sentence each; for people.
+    /// Decisions of an importer, a sentence each, for people.
     std::vector<std::string> notes = {};
-    /// What an importer doubts: for people, even if they did not ask to hear more.
+    /// Warnings of an importer.
     std::vector<Diagnostic> warnings = {};
 };
 
-/// Ids of all records, in order: the written one, else keyword and number, counting from 1 within
-/// each keyword in file order and skipping every id that is written anywhere in the list.
+/// Ids of all records, in order: the written one, else keyword and number. Numbers count from 1
+/// within each keyword in file order and skip ids that are written anywhere in the list.
 std::vector<std::string> assignIds(const std::vector<Record>& records);
 
-/// The written ids of records, for looking them up. A sorted list of hashes: much faster to make
-/// than a tree or table of strings.
+/// An index of the written ids of records. A sorted list of hashes, much faster to build than a
+/// tree or table of strings.
 class WrittenIds {
   public:
-    /// \pre the records stay as they are. O(n log n)
+    /// \pre the records outlive it unchanged. O(n log n)
     explicit WrittenIds(std::span<const Record> records);
     /// True if a record has this id. O(log n)
     [[nodiscard]] bool contains(std::string_view id) const;
@@ -164,7 +163,7 @@ class WrittenIds {
     struct Doubled {
         std::size_t record, first;
     };
-    /// All of them, in order.
+    /// All of these, in order.
     [[nodiscard]] std::vector<Doubled> doubled() const;
 
   private:
@@ -178,7 +177,7 @@ class WrittenIds {
     std::vector<Entry> entries_;  // sorted by hash, then by record
 };
 
-/// A finding for each record whose written id an earlier one has.
+/// Adds a finding for each record whose written id an earlier one has.
 void findDoubledIds(std::span<const Record> records, Diagnostics& findings);
 
 }  // namespace ispace

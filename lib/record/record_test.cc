@@ -5,7 +5,6 @@
 
 #include <stdexcept>
 
-#include "record/digest.h"
 #include "record/test_schemas.h"
 #include "record/text.h"
 

@@ -2,7 +2,6 @@
 // Random documents are written and read back.
 #include <gtest/gtest.h>
 
-#include "record/digest.h"
 #include "record/test_random_records.h"
 #include "record/test_schemas.h"
 #include "record/text.h"

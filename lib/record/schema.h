@@ -22,10 +22,10 @@ using Tuple = std::vector<double>;
 /// A `;` list of tuples.
 using TupleList = std::vector<Tuple>;
 
-/// What a key holds; which alternative is fixed by the key's type in its schema.
+/// The value of a key; the type of the key in its schema fixes the alternative.
 ///
-/// A variant that can be copied when memory runs out: libstdc++ 12 destroys the copy that it could
-/// not make as if it had been made (std::string and std::vector are "never valueless" to it).
+/// A variant that survives running out of memory while copied: libstdc++ 12 would destroy a copy
+/// that it failed to make (std::string and std::vector are "never valueless" to it).
 class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
   public:
     using variant::variant;
@@ -41,7 +41,7 @@ class Value : public std::variant<bool, double, std::string, Tuple, TupleList> {
 /// True for a plain word: one or more of ASCII letters, digits and _ - . / + : @
 bool isWord(std::string_view text);
 
-/// What a key's text means and which alternative of Value holds it.
+/// How a key's text is read, and which alternative of Value holds it.
 enum class KeyType {
     Flag,       ///< yes/no (also true/false, on/off, in any case); bool
     Number,     ///< double
@@ -53,12 +53,12 @@ enum class KeyType {
     TupleList,  ///< `a,b;c,d;…`, not empty; TupleList
 };
 
-/// What a key says about where a record stands and what it belongs to: what moves, parts and
-/// conversions need to know of keys they do not know.
+/// What a key says about where a record stands and what it belongs to, for code that moves or
+/// converts records without knowing their keys.
 enum class Role {
     None,
     Place,      ///< x,y[,z] or a list of them: moves with the record
-    Course,     ///< the same for a way to go, beside the record's place
+    Course,     ///< the same for a path to follow, besides the record's place
     Heading,    ///< turns with the record
     Tilt,       ///< above level; what --tilt changes
     Carrier,    ///< id of the record in whose frame the places of this one are
@@ -71,7 +71,7 @@ struct KeySpec {
     KeyType type = KeyType::Number;
     Unit unit = Unit::None;
     std::string help;                          ///< one phrase, for man page and messages
-    std::optional<Value> default_value = {};   ///< never kept as written; none: no default
+    std::optional<Value> default_value = {};   ///< never stored as written; none: no default
     std::size_t min_count = 1, max_count = 1;  ///< numbers of a tuple, or of each tuple of a list
     double lower = -std::numeric_limits<double>::infinity();  ///< of each number
     double upper = std::numeric_limits<double>::infinity();
@@ -80,10 +80,10 @@ struct KeySpec {
     std::vector<std::string> choices = {};
     bool required = false;
     Role role = Role::None;
-    double standard_z = 0;  ///< height that a Place of two numbers means where it may have three
+    double standard_z = 0;  ///< height of a Place that may have three numbers and has two
 };
 
-/// The four types of the thesis' menus, and what is placed.
+/// The types of the thesis' menus, and records that are placed.
 enum class RecordType { Space, Floor, Wall, Infra, Other, Placement, Meta };
 
 /// One keyword and its keys, in canonical order. Every schema has the key `id` first.
@@ -99,8 +99,8 @@ struct Schema {
     [[nodiscard]] bool isEnvironment() const { return type < RecordType::Placement; }
 };
 
-/// The keywords a reader knows. Each module offers its own list; sceneSchemas() in layout joins
-/// them. Records point into it, so it must outlive them (the joined lists are constants).
+/// The keywords a reader knows. Each folder has its own list; sceneSchemas() in layout joins them.
+/// Records point into it, so it must outlive them; the joined lists are constants.
 class Schemas {
   public:
     Schemas() = default;
@@ -125,13 +125,13 @@ std::string formatValue(const KeySpec& key, const Value& value);
 /// Appends formatValue(key, value).
 void appendValue(std::string& out, const KeySpec& key, const Value& value);
 
-/// Checks count, bounds, choices and characters of a value however it came about.
+/// Checks count, bounds, choices and characters of a value from any source.
 /// \pre the value has the key's type \throws as parseValue
 void checkValue(const KeySpec& key, const Value& value);
 
-/// A page of the manual, written for man(7): lines `@RECORDS TYPE…@` of the template give way to
-/// the keywords of these types (space, floor, wall, infra, other, placement, meta), each with its
-/// keys, their values, units, bounds and defaults.
+/// Expands a page of the manual, written for man(7): lines `@RECORDS TYPE…@` are replaced by the
+/// keywords of these types (space, floor, wall, infra, other, placement, meta), each with its keys,
+/// their values, units, bounds and defaults.
 /// \throws FormatError for a type that is none
 std::string expandManual(std::string_view page, const Schemas& schemas);
 
@@ -147,7 +147,7 @@ std::string formatNumber(const KeySpec& key, double number);
 /// Appends formatNumber(key, number).
 void appendNumber(std::string& out, const KeySpec& key, double number);
 
-/// "`key`: what": an error about a value that has no place yet.
+/// Throws "`key`: what", an error about a value whose place the caller adds.
 [[noreturn]] void refuseValue(const KeySpec& key, const std::string& what);
 
 }  // namespace ispace

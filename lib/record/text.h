@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -38,7 +39,7 @@ struct Piece {
     int column = 0;
 };
 
-/// What the line's grammar does not allow.
+/// An error in the grammar of a line.
 struct LexError {
     std::string message;
     int column = 0;
@@ -50,9 +51,9 @@ struct Field {
     Piece value;  ///< without quotes and escapes; valid until the next call
 };
 
-/// Takes one line of the record language apart (grammar: readRecordText).
+/// Splits one line of the record language; see readRecordText for the grammar.
 ///
-/// After an error the lexer stands behind what was wrong, so that the rest is read as well.
+/// After an error the lexer continues behind the faulty piece, so that the rest is read as well.
 class LineLexer {
   public:
     explicit LineLexer(std::string_view line) : line_(line) {}
@@ -77,7 +78,7 @@ class LineLexer {
     std::string unescaped_;
 };
 
-/// True if the bytes begin with `#env` or `#3dm`, the magic line of our text formats.
+/// True if the bytes begin with `#env` or `#3dm`, the magic words of the text formats.
 bool isRecordText(std::string_view bytes);
 
 /// Reads `.env` and `.3dm` text. `name` is used in messages as it is.
@@ -105,8 +106,19 @@ void appendRecord(std::string& out, const Record& record);
 /// Reads one record from the text of a line, for options such as `--add`; `name` is the place.
 Record readRecord(std::string_view line, const std::string& name, const Schemas& schemas);
 
-/// A doubled written id is an error of the file: findings name both lines.
+/// Checks that no written id is doubled; findings name both lines.
 /// \throws FormatError
 void checkIds(const std::vector<Record>& records);
+
+/// "sha256:" and 64 hex digits of the bytes.
+std::string sha256(std::string_view bytes);
+
+/// sha256 over the vertices, then the triangles, as little-endian 32-bit numbers.
+std::string meshDigest(const TriangleMesh& mesh);
+
+/// Digest of an environment: sha256 over the canonical lines (each with its newline) of the
+/// environment records, in file order; placements, results and history do not count. A file that is
+/// loaded counts by its content: its name gives way to `digest`.
+std::string environmentDigest(std::span<const Record> records);
 
 }  // namespace ispace

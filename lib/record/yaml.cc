@@ -13,9 +13,7 @@
 #include "record/record.h"
 #include "record/schema.h"
 #include "record/text.h"
-#include "record/yaml_expand.h"
-#include "record/yaml_items.h"
-#include "record/yaml_tree.h"
+#include "record/yaml_stages.h"
 
 namespace ispace {
 

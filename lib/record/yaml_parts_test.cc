@@ -8,7 +8,7 @@
 #include "record/test_schemas.h"
 #include "record/text.h"
 #include "record/yaml.h"
-#include "record/yaml_expand.h"
+#include "record/yaml_stages.h"
 
 namespace ispace {
 namespace {

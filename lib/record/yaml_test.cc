@@ -6,7 +6,6 @@
 #include <chrono>
 #include <random>
 
-#include "record/digest.h"
 #include "record/test_schemas.h"
 #include "record/text.h"
 

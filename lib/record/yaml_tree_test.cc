@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "record/yaml_tree.h"
+#include "record/yaml_stages.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -10,7 +10,7 @@
 #include "base/message.h"
 #include "record/schema.h"
 #include "record/yaml.h"
-#include "record/yaml_tree.h"
+#include "record/yaml_stages.h"
 
 namespace ispace {
 

@@ -82,9 +82,9 @@ TEST(Depth, OfATiltedPlaneFollowsItsEquation) {
 
 TEST(Depth, LimitsAreOfWhatIsMeasured) {
     // 3 m ahead; the corner's ray is longer by a half.
-    const auto corner = [](const std::string& figures) {
+    const auto corner = [](const std::string& keys) {
         const Scene scene =
-            testing::scene(kRoom, "ranger at=5,3,1.25 fov=60,70 pixels=3,3 " + figures + "\n");
+            testing::scene(kRoom, "ranger at=5,3,1.25 fov=60,70 pixels=3,3 " + keys + "\n");
         return frameOf(scene).depths;
     };
     const auto depth = corner("measures=depth range=1,3"), distance = corner("range=1,3");
@@ -127,11 +127,11 @@ TEST(Depth, WholeUnitsAreWhatTheDeviceSays) {
 
 TEST(Depth, LimitsHoldBeforeNoise) {
     // The wall is 3 m ahead of all pixels.
-    const auto returns = [](const std::string& figures) {
+    const auto returns = [](const std::string& keys) {
         const Scene scene = testing::scene(kRoom,
                                            "ranger at=5,3,1.25 fov=30,20 pixels=160,120 "
                                            "measures=depth sigma=0.05 " +
-                                               figures + "\n");
+                                               keys + "\n");
         const DepthFrame frame = frameOf(scene, 0, {.noise_seed = 1});
         for (const float depth : frame.depths) {
             if (!std::isfinite(depth)) continue;

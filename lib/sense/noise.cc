@@ -12,34 +12,35 @@ namespace ispace {
 
 namespace {
 
-using noise_loops::Figures;
+using noise_loops::Parameters;
 
 /// Elements that are dealt with together; a multiple of what random numbers are drawn in.
 constexpr std::size_t kBlock = 512;
 
-ISPACE_SIMD_CLONES void disturb(const Figures& figures, std::size_t count, const float* normal,
-                                const float* uniform, const float* cosines, float* ranges) {
-    noise_loops::apply(figures, count, normal, uniform, cosines, ranges);
+ISPACE_SIMD_CLONES void disturb(const Parameters& parameters, std::size_t count,
+                                const float* normal, const float* uniform, const float* cosines,
+                                float* ranges) {
+    noise_loops::apply(parameters, count, normal, uniform, cosines, ranges);
 }
 
-Figures figuresOf(const RangeNoise& noise, double min_range, double max_range) {
-    Figures figures;
-    figures.bias = static_cast<float>(noise.bias);
-    std::transform(noise.sigma.begin(), noise.sigma.end(), figures.sigma.begin(),
+Parameters parametersOf(const RangeNoise& noise, double min_range, double max_range) {
+    Parameters parameters;
+    parameters.bias = static_cast<float>(noise.bias);
+    std::transform(noise.sigma.begin(), noise.sigma.end(), parameters.sigma.begin(),
                    [](double s) { return static_cast<float>(s); });
-    figures.dropout = static_cast<float>(noise.dropout);
-    figures.graze_from = static_cast<float>(noise.graze_from.radians());
+    parameters.dropout = static_cast<float>(noise.dropout);
+    parameters.graze_from = static_cast<float>(noise.graze_from.radians());
     if (const Angle ramp = noise.graze_to - noise.graze_from; ramp > Angle())
-        figures.graze_slope = static_cast<float>(1 / ramp.radians());
-    figures.graze_cosine = static_cast<float>(cos(noise.graze_to));
+        parameters.graze_slope = static_cast<float>(1 / ramp.radians());
+    parameters.graze_cosine = static_cast<float>(cos(noise.graze_to));
     // Steps far below those of a float change nothing, and would be too many to count.
     if (noise.resolution > 1e-12) {
-        figures.resolution = noise.resolution;
-        figures.per_metre = 1 / noise.resolution;
+        parameters.resolution = noise.resolution;
+        parameters.per_metre = 1 / noise.resolution;
     }
-    figures.min_range = static_cast<float>(min_range);
-    figures.max_range = static_cast<float>(max_range);
-    return figures;
+    parameters.min_range = static_cast<float>(min_range);
+    parameters.max_range = static_cast<float>(max_range);
+    return parameters;
 }
 
 RandomKey randomKey(const NoiseKey& key) {
@@ -54,7 +55,7 @@ void addNoise(const RangeNoise& noise, double min_range, double max_range, const
     assert(!grazes || cosines.size() == ranges.size());
     const bool spreads = noise.sigma != std::array<double, 3>{0, 0, 0};
     const bool drops = grazes || noise.dropout > 0;
-    const Figures figures = figuresOf(noise, min_range, max_range);
+    const Parameters parameters = parametersOf(noise, min_range, max_range);
     const RandomKey random = randomKey(key);
     alignas(64) std::array<float, kBlock> normal;   // NOLINT: drawn if needed
     alignas(64) std::array<float, kBlock> uniform;  // NOLINT
@@ -64,8 +65,9 @@ void addNoise(const RangeNoise& noise, double min_range, double max_range, const
         if (spreads) draws.normal = std::span(normal).first(count);
         if (drops) draws.uniform = std::span(uniform).first(count);
         draw(random, static_cast<std::uint32_t>(k), draws);
-        disturb(figures, count, spreads ? normal.data() : nullptr, drops ? uniform.data() : nullptr,
-                grazes ? cosines.data() + k : nullptr, ranges.data() + k);
+        disturb(parameters, count, spreads ? normal.data() : nullptr,
+                drops ? uniform.data() : nullptr, grazes ? cosines.data() + k : nullptr,
+                ranges.data() + k);
     }
 }
 

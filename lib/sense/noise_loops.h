@@ -11,8 +11,8 @@
 /// The loops of addNoise(), to be compiled for one processor or another.
 namespace ispace::noise_loops {
 
-/// A device's figures as the loops need them.
-struct Figures {
+/// A device's parameters as the loops need them.
+struct Parameters {
     float bias = 0;
     std::array<float, 3> sigma{0, 0, 0};
     float dropout = 0;
@@ -25,14 +25,14 @@ struct Figures {
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
 /// `normal` null: no spread.
-ISPACE_INLINE void spread(const Figures& figures, std::size_t count, const float* normal,
+ISPACE_INLINE void spread(const Parameters& parameters, std::size_t count, const float* normal,
                           float* __restrict ranges) {
-    const float bias = figures.bias;
+    const float bias = parameters.bias;
     if (normal == nullptr) {
         for (std::size_t k = 0; k < count; ++k) ranges[k] += bias;
         return;
     }
-    const auto [s0, s1, s2] = figures.sigma;
+    const auto [s0, s1, s2] = parameters.sigma;
     for (std::size_t k = 0; k < count; ++k) {
         const float r = ranges[k];
         const float sigma = s0 + r * (s1 + r * s2);
@@ -43,9 +43,9 @@ ISPACE_INLINE void spread(const Figures& figures, std::size_t count, const float
 }
 
 /// `cosines` null: none is lost by incidence.
-ISPACE_INLINE void drop(const Figures& figures, std::size_t count, const float* cosines,
+ISPACE_INLINE void drop(const Parameters& parameters, std::size_t count, const float* cosines,
                         const float* uniform, float* __restrict ranges) {
-    const float dropout = figures.dropout;
+    const float dropout = parameters.dropout;
     if (cosines == nullptr) {
         for (std::size_t k = 0; k < count; ++k) {
             ranges[k] = simd::choose(uniform[k] < dropout, kNoReturn, ranges[k]);
@@ -53,9 +53,9 @@ ISPACE_INLINE void drop(const Figures& figures, std::size_t count, const float* 
         return;
     }
     const float kept = 1.0F - dropout;
-    const float from = figures.graze_from;
-    const float slope = figures.graze_slope;
-    const float end = figures.graze_cosine;
+    const float from = parameters.graze_from;
+    const float slope = parameters.graze_slope;
+    const float end = parameters.graze_cosine;
     for (std::size_t k = 0; k < count; ++k) {
         // Rounding may have left a cosine above 1.
         const float cosine = simd::choose(cosines[k] < 1.0F, cosines[k], 1.0F);
@@ -66,12 +66,13 @@ ISPACE_INLINE void drop(const Figures& figures, std::size_t count, const float* 
     }
 }
 
-ISPACE_INLINE void quantise(const Figures& figures, std::size_t count, float* __restrict ranges) {
+ISPACE_INLINE void quantise(const Parameters& parameters, std::size_t count,
+                            float* __restrict ranges) {
     // Added and taken off again this rounds to a whole number; one too large for that is left as it
     // is, but for the rounding of doubles.
     constexpr double kRounder = 0x1.8p52;
-    const double resolution = figures.resolution;
-    const double per_metre = figures.per_metre;
+    const double resolution = parameters.resolution;
+    const double per_metre = parameters.per_metre;
     for (std::size_t k = 0; k < count; ++k) {
         const double n = static_cast<double>(ranges[k]) * per_metre;
         const double rounded = (n + kRounder) - kRounder;
@@ -80,9 +81,10 @@ ISPACE_INLINE void quantise(const Figures& figures, std::size_t count, float* __
 }
 
 /// What is out of range, or not a number, is no return.
-ISPACE_INLINE void limit(const Figures& figures, std::size_t count, float* __restrict ranges) {
-    const float low = figures.min_range;
-    const float high = figures.max_range;
+ISPACE_INLINE void limit(const Parameters& parameters, std::size_t count,
+                         float* __restrict ranges) {
+    const float low = parameters.min_range;
+    const float high = parameters.max_range;
     for (std::size_t k = 0; k < count; ++k) {
         const float r = ranges[k];
         const float not_low = simd::choose(r >= low, r, kNoReturn);
@@ -91,10 +93,10 @@ ISPACE_INLINE void limit(const Figures& figures, std::size_t count, float* __res
 }
 
 /// Returns that noise carried out of range are at its end.
-ISPACE_INLINE void keepInRange(const Figures& figures, std::size_t count,
+ISPACE_INLINE void keepInRange(const Parameters& parameters, std::size_t count,
                                float* __restrict ranges) {
-    const float low = figures.min_range;
-    const float high = figures.max_range;
+    const float low = parameters.min_range;
+    const float high = parameters.max_range;
     for (std::size_t k = 0; k < count; ++k) {
         const float r = ranges[k];
         const float not_low = simd::choose(r > low, r, low);
@@ -104,14 +106,14 @@ ISPACE_INLINE void keepInRange(const Figures& figures, std::size_t count,
 }
 
 /// What a block of ranges goes through; arrays are null if not needed.
-ISPACE_INLINE void apply(const Figures& figures, std::size_t count, const float* normal,
+ISPACE_INLINE void apply(const Parameters& parameters, std::size_t count, const float* normal,
                          const float* uniform, const float* cosines, float* ranges) {
-    limit(figures, count, ranges);
-    const bool moves = normal != nullptr || figures.bias != 0;
-    if (moves) spread(figures, count, normal, ranges);
-    if (uniform != nullptr) drop(figures, count, cosines, uniform, ranges);
-    if (figures.resolution > 0) quantise(figures, count, ranges);
-    if (moves || figures.resolution > 0) keepInRange(figures, count, ranges);
+    limit(parameters, count, ranges);
+    const bool moves = normal != nullptr || parameters.bias != 0;
+    if (moves) spread(parameters, count, normal, ranges);
+    if (uniform != nullptr) drop(parameters, count, cosines, uniform, ranges);
+    if (parameters.resolution > 0) quantise(parameters, count, ranges);
+    if (moves || parameters.resolution > 0) keepInRange(parameters, count, ranges);
 }
 
 }  // namespace ispace::noise_loops

@@ -297,10 +297,10 @@ TEST(Noise, EachBeamIsOnItsOwn) {
         EXPECT_NE(noisy(everything(), ranges, cosines, key, 0.1, 10), whole);
 }
 
-[[gnu::noinline]] void applyPlainly(const noise_loops::Figures& figures, std::size_t count,
+[[gnu::noinline]] void applyPlainly(const noise_loops::Parameters& parameters, std::size_t count,
                                     const float* normal, const float* uniform, const float* cosines,
                                     float* ranges) {
-    noise_loops::apply(figures, count, normal, uniform, cosines, ranges);
+    noise_loops::apply(parameters, count, normal, uniform, cosines, ranges);
 }
 
 TEST(Noise, IsTheSameForAnyProcessor) {
@@ -313,18 +313,20 @@ TEST(Noise, IsTheSameForAnyProcessor) {
         }
         const Floats chosen = noisy(noise, plain, cosines, kKey, 0.1, 10);
         draw({42, Purpose::Range, hashOf("l1"), 7}, 0, {.normal = normal, .uniform = uniform});
-        noise_loops::Figures figures;
-        figures.bias = 0.01F;
-        figures.sigma = {0.01F, 0.002F, 0.0001F};
-        figures.dropout = 0.02F;
-        figures.graze_from = static_cast<float>(noise.graze_from.radians());
-        figures.graze_slope = static_cast<float>(1 / (noise.graze_to - noise.graze_from).radians());
-        figures.graze_cosine = static_cast<float>(cos(noise.graze_to));
-        figures.resolution = 0.001;
-        figures.per_metre = 1 / 0.001;
-        figures.min_range = 0.1F;
-        figures.max_range = 10;
-        applyPlainly(figures, count, normal.data(), uniform.data(), cosines.data(), plain.data());
+        noise_loops::Parameters parameters;
+        parameters.bias = 0.01F;
+        parameters.sigma = {0.01F, 0.002F, 0.0001F};
+        parameters.dropout = 0.02F;
+        parameters.graze_from = static_cast<float>(noise.graze_from.radians());
+        parameters.graze_slope =
+            static_cast<float>(1 / (noise.graze_to - noise.graze_from).radians());
+        parameters.graze_cosine = static_cast<float>(cos(noise.graze_to));
+        parameters.resolution = 0.001;
+        parameters.per_metre = 1 / 0.001;
+        parameters.min_range = 0.1F;
+        parameters.max_range = 10;
+        applyPlainly(parameters, count, normal.data(), uniform.data(), cosines.data(),
+                     plain.data());
         EXPECT_EQ(plain, chosen) << count;
     }
 }

@@ -60,7 +60,53 @@ struct ReadingTaker::Data {
         }
         return *caster;
     }
+
+    // What a reading of each kind needs, and the reading.
+    void prepare(const Laser& laser, const ReadingJob& job);
+    void prepare(const Ranger& /*ranger*/, const ReadingJob& /*job*/) { worlds.prepareMesh(); }
+    void prepare(const Tag& /*tag*/, const ReadingJob& /*job*/) {
+        worlds.prepareMesh(Surfaces::Solid);
+    }
+    Reading take(const Laser& laser, const ReadingJob& job);
+    Reading take(const Ranger& ranger, const ReadingJob& job);
+    Reading take(const Tag& tag, const ReadingJob& job);
+    // Receivers hear tags; alone they read nothing.
+    void prepare(const Receiver& /*receiver*/, const ReadingJob& /*job*/) {}
+    static Reading take(const Receiver& /*receiver*/, const ReadingJob& /*job*/) { return {}; }
 };
+
+void ReadingTaker::Data::prepare(const Laser& laser, const ReadingJob& job) {
+    if (laser.sweep == SweepAxis::Tilt || laser.sweep == SweepAxis::Roll) {
+        // One of its scans may be level.
+        worlds.prepare({job.pose.position, {}, {}, {}});
+        worlds.prepareMesh();
+    }
+    worlds.prepare(job.pose);
+    const double height = job.pose.position.z;
+    if (std::any_of(job.way.begin(), job.way.end(),
+                    [height](const TimedPose& timed) { return !staysLevelAt(timed.pose, height); }))
+        worlds.prepareMesh();
+}
+
+Reading ReadingTaker::Data::take(const Laser& laser, const ReadingJob& job) {
+    std::vector<Scan> scans = scansOf(laser, job);
+    LaserCaster& caster = casterOf(job.sensor);
+    for (Scan& scan : scans) caster.cast(scan);
+    return scans;
+}
+
+Reading ReadingTaker::Data::take(const Ranger& /*ranger*/, const ReadingJob& job) {
+    const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
+    DepthFrame frame = castDepth(worlds.mesh(), bodies, sensors.read[job.sensor], pose, job.frame,
+                                 {options.noise_seed});
+    frame.time = job.time;
+    return frame;
+}
+
+Reading ReadingTaker::Data::take(const Tag& /*tag*/, const ReadingJob& job) {
+    return castBurst(worlds.mesh(Surfaces::Solid), bodies, sensors.read[job.sensor],
+                     sensors.receivers, job.frame, job.time, {options.celsius, options.noise_seed});
+}
 
 ReadingTaker::ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
                            const TakerOptions& options)
@@ -68,41 +114,13 @@ ReadingTaker::ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingB
 ReadingTaker::~ReadingTaker() = default;
 
 void ReadingTaker::prepare(const ReadingJob& job) {
-    const Sensor& sensor = data_->sensors.read[job.sensor];
-    if (sensor.is<Tag>()) return data_->worlds.prepareMesh(Surfaces::Solid);
-    if (sensor.is<Ranger>()) return data_->worlds.prepareMesh();
-    const Laser& laser = sensor.as<Laser>();
-    if (laser.sweep == SweepAxis::Tilt || laser.sweep == SweepAxis::Roll) {
-        // One of its scans may be level.
-        data_->worlds.prepare({job.pose.position, {}, {}, {}});
-        data_->worlds.prepareMesh();
-    }
-    data_->worlds.prepare(job.pose);
-    const double height = job.pose.position.z;
-    if (std::any_of(job.way.begin(), job.way.end(),
-                    [height](const TimedPose& timed) { return !staysLevelAt(timed.pose, height); }))
-        data_->worlds.prepareMesh();
+    std::visit([&](const auto& model) { data_->prepare(model, job); },
+               data_->sensors.read[job.sensor].model);
 }
 
 Reading ReadingTaker::take(const ReadingJob& job) {
-    Data& d = *data_;
-    const Sensor& sensor = d.sensors.read[job.sensor];
-    if (sensor.is<Laser>()) {
-        std::vector<Scan> scans = scansOf(sensor.as<Laser>(), job);
-        LaserCaster& caster = d.casterOf(job.sensor);
-        for (Scan& scan : scans) caster.cast(scan);
-        return scans;
-    }
-    if (sensor.is<Ranger>()) {
-        const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
-        DepthFrame frame =
-            castDepth(d.worlds.mesh(), d.bodies, sensor, pose, job.frame, {d.options.noise_seed});
-        frame.time = job.time;
-        return frame;
-    }
-    const UltrasoundOptions options{d.options.celsius, d.options.noise_seed};
-    return castBurst(d.worlds.mesh(Surfaces::Solid), d.bodies, sensor, d.sensors.receivers,
-                     job.frame, job.time, options);
+    return std::visit([&](const auto& model) { return data_->take(model, job); },
+                      data_->sensors.read[job.sensor].model);
 }
 
 }  // namespace ispace

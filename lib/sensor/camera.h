@@ -4,7 +4,7 @@
 namespace ispace {
 
 struct SensorKind;
-/// Cameras are read and drawn; nothing simulates them yet.
+/// Cameras are read and drawn, but not simulated yet.
 extern const SensorKind kCameraKind;
 
 }  // namespace ispace

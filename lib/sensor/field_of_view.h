@@ -7,24 +7,24 @@
 
 namespace ispace {
 
-/// The rule of all range tests: as float32, end included. A place looked at with a longer range,
-/// its distances kept as floats, then gives the same answer.
+/// The rule of all range tests: compare as float32, end included. Distances kept as floats then
+/// give the same answer for any shorter range.
 inline bool withinRange(double distance, double max_range) {
     return static_cast<float>(distance) <= static_cast<float>(max_range);
 }
 
-/// All that a sensor with an axis would see if nothing stood in its way. Its edges are in it,
-/// whatever rounding makes of them.
+/// What a sensor with an axis sees if nothing is in the way. Its edges belong to it, with a margin
+/// for rounding.
 struct FieldOfView {
     enum class Shape {
         Pyramid,  ///< of a pinhole, through the edges of its picture
-        Window,   ///< of bearings and elevations
+        Window,   ///< an interval of bearings and one of elevations
         Cone,     ///< about the axis
     };
     Shape shape = Shape::Pyramid;
     Frame3 frame;
     double max_range = 0;
-    bool is_by_depth = false;  ///< the range is that along the axis
+    bool is_by_depth = false;  ///< the range is measured along the axis
     Angle half_x, half_y;      ///< half of the fields of view; of a cone both the same
     /// Of the pyramid tangents of the halves; of the window the cosine of half_x and the sine of
     /// half_y; of the cone its cosine, once.
@@ -39,7 +39,7 @@ struct FieldOfView {
 
     /// True if a place is in view and in range.
     [[nodiscard]] bool holds(Point3 place) const;
-    /// True if the direction to a place is in view; the sensor's own place is.
+    /// True if the direction to a place (in its frame) is in view; the sensor's own place is.
     [[nodiscard]] bool points(Vec3 local) const;
     /// Greatest distance of what is in view.
     [[nodiscard]] double farthest() const;

@@ -39,7 +39,7 @@ KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper)
 KeySpec modelKey() {
     return {.name = "model",
             .type = KeyType::Word,
-            .help = "device of the catalogue that gives the figures not written"};
+            .help = "device of the catalogue that gives the parameters not written"};
 }
 
 KeySpec rangeKey(std::string help) {

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// As in the environment: plans lie within this of the origin, in metres.
+/// Plans lie within this distance of the origin, in metres, as in the environment.
 constexpr double kFarthest = 1e6;
 
 // Keys that several records have.
@@ -23,9 +23,9 @@ KeySpec headingKey(std::string help);
 /// A number above 0 without default.
 KeySpec positiveKey(std::string name, Unit unit, std::string help, double upper);
 
-/// Above what any sensor does, times a second.
+/// More readings a second than any sensor takes.
 constexpr double kMaxRate = 1e5;
-/// Where a sensor is and how it looks: a pose in space, or one in the frame of its carrier.
+/// The keys of a sensor's pose, in space or in the frame of its carrier.
 void addSensorPose(std::vector<KeySpec>& keys, std::string heading_help);
 KeySpec rangeKey(std::string help);
 KeySpec onKey();
@@ -33,25 +33,24 @@ KeySpec costKey();
 /// Keys of what takes pictures: range, fov up to `widest` degrees, pixels and rate.
 void addPictureKeys(std::vector<KeySpec>& keys, double widest);
 
-/// Puts the `range` of a record, if it has one, in the place of two limits: least and greatest, or
-/// the greatest alone. Adds what is wrong with it to the findings.
+/// Replaces both limits, or the greatest alone, by the `range` of a record if it has one. Errors
+/// are added to the findings.
 void applyRange(const Record& record, double& min_range, double& max_range, Diagnostics& findings);
 
-/// Numbers of the device table: "0.06..4" and degrees with no more decimals than tell devices
-/// apart.
+/// Numbers of the device table: "0.06..4", and degrees with as few decimals as tell devices apart.
 std::string rangeText(double least, double greatest);
 std::string degreesText(Angle angle);
 
-/// Figures of a record: its explicit keys, else those of its device if there is one, else of a bare
-/// one, put together by withFigures(Figures, const Record&). \throws FormatError as that
-template <typename Figures>
-Figures figuresOf(const Record& record, const Record* device) {
-    Figures base;
+/// Parameters of a record: its explicit keys, else those of its device if there is one, else of a
+/// bare one, put together by withParameters(Parameters, const Record&). \throws FormatError as that
+template <typename Parameters>
+Parameters parametersOf(const Record& record, const Record* device) {
+    Parameters base;
     if (device != nullptr) {
-        base = withFigures(Figures(), *device);
+        base = withParameters(Parameters(), *device);
         base.model = record.text("model");
     }
-    return withFigures(std::move(base), record);
+    return withParameters(std::move(base), record);
 }
 
 }  // namespace ispace

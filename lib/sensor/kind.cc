@@ -83,7 +83,7 @@ Schema deviceSchema(std::string keyword, std::string help,
     add_keys(schema.keys);
     schema.keys.push_back({.name = "source",
                            .type = KeyType::Text,
-                           .help = "public documents the figures come from",
+                           .help = "public documents the parameters come from",
                            .required = true});
     schema.keys.push_back({.name = "confidence",
                            .type = KeyType::Choice,

@@ -14,22 +14,22 @@
 
 namespace ispace {
 
-/// What the device table says of a model.
+/// A model's row in the device table.
 struct DeviceSummary {
     std::string range = "-", field_of_view, size = "-", rate;
 };
 
-/// The sign that stands for a sensor on plans and maps.
+/// The symbol of a sensor on plans and maps.
 enum class SensorSign { Disc, Square, Triangle, Diamond };
 
-/// The bearings that a plan shows a sensor to look at, in its frame.
+/// The sector that a plan draws for a sensor, in its frame.
 struct BearingSpan {
     Angle from, to;
     double range = 0;
 };
 
-/// One kind of sensor: what the other rooms ask about it. A new kind is a source with such a row,
-/// and its place in sensorKinds(); one that is simulated also an alternative of SensorModel.
+/// One kind of sensor: everything the other folders ask about it. A new kind is a source with such
+/// a row, listed in sensorKinds(); a simulated one is also an alternative of SensorModel.
 struct SensorKind {
     std::string_view keyword;       ///< of its records
     std::string_view noun;          ///< what people call one
@@ -39,25 +39,26 @@ struct SensorKind {
     SensorSign sign = SensorSign::Disc;
     /// Keys besides those that all sensors have.
     void (*add_keys)(std::vector<KeySpec>& keys);
-    /// Its body in its own frame, optical centre at the origin, facing +x.
+    /// Its body in its own frame: optical centre at the origin, facing +x.
     std::vector<Mesh> (*body)();
 
-    /// The figures of a record: its explicit keys, else the device's (if not null), else those of a
-    /// bare one. \throws FormatError with all findings. Null: records are checked and drawn only
+    /// The parameters of a record: its explicit keys, else the device's (if not null), else those
+    /// of a bare one. \throws FormatError with all findings. Null: records are checked and drawn
+    /// only
     SensorModel (*read)(const Record& record, const Record* device) = nullptr;
     DeviceSummary (*summary)(const SensorModel& model) = nullptr;
-    /// What it looks at as a translucent sheet in its frame, open and seen from both sides, no
-    /// farther than `reach`. Null: nothing.
+    /// Its field of view as a translucent open surface in its frame, two-sided, up to `reach`.
+    /// Null: none.
     Mesh (*view)(const Sensor& sensor, double reach) = nullptr;
     BearingSpan (*bearings)(const SensorModel& model) = nullptr;
 
-    /// Surfaces that stop what it perceives or emits: light or sound.
+    /// Surfaces that stop its light or sound.
     Surfaces stopped_by = Surfaces::Opaque;
-    bool perceives = true;       ///< sees or hears; else it is what others look for
-    bool is_read = false;        ///< `scan` gives readings of it, or of what it hears
+    bool perceives = true;       ///< sees or hears; false for what others look for
+    bool is_read = false;        ///< `scan` takes readings of it, or through it
     bool is_arranged = false;    ///< `arrange` can place it
     bool follows_poses = false;  ///< `scan --poses` can move it
-    /// A place is covered where so many of this kind see it together.
+    /// A place counts as covered if this many of the kind see it.
     std::size_t together = 1;
 };
 

@@ -141,7 +141,7 @@ bool Laser::sees(Angle bearing) const {
     return beyond_first <= span().degrees() + kSlack || beyond_first >= 360 - kSlack;
 }
 
-Laser withFigures(Laser base, const Record& record) {
+Laser withParameters(Laser base, const Record& record) {
     Diagnostics findings;
     applyRange(record, base.min_range, base.max_range, findings);
     applyBeams(base, record, findings);
@@ -153,7 +153,7 @@ Laser withFigures(Laser base, const Record& record) {
 }
 
 Laser laserOf(const Record& record, const Record* device) {
-    return figuresOf<Laser>(record, device);
+    return parametersOf<Laser>(record, device);
 }
 
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans) {

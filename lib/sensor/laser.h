@@ -10,9 +10,9 @@
 
 namespace ispace {
 
-/// More beams than this are refused: no scanner has them, and a slip of the unit may ask for them.
+/// Most beams of a scan: no scanner has more, but a mistaken unit may ask for more.
 constexpr int kMaxBeams = 1'000'000;
-/// The same for all beams of a sweep: they are one reading.
+/// Most beams of a whole sweep, which is one reading.
 constexpr double kMaxSwept = 1e8;
 
 /// Which angle of its pose a laser changes from scan to scan of a sweep.
@@ -31,23 +31,22 @@ struct Laser {
     Angle first = Angle::degrees(-90), step = Angle::degrees(1);
     int beams = 181;
     double rate = 10;  ///< scans a second
-    /// Turns a second of its beam, which give each beam its own time: counter-clockwise the first
-    /// is first, clockwise (below 0) the last. 0: all beams at once.
+    /// Turns a second of its beam, which give each beam its own time. Counter-clockwise beam 0
+    /// comes first, clockwise (below 0) the last one. 0: all beams at once.
     double spin = 0;
-    /// A sweep is `scans()` scans, scan j with the angle of the axis j * sweep_step more than
-    /// written: 0 .. sweep_span, its end left out if that is a full turn.
+    /// A sweep is `scans()` scans; scan j adds j * sweep_step to the angle of the axis: from 0 to
+    /// sweep_span, without its end if that is a full turn.
     SweepAxis sweep = SweepAxis::None;
     Angle sweep_span = Angle::degrees(360), sweep_step = Angle::degrees(1);
     RangeNoise noise;
 
     [[nodiscard]] Angle bearing(int beam) const { return first + static_cast<double>(beam) * step; }
     [[nodiscard]] Angle last() const { return bearing(beams - 1); }
-    /// The sector that a scan looks into, counter-clockwise from `first`: up to the last beam, or a
-    /// full turn if the beams close the circle. They do if beams * step reaches 360 degrees, give
-    /// or take a hundredth of a step: last and first beam then are neighbours as any others. Two
-    /// beams close none.
+    /// The sector of a scan, counter-clockwise from `first` to the last beam, or a full turn if the
+    /// beams close the circle: if beams * step is 360 degrees or more, within a hundredth of a
+    /// step, so that last and first beam are neighbours like any others. Two beams never do.
     [[nodiscard]] Angle span() const;
-    /// The sector that a level laser looks into with its sweep of headings; at most a full turn.
+    /// The sector that a level laser covers with its sweep of headings; at most a full turn.
     [[nodiscard]] Angle sweptSpan() const;
     /// True if a level laser looks in all directions, so that its heading does not matter; never if
     /// it nods or rolls.
@@ -72,10 +71,10 @@ struct Laser {
     friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// A pose of a laser when it is `scans` scans (whole or not) into its sweep.
+/// The pose of a laser `scans` scans (whole or not) into its sweep.
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
 
-/// Figures of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
+/// Parameters of a `laser` record: its explicit keys, else its model's, else the bare laser's. An
 /// explicit `fov` lays the beams anew: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1
 /// of them, or explicit `beams` spread over it; an explicit `step` alone keeps the model's first
 /// beam and span (or full turn); `first` alone keeps number and step; `beams` alone keeps first
@@ -86,9 +85,9 @@ Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
 ///         a scan that takes longer than the next is due
 Laser laserOf(const Record& record, const Record* device = nullptr);
 
-/// `base` with the figures written in a record put in place of its own; the model stays.
+/// `base` with the parameters that a record writes in place of its own; the model stays.
 /// \throws FormatError as laserOf
-Laser withFigures(Laser base, const Record& record);
+Laser withParameters(Laser base, const Record& record);
 
 struct SensorKind;
 extern const SensorKind kLaserKind;

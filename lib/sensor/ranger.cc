@@ -59,7 +59,7 @@ Vec3 Ranger::ray(double column, double row) const {
     return {cb * ce, sb * ce, se};
 }
 
-Ranger withFigures(Ranger base, const Record& record) {
+Ranger withParameters(Ranger base, const Record& record) {
     Diagnostics findings;
     applyRange(record, base.min_range, base.max_range, findings);
     applyPicture(base, record, findings);
@@ -79,7 +79,7 @@ Ranger withFigures(Ranger base, const Record& record) {
 }
 
 Ranger rangerOf(const Record& record, const Record* device) {
-    return figuresOf<Ranger>(record, device);
+    return parametersOf<Ranger>(record, device);
 }
 
 FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose) {

@@ -28,11 +28,11 @@ struct Ranger {
     Angle fov_x = Angle::degrees(47.5), fov_y = Angle::degrees(39.6);
     int columns = 176, rows = 144;
     double rate = 25;  ///< pictures a second
-    /// What the device measures, and its limits and noise are about: the depth along its axis, or
-    /// the distance along the ray (time of flight; always that of a spherical one).
+    /// What the device measures and its limits and noise refer to: the depth along its axis, or the
+    /// distance along the ray (time of flight; always so for a spherical one).
     bool measures_depth = false;
-    /// Distances are known but for multiples of this (phase of modulated light): what stands at
-    /// ambiguity + d reads d, however far it is, if the limits let d pass. 0: unambiguous.
+    /// Distances are known up to multiples of this (phase of modulated light): a surface at
+    /// ambiguity + d reads d if d is within the limits. 0: unambiguous.
     double ambiguity = 0;
     RangeNoise noise;
 
@@ -52,8 +52,8 @@ struct Ranger {
     [[nodiscard]] double fy() const;
     [[nodiscard]] double cx() const { return (columns - 1) / 2.0; }
     [[nodiscard]] double cy() const { return (rows - 1) / 2.0; }
-    /// Where a pixel looks, in the sensor's frame: with forward component 1 of a pinhole (times a
-    /// depth it is a place), of unit length of a spherical one (times a distance it is one).
+    /// The ray of a pixel in the sensor's frame. A pinhole's has forward component 1 (times a depth
+    /// it is a place), a spherical one's has unit length (times a distance it is a place).
     [[nodiscard]] Vec3 ray(double column, double row) const;
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
@@ -65,15 +65,15 @@ struct Ranger {
     friend bool operator==(const Ranger&, const Ranger&) = default;
 };
 
-/// Figures of a `ranger` record: its explicit keys, else its model's, else the bare ranger's. A
+/// Parameters of a `ranger` record: its explicit keys, else its model's, else the bare ranger's. A
 /// `fov` of one number gives the other by square pixels; one number in `range` is the maximum.
 /// \throws FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees
 ///         or more, more than kMaxPixels
 Ranger rangerOf(const Record& record, const Record* device = nullptr);
-Ranger withFigures(Ranger base, const Record& record);
+Ranger withParameters(Ranger base, const Record& record);
 constexpr std::size_t kMaxPixels = 1U << 26U;
 
-/// All that it sees at a pose if nothing stands in its way.
+/// What it sees at a pose if nothing is in the way.
 FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose);
 
 struct SensorKind;

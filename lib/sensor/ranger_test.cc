@@ -12,14 +12,14 @@ namespace ispace {
 
 namespace {
 
-/// Figures of a record with these keys, by `read`: rangerOf, receiverOf, tagOf.
+/// Parameters of a record with these keys, by `read`: rangerOf, receiverOf, tagOf.
 template <typename Read>
-auto figures(const std::string& line, Read read) {
+auto parameters(const std::string& line, Read read) {
     const Record record = testing::sensorRecord(line);
     return read(record, testing::deviceFor(record));
 }
 
-Ranger ranger(const std::string& keys) { return figures("ranger " + keys, rangerOf); }
+Ranger ranger(const std::string& keys) { return parameters("ranger " + keys, rangerOf); }
 
 std::string rangerFindings(const std::string& keys) {
     return testing::findings([&] { return ranger(keys); });
@@ -81,13 +81,13 @@ TEST(Ranger, PixelsLookWhereTheHeaderSays) {
 
 TEST(UltrasoundOf, ReceiversAndTags) {
     const auto receiver = [](const std::string& keys) {
-        return figures("ultrasound " + keys, receiverOf);
+        return parameters("ultrasound " + keys, receiverOf);
     };
     EXPECT_EQ(receiver(""), Receiver());
     EXPECT_EQ(receiver("model=zps-3d").rate, 20);
     EXPECT_EQ(receiver("range=0.2,4").min_range, 0.2);
     EXPECT_NE(testing::findings([&] { return receiver("range=4,1"); }), "");
-    const auto tag = [](const std::string& keys) { return figures("tag " + keys, tagOf); };
+    const auto tag = [](const std::string& keys) { return parameters("tag " + keys, tagOf); };
     EXPECT_EQ(tag(""), Tag());
     EXPECT_FALSE(tag("model=zps-3d-tag").is_simple);
     EXPECT_TRUE(tag("locate=simple sigma=0.2").is_simple);

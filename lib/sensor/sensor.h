@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/sensor: kinds of sensors, a row and a source each: keyword, keys, figures, body, field of
-// view. Uses env and below.
+// lib/sensor: the kinds of sensors, each a row and a source: keyword, keys, parameters, body, field
+// of view. Uses env and below.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace ispace {
 
-/// The figures of a sensor of any kind that is simulated. A kind is told apart here, in its own
-/// source and where readings differ by nature, nowhere else.
+/// Parameters of a sensor of any simulated kind. Code tells kinds apart here, in their own sources
+/// and where readings differ by nature, nowhere else.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag>;
 
 /// What carries a sensor that moves.
@@ -27,7 +27,7 @@ struct Mount {
     Pose3 robot_from_sensor;  ///< z counts from the floor, as the robot's frame lies there
 };
 
-/// A sensor at its place; one on a robot where the robot starts.
+/// A placed sensor; one on a robot is where the robot starts.
 struct Sensor {
     std::string id;
     SensorModel model;
@@ -55,23 +55,22 @@ const std::string& deviceName(const SensorModel& model);
 double maxRange(const SensorModel& model);
 /// Readings a second: of a swept laser, whole sweeps.
 double readingRate(const SensorModel& model);
-/// How long one reading takes, in seconds; 0 for all at once.
+/// Duration of one reading in seconds; 0 if everything is measured at once.
 double readingTime(const SensorModel& model);
 /// Rays of one reading, roughly: what it costs to simulate.
 std::size_t raysOf(const SensorModel& model);
-/// True if turning about the vertical changes nothing of what it sees, mounted with this tilt and
-/// roll.
+/// True if, mounted with this tilt and roll, it sees the same whatever its heading.
 bool looksAround(const SensorModel& model, const Pose3& mount);
 
-/// All that it perceives if nothing stands in its way; nothing for what scans a plane (lasers) and
-/// for tags.
+/// What it perceives if nothing is in the way; nothing for lasers, which scan a plane, and for
+/// tags.
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor);
 
-/// Pose that the record of a sensor writes; without `at` at 0,0, without z at kScanHeight. With
-/// `on` it is a pose in the frame of what carries the sensor.
+/// The pose that a sensor's record gives: 0,0 without `at`, kScanHeight without z. With `on` it is
+/// a pose in the frame of the carrier.
 Pose3 poseOf(const Record& record);
 
-/// World pose of a sensor on a robot, its heading within (-180, 180].
+/// World pose of a sensor on a robot, with its heading in (-180, 180].
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor);
 
 }  // namespace ispace

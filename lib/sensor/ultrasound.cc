@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-Receiver withFigures(Receiver base, const Record& record) {
+Receiver withParameters(Receiver base, const Record& record) {
     Diagnostics findings;
     applyRange(record, base.min_range, base.max_range, findings);
     if (record.has("fov")) base.fov = record.angle("fov");
@@ -19,10 +19,10 @@ Receiver withFigures(Receiver base, const Record& record) {
 }
 
 Receiver receiverOf(const Record& record, const Record* device) {
-    return figuresOf<Receiver>(record, device);
+    return parametersOf<Receiver>(record, device);
 }
 
-Tag withFigures(Tag base, const Record& record) {
+Tag withParameters(Tag base, const Record& record) {
     if (record.has("rate")) base.rate = record.number("rate");
     if (record.has("fov")) base.fov = record.angle("fov");
     if (record.has("locate")) base.is_simple = record.text("locate") == "simple";
@@ -30,7 +30,7 @@ Tag withFigures(Tag base, const Record& record) {
     return base;
 }
 
-Tag tagOf(const Record& record, const Record* device) { return figuresOf<Tag>(record, device); }
+Tag tagOf(const Record& record, const Record* device) { return parametersOf<Tag>(record, device); }
 
 bool Receiver::looksAround(const Pose3& mount) {
     const Frame3 frame(mount);

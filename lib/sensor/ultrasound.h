@@ -12,17 +12,16 @@
 
 namespace ispace {
 
-/// Least receivers that together locate a tag (thesis 3.4.3): where so many hear, floor is covered.
+/// Receivers needed to locate a tag (thesis 3.4.3): floor is covered where this many hear.
 constexpr std::size_t kMinReceivers = 4;
 
-/// An ultrasonic receiver: hears a tag that is in reach, within a cone about its axis, and in
-/// sight.
+/// An ultrasonic receiver: hears a tag in range, within a cone about its axis, and in sight.
 struct Receiver {
     std::string model;  ///< "" for the bare receiver
     double min_range = 0, max_range = 8;
     Angle fov = Angle::degrees(120);  ///< full angle of the cone
     double rate = 10;                 ///< measurements a second
-    RangeNoise noise;                 ///< of the distance that the time of flight means
+    RangeNoise noise;                 ///< of the distance computed from the time of flight
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
@@ -41,7 +40,7 @@ struct Tag {
     bool is_simple = false;
     double simple_sigma = 0.1;
 
-    /// Those who hear it have a range, it has none.
+    /// Receivers have a range; a tag has none.
     double max_range = std::numeric_limits<double>::infinity();
 
     [[nodiscard]] double readingRate() const { return rate; }
@@ -51,15 +50,15 @@ struct Tag {
     friend bool operator==(const Tag&, const Tag&) = default;
 };
 
-/// Figures of an `ultrasound` record: its explicit keys, else its model's, else the bare one's.
+/// Parameters of an `ultrasound` record: its explicit keys, else its model's, else the bare one's.
 /// \throws FormatError with all findings
 Receiver receiverOf(const Record& record, const Record* device = nullptr);
-Receiver withFigures(Receiver base, const Record& record);
-/// The same of a `tag` record.
+Receiver withParameters(Receiver base, const Record& record);
+/// The same for a `tag` record.
 Tag tagOf(const Record& record, const Record* device = nullptr);
-Tag withFigures(Tag base, const Record& record);
+Tag withParameters(Tag base, const Record& record);
 
-/// All that it hears at a pose if nothing stands in its way.
+/// What it hears at a pose if nothing is in the way.
 FieldOfView fieldOfView(const Receiver& receiver, const Pose3& pose);
 
 struct SensorKind;

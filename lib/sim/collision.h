@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/sim only.
+// Private to lib/sim.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace ispace {
 
-/// Somebody who stands in the way: a circle on the floor that no robot may reach into.
+/// A person as an obstacle: a circle on the floor that no robot may enter.
 struct Person {
     std::string_view id;
     Point2 place;
@@ -28,29 +28,28 @@ struct Person {
 /// The people of a scene, in its order. The scene must outlive them.
 std::vector<Person> peopleOf(const Scene& scene);
 
-/// Metres by which circles may reach into things: touching is allowed, and this much is rounding.
+/// Metres by which circles may overlap things: touching is allowed, and this absorbs rounding.
 constexpr double kTouch = 1e-9;
 
-/// Least distance of two closed segments, 0 if they share a point; rounds.
+/// Distance of two closed segments, 0 if they share a point, with rounding errors.
 double distance(const Segment2& s, const Segment2& t);
 
-/// What stands in the way of circles on the floor: the lines of a band, found through a grid.
+/// Obstacles for circles on the floor: the lines of a band, indexed by a grid.
 /// Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
     explicit Obstacles(const Slice& band);
 
-    /// An element of Environment::elements() whose line a circle reaches into, or in whose solid it
-    /// lies.
+    /// An element of Environment::elements() whose line a circle overlaps, or whose solid contains
+    /// it.
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
-    /// Distance to the nearest line, `farthest` if none is nearer than that. Costs less the nearer
-    /// the line is.
+    /// Distance to the nearest line, at most `farthest`. The nearer the line, the cheaper.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
-    /// True if the way comes nearer than `distance` to a line.
+    /// True if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
-    /// An element that stops a circle whose centre goes that way: it reaches into a line, deeper
-    /// than at its start. Whoever stands in a line by rounding may leave it.
+    /// An element that stops a circle whose centre moves along the path: one it enters deeper than
+    /// at its start, so that a circle overlapping a line by rounding can leave it.
     [[nodiscard]] std::optional<std::size_t> stop(const Segment2& way, double radius) const;
 
   private:
@@ -64,7 +63,7 @@ class Obstacles {
     SegmentGrid grid_;
 };
 
-/// A robot's step as it proposes it.
+/// A robot's proposed step.
 struct Move {
     const Motion* from = nullptr;
     const MotionLimits* limits = nullptr;
@@ -75,37 +74,37 @@ struct Move {
     [[nodiscard]] Point2 start() const { return from->pose.position; }
     [[nodiscard]] Point2 end() const { return to.motion.pose.position; }
     [[nodiscard]] Segment2 chord() const { return {start(), end()}; }
-    /// Its place after `part` of kParts equal parts of the time.
+    /// Its place after `part` of kParts equal intervals of the step.
     static constexpr int kParts = 16;
     [[nodiscard]] Point2 place(int part) const;
-    /// Stays where it is, at rest without a goal.
+    /// Keeps the robot where it is, at rest and without a goal.
     void cancel();
 };
 
-/// The element that the move runs into. Swept along the chord if that is clear by more than the
-/// way may bulge, else along the chords of its parts.
+/// The element that the move runs into. Tests the chord first; only if that is not clear by more
+/// than the path may bulge, the chords of its parts.
 std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles);
 
-/// True if the move runs into another robot that moves at the same time, or stands at its start.
+/// True if the move runs into another robot, which moves at the same time or stays at its start.
 bool collides(const Move& move, const Move& other, bool other_moves);
 
 /// Indices of the robots in the order in which their moves are settled: by the bytes of their ids.
 std::vector<std::size_t> settlingOrder(std::span<const PlacedRobot> robots);
 
-/// Finds the robots and people that a move runs into. Robots come first, people behind them.
+/// Finds the robots and people that a move runs into. Robots are numbered first, then people.
 ///
-/// A move is tried against the moves of those that are settled before it and against the others
-/// where they stand: whatever these do later, no two ever overlap.
+/// A move is tested against the moves settled before it, and against all others where they stand:
+/// whatever these do later, no two ever overlap.
 class Traffic {
   public:
     /// `order` as of settlingOrder; a step takes `duration` seconds.
     Traffic(std::span<const PlacedRobot> robots, std::span<const Person> people,
             std::span<const std::size_t> order, double duration);
 
-    /// Takes the places at which the moves begin.
+    /// Indexes the places at which the moves begin.
     void rebuild(std::span<const Move> moves);
     /// The first one, in the order of settling, that this robot's move runs into.
-    /// \pre moves of those before it are settled: cancelled or not
+    /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,
                                                  std::size_t robot) const;
 
@@ -116,7 +115,7 @@ class Traffic {
     FloorGrid grid_;
 };
 
-/// What robots run into, by their heights.
+/// Obstacles by height of the robots.
 using ObstacleSets = std::map<double, Obstacles>;
 ObstacleSets obstaclesOf(const Scene& scene);
 

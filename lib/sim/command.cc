@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "sim/words.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -236,6 +235,25 @@ std::vector<TimedCommand> readScript(std::string_view text, const std::string& f
     while (const auto line = lines.next())
         reader.read(line->substr(0, line->find('#')), lines.number());
     return reader.take();
+}
+
+std::vector<Piece> wordsOf(std::string_view line) {
+    constexpr std::string_view kBlanks = " \t";
+    std::vector<Piece> words;
+    words.reserve(4);
+    for (std::size_t end = 0;;) {
+        const std::size_t start = line.find_first_not_of(kBlanks, end);
+        if (start == std::string_view::npos) return words;
+        end = std::min(line.find_first_of(kBlanks, start), line.size());
+        words.push_back({line.substr(start, end - start), static_cast<int>(start) + 1});
+    }
+}
+
+std::string upperCase(std::string_view word) {
+    std::string out(word);
+    for (char& c : out)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return out;
 }
 
 }  // namespace ispace

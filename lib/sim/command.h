@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "record/text.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
 
 class World;
 
-/// The Command System of the thesis, table 3.5.
+/// Verbs of the thesis' Command System, table 3.5.
 enum class Verb { Forward, Backward, Left, Right, Speed, Rotspeed, Stop };
 
-/// Forward, Backward, Left, Right: they come to an end (the thesis' "OK commands").
+/// True for Forward, Backward, Left and Right (the thesis' "OK commands").
 bool comesToAnEnd(Verb verb);
 /// "FORWARD".
 std::string_view nameOf(Verb verb);
-/// What the value is called in replies: "distance", "angle", "speed", "rotspeed"; "" for Stop.
+/// Name of the value in replies: "distance", "angle", "speed", "rotspeed"; "" for Stop.
 std::string_view valueNameOf(Verb verb);
 std::optional<Verb> verbNamed(std::string_view name);
 
-/// One command to a robot. `value` is in the units of the protocol: metres, degrees, m/s, deg/s; of
-/// Forward to Right it is not negative.
+/// One command to a robot. `value` is in the units of the protocol: metres, degrees, m/s, deg/s; it
+/// is not negative for Forward to Right.
 struct Command {
     Verb verb = Verb::Stop;
     double value = 0;
@@ -43,10 +45,10 @@ struct ParsedCommand {
     CommandError error;
 };
 
-/// "FORWARD 1.5" as it is typed, words apart by blanks. The robot's own limits are not checked.
+/// Reads a typed command such as "FORWARD 1.5". The robot's own limits are not checked.
 ParsedCommand parseCommand(std::string_view text);
 
-/// A command of a script: given at the first step at or after its time.
+/// A command of a script, given at the first step at or after its time.
 struct TimedCommand {
     SimTime time{};
     std::size_t robot = 0;
@@ -60,5 +62,12 @@ struct TimedCommand {
 ///         values beyond what the robot can do
 std::vector<TimedCommand> readScript(std::string_view text, const std::string& file,
                                      const World& world);
+
+// Shared by commands, scripts and requests.
+
+/// The words of a line, separated by blanks and tabs.
+std::vector<Piece> wordsOf(std::string_view line);
+/// The word with its letters a to z as capitals: verbs are written so, and people may forget it.
+std::string upperCase(std::string_view word);
 
 }  // namespace ispace

@@ -11,15 +11,15 @@
 
 namespace ispace {
 
-/// When the periods of a sensor begin: period k at k / rate seconds, in exact arithmetic. A rate of
-/// up to nine decimals is taken as it is written, any other as the double it is.
+/// When the periods of a sensor begin: period k at k / rate seconds, in exact arithmetic. A rate
+/// with up to nine decimals counts as written, any other as the double it is.
 class Periods {
   public:
     /// \pre rate > 0
     explicit Periods(double rate);
-    /// The last period that has begun.
+    /// The latest period that has begun.
     [[nodiscard]] std::int64_t newest(SimTime time) const;
-    /// The first nanosecond of period k; far beyond any run if that is more than a hundred years.
+    /// The first nanosecond of period k; a time beyond any run if that is after a hundred years.
     [[nodiscard]] SimTime begin(std::int64_t k) const;
 
   private:
@@ -33,9 +33,9 @@ class LaserReader {
     /// The scene must outlive it.
     explicit LaserReader(const Scene& scene);
 
-    /// Reads those of which a new period has begun, in parallel. \pre robots are those of the scene
+    /// Reads the lasers whose next period has begun, in parallel. \pre robots are the scene's
     void read(SimTime time, std::span<const Motion> robots);
-    /// Robots are not where they were.
+    /// Says that robots have moved.
     void robotsMoved() { moved_ = true; }
 
     /// In the order of the scene, where they start.

@@ -15,8 +15,8 @@ class FrictionMap {
   public:
     explicit FrictionMap(const Environment& environment);
 
-    /// That of the last `floor` record, in file order, that holds the point, edges included: later
-    /// ones lie on top. 0 if there is none.
+    /// Friction of the last `floor` record in file order that contains the point, edges included,
+    /// as later ones lie on top; 0 if there is none.
     [[nodiscard]] double at(Point2 p) const;
     /// True if it is 0 everywhere.
     [[nodiscard]] bool empty() const { return floors_.empty(); }
@@ -35,7 +35,7 @@ class FrictionMap {
 /// degrees.
 struct AxisLimits {
     double top = 0;    ///< speed of commands that come to an end
-    double max = 0;    ///< greatest speed, either way
+    double max = 0;    ///< greatest speed in either direction
     double accel = 0;  ///< of speeding up and braking
 };
 
@@ -44,14 +44,14 @@ struct MotionLimits {
     AxisLimits drive, turn;
 };
 
-/// The model's figures, all times (1 - friction).
+/// The model's limits, each times (1 - friction).
 MotionLimits limitsOf(const RobotModel& model, double friction);
 
 /// What one axis is to do.
 struct AxisGoal {
     enum class Kind {
         Speed,    ///< reach a speed and keep it
-        Distance  ///< go that far, come to rest exactly there
+        Distance  ///< go that far and come to rest exactly there
     } kind = Kind::Speed;
     double value = 0;  ///< the speed, or the signed distance left
 };
@@ -79,25 +79,25 @@ struct Motion {
     void halt();
 };
 
-/// What a motion comes to, and how far it strayed from an even motion along its chord.
+/// Result of a motion, and how far it strayed from an even motion along its chord.
 struct Advance {
     Motion motion;
-    double path = 0;   ///< length of the way travelled
-    double bulge = 0;  ///< no place of it is farther than this from the chord
-    double lag = 0;    ///< nor from where an even motion along the chord would be at that moment
+    double path = 0;   ///< length of the path travelled
+    double bulge = 0;  ///< upper bound of its distance from the chord
+    double lag = 0;    ///< upper bound of its distance from an even motion along the chord
 };
 
 /// Where a robot is after `duration` seconds.
 ///
-/// Each axis goes to its goal in the least time, by accelerations that are constant between the
-/// moments where it starts to brake or has reached a speed; these may lie anywhere within the
-/// duration. The plan depends on the state alone: two halves are as good as the whole. With a
+/// Each axis reaches its goal in the least time, with accelerations that are constant between the
+/// moments where it starts to brake or reaches a speed; these may lie anywhere within the duration.
+/// The plan depends on the state alone, so two half steps give the same as a whole one. With a
 /// distance to go it keeps to its top speed, brakes first if it goes the wrong way or is too fast
-/// to stop in time (and comes back), and ends with speed and distance left exactly 0.
+/// to stop in time (and comes back), and ends with speed and remaining distance exactly 0.
 ///
 /// Eq. (5.1)-(5.4) of the thesis, integrated in closed form where speeds are constant and else by
-/// Gauss-Legendre quadrature over pieces of little turn: accurate to 1e-13 of the way travelled.
-/// Without acceleration (friction 1) it stands at once.
+/// Gauss-Legendre quadrature over pieces of small turn: accurate to 1e-13 of the path length.
+/// Without acceleration (friction 1) it stops at once.
 /// \pre duration >= 0
 Advance advance(const Motion& from, const MotionLimits& limits, double duration);
 

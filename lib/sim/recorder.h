@@ -13,17 +13,18 @@
 
 namespace ispace {
 
-/// Records of a run in a folder (thesis, table 3.4):
+/// Records a run into a folder (thesis, table 3.4):
 ///
 /// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
 ///   time 0 and after each step
 /// - scans.jsonl: every scan, as `scan` writes them
 /// - info.csv: dt,control_interval,steps
-/// - timing.csv: t,wall,steps at each flush; wall-clock seconds, all that may differ between runs
+/// - timing.csv: t,wall,steps at each flush; wall-clock seconds, the only thing that may differ
+///   between runs
 ///
-/// Bytes go out whole lines at a time, at least every 0.1 s of wall time while record() or
-/// flushDue() is called. On an error the record ends with the last step that all files hold, and
-/// info.csv says which.
+/// Whole lines are written, at least every 0.1 s of wall time while record() or flushDue() is
+/// called. After an error the record ends with the last step that all files hold, which info.csv
+/// names.
 class Recorder {
   public:
     /// Makes the folder if it is missing (not its parents), locks it, and starts the files anew.
@@ -35,13 +36,13 @@ class Recorder {
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Ends the run once robots.csv and scans.jsonl together have grown beyond so many bytes: what
-    /// writes them throws FormatError, their lines stay.
+    /// Limits robots.csv and scans.jsonl together to about this many bytes: the write that exceeds
+    /// them throws FormatError; its lines stay.
     void limit(std::uint64_t bytes);
     /// The files in a folder of records; those that grow line by line come before info.csv.
     static std::vector<std::string> filesIn(const std::string& folder);
 
-    /// The state after a step; flushes if 0.1 s have passed.
+    /// Records the state after a step; flushes if 0.1 s have passed.
     void record(const World& world);
     /// Writes out what is pending. \throws std::system_error, also for a full disk
     void flush(const World& world);

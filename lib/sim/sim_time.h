@@ -12,14 +12,14 @@ namespace ispace {
 /// Simulated time, a whole number of nanoseconds from the start of the run.
 using SimTime = std::chrono::nanoseconds;
 
-/// No run goes on beyond that: a hundred years.
+/// Runs end at this time at the latest: a hundred years.
 constexpr SimTime kLongestTime = std::chrono::hours(24) * 36525;
 
 /// The nearest double, for formats that want seconds as a number.
 double seconds(SimTime time);
 
-/// "2.5", "5ms", "2min": the units of Unit::Time, seconds without one, rounded to nanoseconds.
-/// Nothing for what is no number, negative, or above a hundred years.
+/// Reads "2.5", "5ms", "2min": units of Unit::Time, seconds without one, rounded to nanoseconds.
+/// Nothing if it is not a number, negative, or above a hundred years.
 std::optional<SimTime> parseSimTime(std::string_view text);
 
 /// Exact and shortest, in seconds: "0.005".

@@ -21,7 +21,7 @@ using WallTime = std::chrono::steady_clock::time_point;
 struct Clock {
     enum class Kind {
         Real,  ///< `rate` simulated seconds in a second
-        Fast,  ///< as fast as it goes
+        Fast,  ///< as fast as possible
         Step   ///< only when told to
     } kind = Kind::Real;
     double rate = 1;
@@ -30,11 +30,12 @@ struct Clock {
 /// `real`, `real:20`, `fast`, `step`. \throws UsageError
 Clock parseClock(const std::string& text);
 
-/// A world and what drives it: script, clock, pause, end.
+/// Drives a world: script, clock, pauses, end.
 class Simulation {
   public:
-    /// `script` in the order of time; `until`: the last step is the first one that ends there or
-    /// later. What the script has from then on is not given. Without it a run ends at kLongestTime.
+    /// The last step is the first one that ends at `until` or later; without it a run ends at
+    /// kLongestTime. Later commands of the script are never given. \pre the script is in order of
+    /// time
     Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);
 
@@ -42,37 +43,37 @@ class Simulation {
     [[nodiscard]] const World& world() const { return *world_; }
     [[nodiscard]] const Clock& clock() const { return clock_; }
 
-    /// Adds to what is called after every step, when it is recorded and the script's commands for
-    /// the next one are given: what a server tells its clients. Its subjects must outlive the
-    /// simulation's last step.
+    /// Adds an observer, called after every step once it is recorded and the script's commands for
+    /// the next one are given. It must stay valid until the last step.
     void onStep(std::function<void()> observer) { observers_.push_back(std::move(observer)); }
 
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
-    /// With the clock Step always true.
+    /// Always true with the clock Step.
     [[nodiscard]] bool paused() const { return paused_; }
-    /// Steps allowed and not taken are dropped.
+    /// Pauses; drops steps allowed but not taken.
     void pause(WallTime now);
-    /// The same. With the clock Real the next step comes as long after this as it was ahead when
-    /// the world was paused: it loses the time of the pause and no more. \pre the clock is not Step
+    /// Resumes; drops steps allowed but not taken. With the clock Real the next step is due as long
+    /// after this as it was at the pause, so only the time of the pause is lost.
+    /// \pre the clock is not Step
     void resume(WallTime now);
     /// Lets a paused world take `count` more steps. \pre paused(), count >= 0
     void allow(std::int64_t count);
-    /// Takes back that many of the steps allowed. \pre count <= owed()
+    /// Takes back `count` allowed steps. \pre count <= owed()
     void forgo(std::int64_t count) { owed_ -= count; }
-    /// Steps allowed and not taken yet.
+    /// Steps allowed but not taken yet.
     [[nodiscard]] std::int64_t owed() const { return owed_; }
 
     void finish() { finished_ = true; }
     [[nodiscard]] bool finished() const { return finished_; }
 
     /// Takes the steps that are due, for about `budget` of wall time (one step at least, if one is
-    /// due). With the clock Real a world that lags more than a quarter of a second gives up what it
-    /// lags: time goes slower instead of faster later.
-    /// \returns when to come back: at once, at a time, or (nothing) when told to
+    /// due). With the clock Real a lag of more than a quarter of a second is forgiven: time then
+    /// goes slower, instead of faster later. \returns when to call again; nothing: only once told
+    /// to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
-    /// Wall time given up so far because steps took too long.
+    /// Wall time lost so far because steps took too long.
     [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
 
   private:

@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-/// What can be seen of a robot at one moment. Poses are true ones.
+/// State of a robot at one moment, with its true pose.
 struct RobotStatus {
     Pose2 pose;          ///< heading within (-180, 180]
     double speed = 0;    ///< m/s, forward
@@ -26,7 +26,7 @@ struct RobotStatus {
     bool stall = false;  ///< it ran into something; stays until the next motion command
 };
 
-/// How a command that comes to an end came to it.
+/// How a command ended.
 enum class Outcome { Done, Stall, Replaced, Stopped };
 
 /// The end of a command with an id.
@@ -40,13 +40,13 @@ struct CommandEnd {
 /// A robot ran into something and its step was cancelled.
 struct Collision {
     std::size_t robot = 0;
-    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: who or what stands there
+    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: a person or an element
     std::string_view into;             ///< id of that robot, person or element
     SimTime time{};
 };
 
-/// The latest scan of a laser: `scan.time` is that of the step it was taken at, `scan.frame` counts
-/// its periods from 0.
+/// The latest scan of a laser. `scan.time` is the time of its step; `scan.frame` counts periods
+/// from 0.
 struct SensorReading {
     SimTime time{};
     std::int64_t seq = 0;
@@ -56,11 +56,11 @@ struct SensorReading {
 
 /// Robots and sensors in an environment, in fixed steps.
 ///
-/// A step from t to t + dt: every robot proposes a move by its command from its state at t; moves
-/// are settled in the order of the robots' ids, one that would run into the environment, another
-/// robot or somebody is cancelled; sensors that are due at t + dt are read. Commands take effect
-/// when they are given, between steps. The same commands between the same steps give the same
-/// world, for any number of threads.
+/// In a step from t to t + dt every robot proposes a move from its state at t and its command.
+/// Moves are settled in the order of the robots' ids; one that would run into the environment,
+/// another robot or a person is cancelled. Then sensors due at t + dt are read. Commands take
+/// effect when given, between steps. The same commands between the same steps give the same world,
+/// for any number of threads.
 ///
 /// A robot in motion follows eq. (5.1)-(5.4) of the thesis exactly: accelerations are constant
 /// between the moments where a speed reaches its goal, which may lie within a step.
@@ -94,17 +94,18 @@ class World {
 
     /// Why this robot cannot do it ("r1 goes at most 1.6 m/s"), or "".
     [[nodiscard]] std::string refusal(std::size_t robot, const Command& command) const;
-    /// Gives a command; what was running ends as Replaced (Stopped by Stop). Speed and Rotspeed
-    /// keep the goal the other one has set. \returns the id of a command that comes to an end,
-    /// counting from 1 for each robot; else 0. \pre refusal() is empty
+    /// Gives a command; the running one ends as Replaced, or Stopped by Stop. Speed and Rotspeed
+    /// keep the goal set by the other. \returns for a command that comes to an end its id, counting
+    /// from 1 for each robot; else 0. \pre refusal() is empty
     int command(std::size_t robot, const Command& command);
 
     void step();
 
-    /// Commands that ended in the last step or since it, in order: step() begins anew. Those of a
-    /// step come in the order of the robots' ids. A robot never uses an id twice, so a reader looks
-    /// for the robot and the id it waits for: after step() anywhere, after its own command() at the
-    /// end. Of those that commands ended since the last step only the newest few thousand are kept.
+    /// Commands that ended in the last step or since, in order; step() starts the list anew. Those
+    /// of one step are in the order of the robots' ids. A robot never reuses an id, so a reader
+    /// looks for the robot and id it waits for: after step() anywhere in the list, after its own
+    /// command() at the end. Of those ended by commands since the last step only the newest few
+    /// thousand are kept.
     [[nodiscard]] std::span<const CommandEnd> ends() const;
     /// Cancelled moves of the last step, in the order of the robots' ids: each began to stall.
     [[nodiscard]] std::span<const Collision> collisions() const;

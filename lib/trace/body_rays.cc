@@ -114,7 +114,7 @@ void BodyScan::meetBetween(const BodyFrom& body, double middle, double half) {
     if (step_ <= 0) return meetBeams(body, 0, directions_.size());
     double begin = std::fmod(middle - half - first_, 360.0);
     if (begin > 0) begin -= 360;
-    // Begins in the turn before the first beam and may go on in each turn of the fan.
+    // Begins in the turn before the first beam and may go on in each turn of the scan.
     for (; begin <= last * step_; begin += 360) {
         const double from = std::ceil(begin / step_);
         const double to = std::floor((begin + 2 * half) / step_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to MovingBodies: where rays meet bodies, one by one, in a scan and in a picture.
+// Private to MovingBodies: where single rays, scans and pictures meet bodies.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +59,7 @@ struct BodyMeeting {
     double slope = 0;  ///< |normal times direction|: the cosine, if that is a unit vector
 };
 
-/// A body as rays from one place meet it: what they share is computed once.
+/// A body as seen from one place; what its rays share is computed once.
 class BodyFrom {
   public:
     BodyFrom(const MovingBody& body, CosSin axes, Point3 origin)
@@ -120,13 +120,13 @@ class ShortenedRanges {
     std::span<float> ranges_, cosines_;
 };
 
-/// A fan of rays from one place, and the ranges that bodies shorten.
+/// A scan from one place whose ranges bodies shorten.
 class BodyScan {
   public:
     BodyScan(Point3 origin, const Directions& directions, double max_range,
              const ShortenedRanges& ranges);
 
-    /// All that may be met lies on this part of the floor.
+    /// Bodies outside this part of the floor are not met.
     [[nodiscard]] Box2 box() const;
     void meet(const MovingBody& body, const BodyExtent& extent);
 
@@ -158,7 +158,7 @@ class BodyPicture {
   public:
     BodyPicture(Point3 origin, const RayGrid& grid, double most, const ShortenedRanges& ranges);
 
-    /// All that may be met lies on this part of the floor.
+    /// Bodies outside this part of the floor are not met.
     [[nodiscard]] Box2 box() const;
     void meet(const MovingBody& body, const BodyExtent& extent);
 

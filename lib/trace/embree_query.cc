@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/simd.h"
+#include "trace/rays.h"
+
 namespace ispace {
 
 namespace {
@@ -66,5 +69,136 @@ PassingQuery::PassingQuery(const IgnoredSurfaces& surfaces, Point3 from)
 
 SingleQuery::SingleQuery(const IgnoredSurfaces& surfaces, const Ray& asked)
     : EmbreeQuery(passUnmet), ignored(surfaces), ray(asked) {}
+
+namespace {
+
+/// More than rounding adds to a distance, relative to it.
+constexpr double kFar = 1 + 2e-6;
+
+/// What a packet hit, and the planes of that.
+struct alignas(64) Hits {
+    std::array<std::int64_t, kLanes> triangle;  ///< some triangle if none was hit
+    std::array<float, kLanes> edge;             ///< least barycentric coordinate
+    RayPacket::Lanes x, y, z, offset, margin;
+};
+
+ISPACE_INLINE bool isHit(const RTCRayHit16& hits, std::size_t lane) {
+    return hits.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+}
+
+ISPACE_INLINE void read(const RTCRayHit16& from, Hits& hits) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t triangle = from.hit.primID[lane];
+        hits.triangle[lane] = isHit(from, lane) ? triangle : 0;
+        const float u = from.hit.u[lane], v = from.hit.v[lane], w = 1 - u - v;
+        const float low = u < v ? u : v;
+        hits.edge[lane] = low < w ? low : w;
+    }
+}
+
+ISPACE_INLINE void gather(const Plane* planes, const double* margins, Hits& hits) {
+    const double* const numbers = &planes->normal.x;
+    std::int64_t other = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        other |= hits.triangle[lane] ^ hits.triangle[0];
+    if (other == 0) {
+        // Neighbouring rays often meet one triangle, which is then read once.
+        const std::int64_t triangle = hits.triangle[0];
+        const double* const plane = numbers + 4 * triangle;
+        hits.x.fill(plane[0]);
+        hits.y.fill(plane[1]);
+        hits.z.fill(plane[2]);
+        hits.offset.fill(plane[3]);
+        hits.margin.fill(margins[triangle]);
+    } else {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const double* const plane = numbers + 4 * hits.triangle[lane];
+            hits.x[lane] = plane[0];
+            hits.y[lane] = plane[1];
+            hits.z[lane] = plane[2];
+            hits.offset[lane] = plane[3];
+            hits.margin[lane] = margins[hits.triangle[lane]];
+        }
+    }
+}
+
+}  // namespace
+
+ISPACE_SIMD_CLONES void fillTile(const RayGrid& grid, int column, int row, RayPacket& packet) {
+    const int last_column = grid.columns - 1, last_row = grid.rows - 1;
+    for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
+        const Vec3 ray = grid.ray(std::min(column + lane % kTile, last_column),
+                                  std::min(row + lane / kTile, last_row));
+        packet.x[static_cast<std::size_t>(lane)] = ray.x;
+        packet.y[static_cast<std::size_t>(lane)] = ray.y;
+        packet.z[static_cast<std::size_t>(lane)] = ray.z;
+    }
+}
+
+ISPACE_SIMD_CLONES void roundOrigins(const RayPacket& packet, RTCRayHit16& rays) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        rays.ray.org_x[lane] = static_cast<float>(packet.origin_x[lane]);
+        rays.ray.org_y[lane] = static_cast<float>(packet.origin_y[lane]);
+        rays.ray.org_z[lane] = static_cast<float>(packet.origin_z[lane]);
+    }
+}
+
+ISPACE_SIMD_CLONES void roundRays(const RayPacket& packet, double tail, RTCRayHit16& rays) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        rays.ray.dir_x[lane] = static_cast<float>(packet.x[lane]);
+        rays.ray.dir_y[lane] = static_cast<float>(packet.y[lane]);
+        rays.ray.dir_z[lane] = static_cast<float>(packet.z[lane]);
+        rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    alignas(64) RayPacket::Lanes far;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double reach = packet.reach[lane] * kFar + tail;
+        far[lane] = reach < kFarthest ? reach : kFarthest;
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        rays.ray.tfar[lane] = static_cast<float>(far[lane]);
+}
+
+ISPACE_SIMD_CLONES std::uint32_t meetPlanes(const RTCRayHit16& hits, const Plane* planes,
+                                            const double* margins, double clear, float most,
+                                            RayPacket& packet) {
+    // In steps, each of which the compiler can vectorise.
+    Hits met;
+    read(hits, met);
+    gather(planes, margins, met);
+    alignas(64) std::array<std::int64_t, kLanes> is_sure, is_met;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double dx = packet.x[lane], dy = packet.y[lane], dz = packet.z[lane];
+        const double height = met.offset[lane] - (met.x[lane] * packet.origin_x[lane] +
+                                                  met.y[lane] * packet.origin_y[lane] +
+                                                  met.z[lane] * packet.origin_z[lane]);
+        const double slope = met.x[lane] * dx + met.y[lane] * dy + met.z[lane] * dz;
+        const double multiple = height / slope;
+        packet.multiples[lane] = static_cast<float>(multiple);
+        packet.slopes[lane] = static_cast<float>(std::fabs(slope));
+        is_met[lane] = multiple <= packet.reach[lane];
+        // The cosine is slope / length of the direction, and both sides are positive.
+        const double edge = static_cast<double>(met.edge[lane]), least = met.margin[lane];
+        const bool is_inside =
+            edge * edge * (slope * slope) > least * least * (dx * dx + dy * dy + dz * dz);
+        is_sure[lane] = is_inside & (edge > 0) & (std::fabs(height) > clear);
+    }
+    alignas(64) std::array<std::uint32_t, kLanes> care;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const bool is_hit = isHit(hits, lane);
+        is_met[lane] = is_met[lane] & (is_hit ? 1 : 0);
+        care[lane] = (is_hit ? 1U : 0U) & (is_sure[lane] != 0 ? 0U : 1U);
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const float multiple = packet.multiples[lane], slope = packet.slopes[lane];
+        const float nearest = multiple < most ? multiple : most;
+        packet.multiples[lane] = simd::choose(is_met[lane] != 0, nearest, kNoReturn);
+        packet.slopes[lane] = simd::choose(is_met[lane] != 0, slope, kNoReturn);
+    }
+    std::uint32_t all = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        all |= care[lane] << static_cast<std::uint32_t>(lane);
+    return all;
+}
 
 }  // namespace ispace

@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "trace/embree_query.h"
-#include "trace/ray_packet.h"
 #include "trace/rays.h"
 
 namespace ispace {

@@ -1,12 +1,221 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to FlatWorld: three ways to find what level rays meet first, which agree to the last bit.
+// Private to FlatWorld: lines and round bodies as seen from the origin of a ray, and three ways to
+// find what level rays meet first, which agree to the last bit.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "base/simd.h"
 #include "geom/point.h"
-#include "trace/flat_shapes.h"
 #include "trace/flat_tree.h"
 
 namespace ispace {
+
+// All decisions about rays and lines, in plain doubles. Scans and single rays compute in the same
+// order, so that they agree to the last bit. Everything is relative to the origin and in inverse
+// ranges: the nearest is the largest, and lines cost no division per beam.
+
+/// Put before a loop over lanes, keeps it from being unrolled, so that it can be vectorised.
+#define ISPACE_LANES _Pragma("GCC unroll 1")
+
+/// A line whose straight continuation passes this near to the origin is seen edge-on; a ray that
+/// passes an end of a line this near meets it. Exceeds the rounding of coordinates of a town.
+constexpr double kFlatEdge = 1e-9;
+/// No ray meets an end farther aside than this times the distance of the line's straight
+/// continuation: of a line seen almost from its edge it would meet that far before or behind the
+/// end. So it is never more of the turn, in radians.
+constexpr double kFlatEdgeAngle = 1e-6;
+/// Least |cosine| between lines of one direction.
+constexpr double kFlatParallel = 1 - 1e-6;
+
+ISPACE_INLINE double flatMin(double a, double b) { return a < b ? a : b; }
+ISPACE_INLINE double flatMax(double a, double b) { return a > b ? a : b; }
+/// Chooses between two computed values without a branch, which would prevent vectorising: the
+/// compiler assumes that all arithmetic may trap.
+ISPACE_INLINE double flatChoice(bool first, double a, double b) {
+    const std::uint64_t mask = first ? ~std::uint64_t{0} : 0;
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) |
+                                 (std::bit_cast<std::uint64_t>(b) & ~mask));
+}
+
+/// A lower bound of the distance to a box, 0 if the origin is in it, at most 8 % too small: that of
+/// the octagon about the origin that touches the box. A box within another is never nearer, even
+/// with rounding, so skipping boxes changes nothing.
+ISPACE_INLINE double distanceOf(double left, double right, double low, double high) {
+    constexpr double kDiagonal = 0.70710678;
+    const double x = flatMax(flatMax(left, -right), 0.0);
+    const double y = flatMax(flatMax(low, -high), 0.0);
+    return flatMax(flatMax(x, y), kDiagonal * (x + y));
+}
+
+/// Direction of (x, y) in [-pi, pi], within 1e-5; 0 for the null vector (Abramowitz &
+/// Stegun, 4.4.47 and the quadrants).
+ISPACE_INLINE double angleOf(double x, double y) {
+    const double far = std::fabs(x), wide = std::fabs(y);
+    const double ratio = flatMin(far, wide) / flatMax(flatMax(far, wide), 1e-300);
+    const double square = ratio * ratio;
+    const double octant =
+        ratio *
+        (0.9998660 +
+         square * (-0.3302995 + square * (0.1801410 + square * (-0.0851330 + square * 0.0208351))));
+    // Only constants are chosen between: that leaves no branches.
+    const bool is_steep = wide > far, is_behind = x < 0;
+    const double quarter =
+        (is_steep ? std::numbers::pi / 2 : 0.0) + (is_steep ? -1.0 : 1.0) * octant;
+    const double half = (is_behind ? std::numbers::pi : 0.0) + (is_behind ? -1.0 : 1.0) * quarter;
+    return std::copysign(half, y);
+}
+
+/// A line as seen from an origin.
+struct FlatLine {
+    double ax, ay, bx, by;  ///< its ends, counter-clockwise about the origin
+    double ux, uy;          ///< from a to b, times the inverse range of the line at a unit angle
+    double nearest;         ///< upper bound of its inverse range
+    double height;          ///< distance of its straight continuation
+    double edge;            ///< how near to an end a ray meets it
+    bool stops;             ///< not seen from its edge
+};
+
+ISPACE_INLINE FlatLine lineFrom(const FlatTree::Leaf& leaf, int i, double ox, double oy) {
+    const double px = leaf.ax[i] - ox, py = leaf.ay[i] - oy;
+    const double qx = leaf.bx[i] - ox, qy = leaf.by[i] - oy;
+    const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
+    const double area = px * ey - py * ex;
+    const double size = std::fabs(area), over = 1 / area;
+    const bool turned = area < 0;
+    FlatLine line;
+    line.ax = turned ? qx : px;
+    line.ay = turned ? qy : py;
+    line.bx = turned ? px : qx;
+    line.by = turned ? py : qy;
+    line.ux = ex * over;
+    line.uy = ey * over;
+    line.nearest =
+        1 / distanceOf(flatMin(px, qx), flatMax(px, qx), flatMin(py, qy), flatMax(py, qy));
+    line.height = size / leaf.length[i];
+    line.edge = flatMin(kFlatEdge, kFlatEdgeAngle * line.height);
+    line.stops = size > kFlatEdge * leaf.length[i];
+    return line;
+}
+
+/// Inverse range of the place where a ray along (x, y) meets the closed line; not positive if it
+/// does not.
+ISPACE_INLINE double inverseRangeAlong(const FlatLine& line, double x, double y) {
+    const double from_a = line.ax * y - line.ay * x, to_b = x * line.by - y * line.bx;
+    const double steep = x * line.uy - y * line.ux;
+    const bool is_between = (from_a >= -line.edge) & (to_b >= -line.edge);
+    return flatChoice(is_between, flatMin(steep, line.nearest), 0.0);
+}
+
+/// True if the straight continuation of a line may pass within `ray_epsilon` of the origin: then
+/// ask continuesTouched().
+inline bool mayContinueTouched(double height, double ray_epsilon) {
+    // Distances of lines and of their continuations round differently.
+    return height < ray_epsilon * (1 + 1e-9);
+}
+
+inline bool touches(const FlatTree::Leaf& leaf, int i, double ox, double oy, double ray_epsilon) {
+    const double ax = leaf.ax[i] - ox, ay = leaf.ay[i] - oy;
+    const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
+    const double along = -(ax * ex + ay * ey) / (ex * ex + ey * ey);
+    const double s = std::clamp(along, 0.0, 1.0);
+    const double x = ax + s * ex, y = ay + s * ey;
+    return x * x + y * y < ray_epsilon * ray_epsilon;
+}
+
+inline bool areParallel(const FlatTree::Leaf& leaf, int i, const FlatTree::Leaf& other, int j) {
+    const double cosine = (leaf.bx[i] - leaf.ax[i]) * (other.bx[j] - other.ax[j]) +
+                          (leaf.by[i] - leaf.ay[i]) * (other.by[j] - other.ay[j]);
+    return std::fabs(cosine) >= kFlatParallel * leaf.length[i] * other.length[j];
+}
+
+inline bool isNear(const FlatTree::Node& node, int i, double ox, double oy, double ray_epsilon) {
+    return node.left[i] - ox <= ray_epsilon && ox - node.right[i] <= ray_epsilon &&
+           node.low[i] - oy <= ray_epsilon && oy - node.high[i] <= ray_epsilon;
+}
+
+/// True if some line nearer to the origin than `ray_epsilon` has the direction of line i of the
+/// leaf.
+inline bool continuesTouched(const FlatTree& tree, const FlatTree::Leaf& leaf, int i, double ox,
+                             double oy, double ray_epsilon) {
+    std::int32_t waiting[FlatTree::kStack];
+    int count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+        const FlatTree::Node& node = tree.node(waiting[--count]);
+        for (int k = 0; k < node.count; ++k) {
+            if (!isNear(node, k, ox, oy, ray_epsilon)) continue;
+            if (node.child[k] >= 0) {
+                waiting[count++] = node.child[k];
+                continue;
+            }
+            const FlatTree::Leaf& near = tree.leaf(node.child[k]);
+            for (int j = 0; j < near.count; ++j)
+                if (areParallel(leaf, i, near, j) && touches(near, j, ox, oy, ray_epsilon))
+                    return true;
+        }
+    }
+    return false;
+}
+
+/// A round body as seen from an origin: rays meet the curve itself, from outside where they enter,
+/// from inside where they leave. From an origin within `ray_epsilon` of the curve, outgoing rays
+/// pass and ingoing ones meet its far side.
+///
+/// All in the frame where the body is the unit disc. There the ray q + t d meets the curve where
+/// a t^2 + 2 b t + c = 0; written so that neither root cancels.
+class RoundFrom {
+  public:
+    ISPACE_INLINE RoundFrom(const FlatTree::Round& round, double ox, double oy, double ray_epsilon)
+        : round_(round), touching_(ray_epsilon) {
+        const double x = ox - round.cx, y = oy - round.cy;
+        qx_ = round.xx * x + round.xy * y;
+        qy_ = round.yx * x + round.yy * y;
+        c_ = qx_ * qx_ + qy_ * qy_ - 1;
+        // c is, near the curve, the distance from it times the length of its gradient.
+        touches_ = std::fabs(c_) <= 2 * ray_epsilon * gradientAt(qx_, qy_);
+    }
+
+    /// One over the distance along the unit vector (x, y), and the |cosine| there; inverse range is
+    /// not positive if the ray does not meet it.
+    struct Hit {
+        double inverse_range, cosine;
+    };
+    template <bool kCosine>
+    [[nodiscard]] ISPACE_INLINE Hit meet(double x, double y) const {
+        const double dx = round_.xx * x + round_.xy * y, dy = round_.yx * x + round_.yy * y;
+        const double a = dx * dx + dy * dy, b = qx_ * dx + qy_ * dy;
+        const double side = qx_ * dy - qy_ * dx;
+        const double square = a - side * side;
+        if (square < 0) return {0, 0};
+        const double root = std::sqrt(square), far = root - b;
+        double inverse_range = 0;
+        if (touches_)
+            inverse_range = b < 0 && far > touching_ * a ? a / far : 0;
+        else
+            inverse_range = (std::copysign(root, c_) - b) / c_;
+        if constexpr (!kCosine) return {inverse_range, 0};
+        if (!(inverse_range > 0)) return {0, 0};
+        const double t = 1 / inverse_range;
+        return {inverse_range, root / gradientAt(qx_ + t * dx, qy_ + t * dy)};
+    }
+
+  private:
+    /// Half of the length, in the world, of the gradient of c.
+    [[nodiscard]] ISPACE_INLINE double gradientAt(double ux, double uy) const {
+        const double x = round_.xx * ux + round_.yx * uy, y = round_.xy * ux + round_.yy * uy;
+        return std::sqrt(x * x + y * y);
+    }
+
+    const FlatTree::Round& round_;
+    double touching_;
+    double qx_, qy_, c_;
+    bool touches_;
+};
 
 /// What lines are seen from.
 struct FlatView {
@@ -78,7 +287,7 @@ void drawLinesAndCosines(const FlatTree& tree, const FlatView& view, FlatScan& s
 struct alignas(64) FlatPacket {
     static constexpr int kBlock = 8;  ///< rays drawn to at once
     static constexpr int kMax = 64;
-    /// Fewer are quicker alone.
+    /// Fewer rays are faster one by one.
     static constexpr int kMin = 3;
 
     double x[kMax], y[kMax];  ///< unit vectors, as the ranges shall be for
@@ -88,7 +297,7 @@ struct alignas(64) FlatPacket {
     int count;                   ///< a multiple of kBlock, not 0; rays may be repeated to get there
 };
 
-/// How far origins may lie apart for a packet to be quicker than rays alone.
+/// How far apart origins may lie for a packet to be faster than single rays.
 double widestPacket(const FlatTree& tree);
 
 struct FlatPacketLimits {
@@ -97,9 +306,9 @@ struct FlatPacketLimits {
     double widest;
 };
 
-/// Draws all lines into the packet, front to back. Its rays meet what they would alone, if that is
-/// nearer than min_inverse_range. False if it is too wide for that to be quick, or not of finite
-/// numbers; then nothing is done.
+/// Draws all lines into the packet, front to back. Its rays meet what they would meet alone.
+/// Returns false and does nothing if the packet is too wide to be fast, or has numbers that are not
+/// finite.
 bool drawLines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet);
 /// The same with cosines: the largest among lines met at the same place.
 bool drawLinesAndCosines(const FlatTree& tree, const FlatPacketLimits& limits, FlatPacket& packet);

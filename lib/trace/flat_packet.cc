@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "base/simd.h"
-#include "trace/flat_shapes.h"
 
 namespace ispace {
 

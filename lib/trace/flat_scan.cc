@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "base/simd.h"
-#include "trace/flat_shapes.h"
 
 namespace ispace {
 

@@ -11,13 +11,12 @@
 
 namespace ispace {
 
-/// A bounding volume hierarchy over lines on the floor, eight boxes or lines a node, each component
-/// an array: what a vector unit takes at once. Lines without length are left out. Round bodies have
-/// a hierarchy of their own in the same nodes, to be walked after that of the lines.
+/// A bounding volume hierarchy over lines on the floor, with eight boxes or lines per node, one
+/// array per component, as vector units want them. Lines without length are left out. Round bodies
+/// have a hierarchy of their own in the same nodes, to be traversed after that of the lines.
 struct FlatTree {
     static constexpr int kWidth = 8;
-    /// How many nodes lie above one another at most; traversals keep fewer than kWidth waiting a
-    /// level.
+    /// Greatest depth; traversals keep fewer than kWidth nodes per level waiting.
     static constexpr int kDepth = 24;
     static constexpr int kStack = kWidth * kDepth;
 

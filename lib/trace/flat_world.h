@@ -13,18 +13,18 @@ namespace ispace {
 /// The lines and round bodies of a slice, for level rays: exact to rounding of doubles, and faster
 /// than a general ray tracer.
 ///
-/// A scan is drawn like a picture with one row: a bounding volume hierarchy is walked front to
-/// back, what lies behind the farthest range of the beams it could shorten is left out, and each
-/// line that is not is drawn into the beams between its ends. A beam meets a line if it crosses it
-/// or passes one of its ends within a nanometre (less if it sees it almost from its edge, see
-/// flat_line.h), decided in doubles for each beam and line: none slips between lines with a common
-/// end, and one that just touches a corner meets it.
+/// A scan is drawn like a picture with one row: a bounding volume hierarchy is traversed front to
+/// back, boxes behind the farthest range they could shorten are skipped, and each remaining line is
+/// drawn into the beams between its ends. A beam meets a line if it crosses it or passes one of its
+/// ends within a nanometre (less if it sees the line almost edge-on, see flat_kernels.h), decided
+/// in doubles per beam and line: no beam slips between lines with a common end, and one that just
+/// touches a corner meets it.
 ///
-/// Lines in contact with the origin (nearer than `ray_epsilon`) stop nothing, nor do those that
-/// continue them within it; a round body in contact is met at its far side only. Nor does a line
-/// seen exactly from its edge (its straight continuation passes the origin within a nanometre).
-/// Thread-safe; results depend on nothing but the lines and the ray, not on the order of lines, the
-/// scan a ray is part of, or the processor.
+/// Lines nearer to the origin than `ray_epsilon` stop nothing, nor do those that continue them
+/// within it; a round body that near is met at its far side only. Nor does a line seen exactly
+/// edge-on (its straight continuation passes the origin within a nanometre). Thread-safe; results
+/// depend only on the lines and the ray, not on the order of lines, the scan a ray is part of, or
+/// the processor.
 class FlatWorld {
   public:
     explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});

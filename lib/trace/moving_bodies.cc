@@ -82,9 +82,9 @@ void MovingBodies::shorten(Point3 origin, const Directions& directions, double m
                            std::span<float> cosines) const {
     assert(directions.size() == ranges.size());
     if (ranges.empty() || grid_.empty()) return;
-    BodyScan fan(origin, directions, max_range, {max_range, ranges, cosines});
-    grid_.forEachNear(fan.box(), [&](std::size_t i) {
-        if (bodies_[i].owner != own) fan.meet(bodies_[i], extents_[i]);
+    BodyScan scan(origin, directions, max_range, {max_range, ranges, cosines});
+    grid_.forEachNear(scan.box(), [&](std::size_t i) {
+        if (bodies_[i].owner != own) scan.meet(bodies_[i], extents_[i]);
     });
 }
 

@@ -13,36 +13,35 @@
 
 namespace ispace {
 
-/// An upright box or cylinder that moves about on the floor: what rays see of robots and people.
+/// An upright box or cylinder that moves on the floor: what rays see of robots and people.
 struct MovingBody {
     Pose2 pose;                              ///< of its middle
     double half_length = 0, half_width = 0;  ///< of a box, along and across the heading
     double radius = 0;                       ///< of a cylinder; 0: a box
-    double bottom = 0, top = 0;              ///< closed: both heights count
+    double bottom = 0, top = 0;              ///< heights, both included
     std::uint32_t owner = 0;                 ///< whose sensors do not see it
 
-    /// Of the smallest circle about its middle that holds it.
+    /// Radius of the smallest circle about its middle that encloses it.
     [[nodiscard]] double reach() const;
-    /// Distance along the ray to where it first meets the surface, +infinity if it does not. From
-    /// inside that is where it leaves. \pre direction is a unit vector
+    /// Distance along the ray to the surface, +infinity if it misses; from inside, to where it
+    /// leaves. \pre direction is a unit vector
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
 };
 
-/// What all rays need of a body, computed once for them.
+/// What all rays need to know of a body, computed once.
 struct BodyExtent {
     CosSin axes;       ///< of its heading
     double reach = 0;  ///< MovingBody::reach()
 };
 
-/// Finds what is near on the floor: a uniform grid over the places of moving things, made anew by
-/// counting sort, O(n + cells), whenever they have moved. Cells are about as many as things (at
-/// most 2 n + 1), and no smaller than the widest of them.
+/// Finds what is near on the floor: a uniform grid over the places of moving things, rebuilt by
+/// counting sort, O(n + cells), whenever they have moved. It has at most 2 n + 1 cells, none
+/// smaller than the widest thing.
 class FloorGrid {
   public:
     /// `reach`: how far the widest thing extends from its place. \pre places are finite
     void rebuild(std::span<const Point2> places, double reach);
-    /// Calls visit(index) for all things that may extend into the box, in no useful order but a
-    /// fixed one, each once.
+    /// Calls visit(index) once for each thing that may extend into the box, in a fixed order.
     template <typename Visit>
     void forEachNear(const Box2& box, Visit visit) const;
     [[nodiscard]] bool empty() const { return indices_.empty(); }
@@ -56,31 +55,31 @@ class FloorGrid {
     std::vector<std::uint32_t> first_ = {0, 0}, indices_;
 };
 
-/// The bodies of one moment, for rays. Nothing of the environment is touched when they move.
+/// The moving bodies at one moment. Moving them leaves the ray worlds of the environment alone.
 class MovingBodies {
   public:
     static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
     MovingBodies() = default;
     explicit MovingBodies(std::vector<MovingBody> bodies);
-    /// Takes new bodies, or new places of the old ones. \pre `bodies` are not those in here
+    /// Takes new bodies, or old ones at new places. \pre `bodies` does not alias bodies()
     void rebuild(std::span<const MovingBody> bodies);
     [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
 
-    /// Shortens the ranges of rays from the sensor's position to the bodies in their way. Bodies of
-    /// `own` are left out. `cosines`, if not empty, become those of the bodies met, as
-    /// RayWorld::cast gives them. Level directions with an arc are fastest.
+    /// Shortens the ranges of rays from the sensor's position where bodies are in the way, except
+    /// those owned by `own`. `cosines`, if not empty, become those at the bodies met, as in
+    /// RayWorld::cast. Level directions with an arc are fastest.
     /// \pre directions.size() == ranges.size()
     void shorten(Point3 origin, const Directions& directions, double max_range, std::uint32_t own,
                  std::span<float> ranges, std::span<float> cosines = {}) const;
     /// The same with an origin for each ray.
     void shorten(std::span<const Point3> origins, const Directions& directions, double max_range,
                  std::uint32_t own, std::span<float> ranges, std::span<float> cosines = {}) const;
-    /// The same for a picture, whose ranges are multiples of its rays' vectors; only the pixels
-    /// about a body are looked at.
+    /// The same for a picture, whose ranges are multiples of its rays' vectors; visits only pixels
+    /// near a body.
     void shorten(Point3 origin, const RayGrid& grid, double most, std::uint32_t own,
                  std::span<float> multiples, std::span<float> cosines = {}) const;
-    /// True if a body stands between two places, or one of them is in it. \pre they differ
+    /// True if a body stands between two places or contains one of them. \pre they differ
     [[nodiscard]] bool between(Point3 a, Point3 b, std::uint32_t own) const;
 
   private:

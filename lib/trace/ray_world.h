@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/trace: rays against everything that stands still. Uses layout and below; Embree inside.
+// lib/trace: rays against everything that stands still, and against moving bodies. Uses layout and
+// below; Embree inside.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +17,21 @@ namespace ispace {
 
 /// Rays against a slice (a FlatWorld) or against the whole mesh (an EmbreeScene).
 ///
-/// Surfaces are closed sets without thickness: one seen exactly from its edge stops nothing (within
-/// the rounding of float32 in the mesh). Surfaces within kRayEpsilon of a ray's origin do not stop
-/// it, nor does what continues their plane: a sensor drawn on a wall looks out of it, on both sides
-/// and along it. No ray slips between surfaces that touch; what a ray meets decides its range,
-/// computed in doubles. Round bodies are met on their curves. Coordinates are kept relative to the
-/// middle of the plan: float32, in which the mesh is searched, then is exact to micrometres in a
-/// building, wherever its coordinates are counted from. Thread-safe once built; the number of
-/// threads changes nothing.
+/// Surfaces are closed sets without thickness: one seen exactly edge-on stops nothing (within the
+/// rounding of float32 in the mesh). Surfaces within kRayEpsilon of a ray's origin do not stop it,
+/// nor do their coplanar continuations: a sensor drawn on a wall sees out of it on both sides and
+/// along it. No ray slips between surfaces that touch. Ranges are computed in doubles, and round
+/// bodies are met on their exact curves. Coordinates are kept relative to the middle of the plan,
+/// so that float32, in which the mesh is searched, is exact to micrometres in any building.
+/// Thread-safe once built; results do not depend on the number of threads.
 class RayWorld {
   public:
-    /// What a level sensor at `slice.height` meets: rays must start at that height and be level (z
-    /// does not count).
+    /// For level rays that start at `slice.height`; their z is ignored.
     static RayWorld ofSlice(const Slice& slice);
-    /// These surfaces of all bodies and the floor, for rays of any direction: of light unless told
-    /// otherwise, which pass clear glass as level ones do.
-    /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for what the processor
-    ///        does best; it changes no result but as cast() says
+    /// For rays of any direction, against these surfaces of all bodies and the floor. Opaque ones
+    /// stop light, which passes clear glass.
+    /// \param packet_width rays Embree traces together: 1, 4, 8, 16, or 0 for the processor's best;
+    ///        see cast() for how it may affect results
     /// \throws std::runtime_error if Embree fails (no memory)
     static RayWorld ofEnvironment(const Environment& environment,
                                   Surfaces surfaces = Surfaces::Opaque, int packet_width = 0);
@@ -41,10 +40,10 @@ class RayWorld {
     ~RayWorld();
 
     /// Distance to the first surface along each direction, up to max_range inclusive; +infinity if
-    /// there is none. Fastest for neighbouring directions (coherent packets), and in a slice for
-    /// directions with an arc. The same for any packet width and however rays are put together, but
-    /// for rays of the mesh that pass an edge within what float32 tells: see EmbreeScene, which
-    /// says what a range is good to. In a slice it is exact to rounding of doubles.
+    /// there is none. Fastest for neighbouring directions, and in a slice for directions with an
+    /// arc. Packet width and the grouping of rays do not matter, except for rays of the mesh that
+    /// pass an edge within the resolution of float32: see EmbreeScene for the accuracy of a range.
+    /// In a slice ranges are exact to rounding of doubles.
     /// `cosines`, if not empty: |cosine| of the angle between ray and surface normal, 1 without
     /// return. \pre ranges.size() == directions.size(), cosines.size() as well or 0
     void cast(Point3 origin, const Directions& directions, double max_range,
@@ -52,13 +51,13 @@ class RayWorld {
     /// The same with an origin for each ray.
     void cast(std::span<const Point3> origins, const Directions& directions, double max_range,
               std::span<float> ranges, std::span<float> cosines = {}) const;
-    /// The same for the rays of a picture, row by row: how many times a ray's vector reaches to the
-    /// first surface, up to `most` times inclusive. Traced in square tiles. \pre not of a slice
+    /// The same for the rays of a picture, row by row, as multiples of each ray's vector up to
+    /// `most` inclusive. Traced in square tiles. \pre not of a slice
     void cast(Point3 origin, const RayGrid& grid, double most, std::span<float> multiples,
               std::span<float> cosines = {}) const;
 
-    /// seen[i] = 1 if nothing stands between origin and target i, the last kRayEpsilon metres left
-    /// out. Targets in any order; neighbours are fastest.
+    /// Sets seen[i] to 1 if nothing stands between origin and target i, apart from the last
+    /// kRayEpsilon metres. Fastest if targets that are near each other follow each other.
     /// \pre not of a slice; seen.size() == targets.size()
     void look(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays as all of lib/trace takes them, and what limits them.
+// Rays as all of lib/trace takes them.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 /// Slack for rounding at the far end of a ray, or about a body, relative to the distance.
 constexpr double kFarSlack = 1e-6;
 
-/// Unit vectors, a component an array, as kernels want them.
+/// Unit vectors, one array per component.
 struct Directions {
     /// Level rays at equal steps: number k points along bearing first + k * step, in the world.
     struct Arc {
@@ -26,8 +26,8 @@ struct Directions {
     };
 
     std::vector<double> x, y, z;
-    /// Given if they are those of an arc that spans at most a full turn; lets a slice be walked by
-    /// angle. z is 0 then.
+    /// Set if they form an arc of at most a full turn, which a slice is traced by faster; z is 0
+    /// then.
     std::optional<Arc> arc = {};
 
     [[nodiscard]] std::size_t size() const { return x.size(); }

@@ -13,13 +13,13 @@
 
 namespace ispace {
 
-/// An upright round body: closed, as are its ends.
+/// An upright round body with closed ends.
 struct RoundBody {
     Ellipse curve;
     double bottom = 0, top = 0;
 };
 
-/// Triangles as they come: vertices may be shared or not.
+/// Triangles in any order; vertices may be shared or not.
 struct TriangleSoup {
     static constexpr std::uint32_t kFlat = ~0U;
 
@@ -65,9 +65,9 @@ struct RayHit {
     }
 };
 
-/// Triangles in doubles. Embree decides in float32 which of them a ray meets, and gets them
-/// enlarged by tolerance() on each side, more than it errs by: what touches a surface, or passes
-/// between two, meets one. How far that is, is computed here.
+/// Triangles in doubles. Embree decides in float32 which of them a ray meets. It gets them enlarged
+/// by tolerance() on each side, which exceeds its error, so a ray that touches a surface or passes
+/// between two that touch meets one. The distance is computed here, in doubles.
 class TriangleSet {
   public:
     /// Triangles thinner than a nanometre are left out.

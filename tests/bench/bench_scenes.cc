@@ -12,7 +12,6 @@
 #include "layout/schemas.h"
 #include "layout/sensor_spec.h"
 #include "place/sites.h"
-#include "record/digest.h"
 #include "record/text.h"
 
 namespace ispace::bench {

@@ -31,7 +31,7 @@ Scene floorPlan(std::string& name) {
 Scene withRobots(const Scene& plan, std::size_t count) {
     Scene scene = plan;
     const DeviceCatalogue devices = bench::devices();
-    const RobotModel model = withFigures(RobotModel(), *devices.find("pioneer-2dx"));
+    const RobotModel model = withParameters(RobotModel(), *devices.find("pioneer-2dx"));
     scene.robots = testing::crowd(scene.environment, model, count, 0.1, 1);
     if (scene.robots.size() != count) {
         std::fprintf(stderr, "sim_rate: room for %zu robots only\n", scene.robots.size());

@@ -11,7 +11,7 @@
 #include "io/glb.h"
 #include "io/input.h"
 #include "layout/schemas.h"
-#include "record/digest.h"
+#include "record/text.h"
 
 namespace {
 

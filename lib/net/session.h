@@ -16,40 +16,39 @@
 
 namespace ispace {
 
-/// One client's side of the Simulator TCP Protocol, version 1, without a transport: lines in, bytes
-/// out. See simrun(1) for the language.
-class Conversation {
+/// The server's end of one client's dialogue in the Simulator TCP Protocol, version 1, without a
+/// transport: lines in, bytes out. See simrun(1) for the language.
+class Session {
   public:
-    explicit Conversation(Hall& hall);
+    explicit Session(ServerState& state);
     /// Frees the robot it holds.
-    ~Conversation();
-    Conversation(const Conversation&) = delete;
-    Conversation& operator=(const Conversation&) = delete;
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
 
     /// "ISPACE 1\n"
     static std::string greeting();
-    /// Answers one request (without its end of line). Blank lines are no requests. A first line
-    /// that is no request comes from a client of another protocol: it is the last one, too.
+    /// Answers one request (without its end of line); blank lines are ignored. A first line that is
+    /// no request comes from a client of another protocol and ends the session.
     /// \pre !waiting() and !closing()
     void request(std::string_view line);
-    /// Answers a request of more than the allowed length, and closes.
+    /// Answers a request that exceeds the allowed length, and closes.
     void tooLong(std::size_t limit);
-    /// Events and scans for this client, and the answer to STEP: to be called after each step of
-    /// the world, and while waiting() also after other clients' requests. Calls without anything
-    /// new do nothing.
+    /// Writes events and scans for this client, and the answer to STEP. Call it after each step of
+    /// the world and, while waiting(), after other clients' requests.
     void stepped();
 
-    /// The run is over: ends what is under way, and tells so.
+    /// Ends what is under way, at the end of the run, and says so.
     void finish();
 
-    /// True while a STEP is not done: later requests wait for its answer.
+    /// True while a STEP is under way; later requests wait for its answer.
     [[nodiscard]] bool waiting() const { return steps_ != nullptr; }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
-    /// True after QUIT and what closes a connection: nothing is read any more.
+    /// True after QUIT and errors that close the connection: nothing more is read.
     [[nodiscard]] bool closing() const { return closing_; }
-    /// Moves away what is to be sent, in order.
+    /// Takes what is to be sent, in order.
     std::string take() { return std::exchange(out_, {}); }
-    /// The newest scan of a stream, to be sent when all else is; null if there is none.
+    /// Takes the newest scan of a stream, to be sent after everything else; null if there is none.
     std::shared_ptr<const std::string> takeScan() { return std::exchange(scan_, nullptr); }
     /// Bytes of that scan.
     [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
@@ -60,7 +59,7 @@ class Conversation {
     struct Request;
     static std::span<const Request> requests();
 
-    [[nodiscard]] World& world() const { return hall_->simulation().world(); }
+    [[nodiscard]] World& world() const { return state_->simulation().world(); }
     [[nodiscard]] std::string roleText() const;
     [[nodiscard]] std::string unknownLaser(std::string_view id) const;
     void error(int code, std::initializer_list<std::string_view> text);
@@ -91,7 +90,7 @@ class Conversation {
     void step(Words words);
     void shutdown(Words words);
 
-    Hall* hall_;
+    ServerState* state_;
     Role role_ = Role::None;
     std::size_t subject_ = 0;  // index of the robot or laser
     std::string out_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What all roles share, and the role WORLD.
-#include "net/conversation.h"
+#include "net/session.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ namespace {
 using testing::streamed;
 using testing::Talk;
 
-TEST(Conversation, Greets) { EXPECT_EQ(Conversation::greeting(), "ISPACE 1\n"); }
+TEST(Session, Greets) { EXPECT_EQ(Session::greeting(), "ISPACE 1\n"); }
 
-TEST(Conversation, TakesOneRole) {
+TEST(Session, TakesOneRole) {
     Talk talk;
     EXPECT_EQ(talk.ask(talk.client(), "ROBOT r1"), "OK ROBOT r1 model=pioneer-2dx radius=0.25\n");
     EXPECT_EQ(talk.ask(talk.client(), "ROBOT r2"), "OK ROBOT r2 model=- radius=0.3\n");
@@ -26,7 +26,7 @@ TEST(Conversation, TakesOneRole) {
               "OK LASER l1 angle_min=-2 angle_max=2 step=2 n=3 range_min=0.1 range_max=7.002 "
               "rate=10\n");
     EXPECT_EQ(talk.ask(talk.client(), "WORLD"), "OK WORLD t=0.000 dt=0.1 clock=step\n");
-    Conversation& robot = talk.clients.front();
+    Session& robot = talk.clients.front();
     for (const char* request : {"ROBOT r1", "LASER l1", "WORLD", "ROBOT", "LASER x y"})
         EXPECT_EQ(talk.ask(robot, request).substr(0, 8), "ERR 405 ");
     EXPECT_EQ(talk.ask(robot, "LASER l1"),
@@ -35,15 +35,15 @@ TEST(Conversation, TakesOneRole) {
               "ERR 405 this connection has the role WORLD: open another one for ROBOT\n");
 }
 
-TEST(Conversation, WorldNamesItsClock) {
+TEST(Session, WorldNamesItsClock) {
     Talk real({Clock::Kind::Real, 20}), fast({Clock::Kind::Fast, 1});
     EXPECT_EQ(real.ask(real.client(), "WORLD"), "OK WORLD t=0.000 dt=0.1 clock=real rate=20\n");
     EXPECT_EQ(fast.ask(fast.client(), "WORLD"), "OK WORLD t=0.000 dt=0.1 clock=fast\n");
 }
 
-TEST(Conversation, UnknownThings) {
+TEST(Session, UnknownThings) {
     Talk talk;
-    Conversation& client = talk.client();
+    Session& client = talk.client();
     EXPECT_EQ(talk.ask(client, "ROBOT r9"), "ERR 404 no robot `r9`, did you mean `r1`?\n");
     EXPECT_EQ(talk.ask(client, "ROBOT rover"), "ERR 404 no robot `rover`; there is r1, r2\n");
     EXPECT_EQ(talk.ask(client, "LASER panel"), "ERR 404 no laser `panel`; there is l1, l2\n");
@@ -51,7 +51,7 @@ TEST(Conversation, UnknownThings) {
     EXPECT_EQ(talk.ask(client, "ROBOT r1"), "OK ROBOT r1 model=pioneer-2dx radius=0.25\n");
 }
 
-TEST(Conversation, DoesNotSearchThousandsOfNames) {
+TEST(Session, DoesNotSearchThousandsOfNames) {
     std::string robots;
     for (int i = 0; i < 300; ++i)
         robots +=
@@ -59,55 +59,55 @@ TEST(Conversation, DoesNotSearchThousandsOfNames) {
     const Scene scene = testing::scene("ispace at=10,8 size=30,30\n", robots);
     World world(scene, std::chrono::milliseconds(100));
     Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
-    Hall hall(simulation);
-    Conversation client(hall);
+    ServerState state(simulation);
+    Session client(state);
     client.request("ROBOT robot1x");
     EXPECT_EQ(client.take(), "ERR 404 no robot `robot1x`; LIST of the role WORLD names all\n");
 }
 
-TEST(Conversation, RobotHasOneHolder) {
+TEST(Session, RobotHasOneHolder) {
     Talk talk;
-    Conversation& first = talk.client("ROBOT r1");
-    Conversation& second = talk.client();
+    Session& first = talk.client("ROBOT r1");
+    Session& second = talk.client();
     EXPECT_EQ(talk.ask(second, "ROBOT r1"), "ERR 409 robot r1 is held by another client\n");
     EXPECT_EQ(talk.ask(first, "QUIT"), "OK QUIT\n");
     EXPECT_TRUE(first.closing());
     EXPECT_EQ(talk.ask(second, "ROBOT r1").substr(0, 3), "OK ");
     talk.clients.pop_back();
-    Conversation& third = talk.client("ROBOT r1");
+    Session& third = talk.client("ROBOT r1");
     EXPECT_FALSE(third.closing());
 }
 
-TEST(Conversation, LaserHasManyReaders) {
+TEST(Session, LaserHasManyReaders) {
     Talk talk;
-    Conversation& first = talk.client("LASER l1");
-    Conversation& second = talk.client("LASER l1");
+    Session& first = talk.client("LASER l1");
+    Session& second = talk.client("LASER l1");
     EXPECT_EQ(talk.ask(first, "SCAN"), talk.ask(second, "SCAN"));
 }
 
-TEST(Conversation, Errors405SayWhatToDo) {
+TEST(Session, Errors405SayWhatToDo) {
     Talk talk;
-    Conversation& nobody = talk.client();
+    Session& nobody = talk.client();
     for (const char* request : {"FORWARD 1", "SCAN", "LIST", "STATUS x", "STEP -1"})
         EXPECT_EQ(talk.ask(nobody, request),
                   "ERR 405 take a role first: ROBOT id, LASER id or WORLD\n");
-    Conversation& robot = talk.client("ROBOT r1");
+    Session& robot = talk.client("ROBOT r1");
     EXPECT_EQ(talk.ask(robot, "LIST"),
               "ERR 405 LIST is for the role WORLD, this connection has the role ROBOT r1: open "
               "another one\n");
-    Conversation& laser = talk.client("LASER l2");
+    Session& laser = talk.client("LASER l2");
     EXPECT_EQ(talk.ask(laser, "FORWARD 1"),
               "ERR 405 FORWARD is for the role ROBOT, this connection has the role LASER l2: open "
               "another one\n");
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "SCAN"),
               "ERR 405 SCAN is for the role ROBOT or LASER, this connection has the role WORLD: "
               "open another one\n");
 }
 
-TEST(Conversation, UnknownRequests) {
+TEST(Session, UnknownRequests) {
     Talk talk;
-    Conversation& client = talk.client();
+    Session& client = talk.client();
     talk.ask(client, "HELP");
     EXPECT_EQ(talk.ask(client, "FORWRAD 1"),
               "ERR 400 unknown request `FORWRAD`, did you mean `FORWARD`? HELP lists what there "
@@ -122,9 +122,9 @@ TEST(Conversation, UnknownRequests) {
         EXPECT_EQ(talk.ask(client, request).substr(0, 24), "ERR 400 unknown request ") << request;
 }
 
-TEST(Conversation, ArgumentsAreCounted) {
+TEST(Session, ArgumentsAreCounted) {
     Talk talk;
-    Conversation& client = talk.client();
+    Session& client = talk.client();
     EXPECT_EQ(talk.ask(client, "ROBOT"), "ERR 400 ROBOT wants an argument: ROBOT id\n");
     EXPECT_EQ(talk.ask(client, "ROBOT r1 r2"), "ERR 400 unexpected `r2` behind ROBOT id\n");
     EXPECT_EQ(talk.ask(client, "WORLD w1"), "ERR 400 unexpected `w1` behind WORLD\n");
@@ -135,13 +135,13 @@ TEST(Conversation, ArgumentsAreCounted) {
     EXPECT_EQ(talk.ask(client, "STEP 1 2"), "ERR 400 unexpected `2` behind STEP [n]\n");
 }
 
-TEST(Conversation, BlankLinesAreNoRequests) {
+TEST(Session, BlankLinesAreNoRequests) {
     Talk talk;
-    Conversation& client = talk.client();
+    Session& client = talk.client();
     for (const char* line : {"", " ", "\t", " \t "}) EXPECT_EQ(talk.ask(client, line), "");
 }
 
-TEST(Conversation, Help) {
+TEST(Session, Help) {
     Talk talk;
     EXPECT_EQ(talk.ask(talk.client(), "HELP"),
               "OK HELP ROBOT id | LASER id | WORLD | HELP | QUIT\n");
@@ -154,18 +154,18 @@ TEST(Conversation, Help) {
               "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | SHUTDOWN | HELP | QUIT\n");
 }
 
-TEST(Conversation, TooLongCloses) {
+TEST(Session, TooLongCloses) {
     Talk talk;
-    Conversation& robot = talk.client("ROBOT r1");
+    Session& robot = talk.client("ROBOT r1");
     robot.tooLong(4096);
     EXPECT_EQ(robot.take(), "ERR 413 a request has at most 4096 bytes before its end of line\n");
     EXPECT_TRUE(robot.closing());
     talk.client("ROBOT r1");  // it is free
 }
 
-TEST(Conversation, WorldTellsWhatThereIs) {
+TEST(Session, WorldTellsWhatThereIs) {
     Talk talk;
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "LIST"), "OK LIST robots=r1,r2 lasers=l1,l2\n");
     EXPECT_EQ(talk.ask(world, "TIME"), "OK TIME t=0.000 steps=0\n");
     talk.step(3);
@@ -174,33 +174,33 @@ TEST(Conversation, WorldTellsWhatThereIs) {
               "OK POSES t=0.300 n=2 poses=r1,0.000,0.000,0.000;r2,2.000,1.500,90.000\n");
 }
 
-TEST(Conversation, EmptyWorld) {
+TEST(Session, EmptyWorld) {
     const Scene scene = testing::scene("ispace size=8,6\n", "");
     World world(scene, std::chrono::milliseconds(5));
     Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
-    Hall hall(simulation);
-    Conversation client(hall);
+    ServerState state(simulation);
+    Session client(state);
     EXPECT_EQ(Talk::ask(client, "ROBOT r1"), "ERR 404 no robot `r1`: there is none\n");
     Talk::ask(client, "WORLD");
     EXPECT_EQ(Talk::ask(client, "LIST"), "OK LIST robots= lasers=\n");
     EXPECT_EQ(Talk::ask(client, "POSES"), "OK POSES t=0.000 n=0 poses=\n");
 }
 
-TEST(Conversation, HeadingsStayAboveMinus180) {
+TEST(Session, HeadingsStayAboveMinus180) {
     const Scene scene = testing::scene(
         "ispace size=8,6\n", "robot id=r1 at=0,0 heading=-179.9999\nrobot id=r2 at=-0.0001,2\n");
     World world(scene, std::chrono::milliseconds(5));
     Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
-    Hall hall(simulation);
-    Conversation client(hall);
+    ServerState state(simulation);
+    Session client(state);
     Talk::ask(client, "WORLD");
     EXPECT_EQ(Talk::ask(client, "POSES"),
               "OK POSES t=0.000 n=2 poses=r1,0.000,0.000,180.000;r2,0.000,2.000,0.000\n");
 }
 
-TEST(Conversation, StepIsAnsweredWhenDone) {
+TEST(Session, StepIsAnsweredWhenDone) {
     Talk talk;
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "STEP 10"), "");
     EXPECT_TRUE(world.waiting());
     talk.run();
@@ -211,10 +211,10 @@ TEST(Conversation, StepIsAnsweredWhenDone) {
     EXPECT_EQ(world.take(), "OK STEP n=1 t=1.100\n");
 }
 
-TEST(Conversation, StepsOfSeveralClientsAddUp) {
+TEST(Session, StepsOfSeveralClientsAddUp) {
     Talk talk;
-    Conversation& first = talk.client("WORLD");
-    Conversation& second = talk.client("WORLD");
+    Session& first = talk.client("WORLD");
+    Session& second = talk.client("WORLD");
     first.request("STEP 10");
     second.request("STEP 5");
     talk.run();
@@ -223,11 +223,11 @@ TEST(Conversation, StepsOfSeveralClientsAddUp) {
     EXPECT_EQ(talk.room.world.steps(), 15);
 }
 
-TEST(Conversation, StepEndsWithTheRun) {
+TEST(Session, StepEndsWithTheRun) {
     Talk talk({Clock::Kind::Step, 1}, std::chrono::milliseconds(1200));
-    Conversation& first = talk.client("WORLD");
-    Conversation& second = talk.client("WORLD");
-    Conversation& third = talk.client("WORLD");
+    Session& first = talk.client("WORLD");
+    Session& second = talk.client("WORLD");
+    Session& third = talk.client("WORLD");
     first.request("STEP 10");
     second.request("STEP 5");
     third.request("STEP 5");
@@ -237,10 +237,10 @@ TEST(Conversation, StepEndsWithTheRun) {
     EXPECT_EQ(third.take(), "OK STEP n=0 t=1.200\n");
 }
 
-TEST(Conversation, PauseCutsAStepShort) {
+TEST(Session, PauseCutsAStepShort) {
     Talk talk;
-    Conversation& first = talk.client("WORLD");
-    Conversation& second = talk.client("WORLD");
+    Session& first = talk.client("WORLD");
+    Session& second = talk.client("WORLD");
     first.request("STEP 1000000000");
     talk.room.simulation.run(WallTime{}, std::chrono::nanoseconds(1));
     const std::int64_t taken = talk.room.world.steps();
@@ -253,9 +253,9 @@ TEST(Conversation, PauseCutsAStepShort) {
     EXPECT_EQ(talk.room.world.steps(), taken);
 }
 
-TEST(Conversation, StepArguments) {
+TEST(Session, StepArguments) {
     Talk talk;
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "STEP x"),
               "ERR 400 the number of steps is a whole number, found `x`\n");
     EXPECT_EQ(talk.ask(world, "STEP 1.5"),
@@ -266,13 +266,13 @@ TEST(Conversation, StepArguments) {
     EXPECT_FALSE(world.waiting());
 }
 
-TEST(Conversation, PauseAndResume) {
+TEST(Session, PauseAndResume) {
     Talk step;
     EXPECT_EQ(step.ask(step.client("WORLD"), "RESUME"),
               "ERR 405 the clock is `step`: use STEP n\n");
     EXPECT_EQ(step.ask(step.clients.back(), "PAUSE"), "OK PAUSE t=0.000\n");
     Talk talk({Clock::Kind::Fast, 1});
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "STEP 1"), "ERR 405 the world is running: PAUSE comes before STEP\n");
     EXPECT_EQ(talk.ask(world, "RESUME"), "OK RESUME t=0.000\n");
     EXPECT_EQ(talk.ask(world, "PAUSE"), "OK PAUSE t=0.000\n");
@@ -284,9 +284,9 @@ TEST(Conversation, PauseAndResume) {
     EXPECT_FALSE(talk.room.simulation.paused());
 }
 
-TEST(Conversation, Shutdown) {
+TEST(Session, Shutdown) {
     Talk talk;
-    Conversation& world = talk.client("WORLD");
+    Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "SHUTDOWN"), "OK SHUTDOWN t=0.000\n");
     EXPECT_TRUE(talk.room.simulation.finished());
     EXPECT_TRUE(world.closing());
@@ -294,14 +294,14 @@ TEST(Conversation, Shutdown) {
 
 std::string dialogue() {
     Talk talk;
-    Conversation& robot = talk.client("ROBOT r1");
-    Conversation& laser = talk.client("LASER l2");
-    Conversation& world = talk.client("WORLD");
+    Session& robot = talk.client("ROBOT r1");
+    Session& laser = talk.client("LASER l2");
+    Session& world = talk.client("WORLD");
     std::string out;
-    const auto say = [&](Conversation& client, std::string_view request) {
+    const auto say = [&](Session& client, std::string_view request) {
         client.request(request);
         talk.run();
-        for (Conversation* each : {&robot, &laser, &world}) out += each->take() + streamed(*each);
+        for (Session* each : {&robot, &laser, &world}) out += each->take() + streamed(*each);
     };
     say(laser, "STREAM every=2");
     say(robot, "FORWARD 1");
@@ -312,7 +312,7 @@ std::string dialogue() {
     return out;
 }
 
-TEST(Conversation, DialogueByStepIsTheSameEachTime) {
+TEST(Session, DialogueByStepIsTheSameEachTime) {
     const std::string first = dialogue();
     EXPECT_EQ(first, dialogue());
     EXPECT_NE(first.find("\nDONE id=1 t="), std::string::npos);
@@ -321,13 +321,13 @@ TEST(Conversation, DialogueByStepIsTheSameEachTime) {
     EXPECT_EQ(first.find(" seq=9 "), std::string::npos);
 }
 
-TEST(Conversation, AnyBytesGetOnePrintableLine) {
+TEST(Session, AnyBytesGetOnePrintableLine) {
     std::mt19937 random(5);
     const std::vector<std::string> starts = {
         "", "ROBOT ", "STEP ", "SCAN ", "STREAM every=", "SPEED ", "BINARY "};
     Talk talk;
     for (int i = 0; i < 20000; ++i) {
-        Conversation client(talk.hall);
+        Session client(talk.state);
         if (i % 4 > 0) client.request(i % 4 == 1 ? "ROBOT r1" : i % 4 == 2 ? "LASER l1" : "WORLD");
         client.take();
         std::string line = starts[random() % starts.size()];

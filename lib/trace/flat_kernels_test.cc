@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Level rays past the ends of lines, and against round bodies: the curve itself decides.
-#include "trace/flat_shapes.h"
+#include "trace/flat_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "base/message.h"
 #include "base/number.h"
-#include "net/conversation.h"
 #include "net/server_state.h"
+#include "net/session.h"
 
 namespace ispace {
 
@@ -51,7 +51,7 @@ Count parseCount(std::string_view text, std::string_view what) {
 
 // The role ROBOT.
 
-void Conversation::command(Words words) {
+void Session::command(Words words) {
     const char* const begin = words.front().data();
     const char* const end = words.back().data() + words.back().size();
     const ParsedCommand parsed =
@@ -73,7 +73,7 @@ void Conversation::command(Words words) {
     out_ += '\n';
 }
 
-void Conversation::status(Words /*words*/) {
+void Session::status(Words /*words*/) {
     const RobotStatus status = world().status(subject_);
     out_.append("OK STATUS t=").append(formatMilliseconds(world().time()));
     out_.append(" x=").append(measured(status.pose.position.x));
@@ -86,24 +86,24 @@ void Conversation::status(Words /*words*/) {
     out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
 }
 
-void Conversation::scanOfRobot(Words words) {
+void Session::scanOfRobot(Words words) {
     const auto laser = world().laserNamed(words[1]);
     if (!laser) return error(404, {unknownLaser(words[1])});
     const auto& mount = world().lasers()[*laser].mount;
     if (!mount || mount->robot != subject_)
         return error(404, {"laser ", words[1], " is not on this robot: open another connection ",
                            "and take the role LASER ", words[1]});
-    out_ += *hall_->scan(*laser, false, false);
+    out_ += *state_->scan(*laser, false, false);
 }
 
 // The role LASER.
 
-void Conversation::scan(Words /*words*/) {
+void Session::scan(Words /*words*/) {
     sendPendingScan();
-    out_ += *hall_->scan(subject_, false, binary_);
+    out_ += *state_->scan(subject_, false, binary_);
 }
 
-void Conversation::stream(Words words) {
+void Session::stream(Words words) {
     std::int64_t every = 1;
     if (words.size() > 1) {
         constexpr std::string_view kKey = "every=";
@@ -119,13 +119,13 @@ void Conversation::stream(Words words) {
     out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
 }
 
-void Conversation::stopStream(Words /*words*/) {
+void Session::stopStream(Words /*words*/) {
     sendPendingScan();
     every_ = 0;
     out_ += "OK STOP\n";
 }
 
-void Conversation::binary(Words words) {
+void Session::binary(Words words) {
     if (words[1] != "on" && words[1] != "off")
         return error(400, {"BINARY is on or off, found ", excerpt(words[1])});
     sendPendingScan();
@@ -135,17 +135,17 @@ void Conversation::binary(Words words) {
 
 // The role WORLD.
 
-void Conversation::list(Words /*words*/) {
+void Session::list(Words /*words*/) {
     out_.append("OK LIST robots=").append(joined(idsOf(world().robots()), ","));
     out_.append(" lasers=").append(joined(idsOf(world().lasers()), ",")).append("\n");
 }
 
-void Conversation::time(Words /*words*/) {
+void Session::time(Words /*words*/) {
     out_.append("OK TIME t=").append(formatMilliseconds(world().time()));
     out_.append(" steps=").append(std::to_string(world().steps())).append("\n");
 }
 
-void Conversation::poses(Words /*words*/) {
+void Session::poses(Words /*words*/) {
     const auto robots = world().robots();
     out_.append("OK POSES t=").append(formatMilliseconds(world().time()));
     out_.append(" n=").append(std::to_string(robots.size())).append(" poses=");
@@ -161,9 +161,9 @@ void Conversation::poses(Words /*words*/) {
 
 /// Answers, if it is not so. Each pause may cut short what others have asked for; two of them with
 /// no time between cost the world nothing else.
-bool Conversation::mayAskFor(std::string_view verb) {
+bool Session::mayAskFor(std::string_view verb) {
     const auto now = std::chrono::steady_clock::now();
-    Ration& all = hall_->pauses();
+    Ration& all = state_->pauses();
     if (pauses_.has(now)) {
         Ration* const from = all.has(now) ? &all : &spare_pauses_;
         if (from->has(now)) {
@@ -172,51 +172,51 @@ bool Conversation::mayAskFor(std::string_view verb) {
             return true;
         }
     }
-    const ServerLimits& limits = hall_->limits();
+    const ServerLimits& limits = state_->limits();
     error(429, {verb, " comes too often: a client has ", formatDouble(limits.pauses.rate),
                 " a second, all together ", formatDouble(limits.all_pauses.rate)});
     return false;
 }
 
-void Conversation::pause(Words words) {
+void Session::pause(Words words) {
     if (!mayAskFor(words.front())) return;
     // A STEP under way ends here too, or nobody could end one of too many steps.
-    hall_->steps().cut();
-    hall_->simulation().pause(std::chrono::steady_clock::now());
+    state_->steps().cut();
+    state_->simulation().pause(std::chrono::steady_clock::now());
     out_.append("OK PAUSE t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
-void Conversation::resume(Words words) {
-    Simulation& simulation = hall_->simulation();
+void Session::resume(Words words) {
+    Simulation& simulation = state_->simulation();
     if (simulation.clock().kind == Clock::Kind::Step)
         return error(405, {"the clock is `step`: use STEP n"});
     // What PAUSE began can always be ended.
     if (!simulation.paused()) {
         if (!mayAskFor(words.front())) return;
     } else {
-        hall_->steps().cut();
+        state_->steps().cut();
         simulation.resume(std::chrono::steady_clock::now());
     }
     out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
-void Conversation::step(Words words) {
+void Session::step(Words words) {
     std::int64_t steps = 1;
     if (words.size() > 1) {
         const Count count = parseCount(words[1], "the number of steps");
         if (count.code != 0) return error(count.code, {count.message});
         steps = count.value;
     }
-    if (!hall_->simulation().paused())
+    if (!state_->simulation().paused())
         return error(405, {"the world is running: PAUSE comes before STEP"});
-    steps_ = hall_->steps().ask(steps);
+    steps_ = state_->steps().ask(steps);
 }
 
-void Conversation::shutdown(Words /*words*/) {
-    if (!hall_->limits().shutdown)
+void Session::shutdown(Words /*words*/) {
+    if (!state_->limits().shutdown)
         return error(403, {"clients may not end this run: it has --no-shutdown"});
     out_.append("OK SHUTDOWN t=").append(formatMilliseconds(world().time())).append("\n");
-    hall_->simulation().finish();
+    state_->simulation().finish();
     leave();
     closing_ = true;
 }

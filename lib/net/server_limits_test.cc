@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places and memory that clients may take without giving anything for it.
-#include "net/limits.h"
+#include "net/server_state.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "net/conversation.h"
+#include "net/session.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "net/server_state.h"
-#include "sim/words.h"
+#include "sim/command.h"
 
 namespace ispace {
 
@@ -47,16 +47,16 @@ std::string unknownThing(std::string_view kind, std::string_view id,
 }  // namespace
 
 /// What can be asked for. A verb may have several rows with different roles.
-struct Conversation::Request {
+struct Session::Request {
     std::string_view verb;
     std::string_view arguments;  // for people
     std::optional<Role> role;    // at which it is possible; nothing: at any
     std::size_t least, most;     // number of arguments
-    void (Conversation::*answer)(Words words);
+    void (Session::*answer)(Words words);
 };
 
-std::span<const Conversation::Request> Conversation::requests() {
-    using C = Conversation;
+std::span<const Session::Request> Session::requests() {
+    using C = Session;
     // Commands are checked by parseCommand.
     constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
     static constexpr auto kRequests = std::to_array<Request>({
@@ -89,16 +89,16 @@ std::span<const Conversation::Request> Conversation::requests() {
     return kRequests;
 }
 
-Conversation::Conversation(Hall& hall)
-    : hall_(&hall),
-      pauses_(hall.limits().pauses),
-      spare_pauses_(hall.limits().spare_pauses, std::chrono::steady_clock::now()) {}
+Session::Session(ServerState& state)
+    : state_(&state),
+      pauses_(state.limits().pauses),
+      spare_pauses_(state.limits().spare_pauses, std::chrono::steady_clock::now()) {}
 
-Conversation::~Conversation() { leave(); }
+Session::~Session() { leave(); }
 
-std::string Conversation::greeting() { return "ISPACE 1\n"; }
+std::string Session::greeting() { return "ISPACE 1\n"; }
 
-void Conversation::request(std::string_view line) {
+void Session::request(std::string_view line) {
     std::vector<std::string_view> words;
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
@@ -125,31 +125,31 @@ void Conversation::request(std::string_view line) {
     tellEnds();
 }
 
-void Conversation::tooLong(std::size_t limit) {
+void Session::tooLong(std::size_t limit) {
     error(413, {"a request has at most ", std::to_string(limit), " bytes before its end of line"});
     leave();
     closing_ = true;
 }
 
-void Conversation::stepped() {
+void Session::stepped() {
     tellEnds();
     if (every_ > 0) {
         const std::int64_t seq = world().reading(subject_).seq;
-        if (seq != seq_ && seq % every_ == 0) scan_ = hall_->scan(subject_, true, binary_);
+        if (seq != seq_ && seq % every_ == 0) scan_ = state_->scan(subject_, true, binary_);
         seq_ = seq;
     }
     if (steps_) {
-        hall_->steps().settle();
+        state_->steps().settle();
         if (steps_->over) answerStep();
     }
 }
 
-void Conversation::finish() {
+void Session::finish() {
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
     stepped();
 }
 
-std::string Conversation::roleText() const {
+std::string Session::roleText() const {
     switch (role_) {
         case Role::None:
             return "no role";
@@ -163,14 +163,14 @@ std::string Conversation::roleText() const {
     return "";
 }
 
-void Conversation::error(int code, std::initializer_list<std::string_view> text) {
+void Session::error(int code, std::initializer_list<std::string_view> text) {
     out_.append("ERR ").append(std::to_string(code)).append(" ");
     for (const std::string_view piece : text) out_ += printable(piece);
     out_ += '\n';
 }
 
 /// Why a verb is no request, or none now.
-void Conversation::refuse(std::string_view verb, bool first) {
+void Session::refuse(std::string_view verb, bool first) {
     std::vector<std::string> verbs;
     verbs.reserve(requests().size());
     std::string roles;
@@ -198,16 +198,16 @@ void Conversation::refuse(std::string_view verb, bool first) {
 }
 
 /// Gives up what the client holds.
-void Conversation::leave() {
-    if (role_ == Role::Robot) hall_->release(subject_);
-    hall_->steps().drop(std::exchange(steps_, nullptr));
+void Session::leave() {
+    if (role_ == Role::Robot) state_->release(subject_);
+    state_->steps().drop(std::exchange(steps_, nullptr));
     role_ = Role::None;
     running_.clear();
     every_ = 0;
     scan_.reset();
 }
 
-void Conversation::tellEnds() {
+void Session::tellEnds() {
     if (running_.empty()) return;
     for (const CommandEnd& end : world().ends()) {
         if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;
@@ -218,18 +218,18 @@ void Conversation::tellEnds() {
     }
 }
 
-void Conversation::answerStep() {
+void Session::answerStep() {
     out_.append("OK STEP n=").append(std::to_string(steps_->count - steps_->left));
     out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
     steps_.reset();
 }
 
 /// A scan that was due before a request is sent before its answer.
-void Conversation::sendPendingScan() {
+void Session::sendPendingScan() {
     if (scan_) out_ += *takeScan();
 }
 
-std::string Conversation::unknownLaser(std::string_view id) const {
+std::string Session::unknownLaser(std::string_view id) const {
     std::vector<std::string> known;
     for (const Sensor& laser : world().lasers())
         if (role_ != Role::Robot || (laser.mount && laser.mount->robot == subject_))
@@ -237,10 +237,11 @@ std::string Conversation::unknownLaser(std::string_view id) const {
     return unknownThing("laser", id, known, role_ == Role::Robot ? " on this robot" : "");
 }
 
-void Conversation::takeRobot(Words words) {
+void Session::takeRobot(Words words) {
     const auto robot = world().robotNamed(words[1]);
     if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
-    if (!hall_->hold(*robot)) return error(409, {"robot ", words[1], " is held by another client"});
+    if (!state_->hold(*robot))
+        return error(409, {"robot ", words[1], " is held by another client"});
     role_ = Role::Robot;
     subject_ = *robot;
     const RobotModel& model = world().robots()[*robot].model;
@@ -249,7 +250,7 @@ void Conversation::takeRobot(Words words) {
     out_.append(" radius=").append(formatDouble(model.radius)).append("\n");
 }
 
-void Conversation::takeLaser(Words words) {
+void Session::takeLaser(Words words) {
     const auto found = world().laserNamed(words[1]);
     if (!found) return error(404, {unknownLaser(words[1])});
     role_ = Role::Laser;
@@ -265,9 +266,9 @@ void Conversation::takeLaser(Words words) {
     out_.append(" rate=").append(formatDouble(laser.rate)).append("\n");
 }
 
-void Conversation::takeWorld(Words /*words*/) {
+void Session::takeWorld(Words /*words*/) {
     role_ = Role::World;
-    const Clock& clock = hall_->simulation().clock();
+    const Clock& clock = state_->simulation().clock();
     out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
     out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
     switch (clock.kind) {
@@ -284,12 +285,12 @@ void Conversation::takeWorld(Words /*words*/) {
     out_ += '\n';
 }
 
-void Conversation::help(Words /*words*/) {
+void Session::help(Words /*words*/) {
     std::string_view separator = " ";
     out_ += "OK HELP";
     for (const Request& request : requests()) {
         if (request.role.value_or(role_) != role_) continue;
-        if (request.answer == &Conversation::shutdown && !hall_->limits().shutdown) continue;
+        if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
         separator = " | ";
@@ -297,7 +298,7 @@ void Conversation::help(Words /*words*/) {
     out_ += '\n';
 }
 
-void Conversation::quit(Words /*words*/) {
+void Session::quit(Words /*words*/) {
     out_ += "OK QUIT\n";
     leave();
     closing_ = true;
