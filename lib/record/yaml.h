@@ -48,7 +48,7 @@ using FileReader = std::function<std::string(const std::string& path)>;
 ///         with the chain of includes; also for anchors that add more than a million nodes, more
 ///         than 64 lists and maps in each other, tabs as indentation, doubled keys, null values,
 ///         tags of one's own, NaN, a second document, circles of includes or parts, and for
-///         includes, parts and repetitions that make too much (YamlIncludes, yaml_expand.h)
+///         includes, parts and repetitions that make too much (YamlIncludes, yaml_stages.h)
 Document readYaml(std::string_view bytes, const std::string& name, const Schemas& schemas,
                   const FileReader& read = {});
 

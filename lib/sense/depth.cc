@@ -5,6 +5,7 @@
 
 #include "base/simd.h"
 #include "sense/noise.h"
+#include "sense/sensors.h"
 #include "trace/rays.h"
 
 namespace ispace {
@@ -197,10 +198,7 @@ class Exposure {
     [[nodiscard]] double reach() const {
         return ranger_.ambiguity > 0 ? kEverything : ranger_.max_range;
     }
-    [[nodiscard]] std::uint32_t own() const {
-        return sensor_.mount ? static_cast<std::uint32_t>(sensor_.mount->robot)
-                             : MovingBodies::kNobody;
-    }
+    [[nodiscard]] std::uint32_t own() const { return carrierOf(sensor_); }
 
     const RayWorld& environment_;
     const MovingBodies& bodies_;

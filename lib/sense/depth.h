@@ -10,9 +10,9 @@
 
 namespace ispace {
 
-/// One picture of a ranger: per pixel, row by row, how many times the pixel's ray() leads to what
-/// is seen. That is the depth along the axis of a pinhole, the distance of a spherical one.
-/// +infinity is no return.
+/// One picture of a ranger: for each pixel, row by row, the multiple of its ray() at which it meets
+/// a surface. That is the depth along the axis for a pinhole, and the distance for a spherical
+/// ranger. +infinity is no return.
 struct DepthFrame {
     double time = 0;
     int frame = 0;
@@ -21,7 +21,7 @@ struct DepthFrame {
 };
 
 /// What a ranger sees at `pose`, with its limits, its ambiguity and, if wanted, its noise.
-/// `environment` is that of the mesh.
+/// \pre `environment` is a mesh, not a slice
 DepthFrame castDepth(const RayWorld& environment, const MovingBodies& bodies, const Sensor& sensor,
                      const Pose3& pose, int frame, const ReadingOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/depth_png.h"
+#include "sense/reading_picture.h"
 
 #include <png.h>
 #include <zlib.h>

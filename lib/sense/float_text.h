@@ -7,28 +7,28 @@
 
 namespace ispace {
 
-/// The number with at most nine decimals that is nearest: without the dust of sums and tangents.
+/// Rounds to nine decimals, which removes the rounding errors of sums and tangents.
 double nineDecimals(double value);
 
-/// Room that any number below needs, with a separator.
+/// Characters that any number below needs, with a separator.
 constexpr std::size_t kNumberRoom = 24;
-/// What may be overwritten behind a number.
+/// Characters behind a number that may be overwritten.
 constexpr std::size_t kNumberSlack = 32;
 
-/// Writes formatFloat(value) to `to` and returns the end; faster for values of everyday size. There
-/// are kNumberRoom + kNumberSlack characters at `to`. \pre value is finite
+/// Writes formatFloat(value) to `to` and returns the end; faster than that for everyday values.
+/// \pre value is finite, `to` has room for kNumberRoom + kNumberSlack characters
 char* writeFloat(char* to, float value);
 
-/// Writes formatDouble(nineDecimals(value)) in the same way. \pre value is finite
+/// The same for formatDouble(nineDecimals(value)).
 char* writeNineDecimals(char* to, double value);
 
-/// The same of a whole number.
+/// The same for a whole number.
 char* writeInteger(char* to, std::size_t value);
 
-/// The end of a string, made long enough for many numbers at once; what is not used is cut off.
+/// Appends to a string, which is enlarged once for many numbers and cut to size at the end.
 class TextTail {
   public:
-    /// \pre no more than `room` characters are written
+    /// \pre at most `room` characters are written
     TextTail(std::string& text, std::size_t room) : text_(text) {
         const std::size_t used = text.size();
         text.resize(used + room + kNumberSlack);

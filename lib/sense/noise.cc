@@ -6,7 +6,6 @@
 #include <cassert>
 
 #include "base/simd.h"
-#include "sense/noise_loops.h"
 
 namespace ispace {
 

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "base/random.h"
+#include "base/simd.h"
 #include "sensor/noise.h"
 
 namespace ispace {
 
-/// What keeps the noise of one reading apart from that of any other.
+/// Identifies the noise of one reading.
 struct NoiseKey {
     std::uint64_t seed = 0;
     std::uint64_t sensor = 0;  ///< hashOf its id
@@ -17,22 +22,132 @@ struct NoiseKey {
     Purpose purpose = Purpose::Range;
 };
 
-/// What a device says of true ranges: one outside [min_range, max_range] (ends included, both as
-/// float32) is no return, as are infinity and what is not a number, whatever the noise; to all
-/// others noise is added: bias and spread, drop-out, resolution, in this order. What is measured
-/// beyond a limit then is told as that limit. Vectorised; the same values for any processor.
-/// Element k draws element k of the key's sequence (its `normal` and `uniform`; `other` is that of
-/// bearingErrors), whatever the other elements are.
+/// Turns true ranges into measured ones. A true range outside [min_range, max_range] (ends
+/// included, both as float32), infinity and NaN become no return, whatever the noise. All others
+/// get bias and spread, drop-out and resolution, in this order; a result beyond a limit becomes
+/// that limit. Vectorised, with the same values on any processor. Element k draws element k of the
+/// key's sequence (its `normal` and `uniform`; `other` belongs to bearingErrors), whatever the
+/// other elements are.
 ///
 /// A return is lost with probability p = d + (1 - d) g: d is noise.dropout; g rises in proportion
 /// to the angle between beam and normal from 0 at graze_from to 1 at graze_to, or jumps there if
-/// both are the same. p counts in steps of 2^-24. A multiple of the resolution is the float32
-/// nearest to n * resolution: the one that its decimal notation reads as. \param cosines |cosine|
-/// between beam and normal of each, empty unless noise.dropsByIncidence()
+/// both are the same. p is rounded to steps of 2^-24. A multiple of the resolution is the float32
+/// nearest to n * resolution, which is what its decimal notation reads as. \param cosines |cosine|
+/// of the angle between beam and normal for each range, empty unless noise.dropsByIncidence()
 void addNoise(const RangeNoise& noise, double min_range, double max_range, const NoiseKey& key,
               std::span<const float> cosines, std::span<float> ranges);
 
-/// How far each bearing is off, in radians: N(0, angle_sigma).
+/// Error of each bearing in radians: N(0, angle_sigma).
 void bearingErrors(const RangeNoise& noise, const NoiseKey& key, std::span<float> radians);
 
 }  // namespace ispace
+
+/// The loops of addNoise(), to be compiled for one processor or another.
+namespace ispace::noise_loops {
+
+/// A device's parameters as the loops need them.
+struct Parameters {
+    float bias = 0;
+    std::array<float, 3> sigma{0, 0, 0};
+    float dropout = 0;
+    /// Of incidence: where the ramp begins, its slope (0: a step), and the cosine where it ends.
+    float graze_from = 0, graze_slope = 0, graze_cosine = 0;
+    double resolution = 0, per_metre = 0;  // its inverse
+    float min_range = 0, max_range = 0;
+};
+
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+
+/// `normal` null: no spread.
+ISPACE_INLINE void spread(const Parameters& parameters, std::size_t count, const float* normal,
+                          float* __restrict ranges) {
+    const float bias = parameters.bias;
+    if (normal == nullptr) {
+        for (std::size_t k = 0; k < count; ++k) ranges[k] += bias;
+        return;
+    }
+    const auto [s0, s1, s2] = parameters.sigma;
+    for (std::size_t k = 0; k < count; ++k) {
+        const float r = ranges[k];
+        const float sigma = s0 + r * (s1 + r * s2);
+        const float measured = r + (bias + 0.5F * (sigma + std::fabs(sigma)) * normal[k]);
+        // The spread of infinity may not be a number.
+        ranges[k] = simd::choose(r < kNoReturn, measured, kNoReturn);
+    }
+}
+
+/// `cosines` null: none is lost by incidence.
+ISPACE_INLINE void drop(const Parameters& parameters, std::size_t count, const float* cosines,
+                        const float* uniform, float* __restrict ranges) {
+    const float dropout = parameters.dropout;
+    if (cosines == nullptr) {
+        for (std::size_t k = 0; k < count; ++k) {
+            ranges[k] = simd::choose(uniform[k] < dropout, kNoReturn, ranges[k]);
+        }
+        return;
+    }
+    const float kept = 1.0F - dropout;
+    const float from = parameters.graze_from;
+    const float slope = parameters.graze_slope;
+    const float end = parameters.graze_cosine;
+    for (std::size_t k = 0; k < count; ++k) {
+        // Rounding may have left a cosine above 1.
+        const float cosine = simd::choose(cosines[k] < 1.0F, cosines[k], 1.0F);
+        const float ramp = (simd::arcCosine(cosine) - from) * slope;
+        const float share = simd::choose(ramp > 0, ramp, 0.0F);
+        const float lost = simd::choose(cosine <= end, 1.0F, dropout + kept * share);
+        ranges[k] = simd::choose(uniform[k] < lost, kNoReturn, ranges[k]);
+    }
+}
+
+ISPACE_INLINE void quantise(const Parameters& parameters, std::size_t count,
+                            float* __restrict ranges) {
+    // Added and taken off again this rounds to a whole number; one too large for that is left as it
+    // is, but for the rounding of doubles.
+    constexpr double kRounder = 0x1.8p52;
+    const double resolution = parameters.resolution;
+    const double per_metre = parameters.per_metre;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double n = static_cast<double>(ranges[k]) * per_metre;
+        const double rounded = (n + kRounder) - kRounder;
+        ranges[k] = static_cast<float>(rounded * resolution);
+    }
+}
+
+/// What is out of range, or not a number, is no return.
+ISPACE_INLINE void limit(const Parameters& parameters, std::size_t count,
+                         float* __restrict ranges) {
+    const float low = parameters.min_range;
+    const float high = parameters.max_range;
+    for (std::size_t k = 0; k < count; ++k) {
+        const float r = ranges[k];
+        const float not_low = simd::choose(r >= low, r, kNoReturn);
+        ranges[k] = simd::choose(r <= high, not_low, kNoReturn);
+    }
+}
+
+/// Returns that noise carried out of range are at its end.
+ISPACE_INLINE void keepInRange(const Parameters& parameters, std::size_t count,
+                               float* __restrict ranges) {
+    const float low = parameters.min_range;
+    const float high = parameters.max_range;
+    for (std::size_t k = 0; k < count; ++k) {
+        const float r = ranges[k];
+        const float not_low = simd::choose(r > low, r, low);
+        const float within = simd::choose(not_low < high, not_low, high);
+        ranges[k] = simd::choose(r < kNoReturn, within, kNoReturn);
+    }
+}
+
+/// What a block of ranges goes through; arrays are null if not needed.
+ISPACE_INLINE void apply(const Parameters& parameters, std::size_t count, const float* normal,
+                         const float* uniform, const float* cosines, float* ranges) {
+    limit(parameters, count, ranges);
+    const bool moves = normal != nullptr || parameters.bias != 0;
+    if (moves) spread(parameters, count, normal, ranges);
+    if (uniform != nullptr) drop(parameters, count, cosines, uniform, ranges);
+    if (parameters.resolution > 0) quantise(parameters, count, ranges);
+    if (moves || parameters.resolution > 0) keepInRange(parameters, count, ranges);
+}
+
+}  // namespace ispace::noise_loops

@@ -12,8 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "sense/noise_loops.h"
-
 namespace ispace {
 namespace {
 

@@ -22,33 +22,33 @@ struct ReadingJob {
     int frame = 0;
     double time = 0;  ///< seconds
     Pose3 pose;
-    /// Where the sensor is from `time` on, until it is done; empty if it stands still. In order of
-    /// time, the first not after `time`.
+    /// Poses from `time` to the end of the reading; empty if the sensor stands still. In order of
+    /// time, the first one not after `time`.
     std::vector<TimedPose> way;
 };
 
-/// A scan, or those of a sweep; a picture; a burst.
+/// The scans of a sweep (or a single one), a depth picture, or a burst.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst>;
 
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
     double celsius = 20;                           ///< of the air, for sound
-    /// Sensors are where jobs say, not where they are placed: beams are turned as a whole.
+    /// Sensors move from job to job, so their beams are turned as a whole; see Beams.
     bool follows_poses = false;
 };
 
-/// Takes readings in any order on any thread; each depends on its job alone.
+/// Takes readings in any order on any thread; each depends only on its job.
 class ReadingTaker {
   public:
-    /// \pre all outlive it
+    /// \pre all arguments outlive it
     ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
                  const TakerOptions& options);
     ~ReadingTaker();
     ReadingTaker(const ReadingTaker&) = delete;
     ReadingTaker& operator=(const ReadingTaker&) = delete;
 
-    /// Makes ready what a job needs. By one thread, in the order of jobs; others may take readings
-    /// meanwhile.
+    /// Prepares the worlds for a job. Called by one thread in the order of jobs, while others may
+    /// take readings.
     void prepare(const ReadingJob& job);
     /// \pre the job is prepared
     [[nodiscard]] Reading take(const ReadingJob& job);

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sense/depth_png.h"
 #include "sense/reading_picture.h"
 #include "sense/reading_text.h"
 #include "sensor/kind.h"

@@ -14,32 +14,32 @@
 
 namespace ispace {
 
-/// A file made of one reading: its name is that of the reading and this ending.
+/// A file made of one reading; its name is the reading's with this ending.
 struct ReadingFile {
     std::string ending;  ///< ".png", "-color.png"
     std::string bytes;
 };
 
-/// How readings are written. Thread-safe.
+/// Writes readings in one format. Thread-safe.
 class ReadingFormat {
   public:
     virtual ~ReadingFormat() = default;
-    /// What stands before all readings.
+    /// Bytes before the first reading.
     [[nodiscard]] virtual std::string header() const { return ""; }
     /// Appends a reading of a sensor (in Sensors::read).
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
-    /// A reading as files of its own.
+    /// A reading as separate files.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
                                                          const Reading& reading) const = 0;
-    /// What the names of those files may end with, that of the reading itself first.
+    /// Endings that those files may have, that of the reading itself first.
     [[nodiscard]] virtual std::vector<std::string> endings() const = 0;
-    /// Readings may follow each other in one file; else each needs one of its own.
+    /// True if readings may follow each other in one file; else each needs its own.
     [[nodiscard]] virtual bool isStream() const { return true; }
     /// \throws UsageError if one file cannot hold the readings of all these sensors
     virtual void checkStream() const {}
-    /// What of the readings it may lose, a phrase each.
+    /// What it may lose of the readings, a phrase each.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
-    /// Bytes, not text.
+    /// True for bytes that are not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };
 

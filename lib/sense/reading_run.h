@@ -15,17 +15,16 @@
 
 namespace ispace {
 
-/// Says what is to be read, in order, bit by bit.
+/// Supplies the readings to be taken, in order, a batch at a time.
 class ReadingSource {
   public:
     virtual ~ReadingSource() = default;
-    /// Puts the next jobs into `batch`, about `most` of them at most, as soon as there are some;
-    /// none at the end. Memory does not grow with what was said. Where it throws, `batch` has what
-    /// comes before.
+    /// Puts the next jobs into `batch`, some `most` at most, as soon as there are any; none at the
+    /// end. Memory stays bounded. If it throws, `batch` holds the jobs before the error.
     virtual void next(std::size_t most, std::vector<ReadingJob>& batch) = 0;
 };
 
-/// Placed sensors, each at its rate from time 0 on: frame by frame, in each the sensors in order.
+/// Placed sensors, each at its rate from time 0 on: frame by frame, the sensors in order.
 class StillSource final : public ReadingSource {
   public:
     StillSource(const Sensors& sensors, int frames) : sensors_(&sensors), frames_(frames) {}
@@ -49,7 +48,7 @@ class PoseLines {
     /// `name` is that of the file, for messages.
     PoseLines(ByteReader read, std::string name) : read_(std::move(read)), name_(std::move(name)) {}
     enum class Wait { Yes, No };
-    /// The next pose; nothing at the end, or, where it must not wait, if none has come yet.
+    /// The next pose; nothing at the end, or if it may not wait and none has arrived yet.
     /// \throws FormatError with file and line
     std::optional<TimedPose> next(Wait wait = Wait::Yes);
     [[nodiscard]] int line() const { return line_; }
@@ -77,10 +76,10 @@ class PoseSource final : public ReadingSource {
     int frame_ = 0;
 };
 
-/// One sensor that drives along a trajectory: frame k at the first pose's time + k / rate, as long
-/// as it is done before the last pose. Times must grow; with a number of frames it ends after them,
-/// without one there are at most kMaxBetween between two poses: a mistyped time would be
-/// millions. \throws FormatError where it is not so
+/// One sensor that drives along a trajectory: frame k begins at the first pose's time + k / rate
+/// and must end before the last pose. It stops after `frames` frames if given; else there may be at
+/// most kMaxBetween frames between two poses, since a mistyped time would mean millions. \throws
+/// FormatError if times do not grow or poses are too far apart
 class MotionSource final : public ReadingSource {
   public:
     static constexpr int kMaxBetween = 100'000;
@@ -101,7 +100,7 @@ class MotionSource final : public ReadingSource {
     int frame_ = 0;
 };
 
-/// Some readings, ready to be written: in the order of their jobs.
+/// Readings ready to be written, in the order of their jobs.
 struct Readings {
     std::vector<ReadingJob> jobs;
     std::string text;                             ///< of a stream
@@ -109,12 +108,12 @@ struct Readings {
     std::vector<PointCloud> clouds;               ///< of each job, where they are joined
 };
 
-/// What becomes of a reading.
+/// What a reading is turned into.
 enum class Packing { Stream, Files, Clouds };
 
-/// Takes all readings of a source, shared out over all cores by jobs, and hands them to `write` in
-/// order, by one thread at a time. Memory is bounded by the number of cores, not by that of jobs.
-/// Where the source fails, what comes before is written all the same.
+/// Takes all readings of a source on all cores and hands them to `write` in order, from one thread
+/// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails,
+/// everything before the error is still written.
 void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write);

@@ -7,6 +7,7 @@
 
 #include "base/simd.h"
 #include "sense/noise.h"
+#include "sense/sensors.h"
 
 namespace ispace {
 
@@ -75,7 +76,7 @@ LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const
       sensor_(&sensor),
       options_(options),
       id_hash_(hashOf(sensor.id)),
-      own_(sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody),
+      own_(carrierOf(sensor)),
       beams_(sensor.as<Laser>(), turns) {}
 
 void LaserCaster::cast(Scan& scan) {

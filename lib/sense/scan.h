@@ -13,15 +13,15 @@
 
 namespace ispace {
 
-/// One scan of a laser range finder. `ranges[k]` belongs to the beam of bearing
-/// `laser.bearing(k)`: metres from the optical centre; +infinity means no return, which is
-/// nothing within max_range or a surface nearer than min_range.
+/// One scan of a laser range finder. `ranges[k]` belongs to the beam with bearing
+/// `laser.bearing(k)`, in metres from the optical centre. +infinity is no return: nothing within
+/// max_range, or a surface nearer than min_range.
 struct Scan {
     double time = 0;  ///< seconds, of the first beam
     int frame = 0;
     int number = 0;  ///< of the scan within a sweep
     Pose3 pose;      ///< of the sensor, at the first beam
-    /// Where it was at each beam, if it moved meanwhile; else empty.
+    /// Its pose at each beam if it moved during the scan; else empty.
     std::vector<Pose3> beam_poses;
     std::vector<float> ranges;
 
@@ -30,16 +30,15 @@ struct Scan {
     }
 };
 
-/// Where the beams of one sensor point, kept from scan to scan: cosines are computed once.
+/// Directions of the beams of one sensor, kept from scan to scan.
 ///
-/// Degrees add up exactly where their cosines do not: a level beam at 45 degrees of a sensor that
-/// faces 45 degrees runs along y. A sensor that moves (`turns`) faces anywhere, and its beams are
-/// turned as a whole, which is faster.
+/// Sums of degrees are exact where products of cosines are not: a level beam at 45 degrees of a
+/// sensor that faces 45 degrees runs exactly along y. The beams of a sensor that moves (`turns`)
+/// are rotated as a whole instead, which is faster.
 class Beams {
   public:
     Beams(const Laser& laser, bool turns);
-    /// Unit vectors of all beams in the world frame, of the sensor at this pose; valid until the
-    /// next call.
+    /// Unit vectors of all beams in the world frame; valid until the next call.
     const Directions& at(const Pose3& pose);
     /// Unit vector of a beam in the sensor's frame.
     [[nodiscard]] Vec2 local(std::size_t beam) const { return {local_.x[beam], local_.y[beam]}; }
@@ -55,21 +54,21 @@ class Beams {
     Angle heading_, tilt_, roll_;
 };
 
-/// What a reading may have besides the device's ideal.
+/// How readings differ from ideal ones.
 struct ReadingOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
 };
 
-/// Reads one laser again and again: keeps what can be computed once, and its memory. Not
-/// thread-safe: one a thread, or one a sensor. Its results do not depend on what it read before.
+/// Takes scans of one laser, keeping its memory and what can be computed once. Not thread-safe: use
+/// one per thread or per sensor. Results do not depend on earlier scans.
 class LaserCaster {
   public:
-    /// `turns`: as Beams has it. \pre all outlive it
+    /// `turns`: see Beams. \pre all arguments outlive it
     LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor, bool turns,
                 const ReadingOptions& options);
-    /// Sets the ranges of a scan whose frame, number, pose and beam_poses are given: what the
-    /// device reads there, the blind zone and, if wanted, its noise applied. \pre the pose is
-    /// prepared in the worlds, and their mesh if beam_poses are not all level and at its height
+    /// Sets the ranges of a scan from its frame, number, pose and beam_poses, including the blind
+    /// zone and, if wanted, noise. \pre the worlds are prepared for the pose, and their mesh if
+    /// beam_poses are not all level and at its height
     void cast(Scan& scan);
 
   private:
@@ -89,11 +88,11 @@ class LaserCaster {
 };
 
 /// Distance to the first surface of every beam up to max_range, whatever min_range is; +infinity
-/// if there is none. What figures are computed from.
+/// if there is none. Metrics are computed from these.
 std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor);
 
-/// Eq. (4.4) of the thesis over all beams: sum of step * pi * dist^2 / 360 with no return counted
-/// as max_range. `ranges` as of castBeams.
+/// Eq. (4.4) of the thesis: the sum of step * pi * dist^2 / 360 over all beams, where no return
+/// counts as max_range. \pre ranges are those of castBeams
 double sliceArea(const Laser& laser, std::span<const float> ranges);
 
 }  // namespace ispace

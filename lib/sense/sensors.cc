@@ -67,6 +67,10 @@ double wholeNanoseconds(double seconds) {
     return std::fabs(seconds) < kMax ? std::round(seconds * kNano) / kNano : seconds;
 }
 
+std::uint32_t carrierOf(const Sensor& sensor) {
+    return sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody;
+}
+
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {
     MovingBody body;
     body.pose = {pose * Point2{model.center, 0}, pose.heading};

@@ -13,31 +13,34 @@
 
 namespace ispace {
 
-/// The sensors of a run.
+/// The sensors that take part in a run.
 struct Sensors {
-    std::vector<Sensor> read;       ///< what gives readings, tags among them, in order
-    std::vector<Sensor> receivers;  ///< what hears the tags
+    std::vector<Sensor> read;       ///< those with readings, including tags, in order
+    std::vector<Sensor> receivers;  ///< those that hear the tags
 };
 
-/// The placed sensors of a scene whose ids match one of the globs, or all without globs; receivers
-/// as far as tags are among them, all or those that match. \throws UsageError for a glob that
-/// matches no sensor
+/// The placed sensors of a scene whose ids match one of the globs, or all without globs. Receivers
+/// are those that match, or all if none does. \throws UsageError for a glob that matches no sensor
 Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs);
 
-/// Indices in Scene::records of the sensors of these keywords whose ids match one of the globs, or
-/// of all without globs, placed or not.
+/// Indices in Scene::records of the sensors with these keywords, placed or not, whose ids match one
+/// of the globs, or of all without globs.
 std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::string_view> kinds,
                                        const std::vector<std::string>& globs);
 
 /// True if an id matches one of the globs (* ? [a-z]), or there are none.
 bool isSelected(const std::string& id, const std::vector<std::string>& globs);
 
-/// A time in seconds as the nearest whole nanosecond, which prints as short as it should.
+/// Rounds seconds to whole nanoseconds, which print short.
 double wholeNanoseconds(double seconds);
 
-/// The robots and people of a scene where they start; those of a robot are owned by its index in
+/// The robots and people of a scene where they start. The owner of a robot's body is its index in
 /// Scene::robots.
 std::vector<MovingBody> bodiesOf(const Scene& scene);
+
+/// Owner of the bodies that do not hide anything from a sensor: the robot that carries it, or
+/// MovingBodies::kNobody.
+std::uint32_t carrierOf(const Sensor& sensor);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
 /// A person's legs, trunk, arms and head.

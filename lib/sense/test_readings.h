@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For the tests of this folder: what placed sensors read.
-// For tests of formats: sensors and readings of them, made up.
+// For tests of this folder: readings of placed sensors, and made-up ones for the formats.
 #pragma once
 
 #include <limits>
@@ -14,8 +13,6 @@
 #include "sense/reading.h"
 #include "sense/scan.h"
 #include "sense/sensors.h"
-
-namespace ispace {}  // namespace ispace
 
 namespace ispace::testing {
 

@@ -16,18 +16,17 @@ struct TimedPose {
     Pose3 pose;
 };
 
-/// One line of a TUM trajectory: `t x y z qx qy qz qw`, metres and seconds; the quaternion turns
-/// the sensor's frame (x forward, z up) into the world's and need not be quite normal. One without
-/// x and y parts is exactly level. Nothing for blank lines and comments. \throws FormatError
-/// without place: wrong number of columns, no numbers, NaN, a null quaternion
+/// One line of a TUM trajectory: `t x y z qx qy qz qw`, metres and seconds; the quaternion rotates
+/// the sensor's frame (x forward, z up) into the world's and is normalised. One without x and y
+/// parts is exactly level. Nothing for blank lines and comments. \throws FormatError without a line
+/// number: wrong number of columns, no numbers, NaN, a null quaternion
 std::optional<TimedPose> parseTumLine(std::string_view line);
 
-/// The pose between two at a share of the way, 0..1: places on the straight line, turned by the
+/// Interpolates between two poses, at a fraction of the way: places linearly, rotations by the
 /// shortest way at an even speed (slerp).
 Pose3 between(const Pose3& a, const Pose3& b, double share);
 
-/// Where something is at a time; before and after its way at the ends of that. \pre not empty,
-/// times grow
+/// The pose at a time, clamped to the ends of the path. \pre not empty, times grow
 Pose3 poseAlong(std::span<const TimedPose> way, double time);
 
 }  // namespace ispace

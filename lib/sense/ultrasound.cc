@@ -9,14 +9,11 @@
 
 #include "base/random.h"
 #include "sense/noise.h"
+#include "sense/sensors.h"
 
 namespace ispace {
 
 namespace {
-
-std::uint32_t carrierOf(const std::optional<Mount>& mount) {
-    return mount ? static_cast<std::uint32_t>(mount->robot) : MovingBodies::kNobody;
-}
 
 /// Cosine of the angle between a sensor's axis and the direction to a place; 1 at its own place.
 double axisCosine(const Pose3& pose, Point3 place) {
@@ -53,8 +50,7 @@ bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const Se
     if (from == to) return true;
     std::uint8_t seen = 0;
     environment.look(from, std::span(&to, 1), std::span(&seen, 1));
-    return seen != 0 &&
-           !isBodyBetween(bodies, from, to, carrierOf(receiver.mount), carrierOf(tag.mount));
+    return seen != 0 && !isBodyBetween(bodies, from, to, carrierOf(receiver), carrierOf(tag));
 }
 
 /// Of the pair, in this order.

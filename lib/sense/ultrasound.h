@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Metres a second in dry air: 331.3 + 0.606 T for T degrees Celsius.
+/// Speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius.
 double speedOfSound(double celsius);
 
 /// One receiver's measurement of one burst.
@@ -23,18 +23,18 @@ struct TimeOfFlight {
     double distance = 0;       ///< metres: time times the speed of sound
 };
 
-/// A place from distances, by least squares.
+/// A position computed from distances by least squares.
 struct Fix {
     Point3 position;
     double residual = 0;  ///< root mean square of measured less computed distances, metres
-    /// Dilution of precision: how many times the error of a distance becomes that of the place, in
-    /// space, across the floor and upright; sqrt of the trace of (J^T J)^-1 and of its parts. Where
-    /// the distances leave two places (mirror images), with the way to the other one over what
-    /// distances to the two differ by, squared and added: +infinity where they do not differ.
+    /// Dilution of precision: the factor from the error of a distance to that of the position, in
+    /// space, horizontally and vertically; sqrt of the trace of (J^T J)^-1 and of its parts. If the
+    /// distances leave two positions (mirror images), the square of the distance between the two
+    /// over the difference of their distances is added: +infinity if those do not differ.
     double pdop = 0, hdop = 0, vdop = 0;
 };
 
-/// What a receiver knows that heard a burst.
+/// What is known from one receiver that heard a burst.
 struct Hearing {
     Point3 place;         ///< of the receiver
     Vec3 axis;            ///< of the cone in which it hears, of unit length
@@ -52,10 +52,10 @@ struct Hearing {
 /// - and if both are, that on the side to which the axes of the receivers point on average is
 ///   taken, and the dilution of precision tells that there is another.
 ///
-/// Nothing with fewer than kMinReceivers, where they do not fix a place (in one line), where no
-/// place is left, or where two are and the axes point along the plane. A place in the plane of the
-/// receivers has a dilution of precision beyond all bounds across that plane, which may be
-/// +infinity. \pre distances are finite
+/// Nothing with fewer than kMinReceivers, if they do not determine a place (all in one line), if no
+/// place is left, or if two are and the axes point along the plane. Across the plane of the
+/// receivers the dilution of precision of a place in it is unbounded and may be +infinity. \pre
+/// distances are finite
 std::optional<Fix> locate(std::span<const Hearing> heard);
 
 /// One burst of a tag.
@@ -63,7 +63,7 @@ struct Burst {
     double time = 0;  ///< seconds
     int frame = 0;
     Pose3 pose;                       ///< the tag's true one
-    std::vector<TimeOfFlight> heard;  ///< in the order of receivers; whatever locates the tag
+    std::vector<TimeOfFlight> heard;  ///< in the order of receivers
     std::optional<Fix> fix;           ///< of a tag located by times of flight
     std::optional<Point2> simple;     ///< of one located by the simple model
 };
@@ -73,15 +73,13 @@ struct UltrasoundOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
 };
 
-/// What is heard of a tag's burst, and where that puts it. A receiver hears a tag within its range
-/// (ends included, as float32) and its cone and the tag's cone, in sight of it: neither the mesh
-/// nor a moving body is between them but those of the robots that carry the two. `environment` is
-/// that of the mesh.
+/// Simulates a burst of a tag and locates the tag from it. A receiver hears a tag within its range
+/// (ends included, as float32), its cone and the tag's cone if neither the mesh nor a moving body
+/// is in between; robots that carry the two do not count. \pre `environment` is a mesh, not a slice
 ///
-/// Noise changes nothing about who hears, but for drop-outs: what is measured beyond the range is
-/// given as its limit. Noise of a distance depends on seed, tag, receiver and frame alone, not on
-/// what else hears; the angle that incidence is about is that between the sound and the receiver's
-/// axis.
+/// Noise does not change who hears, except for drop-outs: a distance measured beyond the range
+/// becomes its limit. It depends on seed, tag, receiver and frame alone, not on other receivers.
+/// Its angle of incidence is that between the sound and the receiver's axis.
 Burst castBurst(const RayWorld& environment, const MovingBodies& bodies, const Sensor& tag,
                 std::span<const Sensor> receivers, int frame, double time,
                 const UltrasoundOptions& options);

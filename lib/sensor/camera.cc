@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sensor/camera.h"
-
 #include "sensor/drawing.h"
 #include "sensor/keys.h"
 #include "sensor/kind.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "sensor/camera.h"
 #include "sensor/keys.h"
 
 namespace ispace {

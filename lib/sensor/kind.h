@@ -62,6 +62,9 @@ struct SensorKind {
     std::size_t together = 1;
 };
 
+/// Cameras are read and drawn, but not simulated yet.
+extern const SensorKind kCameraKind;
+
 /// All kinds, in the order in which reports list them.
 std::span<const SensorKind* const> sensorKinds();
 /// The kind with this keyword, or null.
