@@ -7,7 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
-#include "sense/depth.h"
+#include "sense/point_cloud.h"
 
 namespace ispace {
 
