@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "base/number.h"
-#include "draw/axis.h"
-#include "draw/palette.h"
+#include "draw/color.h"
 #include "draw/picture.h"
 #include "sense/float_text.h"
 

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "draw/axis.h"
-#include "draw/image.h"
+#include "draw/picture.h"
 #include "sense/test_readings.h"
 
 namespace ispace {
