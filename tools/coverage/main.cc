@@ -18,6 +18,7 @@
 #include "coverage/options.h"
 #include "layout/scene.h"
 #include "sense/ultrasound.h"
+#include "sense/warnings.h"
 
 namespace {
 
