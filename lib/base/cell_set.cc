@@ -70,4 +70,12 @@ CellParts partOf(const CellSet& cells) {
     return parts;
 }
 
+CellSet cellsOf(const CellParts& parts, std::size_t part, std::size_t cells) {
+    CellSet set(cells);
+    for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i)
+        for (std::uint32_t cell = parts.runs[i].first; cell < parts.runs[i].end; ++cell)
+            set.set(cell);
+    return set;
+}
+
 }  // namespace ispace

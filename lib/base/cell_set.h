@@ -63,5 +63,7 @@ struct CellParts {
 
 /// The set as one part. O(cells / 64 + runs)
 CellParts partOf(const CellSet& cells);
+/// The cells of one part, of a grid of so many.
+CellSet cellsOf(const CellParts& parts, std::size_t part, std::size_t cells);
 
 }  // namespace ispace

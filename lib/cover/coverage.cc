@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/metrics.h"
-#include "cover/sensor_views.h"
 #include "geom/boolean.h"
 #include "sense/scan.h"
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "cover/metrics.h"
-#include "cover/sensor_views.h"
 #include "geom/boolean.h"
 #include "raster/morphology.h"
 #include "sense/ultrasound.h"

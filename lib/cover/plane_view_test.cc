@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/plane_view.h"
+#include "cover/sight.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "cover/plane_sweep.h"
+#include "cover/scan_plane.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
 
@@ -16,9 +16,14 @@ namespace {
 
 struct Room {
     explicit Room(const std::string& lines, int columns = 60, int rows = 40)
-        : scene(sceneOf(lines)),
-          grid{scene.environment.limits(), columns, rows},
-          mesh(RayWorld::ofEnvironment(scene.environment)) {}
+        : scene(sceneOf(lines)), grid{scene.environment.limits(), columns, rows} {}
+
+    [[nodiscard]] CellSet seen(const Sensor& sensor, double plane) const {
+        Worlds worlds(scene.environment);
+        const Sight sight(scene.environment, plane, &worlds);
+        sight.prepare(sensor);
+        return sight.cellsOf(grid, sensor);
+    }
 
     /// True if just those cells are seen whose centres are inside: `inside(centre)` gives how far
     /// (below 0: outside); places nearer to the edge than 0.1 mm are left out. False if none is
@@ -41,7 +46,6 @@ struct Room {
 
     Scene scene;
     Grid grid;
-    RayWorld mesh;
 };
 
 TEST(PlaneCells, RangerLookingDownSeesARectangle) {
@@ -52,7 +56,7 @@ TEST(PlaneCells, RangerLookingDownSeesARectangle) {
         const Sensor sensor = rangerAt(poseAt(place, 0, plane < 3 ? -90 : 90), 70, 40, 20);
         const double w = std::fabs(plane - 3) * tanOf(35), d = std::fabs(plane - 3) * tanOf(20);
         const Room fine("ispace size=12,8,4", 1200, 400);
-        EXPECT_TRUE(fine.agrees(cellsSeen(fine.grid, fine.mesh, sensor, plane), [&](Point2 p) {
+        EXPECT_TRUE(fine.agrees(fine.seen(sensor, plane), [&](Point2 p) {
             return std::min(w - std::fabs(p.y - place.y), d - std::fabs(p.x - place.x));
         }));
     }
@@ -61,7 +65,7 @@ TEST(PlaneCells, RangerLookingDownSeesARectangle) {
 TEST(PlaneCells, RollTurnsThePicture) {
     const Room room("ispace size=12,8,4", 120, 80);
     const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -90, 90), 70, 40, 20);
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+    EXPECT_TRUE(room.agrees(room.seen(sensor, 0), [&](Point2 p) {
         return std::min(3 * tanOf(35) - std::fabs(p.x), 3 * tanOf(20) - std::fabs(p.y));
     }));
 }
@@ -70,12 +74,12 @@ TEST(PlaneCells, RangeIsADistanceOrADepth) {
     const Room room("ispace size=12,8,4", 120, 80);
     Sensor sensor = rangerAt(poseAt({0, 0, 1}, 0, 0), 90, 100, 4);
     const auto wedge = [](Point2 p) { return std::min(p.x - std::fabs(p.y), p.x - 1 / tanOf(50)); };
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+    EXPECT_TRUE(room.agrees(room.seen(sensor, 0), [&](Point2 p) {
         return std::min(wedge(p), 4 - std::hypot(p.x, p.y, 1));
     }));
     sensor.as<Ranger>().measures_depth = true;
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
-                            [&](Point2 p) { return std::min(wedge(p), 4 - p.x); }));
+    EXPECT_TRUE(
+        room.agrees(room.seen(sensor, 0), [&](Point2 p) { return std::min(wedge(p), 4 - p.x); }));
 }
 
 TEST(PlaneCells, HeadSeesBearingsAndElevations) {
@@ -83,7 +87,7 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
     for (const double span : {30.0, 180.0, 300.0, 360.0}) {
         Sensor sensor = rangerAt(poseAt({0.05, 0, 2}, 20, 0), span, 100, 4);
         sensor.as<Ranger>().projection = Projection::Spherical;
-        EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [&](Point2 p) {
+        EXPECT_TRUE(room.agrees(room.seen(sensor, 0), [&](Point2 p) {
             const Vec2 way = p - Point2{0.05, 0};
             const Angle off = wrapped(directionOf(way.x, way.y) - Angle::degrees(20));
             const double side = span == 360 ? 1 : span / 2 - std::fabs(off.degrees());
@@ -98,7 +102,7 @@ TEST(PlaneCells, ReceiverHearsACone) {
     for (const double fov : {60.0, 120.0, 180.0, 240.0, 360.0}) {
         const Pose3 pose = poseAt({0.3, 0.1, 2}, 30, -50, 77);
         const Sensor sensor = receiverAt(pose, fov, 5);
-        EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0.5), [&](Point2 p) {
+        EXPECT_TRUE(room.agrees(room.seen(sensor, 0.5), [&](Point2 p) {
             const Vec3 way = Point3{p.x, p.y, 0.5} - pose.position;
             const double cosine = dot(way, pose.beam({})) / length(way);
             const double off = std::acos(std::min(1.0, cosine)) * (180 / std::numbers::pi);
@@ -110,8 +114,8 @@ TEST(PlaneCells, ReceiverHearsACone) {
 TEST(PlaneCells, ThingsAreInTheWayOnlyFromAbove) {
     const Room room("ispace size=12,8,4\ncube at=2,0 size=1,1,1\n", 61, 41);
     const Sensor sensor = receiverAt(poseAt({0, 0, 2}, 0, -90), 360, 30);
-    const CellSet floor = cellsSeen(room.grid, room.mesh, sensor, 0);
-    const CellSet top = cellsSeen(room.grid, room.mesh, sensor, 1);
+    const CellSet floor = room.seen(sensor, 0);
+    const CellSet top = room.seen(sensor, 1);
     for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
         const Point2 p = room.grid.center(cell);
         const bool hidden = p.x > 1.5 && p.x < 5 && std::fabs(p.y) < std::min(1.0, p.x / 3);
@@ -123,23 +127,21 @@ TEST(PlaneCells, ThingsAreInTheWayOnlyFromAbove) {
 TEST(PlaneCells, PlaneOutOfRangeIsNotSeen) {
     const Room room("ispace size=12,8,4");
     const Sensor sensor = receiverAt(poseAt({0, 0, 3}, 0, -90), 360, 2);
-    EXPECT_EQ(cellsSeen(room.grid, room.mesh, sensor, 0).count(), 0U);
-    EXPECT_GT(cellsSeen(room.grid, room.mesh, sensor, 1.1).count(), 0U);
-    EXPECT_EQ(cellsSeen(room.grid, room.mesh, receiverAt(sensor.pose, 360, 0), 0).count(), 0U);
+    EXPECT_EQ(room.seen(sensor, 0).count(), 0U);
+    EXPECT_GT(room.seen(sensor, 1.1).count(), 0U);
+    EXPECT_EQ(room.seen(receiverAt(sensor.pose, 360, 0), 0).count(), 0U);
 }
 
 TEST(PlaneCells, TiltedLaserCoversTheFloorUnderItsPlane) {
     const Room room("ispace size=12,8,20", 120, 80);
     const Laser wide = laserWith(30, -90, 180);
-    EXPECT_TRUE(
-        room.agrees(cellsSeen(room.grid, room.mesh, {"l", wide, poseAt({0, 0, 1}, 0, -45)}, 0),
-                    [](Point2 p) { return std::min(p.x, 1 - p.x); }));
+    EXPECT_TRUE(room.agrees(room.seen({"l", wide, poseAt({0, 0, 1}, 0, -45)}, 0),
+                            [](Point2 p) { return std::min(p.x, 1 - p.x); }));
     const Laser near = laserWith(2, -90, 180);
-    EXPECT_TRUE(
-        room.agrees(cellsSeen(room.grid, room.mesh, {"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
-                    [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); }));
+    EXPECT_TRUE(room.agrees(room.seen({"l", near, poseAt({0, 0, 0.1}, 0, 60)}, 0),
+                            [](Point2 p) { return std::min(p.x, 2 - std::hypot(2 * p.x, p.y)); }));
     const Sensor upright{"l", wide, poseAt({0, 0, 1}, 0, -90)};
-    EXPECT_EQ(cellsSeen(room.grid, room.mesh, upright, 0).count(), 0U);
+    EXPECT_EQ(room.seen(upright, 0).count(), 0U);
 }
 
 TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
@@ -147,13 +149,13 @@ TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
     const Room room("ispace size=9,9,4.5", 90, 90);
     Sensor sensor{"l", laserWith(7, -90, 180), poseAt({0, 0, 4}, 0, -90)};
     sensor.as<Laser>().sweep = SweepAxis::Heading;
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0),
-                            [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); }));
+    EXPECT_TRUE(
+        room.agrees(room.seen(sensor, 0), [](Point2 p) { return 7 - std::hypot(p.x, p.y, 4); }));
     // Four scans, and all between the last and the first.
     sensor.as<Laser>().sweep_step = Angle::degrees(90);
     sensor.as<Laser>().first = Angle::degrees(10);
     sensor.as<Laser>().beams = 61;
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
+    EXPECT_TRUE(room.agrees(room.seen(sensor, 0), [](Point2 p) {
         const double off = std::hypot(p.x, p.y) / 4;  // tangent, from straight down
         return std::min({off - tanOf(10), tanOf(60) - off, 7 - std::hypot(p.x, p.y, 4)});
     }));
@@ -161,7 +163,7 @@ TEST(PlaneCells, HallLaserThatTurnsSeesTheWholeFloor) {
     sensor.as<Laser>().sweep = SweepAxis::Heading;
     // A quarter of the headings, of both halves of the scan.
     sensor.as<Laser>().sweep_span = Angle::degrees(90);
-    EXPECT_TRUE(room.agrees(cellsSeen(room.grid, room.mesh, sensor, 0), [](Point2 p) {
+    EXPECT_TRUE(room.agrees(room.seen(sensor, 0), [](Point2 p) {
         return std::min(7 - std::hypot(p.x, p.y, 4), -p.x * p.y);
     }));
 }
@@ -258,7 +260,7 @@ TEST(PlaneCells, SweptLaserSeesWhatNothingHides) {
     Sensor sensor{"l", laserWith(30, -90, 180), poseAt({0, 0, 2}, 0, -90)};
     sensor.as<Laser>().sweep = SweepAxis::Tilt;
     sensor.as<Laser>().sweep_span = Angle::degrees(90);
-    const CellSet floor = cellsSeen(room.grid, room.mesh, sensor, 0);
+    const CellSet floor = room.seen(sensor, 0);
     for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
         const Point2 p = room.grid.center(cell);
         const bool hidden = p.x > 1.5 && p.x < 5 && std::fabs(p.y) < std::min(1.0, p.x / 3);

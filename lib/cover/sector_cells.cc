@@ -3,47 +3,68 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
-#include "cover/sector_limits.h"
-#include "cover/sight_outline.h"
-#include "raster/grid.h"
 #include "sensor/field_of_view.h"
 
 namespace ispace {
 
 namespace {
 
-/// Where the zone near to a group of limits begins and ends in a row.
-struct Cut {
-    int begin = 0, end = 0;
+/// How much farther than its range a place looks for the sake of cells: those at the greatest range
+/// are then not on the outline of what is seen.
+constexpr double kBeyondRange = 1 + 1e-6;
+
+/// Calls visit(Point2) for the corners of a polygon that holds what is seen and, beyond the
+/// greatest range, nothing that is nearer: arcs become the tangents at their ends. Neighbours may
+/// be the same.
+template <typename Visit>
+void forEachCorner(const VisibleRegion& region, Visit visit) {
+    for (const SightEdge& edge : region.edges) {
+        visit(edge.from);
+        if (edge.line == SightEdge::kArc) {
+            const Vec2 a = edge.from - region.viewpoint, b = edge.to - region.viewpoint;
+            const double r2 = region.max_range * region.max_range;
+            // Where the tangents meet: on a + b, at t with t (a + b) a = r2.
+            visit(region.viewpoint + (r2 / (r2 + dot(a, b))) * (a + b));
+        }
+        visit(edge.to);
+    }
+}
+
+/// A direction at which one part ends and the next begins, and the line that it makes: a cell's
+/// centre is at or beyond it if cross(unit, offset) >= 0, in the half (above, below) in which the
+/// limit is.
+struct Limit {
+    Angle angle;
+    Vec2 unit;
+    double cotangent = 0;
+
+    explicit Limit(Angle of) : angle(of), unit(unitVector(of)), cotangent(unit.x / unit.y) {}
+    [[nodiscard]] bool isPassed(Vec2 offset) const { return cross(unit, offset) >= 0; }
+};
+
+/// Limits first, first + 1, ..., end - 1, counter-clockwise.
+struct LimitRange {
+    std::size_t first = 0, end = 0;
 };
 
 /// Rasterises what places see, one after another, in the same memory.
 class SectorRaster {
   public:
-    void run(const Grid& grid, const SliceSight& sight, Point2 place, double max_range,
+    void run(const Grid& grid, const Level& level, Point2 place, double max_range,
              std::span<const Angle> limits, CellParts& parts);
 
   private:
-    struct Piece {
-        std::size_t part;
-        CellRun run;
-    };
-
-    void rasterise(const SliceSight& sight);
+    void setLimits(std::span<const Angle> limits);
+    void rasterise(const Level& level);
     void cutAtRange();
-    void findLevelRows();
     void takeCentre();
-    void cutAtGroup(std::size_t group, int begin, int end);
-    void settleNear(std::size_t group, int row);
-    void settleLevelRow(int row);
-    void addParts();
-    void addLower(std::size_t group, std::size_t part);
-    void addUpper(std::size_t group, std::size_t part);
-    void addPieces(std::size_t part, std::size_t& next);
+    void cutAt(std::size_t limit, int begin, int end);
+    void addPart(std::size_t part);
+    void addLevelRow(std::size_t part, int row);
     void addRow(int row, int begin, int end);
-    void addRun(CellRun run);
 
     [[nodiscard]] std::uint64_t* wordsOf(int row) {
         return words_.data() + static_cast<std::size_t>(row) * scan_.wordsPerRow();
@@ -65,14 +86,13 @@ class SectorRaster {
     [[nodiscard]] int firstBeyond(double position) const {
         return static_cast<int>(std::max(-1.0, std::min(position, scan_.columns() - 1.0)) + 1);
     }
-    [[nodiscard]] const Cut& cutOf(std::size_t group, int row) const {
-        return cuts_[group * dy_.size() + static_cast<std::size_t>(row)];
+    /// Below the place the first column that has passed a limit, above it the first that has not.
+    [[nodiscard]] int cutOf(std::size_t limit, int row) const {
+        return cuts_[limit * dy_.size() + static_cast<std::size_t>(row)];
     }
     /// Calls visit(column) for the cells of a row in columns [begin, end); it may clear them.
     template <typename Visit>
     void forEachCell(int row, int begin, int end, Visit visit);
-    template <typename Visit>
-    void forEachRunOf(int row, int begin, int end, Visit visit);
     void clear(int row, int column) {
         wordsOf(row)[column / 64] &= ~(std::uint64_t{1} << (static_cast<unsigned>(column) % 64));
     }
@@ -84,15 +104,16 @@ class SectorRaster {
     CellParts* parts_ = nullptr;
     std::size_t part_begin_ = 0;  // its first run
 
-    SectorLimits limits_;
+    std::vector<Limit> limits_;
+    LimitRange below_, above_;  // those of directions below 0, and between 0 and 180 degrees
     VisibleRegion region_;
     Scanline scan_;
-    std::vector<std::uint64_t> words_;     // what is seen, and not yet in a piece
+    std::vector<std::uint64_t> words_;     // what is seen
     std::vector<double> dy_;               // of the rows' middles from the place
-    int level_begin_ = 0, level_end_ = 0;  // rows as good as level with the place
-    std::vector<Cut> cuts_;                // by group, by row
-    std::vector<Piece> pieces_;            // cells that were settled one by one
-    std::vector<CellRun> centre_;
+    int level_begin_ = 0, level_end_ = 0;  // rows level with the place: one or none
+    std::vector<int> cuts_;                // by limit, by row
+    std::vector<char> is_empty_;           // parts between limits that cut all rows alike
+    std::optional<std::uint32_t> centre_;
 };
 
 /// The bits of a row's word i that stand for columns [begin, end).
@@ -110,59 +131,54 @@ void SectorRaster::forEachCell(int row, int begin, int end, Visit visit) {
             visit(64 * i + std::countr_zero(bits));
 }
 
-/// The same for runs of cells, visit(CellRun); what goes on in the next word is two runs.
-template <typename Visit>
-void SectorRaster::forEachRunOf(int row, int begin, int end, Visit visit) {
-    if (begin >= end) return;
-    const std::uint64_t* words = wordsOf(row);
-    for (int i = begin / 64; 64 * i < end; ++i) {
-        std::uint64_t bits = words[i] & bitsOf(i, begin, end);
-        while (bits != 0) {
-            const int first = std::countr_zero(bits);
-            const int count = std::countr_one(bits >> first);
-            const std::uint32_t cell = cellAt(row, 64 * i + first);
-            visit(CellRun{cell, cell + static_cast<std::uint32_t>(count)});
-            bits = first + count == 64 ? 0 : bits & (~std::uint64_t{0} << (first + count));
-        }
-    }
-}
-
-void SectorRaster::run(const Grid& grid, const SliceSight& sight, Point2 place, double max_range,
+void SectorRaster::run(const Grid& grid, const Level& level, Point2 place, double max_range,
                        std::span<const Angle> limits, CellParts& parts) {
     grid_ = grid;
     x_axis_ = GridAxis::columnsOf(grid);
     place_ = place;
     max_range_ = max_range;
     parts_ = &parts;
-    limits_.set(limits);
-    pieces_.clear();
-    centre_.clear();
     parts.runs.clear();
     parts.first.assign(1, 0);
-    rasterise(sight);
+    setLimits(limits);
+    rasterise(level);
     cutAtRange();
-    findLevelRows();
-    if (limits_.parts() == 0) {
-        part_begin_ = 0;
-        for (int row = 0; row < scan_.rows(); ++row) addRow(row, 0, scan_.columns());
-        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
-        return;
-    }
     takeCentre();
-    cuts_.resize(limits_.groups().size() * dy_.size());
-    const auto cut = [&](const LimitsOfHalf& half, int begin, int end) {
-        for (std::size_t i = half.first; i < half.first + half.count; ++i)
-            cutAtGroup(i, begin, end);
+    cuts_.resize(limits_.size() * dy_.size());
+    is_empty_.assign(limits_.size(), 0);
+    for (std::size_t i = below_.first; i < below_.end; ++i) cutAt(i, 0, level_begin_);
+    for (std::size_t i = above_.first; i < above_.end; ++i) cutAt(i, level_end_, scan_.rows());
+    for (std::size_t part = 0; part < limits_.size(); ++part) {
+        if (is_empty_[part] == 0) addPart(part);
+        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+    }
+    part_begin_ = parts.runs.size();
+    if (limits_.empty())
+        for (int row = 0; row < scan_.rows(); ++row) addRow(row, 0, scan_.columns());
+    else if (centre_)
+        parts.runs.push_back({*centre_, *centre_ + 1});
+    parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+}
+
+void SectorRaster::setLimits(std::span<const Angle> limits) {
+    const auto is_same = [](Angle angle, const Limit& limit) { return angle == limit.angle; };
+    if (std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(), is_same)) return;
+    assert(std::is_sorted(limits.begin(), limits.end()));
+    limits_.clear();
+    for (const Angle limit : limits) limits_.emplace_back(limit);
+    const auto first_from = [&](Angle angle) {
+        return static_cast<std::size_t>(std::lower_bound(limits.begin(), limits.end(), angle) -
+                                        limits.begin());
     };
-    cut(limits_.lower(), 0, level_begin_);
-    cut(limits_.upper(), level_end_, scan_.rows());
-    for (int row = level_begin_; row < level_end_; ++row) settleLevelRow(row);
-    addParts();
+    const std::size_t zero = first_from(Angle());
+    below_ = {0, zero};
+    above_ = {zero + (zero < limits.size() && limits[zero] == Angle() ? 1 : 0),
+              first_from(Angle::degrees(180))};
 }
 
 /// Cells strictly inside the outline of what is seen, within a box about the range.
-void SectorRaster::rasterise(const SliceSight& sight) {
-    sight.query(place_, kBeyondRange * max_range_, region_);
+void SectorRaster::rasterise(const Level& level) {
+    level.query(place_, kBeyondRange * max_range_, region_);
     Box2 box;
     forEachCorner(region_, [&box](Point2 corner) { box.add(corner); });
     const double reach = kBeyondRange * max_range_;
@@ -180,7 +196,7 @@ void SectorRaster::rasterise(const SliceSight& sight) {
     forEachCorner(region_, go_to);
     if (!region_.edges.empty()) go_to(region_.edges.front().from);
     scan_.takeInside(words_);
-    for (const Polygon& solid : sight.solidsTouching(place_)) {
+    for (const Polygon& solid : level.solidsTouching(place_)) {
         Scanline closed(grid_, box);
         forEachEdge(solid, [&closed](const Segment2& edge) { closed.add(edge); });
         closed.removeClosed(words_);
@@ -219,169 +235,131 @@ void SectorRaster::cutAtRange() {
     }
 }
 
-/// Those in which directions come so near to 0 or 180 degrees that limits there matter.
-void SectorRaster::findLevelRows() {
-    double reach = 0;
-    if (!dy_.empty() && scan_.columns() > 0)
-        reach = std::max(std::abs(offsetOf(0, 0).x), std::abs(offsetOf(0, scan_.columns() - 1).x));
-    const double most = 8 * kNearLimit * reach;
-    const auto begin = std::lower_bound(dy_.begin(), dy_.end(), -most);
-    const auto end = std::upper_bound(begin, dy_.end(), most);
+/// Finds the row level with the place, and the cell whose centre is the place.
+void SectorRaster::takeCentre() {
+    const auto [begin, end] = std::equal_range(dy_.begin(), dy_.end(), 0.0);
     level_begin_ = static_cast<int>(begin - dy_.begin());
     level_end_ = static_cast<int>(end - dy_.begin());
-}
-
-void SectorRaster::takeCentre() {
-    for (int row = level_begin_; row < level_end_; ++row) {
-        if (dy_[static_cast<std::size_t>(row)] != 0) continue;
-        const double at = columnAt(place_.x);
+    centre_.reset();
+    const double at = columnAt(place_.x);
+    for (int row = level_begin_; row < level_end_ && !limits_.empty(); ++row)
         forEachCell(row, firstBeyond(at - slack_ - 1), firstBeyond(at + slack_ + 1),
                     [&](int column) {
                         if (offsetOf(row, column).x != 0) return;
                         clear(row, column);
-                        centre_.push_back({cellAt(row, column), cellAt(row, column) + 1});
+                        centre_ = cellAt(row, column);
                     });
-    }
 }
 
-/// Finds where a group of limits crosses rows [begin, end), and settles the cells near to it.
-void SectorRaster::cutAtGroup(std::size_t group, int begin, int end) {
-    const double per_metre = x_axis_.perMetre(), middle = columnAt(place_.x);
-    const LimitGroup& at = limits_.groups()[group];
-    // Columns rise counter-clockwise below the place, and clockwise above it.
-    const bool is_upper = at.unit.y > 0;
-    const double left = per_metre * (is_upper ? at.beyond : at.before);
-    const double right = per_metre * (is_upper ? at.before : at.beyond);
-    Cut* cuts = cuts_.data() + group * dy_.size();
+/// Finds where a limit crosses rows [begin, end), none of them level with the place: by its
+/// cotangent, and by the limit's own rule where that is too near to a centre to be sure.
+void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
+    constexpr double kUnsure = 1e-6;  // columns: far more than what rounds
+    const Limit& at = limits_[limit];
+    const bool is_below = at.unit.y < 0;
+    const double slope = x_axis_.perMetre() * at.cotangent, middle = columnAt(place_.x);
+    const double slack = slack_ + kUnsure, most = scan_.columns() - 0.5;
+    int* cuts = cuts_.data() + limit * dy_.size();
     const double* dy = dy_.data();
-    int widest = 0;
+    bool is_unsure = false;
     for (int row = begin; row < end; ++row) {
-        cuts[row] = {firstBeyond(middle - slack_ + dy[row] * left),
-                     firstBeyond(middle + slack_ + dy[row] * right)};
-        widest = std::max(widest, cuts[row].end - cuts[row].begin);
+        const double next = std::max(-0.5, std::min(middle + dy[row] * slope, most)) + 1;
+        cuts[row] = static_cast<int>(next);
+        const double rest = next - cuts[row];
+        is_unsure |= !(rest > slack && rest < 1 - slack);
     }
-    if (widest == 0) return;
-    for (int row = begin; row < end; ++row) settleNear(group, row);
+    for (int row = begin; is_unsure && row < end; ++row) {
+        const double position = middle + dy[row] * slope;
+        const int last = firstBeyond(position + slack);
+        cuts[row] = firstBeyond(position - slack);
+        while (cuts[row] < last && at.isPassed(offsetOf(row, cuts[row])) != is_below) ++cuts[row];
+    }
+    // Limits that rounding makes one line stay in order.
+    if (limit == (is_below ? below_ : above_).first) return;
+    const int* before = cuts - dy_.size();
+    int different = 0;
+    for (int row = begin; row < end; ++row) {
+        cuts[row] = is_below ? std::max(cuts[row], before[row]) : std::min(cuts[row], before[row]);
+        different |= cuts[row] ^ before[row];
+    }
+    if (different == 0) is_empty_[limit - 1] = 1;
 }
 
-void SectorRaster::settleNear(std::size_t group, int row) {
-    const Cut cut = cutOf(group, row);
-    if (cut.begin >= cut.end) return;
-    forEachCell(row, cut.begin, cut.end, [&](int column) {
-        const std::uint32_t cell = cellAt(row, column);
-        pieces_.push_back({limits_.partNear(group, offsetOf(row, column)), {cell, cell + 1}});
-        clear(row, column);
-    });
-}
-
-void SectorRaster::settleLevelRow(int row) {
-    const int columns = scan_.columns();
-    if (dy_[static_cast<std::size_t>(row)] != 0) {
-        forEachCell(row, 0, columns, [&](int column) {
-            const std::uint32_t cell = cellAt(row, column);
-            pieces_.push_back({limits_.partOf(offsetOf(row, column)), {cell, cell + 1}});
-        });
-        return;
-    }
-    // All cells of a side lie in the very same direction.
-    const std::size_t left = limits_.partOf({-1, 0}), right = limits_.partOf({1, 0});
-    const int middle =
-        std::clamp(x_axis_.firstNotBelow(place_.x) - scan_.firstColumn(), 0, columns);
-    forEachRunOf(row, 0, middle, [&](CellRun run) { pieces_.push_back({left, run}); });
-    forEachRunOf(row, middle, columns, [&](CellRun run) { pieces_.push_back({right, run}); });
-}
-
-void SectorRaster::addParts() {
-    const auto before = [](const Piece& a, const Piece& b) {
-        return a.part < b.part || (a.part == b.part && a.run.first < b.run.first);
-    };
-    if (!std::is_sorted(pieces_.begin(), pieces_.end(), before))
-        std::sort(pieces_.begin(), pieces_.end(), before);
-    std::size_t next = 0, group = 0;
-    for (std::size_t part = 0; part < limits_.parts(); ++part) {
-        part_begin_ = parts_->runs.size();
-        if (part + 1 == limits_.groups()[group].end) {  // it goes on to the next group
-            addLower(group, part);
-            addUpper(group++, part);
-        }
-        addPieces(part, next);
-        parts_->first.push_back(static_cast<std::uint32_t>(parts_->runs.size()));
-    }
+/// Below the place columns rise counter-clockwise, above it they fall.
+void SectorRaster::addPart(std::size_t part) {
     part_begin_ = parts_->runs.size();
-    for (const CellRun run : centre_) addRun(run);
-    parts_->first.push_back(static_cast<std::uint32_t>(parts_->runs.size()));
-}
-
-/// The cells of the part after a group of limits in the rows below the place.
-void SectorRaster::addLower(std::size_t group, std::size_t part) {
-    const LimitsOfHalf& half = limits_.lower();
-    const std::size_t end = half.first + half.count;
-    const bool is_first = part == half.first_part;
-    const bool is_after = half.first <= group && group < end;
-    if (!is_first && !is_after) return;
-    for (int row = 0; row < level_begin_; ++row) {
-        if (is_first)
-            addRow(row, 0, half.count > 0 ? cutOf(half.first, row).begin : scan_.columns());
-        if (is_after)
-            addRow(row, cutOf(group, row).end,
-                   group + 1 < end ? cutOf(group + 1, row).begin : scan_.columns());
-    }
-}
-
-/// The same above it, where columns fall counter-clockwise.
-void SectorRaster::addUpper(std::size_t group, std::size_t part) {
-    const LimitsOfHalf& half = limits_.upper();
-    const std::size_t end = half.first + half.count;
-    const bool is_first = part == half.first_part;
-    const bool is_after = half.first <= group && group < end;
-    if (!is_first && !is_after) return;
-    for (int row = level_end_; row < scan_.rows(); ++row) {
-        if (is_after)
-            addRow(row, group + 1 < end ? cutOf(group + 1, row).end : 0, cutOf(group, row).begin);
-        if (is_first) addRow(row, half.count > 0 ? cutOf(half.first, row).end : 0, scan_.columns());
-    }
-}
-
-/// Those of a part, which begin with piece `next`, put in their places among its runs.
-void SectorRaster::addPieces(std::size_t part, std::size_t& next) {
-    if (next == pieces_.size() || pieces_[next].part != part) return;
-    std::vector<CellRun>& runs = parts_->runs;
-    const std::size_t middle = runs.size();
-    for (; next < pieces_.size() && pieces_[next].part == part; ++next)
-        runs.push_back(pieces_[next].run);
-    const auto at = [&runs](std::size_t i) {
-        return runs.begin() + static_cast<std::ptrdiff_t>(i);
+    const std::size_t count = limits_.size();
+    // What lies before the first limit of a half belongs to the part of the limit before it.
+    const auto part_before = [count](std::size_t limit) {
+        return (limit == 0 ? count : limit) - 1;
     };
-    std::inplace_merge(at(part_begin_), at(middle), runs.end(),
-                       [](const CellRun& a, const CellRun& b) { return a.first < b.first; });
-    std::size_t count = part_begin_;
-    for (std::size_t i = part_begin_; i < runs.size(); ++i) {
-        if (count > part_begin_ && runs[count - 1].end == runs[i].first)
-            runs[count - 1].end = runs[i].end;
-        else
-            runs[count++] = runs[i];
-    }
-    runs.resize(count);
+    const auto add_half = [&](const LimitRange& half, bool is_below, int row) {
+        const auto cut_of = [&](std::size_t limit, int otherwise) {
+            return limit < half.end ? cutOf(limit, row) : otherwise;
+        };
+        const int all = scan_.columns();
+        const bool is_after = half.first <= part && part < half.end;
+        const bool is_before = part == part_before(half.first);
+        if (is_below) {
+            if (is_before) addRow(row, 0, cut_of(half.first, all));
+            if (is_after) addRow(row, cutOf(part, row), cut_of(part + 1, all));
+        } else {
+            if (is_after) addRow(row, cut_of(part + 1, 0), cutOf(part, row));
+            if (is_before) addRow(row, cut_of(half.first, 0), all);
+        }
+    };
+    const auto concerns = [&](const LimitRange& half) {
+        return (half.first <= part && part < half.end) || part == part_before(half.first);
+    };
+    for (int row = 0; row < level_begin_ && concerns(below_); ++row) add_half(below_, true, row);
+    for (int row = level_begin_; row < level_end_; ++row) addLevelRow(part, row);
+    for (int row = level_end_; row < scan_.rows() && concerns(above_); ++row)
+        add_half(above_, false, row);
+}
+
+/// All cells on a side of the place lie in the very same direction: 180 or 0 degrees.
+void SectorRaster::addLevelRow(std::size_t part, int row) {
+    const int middle =
+        std::clamp(x_axis_.firstNotBelow(place_.x) - scan_.firstColumn(), 0, scan_.columns());
+    const std::size_t count = limits_.size();
+    if (part == count - 1) addRow(row, 0, middle);
+    if (part == (above_.first == 0 ? count : above_.first) - 1)
+        addRow(row, middle, scan_.columns());
 }
 
 void SectorRaster::addRow(int row, int begin, int end) {
-    forEachRunOf(row, begin, end, [this](CellRun run) { addRun(run); });
-}
-
-void SectorRaster::addRun(CellRun run) {
+    if (begin >= end) return;
     std::vector<CellRun>& runs = parts_->runs;
-    if (runs.size() > part_begin_ && runs.back().end == run.first)
-        runs.back().end = run.end;
-    else
-        runs.push_back(run);
+    const std::uint64_t* words = wordsOf(row);
+    for (int i = begin / 64; 64 * i < end; ++i) {
+        std::uint64_t bits = words[i] & bitsOf(i, begin, end);
+        while (bits != 0) {
+            const int first = std::countr_zero(bits);
+            const int count = std::countr_one(bits >> first);
+            const std::uint32_t cell = cellAt(row, 64 * i + first);
+            const std::uint32_t end_cell = cell + static_cast<std::uint32_t>(count);
+            if (runs.size() > part_begin_ && runs.back().end == cell)
+                runs.back().end = end_cell;
+            else
+                runs.push_back({cell, end_cell});
+            bits = first + count == 64 ? 0 : bits & (~std::uint64_t{0} << (first + count));
+        }
+    }
 }
 
 }  // namespace
 
-void cellsBySector(const Grid& grid, const SliceSight& sight, Point2 place, double max_range,
+std::optional<Sector> sectorOf(const Laser& laser, Angle heading) {
+    const Angle slack = Angle::degrees(1e-9), span = laser.sweptSpan() + 2 * slack;
+    if (span >= Angle::degrees(360)) return std::nullopt;
+    const Angle first = heading + laser.first - slack;
+    return Sector{wrapped(first), wrapped(first + span)};
+}
+
+void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts) {
     thread_local SectorRaster raster;  // for its memory
-    raster.run(grid, sight, place, max_range, limits, parts);
+    raster.run(grid, level, place, max_range, limits, parts);
 }
 
 }  // namespace ispace

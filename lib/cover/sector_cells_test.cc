@@ -9,10 +9,9 @@
 #include <random>
 
 #include "base/number.h"
-#include "cover/fan_arc.h"
+#include "cover/sight.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
-#include "cover/visible.h"
 
 namespace ispace {
 namespace {
@@ -32,12 +31,12 @@ CellSet cellsOf(const CellParts& parts, std::size_t begin, std::size_t end, std:
     return set;
 }
 
-/// Where fans with these headings begin, and where they no longer see.
+/// Where sectors with these headings begin, and where they no longer see.
 std::vector<Angle> limitsOf(const Laser& laser, const std::vector<double>& headings) {
     std::vector<Angle> limits;
     for (const double heading : headings)
-        if (const std::optional<FanArc> arc = fanArc(laser, Angle::degrees(heading)))
-            limits.insert(limits.end(), {arc->first, arc->beyond});
+        if (const auto sector = sectorOf(laser, Angle::degrees(heading)))
+            limits.insert(limits.end(), {sector->first, sector->beyond});
     std::sort(limits.begin(), limits.end());
     limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
     return limits;
@@ -49,15 +48,13 @@ std::size_t indexOf(const std::vector<Angle>& limits, Angle direction) {
     return static_cast<std::size_t>(found - limits.begin());
 }
 
-/// What a fan sees, put together from parts.
-CellSet cellsOfFan(const CellParts& parts, const std::vector<Angle>& limits, const Laser& laser,
-                   double heading, std::size_t cells) {
-    const std::optional<FanArc> arc = fanArc(laser, Angle::degrees(heading));
-    if (!arc) {
-        EXPECT_TRUE(laser.seesAround());
-        return cellsOf(parts, 0, parts.size(), cells);
-    }
-    const std::size_t begin = indexOf(limits, arc->first), end = indexOf(limits, arc->beyond);
+/// What a laser sees, put together from parts.
+CellSet cellsOfSector(const CellParts& parts, const std::vector<Angle>& limits, const Laser& laser,
+                      double heading, std::size_t cells) {
+    const auto sector = sectorOf(laser, Angle::degrees(heading));
+    if (!sector) return cellsOf(parts, 0, parts.size(), cells);
+    const std::size_t begin = indexOf(limits, sector->first);
+    const std::size_t end = indexOf(limits, sector->beyond);
     CellSet seen = cellsOf(parts, parts.size() - 1, parts.size(), cells);
     if (begin < end) return seen |= cellsOf(parts, begin, end, cells);
     seen |= cellsOf(parts, begin, limits.size(), cells);
@@ -84,7 +81,7 @@ void expectTidy(const CellParts& parts, std::size_t limits, std::size_t cells) {
 
 struct Case {
     const Grid& grid;
-    const SliceSight& sight;
+    const Sight& sight;
     Point2 place;
     Laser laser;
     std::vector<double> headings;
@@ -92,12 +89,12 @@ struct Case {
 
 void expectSame(const Case& c, CellParts& parts) {
     const std::vector<Angle> limits = limitsOf(c.laser, c.headings);
-    cellsBySector(c.grid, c.sight, c.place, c.laser.max_range, limits, parts);
+    cellsBySector(c.grid, *c.sight.levelAt(kScanHeight), c.place, c.laser.max_range, limits, parts);
     expectTidy(parts, limits.size(), c.grid.size());
     for (const double heading : c.headings) {
         const Sensor sensor{"l", c.laser, poseAt({c.place.x, c.place.y, kScanHeight}, heading, 0)};
-        const CellSet expected = cellsSeen(c.grid, c.sight, sensor);
-        const CellSet seen = cellsOfFan(parts, limits, c.laser, heading, c.grid.size());
+        const CellSet expected = c.sight.cellsOf(c.grid, sensor);
+        const CellSet seen = cellsOfSector(parts, limits, c.laser, heading, c.grid.size());
         ASSERT_EQ(seen, expected) << "place " << c.place.x << ',' << c.place.y << " heading "
                                   << heading << " fov "
                                   << (c.laser.last() - c.laser.first).degrees() << " range "
@@ -153,13 +150,13 @@ Laser randomLaser(Random& random, double fov) {
     return laser;
 }
 
-TEST(CellsBySector, FansAreWhatLasersSee) {
+TEST(CellsBySector, SectorsAreWhatLasersSee) {
     Random random(20);
     CellParts parts;
     for (int room = 0; room < 24; ++room) {
         const Scene scene = sceneOf(randomRoom(random));
         const Slice slice = scene.environment.slice(kScanHeight);
-        const SliceSight sight(slice);
+        const Sight sight(scene.environment, 0);
         const int fine = room % 4 == 3 ? 3 : 1;  // more than a word a row
         const Grid grid{scene.environment.limits(), 48 * fine, room % 3 == 0 ? 31 : 32 * fine};
         for (int trial = 0; trial < 40; ++trial) {
@@ -181,7 +178,7 @@ TEST(CellsBySector, ManyLimitsCloseTogether) {
         return directionOf(to.x - from.x, to.y - from.y).degrees();
     };
     const Scene scene = sceneOf("ispace size=12,8\ncube at=1,1 size=1,2,1\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 60, 40};
     CellParts parts;
     for (int trial = 0; trial < 200; ++trial) {
@@ -196,7 +193,7 @@ TEST(CellsBySector, ManyLimitsCloseTogether) {
 
 TEST(CellsBySector, RowsAlmostLevelWithThePlace) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 24, 16};
     CellParts parts;
     for (const double by : {1e-15, 1e-12, 2e-11, 4e-11, 1e-10, 1e-9, 1e-8, 1e-7})
@@ -217,7 +214,7 @@ TEST(CellsBySector, FarFromTheOriginAndInLargeRooms) {
         const std::string up = formatDouble(far + 16), half = formatDouble(far + 8);
         const Scene scene = sceneOf("fence path=" + at + ",0;" + up + ",0;" + up + ",8;" + at +
                                     ",8 closed=yes\ncube at=" + half + ",4 size=1,2,1\n");
-        const SliceSight sight(scene.environment.slice(kScanHeight));
+        const Sight sight(scene.environment, 0);
         const Grid grid{scene.environment.limits(), 160, 80};
         for (int trial = 0; trial < 10; ++trial) {
             Case c{grid, sight, grid.center(random() % grid.size()), laserWith(5, -90, 180), {}};
@@ -229,7 +226,7 @@ TEST(CellsBySector, FarFromTheOriginAndInLargeRooms) {
 
 TEST(CellsBySector, CellsAtTheGreatestRange) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 24, 16};
     CellParts parts;
     // Centres are half a metre apart; 3, 4, 5 and multiples are whole.
@@ -243,16 +240,16 @@ TEST(CellsBySector, CellsAtTheGreatestRange) {
 
 TEST(CellsBySector, OneLimitAndNone) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     const Point2 place = grid.center(grid.cell(3, 3));
     CellParts parts;
-    cellsBySector(grid, sight, place, 30, {}, parts);
+    cellsBySector(grid, *sight.levelAt(kScanHeight), place, 30, {}, parts);
     ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 0, grid.size()));
     EXPECT_EQ(parts.runs, (std::vector<CellRun>{{0, 96}}));  // rows go on
     for (const double degrees : {0.0, 45.0, 90.0, -160.0, 180.0, -1.0, 1e-9}) {
         const Angle limit = Angle::degrees(degrees);
-        cellsBySector(grid, sight, place, 30, {&limit, 1}, parts);
+        cellsBySector(grid, *sight.levelAt(kScanHeight), place, 30, {&limit, 1}, parts);
         ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 1, grid.size()));
         EXPECT_EQ(cellsOf(parts, 0, 2, grid.size()).count(), grid.size());
         EXPECT_EQ(cellsOf(parts, 1, 2, grid.size()).count(), 1U);  // the centre
@@ -261,13 +258,14 @@ TEST(CellsBySector, OneLimitAndNone) {
 
 TEST(CellsBySector, LimitsBelongToWhatComesAfterThem) {
     const Scene scene = sceneOf("ispace size=12,8\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     CellParts parts;
     const auto cells_on = [&](double degrees) {
         const Angle limits[] = {Angle::degrees(degrees),
                                 Angle::degrees(std::nextafter(degrees, 1000))};
-        cellsBySector(grid, sight, grid.center(grid.cell(3, 3)), 30, limits, parts);
+        cellsBySector(grid, *sight.levelAt(kScanHeight), grid.center(grid.cell(3, 3)), 30, limits,
+                      parts);
         EXPECT_EQ(cellsOf(parts, 0, 3, grid.size()).count(), grid.size());
         return cellsOf(parts, 0, 1, grid.size()).count();
     };
@@ -278,20 +276,21 @@ TEST(CellsBySector, LimitsBelongToWhatComesAfterThem) {
     EXPECT_EQ(cells_on(-135), 3U);
     EXPECT_EQ(cells_on(-160), 0U);
     const Angle limits[] = {Angle::degrees(10), Angle::degrees(180)};
-    cellsBySector(grid, sight, grid.center(grid.cell(3, 3)), 30, limits, parts);
+    cellsBySector(grid, *sight.levelAt(kScanHeight), grid.center(grid.cell(3, 3)), 30, limits,
+                  parts);
     EXPECT_TRUE(cellsOf(parts, 1, 2, grid.size()).test(grid.cell(1, 3)));  // on 180 degrees
 }
 
 TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
     const Scene scene = sceneOf("ispace size=12,8\ncube at=0,0 size=2,2,1\n");
-    const SliceSight sight(scene.environment.slice(kScanHeight));
+    const Sight sight(scene.environment, 0);
     const Grid grid{scene.environment.limits(), 12, 8};
     const std::vector<Angle> limits = {Angle::degrees(10), Angle::degrees(100)};
     CellParts parts;
-    cellsBySector(grid, sight, {0.1, 0.2}, 5, limits, parts);
+    cellsBySector(grid, *sight.levelAt(kScanHeight), {0.1, 0.2}, 5, limits, parts);
     EXPECT_TRUE(parts.runs.empty());
     EXPECT_EQ(parts.size(), 3U);
-    cellsBySector(grid, sight, {100, 100}, 5, limits, parts);
+    cellsBySector(grid, *sight.levelAt(kScanHeight), {100, 100}, 5, limits, parts);
     EXPECT_TRUE(parts.runs.empty());
     EXPECT_EQ(parts.size(), 3U);
 }

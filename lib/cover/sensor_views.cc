@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/sensor_views.h"
+#include "cover/metrics.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <map>
-#include <memory>
 
 #include "base/error.h"
-#include "cover/plane_view.h"
-#include "cover/visible.h"
+#include "cover/sight.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
-#include "sense/warnings.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -29,6 +25,22 @@ SensorView viewOf(const Sensor& sensor, std::size_t index) {
             .max_range = maxRange(sensor.model)};
 }
 
+/// Cells whose centre lies in the polygon through the sensor and the ends of its beams, seen from
+/// above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as of castBeams.
+CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const float> beams) {
+    const Point3 origin = sensor.pose.position;
+    Polygon outline;
+    outline.reserve(beams.size() + 1);
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+        const double range = std::min(static_cast<double>(beams[k]), sensor.as<Laser>().max_range);
+        const Vec3 beam = sensor.pose.beam(sensor.as<Laser>().bearing(static_cast<int>(k)));
+        outline.push_back((origin + range * beam).onFloor());
+    }
+    if (sensor.as<Laser>().span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
+    const std::vector<Polygon> curves = {std::move(outline)};
+    return cellsWithin(grid, curves);
+}
+
 /// Fills in the views of a scene's sensors.
 class Viewer {
   public:
@@ -37,28 +49,21 @@ class Viewer {
 
     std::vector<SensorView> run() {
         makeViews();
-        std::vector<std::size_t> on_planes;
-        std::map<double, std::vector<std::size_t>> by_height;
-        for (std::size_t i = 0; i < views_.size(); ++i) {
-            if (scansSlice(sensorOf(views_[i])))
-                by_height[views_[i].pose.position.z].push_back(i);
-            else
-                on_planes.push_back(i);
-        }
-        lookInSlices({by_height.begin(), by_height.end()});
-        lookAtPlanes(on_planes);
+        tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
+            // Whoever waits for others in here does not begin with another sensor.
+            tbb::this_task_arena::isolate([&] { look(views_[i]); });
+        });
         return std::move(views_);
     }
 
   private:
-    using Level = std::pair<double, std::vector<std::size_t>>;
-
     void makeViews() {
         for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
             const Sensor& sensor = scene_.sensors[i];
             if (!kindOf(sensor.model).perceives) continue;
             views_.push_back(viewOf(sensor, i));
             if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
+            sight_.prepare(sensor);
         }
         std::stable_sort(views_.begin(), views_.end(),
                          [&](const SensorView& a, const SensorView& b) {
@@ -69,70 +74,24 @@ class Viewer {
         return scene_.sensors[view.index];
     }
 
-    /// Each thread holds one slice after another, however many heights there are. All lines of a
-    /// slice are kept, near a sensor or not, so that what one sees depends on no other, to the bit.
-    void lookInSlices(const std::vector<Level>& levels) {
-        tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t k) {
-            const auto& [height, members] = levels[k];
-            const SliceSight sight(scene_.environment.slice(height));
-            // Whoever waits for the others here does not begin with another slice.
-            tbb::this_task_arena::isolate([&, &members = members] {
-                tbb::parallel_for(std::size_t{0}, members.size(),
-                                  [&](std::size_t i) { lookInSlice(views_[members[i]], sight); });
-            });
-        });
+    [[nodiscard]] bool isBuried(const Sensor& sensor) const {
+        const Point3 place = sensor.pose.position;
+        return sight_.levelAt(place.z)->isBuried(place.onFloor());
     }
 
-    /// Beams are those of one scan: of a sweep they outline nothing.
-    [[nodiscard]] bool byBeams(const Sensor& sensor) const {
-        return options_.cells_by == CellRule::Beams && sensor.as<Laser>().sweep == SweepAxis::None;
-    }
-
-    void lookInSlice(SensorView& view, const SliceSight& sight) const {
+    void look(SensorView& view) const {
         const Sensor& sensor = sensorOf(view);
-        view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-        view.cells = byBeams(sensor) ? cellsAmongBeams(grid_, sensor, view.beams)
-                                     : cellsSeen(grid_, sight, sensor);
-        if (options_.exact) view.region = regionSeen(sight, sensor);
-    }
-
-    void lookAtPlanes(const std::vector<std::size_t>& members) {
-        if (members.empty()) return;
-        for (const std::size_t i : members) worlds_.prepareMesh(views_[i].kind->stopped_by);
-        std::unique_ptr<const ShadowCaster> shadows;
-        if (options_.exact) shadows = std::make_unique<ShadowCaster>(scene_.environment);
-        SolidJudge judge(scene_.environment);
-        std::vector<char> is_buried(members.size());
-        for (std::size_t i = 0; i < members.size(); ++i)
-            is_buried[i] = judge.isInside(views_[members[i]].pose.position) ? 1 : 0;
-        tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t i) {
-            SensorView& view = views_[members[i]];
-            lookAtPlane(view);
-            if (is_buried[i] != 0) {  // it sees nothing, as in a slice
-                view.cells = CellSet(grid_.size());
-                if (shadows != nullptr) view.region.emplace();
-                return;
-            }
-            if (shadows != nullptr) addRegion(view, *shadows);
-        });
-    }
-
-    void lookAtPlane(SensorView& view) const {
-        const double plane = options_.plane;
-        const Sensor& sensor = sensorOf(view);
-        if (sensor.is<Laser>()) {
-            view.beams = castBeams(worlds_.at(sensor.pose), sensor);
-            if (byBeams(sensor)) {
-                view.cells = cellsAmongBeams(grid_, sensor, view.beams);
-                return;
-            }
-        }
-        view.cells = cellsSeen(grid_, worlds_.mesh(view.kind->stopped_by), sensor, plane);
-    }
-
-    void addRegion(SensorView& view, const ShadowCaster& shadows) const {
+        const Laser* laser = std::get_if<Laser>(&sensor.model);
+        if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
+        // Beams are those of one scan: of a sweep they outline nothing.
+        const bool by_beams = laser != nullptr && options_.cells_by == CellRule::Beams &&
+                              laser->sweep == SweepAxis::None;
+        view.cells = by_beams && (scansSlice(sensor) || !isBuried(sensor))
+                         ? cellsAmongBeams(grid_, sensor, view.beams)
+                         : sight_.cellsOf(grid_, sensor);
+        if (!options_.exact) return;
         try {
-            view.region = shadows.regionSeen(sensorOf(view), options_.plane);
+            view.region = sight_.regionOf(sensor);
         } catch (const FormatError&) {
             view.region.reset();  // more shadows than can be laid over each other
         }
@@ -142,6 +101,7 @@ class Viewer {
     Worlds& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
+    Sight sight_{scene_.environment, options_.plane, &worlds_};
     std::vector<SensorView> views_;
 };
 

@@ -279,13 +279,21 @@ void Shadows::addShadow(const Corners& corners, double turn, std::vector<Edge>& 
     }
 }
 
+bool Shadows::isOutOfTheWay(const ShadowBody& body) const {
+    return body.top <= std::min(sensor_.z, sensor_.z + drop_) ||
+           body.bottom >= std::max(sensor_.z, sensor_.z + drop_) ||
+           // Shadows fall away from the foot.
+           body.plan.low.x > sensor_.x + std::max(0.0, box_.high.x) ||
+           body.plan.high.x < sensor_.x + std::min(0.0, box_.low.x) ||
+           body.plan.low.y > sensor_.y + std::max(0.0, box_.high.y) ||
+           body.plan.high.y < sensor_.y + std::min(0.0, box_.low.y);
+}
+
 std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
+    if (isOutOfTheWay(standing)) return {};
     ShadowBody memory;
     // What is in contact is known by its own triangles.
     const ShadowBody& body = mayTouch(standing) ? standing : seenFrom(sensor_, standing, memory);
-    const double low = std::min(sensor_.z, sensor_.z + drop_);
-    const double high = std::max(sensor_.z, sensor_.z + drop_);
-    if (body.top <= low || body.bottom >= high) return {};
     const bool is_convex = body.kind == ShadowBody::Kind::Convex;
     // From outside, what is behind a solid throws no shadow that those in front do not throw.
     const bool in_front_only = is_convex && !mayTouch(body);

@@ -68,6 +68,7 @@ class Shadows {
 
     [[nodiscard]] Place placeOf(Point3 p) const;
     [[nodiscard]] double sideOf(const Place& p, int plane) const;
+    [[nodiscard]] bool isOutOfTheWay(const ShadowBody& body) const;
     [[nodiscard]] bool mayTouch(const ShadowBody& body) const;
     [[nodiscard]] bool isPassed(const std::array<Point3, 3>& triangle) const;
     [[nodiscard]] bool isClear(const Corners& corners) const;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/shadow_caster.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
-#include "cover/plane_sweep.h"
-#include "cover/plane_view.h"
+#include "cover/scan_plane.h"
 #include "cover/shadow_bodies.h"
 #include "cover/shadow_footprint.h"
 #include "geom/overlay.h"

@@ -6,7 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "cover/plane_view.h"
+#include "cover/plane_cells.h"
+#include "cover/shadow_caster.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
 #include "geom/predicates.h"
@@ -308,17 +309,17 @@ struct Furnished {
         const double wide = fov_x.degrees(), upright = fov_y.degrees();
         Sensor ranger = rangerAt(pose, wide, upright, range);
         ranger.as<Ranger>().measures_depth = is_by_depth;
-        std::size_t seen = compare(cellsSeen(grid, mesh, ranger, height),
+        std::size_t seen = compare(cellsOnPlane(grid, mesh, ranger, height),
                                    caster.regionSeen(ranger, height).value(), what + " pinhole");
         const Sensor head = rangerAt(pose, 2 * wide, upright, range, Projection::Spherical);
-        seen += compare(cellsSeen(grid, mesh, head, height),
+        seen += compare(cellsOnPlane(grid, mesh, head, height),
                         caster.regionSeen(head, height).value(), what + " spherical");
         const Sensor receiver = receiverAt(pose, 2 * upright, range);
-        seen += compare(cellsSeen(grid, mesh, receiver, height),
+        seen += compare(cellsOnPlane(grid, mesh, receiver, height),
                         caster.regionSeen(receiver, height).value(), what + " receiver");
         const Sensor laser = laserAt(pose, range, -wide, 2 * wide);
-        seen += compare(cellsSeen(grid, mesh, laser, height), caster.regionSeen(laser, 0).value(),
-                        what + " laser");
+        seen += compare(cellsOnPlane(grid, mesh, laser, height),
+                        caster.regionSeen(laser, 0).value(), what + " laser");
         return seen;
     }
 

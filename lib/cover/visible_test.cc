@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/visible.h"
+#include "cover/sight.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "cover/plane_view.h"
 #include "cover/test_scenes.h"
 
 namespace ispace {
@@ -14,21 +13,17 @@ namespace {
 
 struct Room {
     explicit Room(const std::string& lines, int columns = 60, int rows = 40)
-        : scene(sceneOf(lines)),
-          grid{scene.environment.limits(), columns, rows},
-          mesh(RayWorld::ofEnvironment(scene.environment)) {}
+        : scene(sceneOf(lines)), grid{scene.environment.limits(), columns, rows} {}
 
-    CellSet seen(const Sensor& sensor) {
-        if (!scansSlice(sensor)) return cellsSeen(grid, mesh, sensor, 0);
-        return cellsSeen(grid, sightAt(sensor.pose), sensor);
-    }
-    SliceSight sightAt(const Pose3& pose) {
-        return SliceSight(scene.environment.slice(pose.position.z));
+    [[nodiscard]] CellSet seen(const Sensor& sensor) const {
+        sight.prepare(sensor);
+        return sight.cellsOf(grid, sensor);
     }
 
     Scene scene;
     Grid grid;
-    RayWorld mesh;
+    Worlds worlds{scene.environment};
+    Sight sight{scene.environment, 0, &worlds};
 };
 
 Laser bareLaser(double range, double fov) {
@@ -89,20 +84,6 @@ TEST(CellsSeen, LevelLaserLooksOverLowThings) {
     EXPECT_TRUE(room.seen({"l", bareLaser(30, 180), pose}).test(room.grid.cell(50, 20)));
     pose.position.z = 1;  // solids are closed
     EXPECT_FALSE(room.seen({"l", bareLaser(30, 180), pose}).test(room.grid.cell(50, 20)));
-}
-
-TEST(CellsSeen, OneLookPerPlaceGivesTheSameFans) {
-    Room room("ispace size=12,8\ncube at=1,1 size=1,2,1\ncylinder at=-2,2 size=1,1,1\n");
-    const Pose3 place = level(-0.3, -0.7, 0);
-    const VisibleCells far =
-        visibleCells(room.grid, room.sightAt(place), place.position.onFloor(), 30);
-    for (const double range : {1.0, 3.3, 5.0, 30.0}) {
-        for (const double heading : {-270.0, 0.0, 33.3, 90.0, 180.0, 500.0}) {
-            const Laser laser = bareLaser(range, 200);
-            EXPECT_EQ(cellsInFan(room.grid, far, laser, Angle::degrees(heading)),
-                      room.seen({"l", laser, level(-0.3, -0.7, heading)}));
-        }
-    }
 }
 
 TEST(CellsSeen, FullTurnSeesAllHeadings) {

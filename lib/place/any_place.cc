@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "cover/visible.h"
 #include "place/sensor_group.h"
 #include "sensor/field_of_view.h"
 
@@ -28,7 +27,7 @@ Extent discOf(double radius) { return {radius, kPi * radius * radius, 2 * kPi * 
 Extent extentOf(const Laser& laser) {
     const double range = laser.max_range;
     if (laser.sweep != SweepAxis::None) return discOf(range);
-    const double span = fanLimits(laser, Angle()).span.radians();
+    const double span = laser.sweptSpan().radians();
     // The two sides also count for a sector with just a gap.
     return {range, span / 2 * range * range, span * range + (span < 2 * kPi ? 2 * range : 0)};
 }

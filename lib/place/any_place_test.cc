@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "cover/plane_view.h"
+#include "cover/sight.h"
 #include "place/test_arrange.h"
 
 namespace ispace {
@@ -91,7 +91,7 @@ template <typename Placed, typename Figures>
 double fullestView(const Figures& figures, double most_height, unsigned seed) {
     static const Scene kHall = hall();
     static Worlds worlds(kHall.environment);
-    worlds.prepareMesh();
+    static const Sight sight(kHall.environment, kPlane, &worlds);
     const Grid grid{kHall.environment.limits(), 80, 90};
     const auto most = static_cast<double>(maxCellsInView(figures, grid));
     PoseSource poses(seed);
@@ -99,8 +99,8 @@ double fullestView(const Figures& figures, double most_height, unsigned seed) {
     for (int i = 0; i < 300; ++i) {
         const double above = i % 6 == 0 ? 0 : poses.between(0, most_height);
         const Placed placed{"s", figures, poses.pose(kPlane + above)};
-        const auto seen =
-            static_cast<double>(cellsSeen(grid, worlds.mesh(), placed, kPlane).count());
+        sight.prepare(placed);
+        const auto seen = static_cast<double>(sight.cellsOf(grid, placed).count());
         EXPECT_LE(seen, most) << seed << ": " << i;
         fullest = std::max(fullest, seen / most);
     }

@@ -51,7 +51,7 @@ struct CandidatePool::Data {
     CandidateWeights weights;
     const ArrangeOptions& options;
     Progress& progress;
-    SliceSights sights;
+    Sight sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::size_t bytes = 0;  // of the sets made so far
 
@@ -162,8 +162,8 @@ struct CandidatePool::Data {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
-                const CandidateViews views(environment, worlds, target.grid, options.plane,
-                                           kind.model, mount, &weights.counted, &sights);
+                const CandidateViews views(sight, target.grid, kind.model, mount,
+                                           &weights.counted);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
                                    share))
@@ -251,8 +251,13 @@ struct CandidatePool::Data {
 CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                              CandidateWeights weights, const ArrangeOptions& options,
                              Progress& progress)
-    : data_(new Data{environment, worlds, target, std::move(weights), options, progress,
-                     SliceSights(environment)}) {}
+    : data_(new Data{environment,
+                     worlds,
+                     target,
+                     std::move(weights),
+                     options,
+                     progress,
+                     {environment, options.plane, &worlds}}) {}
 
 CandidatePool::~CandidatePool() = default;
 

@@ -234,8 +234,8 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     for (const double tilt : {0, -30}) {  // in a slice, through the mesh
-        const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
-                                   {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
+        const Sight sight(scene.environment, 0, &worlds);
+        const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(tilt), {}});
         for (const int columns : {8, 16, 20, 32, 64, 89, 100, 160, 233})
             for (const int rows : {8, 30, 34, 64, 144}) {
                 const std::vector<Site> sites = latticeOf(columns, rows);
@@ -258,8 +258,8 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
     const Scene scene = roomScene();
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
-    const CandidateViews views(scene.environment, worlds, grid, 0, Laser(),
-                               {{0, 0, 1}, {}, Angle::degrees(-30), {}});
+    const Sight sight(scene.environment, 0, &worlds);
+    const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(-30), {}});
     const std::vector<Site> sites = latticeOf(60, 40);
     SilentProgress silent;
     PosedCandidates all(grid.size());
@@ -291,8 +291,8 @@ TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;
     laser.max_range = 4;
-    const CandidateViews views(room, worlds, target.grid, 0, laser,
-                               {{0, 0, kScanHeight}, {}, {}, {}});
+    const Sight sight(room, 0, &worlds);
+    const CandidateViews views(sight, target.grid, laser, {{0, 0, kScanHeight}, {}, {}, {}});
     // The thesis counts what lies within the limits, indoor or not.
     const WeightSums ones(std::vector<std::uint32_t>(target.grid.size(), 1));
     const auto best_of = [&](const std::vector<Site>& sites) {

@@ -14,60 +14,39 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cover/fan_arc.h"
-#include "cover/plane_view.h"
+#include "cover/plane_cells.h"
 #include "cover/sector_cells.h"
-#include "cover/visible.h"
-#include "env/solid_tree.h"
 #include "place/look_ahead.h"
-#include "place/plane_candidates.h"
 #include "place/sensor_group.h"
 
 namespace ispace {
 
 namespace {
 
-/// The fans of a level laser at one place: between which limits each heading sees.
-struct Fans {
+/// The sectors of a level laser at one place, by their limits.
+struct Sectors {
     std::vector<Angle> headings;
-    std::vector<Angle> limits;
+    std::vector<Angle> limits;                    // none: it sees all around
     std::vector<CandidateSet::PartRange> ranges;  // by heading
-    bool are_arcs = true;                         // else there are no limits
 
-    Fans(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
+    Sectors(const Laser& laser, std::span<const Angle> of) : headings(of.begin(), of.end()) {
         ranges.resize(headings.size());
-        if (laser.seesAround()) return;
-        std::vector<FanArc> arcs;
-        arcs.reserve(headings.size());
-        for (const Angle heading : headings) {
-            const std::optional<FanArc> arc = fanArc(laser, heading);
-            if (!arc) {
-                beAlone();
-                return;
-            }
-            arcs.push_back(*arc);
-        }
-        setLimits(arcs);
+        std::vector<Sector> sectors;
+        sectors.reserve(headings.size());
+        for (const Angle heading : headings)
+            if (const auto sector = sectorOf(laser, heading)) sectors.push_back(*sector);
+        for (const Sector& sector : sectors)
+            limits.insert(limits.end(), {sector.first, sector.beyond});
+        std::sort(limits.begin(), limits.end());
+        limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
         const auto directed = static_cast<std::uint32_t>(limits.size());
-        for (std::size_t k = 0; k < headings.size(); ++k) {
-            const std::uint32_t begin = indexOf(arcs[k].first);
-            ranges[k] = {begin, (indexOf(arcs[k].beyond) + directed - begin) % directed};
+        for (std::size_t k = 0; k < sectors.size(); ++k) {
+            const std::uint32_t begin = indexOf(sectors[k].first);
+            ranges[k] = {begin, (indexOf(sectors[k].beyond) + directed - begin) % directed};
         }
     }
 
   private:
-    /// Each heading has a part of its own.
-    void beAlone() {
-        are_arcs = false;
-        for (std::uint32_t k = 0; k < ranges.size(); ++k) ranges[k] = {k, 1};
-    }
-    /// Limits are one only where they are the same to the bit: so they part cells as coverage does.
-    void setLimits(const std::vector<FanArc>& arcs) {
-        limits.reserve(2 * arcs.size());
-        for (const FanArc& arc : arcs) limits.insert(limits.end(), {arc.first, arc.beyond});
-        std::sort(limits.begin(), limits.end());
-        limits.erase(std::unique(limits.begin(), limits.end()), limits.end());
-    }
     [[nodiscard]] std::uint32_t indexOf(Angle limit) const {
         return static_cast<std::uint32_t>(std::lower_bound(limits.begin(), limits.end(), limit) -
                                           limits.begin());
@@ -106,88 +85,55 @@ class Counted {
 
 }  // namespace
 
-const SliceSight& SliceSights::at(double height) {
-    const std::scoped_lock lock(mutex_);
-    const auto found = sights_.find(height);
-    if (found != sights_.end()) return found->second;
-    return sights_.emplace(height, SliceSight(environment_->slice(height))).first->second;
-}
-
 struct CandidateViews::Data {
     const Grid& grid;
-    double plane;
+    const Sight& sight;
+    std::shared_ptr<const Level> level;
     SensorModel device;
     Pose3 mount;
-    bool is_round;
+    bool is_round, looks_in_slice;
     std::optional<Counted> counted = {};
-    // Of a laser that scans a slice:
-    std::unique_ptr<SliceSights> own_sights = {};
-    const SliceSight* sight = nullptr;
-    // Of all others:
-    const RayWorld* mesh = nullptr;
-    SolidTree solids = {};
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
     }
-    [[nodiscard]] bool looksInSlice() const { return sight != nullptr; }
-
-    [[nodiscard]] std::vector<Pose3> posesAt(const Site& site) const {
-        std::vector<Pose3> poses(headingsOf(site), mount);
-        for (std::size_t k = 0; k < poses.size(); ++k) {
-            poses[k].position = {site.place.x, site.place.y, mount.position.z};
-            poses[k].heading = site.headings[k];
-        }
-        return poses;
+    [[nodiscard]] Sensor at(const Site& site, std::size_t heading) const {
+        Sensor sensor{"", device, mount};
+        sensor.pose.position = {site.place.x, site.place.y, mount.position.z};
+        sensor.pose.heading = site.headings[heading];
+        return sensor;
     }
     /// The cells of each heading, a part each, and an empty one that all see.
-    void lookThroughMesh(const Site& site, CellParts& parts) const {
+    void lookAtPlane(const Site& site, CellParts& parts) const {
+        const std::size_t headings = headingsOf(site);
         parts.runs.clear();
-        parts.first.assign(headingsOf(site) + 2, 0);
-        if (solids.isInside(site.place, kRayEpsilon)) return;
-        if (!fieldOfView(Sensor{{}, device, mount})) return lookOneByOne(site, parts);
+        parts.first.assign(headings + 2, 0);
+        if (level->isBuried(site.place)) return;
         std::vector<FieldOfView> fields;
-        fields.reserve(headingsOf(site));
-        for (const Pose3& pose : posesAt(site))
-            fields.push_back(*fieldOfView(Sensor{{}, device, pose}));
-        cellsByView(grid, *mesh, fields, plane, parts);
-        parts.first.push_back(parts.first.back());
-    }
-    /// The same, each heading of a laser by itself.
-    void lookOneByOne(const Site& site, CellParts& parts) const {
-        parts.runs.clear();
-        parts.first.assign(1, 0);
-        for (const Pose3& pose : posesAt(site)) {
-            const Sensor sensor{"", device, pose};
-            const CellParts seen = partOf(looksInSlice() ? cellsSeen(grid, *sight, sensor)
-                                                         : cellsSeen(grid, *mesh, sensor, plane));
-            parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
-            parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+        for (std::size_t k = 0; k < headings; ++k)
+            if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
+        if (!fields.empty()) {
+            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts);
+        } else {  // lasers
+            parts.first.resize(1);
+            for (std::size_t k = 0; k < headings; ++k) {
+                const CellParts seen = partOf(sight.cellsOf(grid, at(site, k)));
+                parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
+                parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+            }
         }
         parts.first.push_back(parts.first.back());
     }
 };
 
-CandidateViews::CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid,
-                               double plane, const SensorModel& device, const Pose3& mount,
-                               const CellSet* counted, SliceSights* sights) {
-    auto data =
-        std::make_unique<Data>(Data{grid, plane, device, mount, looksAround(device, mount)});
-    const double height = mount.position.z;
-    if (counted != nullptr && counted->count() < counted->size()) data->counted.emplace(*counted);
-    if (scansSlice(Sensor{"", device, mount})) {
-        if (sights == nullptr) {
-            data->own_sights = std::make_unique<SliceSights>(environment);
-            sights = data->own_sights.get();
-        }
-        data->sight = &sights->at(height);
-    } else {
-        const Surfaces surfaces = kindOf(device).stopped_by;
-        worlds.prepareMesh(surfaces);
-        data->mesh = &worlds.mesh(surfaces);
-        data->solids = SolidTree(environment.slice(height).solids);
-    }
-    data_ = std::move(data);
+CandidateViews::CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
+                               const Pose3& mount, const CellSet* counted)
+    : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
+                     looksAround(device, mount), scansSlice(Sensor{"", device, mount}),
+                     counted != nullptr && counted->count() < counted->size()
+                         ? std::optional<Counted>(*counted)
+                         : std::nullopt}) {
+    sight.prepare({"", device, mount});
 }
 
 CandidateViews::~CandidateViews() = default;
@@ -208,7 +154,7 @@ class Scanner {
           sites_(sites),
           progress_(progress),
           least_(std::min(least, sites.size())),
-          at_once_(data_.looksInSlice() ? 512 : 32),
+          at_once_(data_.looks_in_slice ? 512 : 32),
           ahead_(sites, std::max(least_, sites.size() / kStretch)),
           shelf_(ahead_.size()) {}
 
@@ -277,19 +223,19 @@ class Scanner {
                ": use fewer places, headings or cells, or --max-memory";
     }
 
-    /// Fills parts_ and, for slices, fans_ of the sites at hand, from the shelf where they are on
-    /// it. What is looked through the mesh takes a while: one can stop in between, but for the
-    /// first `must` of them.
+    /// Fills parts_ and, for slices, sectors_ of the sites at hand, from the shelf where they are
+    /// on it. What is seen of a plane takes a while: one can stop in between, but for the first
+    /// `must` of them.
     void look(std::size_t must) {
         const std::size_t count = turns_.size();
         if (parts_.size() < count) parts_.resize(count);
         is_done_.assign(count, 1);
-        if (data_.looksInSlice()) findFans(count);
+        if (data_.looks_in_slice) findSectors(count);
         std::atomic<std::int64_t> looks = 0;
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             if (isShelved(i)) {
                 shelf_.copy(turns_[i].slot, parts_[i]);
-            } else if (data_.looksInSlice()) {
+            } else if (data_.looks_in_slice) {
                 lookFrom(i);
                 ++looks;
             } else if (i >= must && progress_.stopped()) {
@@ -308,16 +254,16 @@ class Scanner {
     }
 
     /// Neighbours mostly have the same headings.
-    void findFans(std::size_t count) {
-        if (fans_.size() > 1) fans_.erase(fans_.begin(), fans_.end() - 1);
-        fan_of_.clear();
+    void findSectors(std::size_t count) {
+        if (sectors_.size() > 1) sectors_.erase(sectors_.begin(), sectors_.end() - 1);
+        sectors_of_.clear();
         for (std::size_t i = 0; i < count; ++i) {
             const std::span<const Angle> headings = headingsOf(i);
-            if (fans_.empty() ||
-                !std::equal(headings.begin(), headings.end(), fans_.back().headings.begin(),
-                            fans_.back().headings.end()))
-                fans_.emplace_back(std::get<Laser>(data_.device), headings);
-            fan_of_.push_back(fans_.size() - 1);
+            if (sectors_.empty() ||
+                !std::equal(headings.begin(), headings.end(), sectors_.back().headings.begin(),
+                            sectors_.back().headings.end()))
+                sectors_.emplace_back(std::get<Laser>(data_.device), headings);
+            sectors_of_.push_back(sectors_.size() - 1);
         }
     }
 
@@ -329,13 +275,12 @@ class Scanner {
     void lookFrom(std::size_t i) {
         const Site& site = sites_[turns_[i].site];
         assert(!site.headings.empty());
-        if (!data_.looksInSlice())
-            data_.lookThroughMesh(site, parts_[i]);
-        else if (const Fans& fans = fans_[fan_of_[i]]; fans.are_arcs)
-            cellsBySector(data_.grid, *data_.sight, site.place,
-                          std::get<Laser>(data_.device).max_range, fans.limits, parts_[i]);
+        if (data_.looks_in_slice)
+            cellsBySector(data_.grid, *data_.level, site.place,
+                          std::get<Laser>(data_.device).max_range, sectors_[sectors_of_[i]].limits,
+                          parts_[i]);
         else
-            data_.lookOneByOne(site, parts_[i]);
+            data_.lookAtPlane(site, parts_[i]);
         if (data_.counted) data_.counted->keepIn(parts_[i]);
     }
 
@@ -344,8 +289,8 @@ class Scanner {
         Pose3 mount = data_.mount;
         mount.position = {site.place.x, site.place.y, mount.position.z};
         const std::span<const Angle> headings = headingsOf(i);
-        if (data_.looksInSlice()) {
-            set_.addSite(mount, headings, fans_[fan_of_[i]].ranges, parts_[i]);
+        if (data_.looks_in_slice) {
+            set_.addSite(mount, headings, sectors_[sectors_of_[i]].ranges, parts_[i]);
             return;
         }
         ranges_.clear();
@@ -364,8 +309,8 @@ class Scanner {
     std::vector<Turn> turns_;
     std::vector<char> is_done_;
     std::vector<CellParts> parts_;
-    std::vector<Fans> fans_;
-    std::vector<std::size_t> fan_of_;
+    std::vector<Sectors> sectors_;
+    std::vector<std::size_t> sectors_of_;
     std::vector<CandidateSet::PartRange> ranges_;
 };
 

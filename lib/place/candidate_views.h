@@ -2,48 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 
 #include "base/progress.h"
-#include "cover/slice_sight.h"
-#include "env/environment.h"
-#include "layout/scene.h"
+#include "cover/sight.h"
 #include "place/posed_candidates.h"
 #include "place/sites.h"
 #include "raster/grid.h"
-#include "trace/worlds.h"
 
 namespace ispace {
 
-/// The sights of one environment by height, each made when it is first asked for. Thread-safe; a
-/// sight stays where it is until the end.
-class SliceSights {
-  public:
-    explicit SliceSights(const Environment& environment) : environment_(&environment) {}
-    const SliceSight& at(double height);
-
-  private:
-    const Environment* environment_;
-    std::mutex mutex_;
-    std::map<double, SliceSight> sights_;
-};
-
 /// What a kind of sensor sees of the cells of a grid from anywhere, mounted at one height with one
-/// tilt and roll: the same cells as measureCoverage() finds for a sensor there. Thread-safe once
-/// built.
+/// tilt and roll: the same cells as Sight::cellsOf() for a sensor there. Thread-safe.
 class CandidateViews {
   public:
-    /// \param plane height of what rangers and receivers cover
+    /// Keeps references.
     /// \param mount its height, tilt and roll count, its place and heading do not
-    /// \param counted cells that are worth something, if not all are: candidates then see these as
+    /// \param counted cells that weigh something, if not all do: candidates then see these as
     ///        they should, and others or not as it comes, which makes them smaller
-    /// \param sights shared with other views, if not null; all references are kept
-    CandidateViews(const Environment& environment, Worlds& worlds, const Grid& grid, double plane,
-                   const SensorModel& device, const Pose3& mount, const CellSet* counted = nullptr,
-                   SliceSights* sights = nullptr);
+    CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
+                   const Pose3& mount, const CellSet* counted = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;

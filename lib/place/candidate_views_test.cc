@@ -100,12 +100,13 @@ std::vector<Mounted> devices() {
 
 /// Candidates see what measureCoverage() finds for such a sensor, of the cells that are counted.
 void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Site>& sites,
-                bool only_free, SliceSights* sights) {
+                bool only_free) {
     Worlds worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight);
     constexpr double kPlane = 0.1;
-    const CandidateViews views(scene.environment, worlds, target.grid, kPlane, mounted.model,
-                               mounted.mount, only_free ? &target.free : nullptr, sights);
+    const Sight sight(scene.environment, kPlane, &worlds);
+    const CandidateViews views(sight, target.grid, mounted.model, mounted.mount,
+                               only_free ? &target.free : nullptr);
     ASSERT_EQ(views.isRound(), mounted.is_round);
     PosedCandidates set(target.grid.size());
     SilentProgress quiet;
@@ -146,13 +147,11 @@ TEST(CandidateViews, SeeWhatCoverageMeasures) {
     Random random(30);
     for (int trial = 0; trial < 3; ++trial) {
         const Scene scene = sceneOf(randomRoom(random));
-        SliceSights sights(scene.environment);
         const std::vector<Mounted> all = devices();
         for (std::size_t i = 0; i < all.size(); ++i) {
             const bool scans_slice = i < 6;
             const std::vector<Site> sites = randomSites(random, scans_slice ? 40 : 6);
-            ASSERT_NO_FATAL_FAILURE(expectSame(scene, all[i], sites, (i + trial) % 2 == 0,
-                                               trial == 0 ? nullptr : &sights))
+            ASSERT_NO_FATAL_FAILURE(expectSame(scene, all[i], sites, (i + trial) % 2 == 0))
                 << "room " << trial << " device " << i;
         }
     }
@@ -167,9 +166,8 @@ TEST(CandidateViews, OddHeadings) {
         sites[0].headings.push_back(Angle::degrees(heading));
     for (int k = 0; k < 24; ++k) sites[1].headings.push_back(Angle::degrees(k * 360.0 / 24 - 0.1));
     for (const double fov : {0, 90, 180, 240, 358})
-        ASSERT_NO_FATAL_FAILURE(
-            expectSame(scene, {laserWith(4, -fov / 2, fov), poseAt({0, 0, 0.15}, 0, 0)}, sites,
-                       false, nullptr))
+        ASSERT_NO_FATAL_FAILURE(expectSame(
+            scene, {laserWith(4, -fov / 2, fov), poseAt({0, 0, 0.15}, 0, 0)}, sites, false))
             << fov;
 }
 
@@ -210,9 +208,8 @@ TEST(CandidateViews, HeadingsTooNearToBeTold) {
                 site.headings.push_back(
                     Angle::degrees(about - first + apart * static_cast<double>(random() % 40)));
         }
-        ASSERT_NO_FATAL_FAILURE(
-            expectSame(scene, {fanOf(4, first, fov), poseAt({0, 0, kScanHeight}, 0, 0)}, sites,
-                       false, nullptr))
+        ASSERT_NO_FATAL_FAILURE(expectSame(
+            scene, {fanOf(4, first, fov), poseAt({0, 0, kScanHeight}, 0, 0)}, sites, false))
             << trial;
     }
 }
@@ -225,7 +222,7 @@ TEST(CandidateViews, SevenFansThatMeetBetweenCells) {
     for (int k = 0; k < 7; ++k) sites[0].headings.push_back(Angle::degrees(360.0 / 7 * k));
     ASSERT_NO_FATAL_FAILURE(expectSame(
         scene, {fanOf(3, -102.8571429 / 2, 102.8571429), poseAt({0, 0, kScanHeight}, 0, 0)}, sites,
-        false, nullptr));
+        false));
 }
 
 TEST(CandidateViews, FansThatRoundingsTear) {
@@ -241,7 +238,7 @@ TEST(CandidateViews, FansThatRoundingsTear) {
     ASSERT_NO_FATAL_FAILURE(expectSame(
         scene,
         {fanOf(9, -101.20355280257412, 109.30368948395606), poseAt({0, 0, kScanHeight}, 0, 0)},
-        sites, false, nullptr));
+        sites, false));
 }
 
 TEST(CandidateViews, ManyHeadingsOfAReceiver) {
@@ -250,8 +247,8 @@ TEST(CandidateViews, ManyHeadingsOfAReceiver) {
     for (int k = 0; k < 70; ++k) sites[0].headings.push_back(Angle::degrees(5 * k + 3));
     const Receiver receiver = receiverAt({}, 60, 4).as<Receiver>();
     for (const double tilt : {-40.0, -90.0, -89.0})
-        ASSERT_NO_FATAL_FAILURE(expectSame(
-            scene, {receiver, poseAt({0, 0, 2}, 0, tilt), tilt == -90}, sites, false, nullptr));
+        ASSERT_NO_FATAL_FAILURE(
+            expectSame(scene, {receiver, poseAt({0, 0, 2}, 0, tilt), tilt == -90}, sites, false));
 }
 
 TEST(CandidateViews, SeeNothingFromWithinSolids) {
@@ -261,8 +258,8 @@ TEST(CandidateViews, SeeNothingFromWithinSolids) {
     SilentProgress quiet;
     for (const Mounted& mounted : devices()) {
         if (mounted.mount.position.z > 1.9) continue;
-        const CandidateViews views(scene.environment, worlds, grid, 0, mounted.model,
-                                   mounted.mount);
+        const Sight sight(scene.environment, 0, &worlds);
+        const CandidateViews views(sight, grid, mounted.model, mounted.mount);
         PosedCandidates set(grid.size());
         const std::vector<Site> sites = {{{0.1, 0.2}, {Angle(), Angle::degrees(-90)}}};
         ASSERT_TRUE(addCandidates(set, views, sites, kPlenty, quiet));
@@ -286,7 +283,8 @@ TEST(CandidateViews, TheSameForAnyNumberOfThreads) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(1200);
-    const CandidateViews views(scene.environment, worlds, grid, 0, laserWith(3, -90, 180),
+    const Sight sight(scene.environment, 0, &worlds);
+    const CandidateViews views(sight, grid, laserWith(3, -90, 180),
                                poseAt({0, 0, kScanHeight}, 0, 0));
     std::vector<std::vector<CellRun>> runs;
     for (const std::size_t threads : {1, 2, 4}) {
@@ -325,7 +323,8 @@ TEST(CandidateViews, StopEarlyAndWithinMemory) {
     Worlds worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(2000);
-    const CandidateViews views(scene.environment, worlds, grid, 0, laserWith(3, -90, 180),
+    const Sight sight(scene.environment, 0, &worlds);
+    const CandidateViews views(sight, grid, laserWith(3, -90, 180),
                                poseAt({0, 0, kScanHeight}, 0, 0));
     PosedCandidates set(grid.size());
     ShortProgress progress(600);
@@ -374,8 +373,8 @@ TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
     SilentProgress quiet;
     const std::vector<Mounted> all = devices();
     for (const std::size_t device : {0U, 3U, 9U}) {
-        const CandidateViews views(scene.environment, worlds, grid, 0.1, all[device].model,
-                                   all[device].mount);
+        const Sight sight(scene.environment, 0.1, &worlds);
+        const CandidateViews views(sight, grid, all[device].model, all[device].mount);
         for (const int count : {0, 1, 63, 64, 65, 700, 20000}) {
             if ((device == 9 && count > 70) || (device == 0 && count > 700)) continue;
             const std::vector<Site> sites = manySites(count);

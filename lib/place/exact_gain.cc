@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "base/error.h"
-#include "cover/plane_view.h"
-#include "cover/visible.h"
-#include "env/solid_tree.h"
+#include "cover/sight.h"
 #include "geom/overlay.h"
 #include "place/sensor_group.h"
 #include "sense/ultrasound.h"
@@ -110,43 +107,6 @@ std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& 
     return floors;
 }
 
-/// The heights of level lasers, and the shadows for all others.
-class Sights {
-  public:
-    explicit Sights(const Environment& environment) : environment_(environment) {}
-
-    /// To be called for each sensor before regionOf(): that may then be called from any thread.
-    void prepare(const SensorModel& device, const Pose3& pose) {
-        const double height = pose.position.z;
-        if (scansSlice({{}, device, pose})) {
-            slices_.try_emplace(height, environment_.slice(height));
-        } else {
-            solids_.try_emplace(height, environment_.slice(height).solids);
-            if (!shadows_) shadows_.emplace(environment_);
-        }
-    }
-
-    /// What it sees there; nothing if that is not known. A sensor inside a solid sees nothing.
-    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const SensorModel& device,
-                                                             const Pose3& pose,
-                                                             double plane) const {
-        const Sensor sensor{{}, device, pose};
-        if (scansSlice(sensor)) return regionSeen(slices_.at(pose.position.z), sensor);
-        if (isBuried(pose)) return std::vector<Curve>();
-        return shadows_->regionSeen(sensor, plane);
-    }
-
-  private:
-    [[nodiscard]] bool isBuried(const Pose3& pose) const {
-        return solids_.at(pose.position.z).isInside(pose.position.onFloor(), kRayEpsilon);
-    }
-
-    const Environment& environment_;
-    std::map<double, SliceSight> slices_;
-    std::map<double, SolidTree> solids_;
-    std::optional<ShadowCaster> shadows_;
-};
-
 /// A sensor's region as a layer.
 struct View {
     Layer layer;
@@ -163,7 +123,7 @@ struct View {
 struct ExactGain::Data {
     std::span<const Movable> movables;
     RefineOptions options;
-    Sights sights;
+    Sight sight;
     std::vector<Floor> floors = {};
     Box2 floor_box = {};
     std::vector<View> standing = {}, moving = {};
@@ -181,7 +141,7 @@ struct ExactGain::Data {
 
     [[nodiscard]] View viewOf(const std::string& id, const SensorModel& device,
                               const Pose3& pose) const {
-        auto region = sights.regionOf(device, pose, options.plane);
+        auto region = sight.regionOf({{}, device, pose});
         if (!region) throw UsageError(id + " cannot be refined: its exact region is not known");
         return {std::move(*region), isPartial(device)};
     }
@@ -195,7 +155,6 @@ struct ExactGain::Data {
             if (!kindOf(sensor.model).perceives ||
                 std::any_of(movables.begin(), movables.end(), is_same))
                 continue;
-            sights.prepare(sensor.model, sensor.pose);
             standing.push_back(viewOf(sensor.id, sensor.model, sensor.pose));
         }
     }
@@ -281,7 +240,7 @@ struct ExactGain::Data {
 
 ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
                      const FloorWeights& worth, const RefineOptions& options)
-    : data_(std::make_unique<Data>(Data{movables, options, Sights(scene.environment)})) {
+    : data_(new Data{movables, options, {scene.environment, options.plane}}) {
     if (worth.weights.size() > kMostZones)
         throw UsageError("sensors cannot be refined for " + std::to_string(worth.weights.size()) +
                          " weighted zones, wanted at most " + std::to_string(kMostZones));
@@ -294,7 +253,6 @@ ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
     data_->addStanding(scene.sensors);
     data_->moving.reserve(movables.size());
     for (std::size_t i = 0; i < movables.size(); ++i) {
-        data_->sights.prepare(movables[i].model, movables[i].pose);
         data_->moving.push_back(data_->viewOf(i, movables[i].pose));
     }
     data_->around.resize(movables.size());

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "cover/sector_cells.h"
+#include "base/cell_set.h"
 #include "geom/point.h"
 #include "place/sites.h"
 #include "trace/ray_world.h"

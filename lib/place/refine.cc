@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "cover/visible.h"
+#include "cover/sight.h"
 #include "place/exact_gain.h"
 #include "place/scene_problem.h"
 

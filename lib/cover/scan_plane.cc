@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/plane_sweep.h"
+#include "cover/scan_plane.h"
 
 #include <algorithm>
 #include <cmath>

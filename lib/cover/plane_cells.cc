@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/plane_cells.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cover/scan_plane.h"
+
+namespace ispace {
+
+namespace {
+
+/// As many views as a word has bits are looked through together.
+constexpr std::size_t kTogether = 64;
+
+/// What of a plane may be in view.
+struct Reach {
+    Point3 origin;
+    double distance = 0;  ///< on the plan: no farther place is in view
+
+    /// Nothing if the plane, `drop` above or below, is out of range.
+    static std::optional<Reach> of(Point3 origin, double range, double drop) {
+        constexpr double kSlack = 1 + 1e-6;  // range tests are those of float32
+        if (!withinRange(std::fabs(drop), range)) return std::nullopt;
+        return Reach{origin, kSlack * std::sqrt(std::max(0.0, range * range - drop * drop))};
+    }
+};
+
+/// Where to look for a cell's sake, and which of some views hold that place.
+struct CellTarget {
+    Point3 place;
+    std::uint64_t held = 0;  ///< bit k: view k
+};
+
+/// Looks at the cells of one row after another. `target_of(center)` is the CellTarget of a cell.
+template <typename TargetOf>
+class RowLook {
+  public:
+    RowLook(const Grid& grid, const RayWorld& mesh, const Reach& reach, const TargetOf& target_of)
+        : grid_(grid),
+          columns_(GridAxis::columnsOf(grid)),
+          mesh_(mesh),
+          reach_(reach),
+          target_of_(target_of) {}
+
+    /// Adds what each view sees of a row to its runs.
+    void add(int row, std::span<std::vector<CellRun>> runs) {
+        findTargets(row);
+        if (targets_.empty()) return;
+        seen_.resize(targets_.size());
+        mesh_.look(reach_.origin, targets_, seen_);
+        for (std::size_t i = 0; i < targets_.size(); ++i) {
+            if (seen_[i] == 0 && targets_[i] != reach_.origin) continue;
+            for (std::uint64_t bits = held_[i]; bits != 0; bits &= bits - 1)
+                addCell(runs[static_cast<std::size_t>(std::countr_zero(bits))], cells_[i]);
+        }
+    }
+
+  private:
+    /// Those of the row's cells that are in some view.
+    void findTargets(int row) {
+        cells_.clear();
+        targets_.clear();
+        held_.clear();
+        const double y = grid_.rowCenter(row), dy = y - reach_.origin.y;
+        if (!(std::fabs(dy) <= reach_.distance)) return;
+        const double half = std::sqrt(reach_.distance * reach_.distance - dy * dy);
+        const int first = columns_.firstNotBelow(reach_.origin.x - half);
+        const int end = columns_.firstAbove(reach_.origin.x + half, first);
+        for (int column = first; column < end; ++column) {
+            const CellTarget target = target_of_(Point2{grid_.columnCenter(column), y});
+            if (target.held == 0) continue;
+            cells_.push_back(static_cast<std::uint32_t>(grid_.cell(column, row)));
+            targets_.push_back(target.place);
+            held_.push_back(target.held);
+        }
+    }
+    static void addCell(std::vector<CellRun>& runs, std::uint32_t cell) {
+        if (!runs.empty() && runs.back().end == cell)
+            ++runs.back().end;
+        else
+            runs.push_back({cell, cell + 1});
+    }
+
+    const Grid& grid_;
+    GridAxis columns_;
+    const RayWorld& mesh_;
+    Reach reach_;
+    const TargetOf& target_of_;
+    std::vector<std::uint32_t> cells_;
+    std::vector<Point3> targets_;
+    std::vector<std::uint64_t> held_;
+    std::vector<std::uint8_t> seen_;
+};
+
+/// Appends a part for each view. Bands of rows are shared out over the cores.
+template <typename TargetOf>
+void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::size_t views,
+              const TargetOf& target_of, CellParts& parts) {
+    constexpr int kCellsOfBand = 1 << 16;
+    const int rows = std::max(1, kCellsOfBand / grid.columns);
+    const auto bands = static_cast<std::size_t>((grid.rows + rows - 1) / rows);
+    std::vector<std::vector<std::vector<CellRun>>> runs(bands);
+    const auto look = [&](std::size_t band) {
+        runs[band].resize(views);
+        RowLook<TargetOf> row_look(grid, mesh, reach, target_of);
+        const int first = static_cast<int>(band) * rows;
+        for (int row = first; row < std::min(first + rows, grid.rows); ++row)
+            row_look.add(row, runs[band]);
+    };
+    if (bands == 1)
+        look(0);
+    else
+        tbb::parallel_for(std::size_t{0}, bands, look);
+    for (std::size_t k = 0; k < views; ++k) {
+        for (const auto& of_band : runs)
+            parts.runs.insert(parts.runs.end(), of_band[k].begin(), of_band[k].end());
+        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+    }
+}
+
+/// A laser that scans in one tilted plane covers the floor over or under which that passes.
+void addScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, CellParts& parts) {
+    const Point3 origin = sensor.pose.position;
+    const Laser& laser = sensor.as<Laser>();
+    const ScanPlane plane(sensor.pose);
+    const auto reach = Reach::of(origin, laser.max_range, 0);
+    if (plane.up() == 0 || !reach) return;  // upright: seen from above, a line
+    const BearingWindow window(laser);
+    addParts(
+        grid, mesh, *reach, 1,
+        [&](Point2 center) {
+            const Point3 target{center.x, center.y, plane.heightAt(center)};
+            const Vec3 way = target - origin;
+            const bool is_held = target.z >= 0 &&
+                                 withinRange(std::sqrt(dot(way, way)), laser.max_range) &&
+                                 window.holds(plane.frame().toLocal(target));
+            return CellTarget{target, is_held ? 1U : 0U};
+        },
+        parts);
+}
+
+void addSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height,
+              CellParts& parts) {
+    const Point3 origin = sensor.pose.position;
+    const double range = sensor.as<Laser>().max_range;
+    const auto reach = Reach::of(origin, range, height - origin.z);
+    if (!reach) return;
+    const SweptScan scan(sensor);
+    addParts(
+        grid, mesh, *reach, 1,
+        [&](Point2 center) {
+            const Point3 target{center.x, center.y, height};
+            const Vec3 way = target - origin;
+            const bool is_held =
+                withinRange(std::sqrt(dot(way, way)), range) && scan.passes(target);
+            return CellTarget{target, is_held ? 1U : 0U};
+        },
+        parts);
+}
+
+}  // namespace
+
+void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
+                 double height, CellParts& parts) {
+    parts.runs.clear();
+    parts.first.assign(1, 0);
+    for (std::size_t begin = 0; begin < views.size(); begin += kTogether) {
+        const auto some = views.subspan(begin, std::min(kTogether, views.size() - begin));
+        const Point3 origin = some[0].frame.origin;
+        const auto reach = Reach::of(origin, some[0].farthest(), height - origin.z);
+        if (!reach) {
+            parts.first.insert(parts.first.end(), some.size(), 0);
+            continue;
+        }
+        const auto target_of = [&](Point2 center) {
+            CellTarget target{{center.x, center.y, height}};
+            for (std::size_t k = 0; k < some.size(); ++k)
+                if (some[k].holds(target.place)) target.held |= std::uint64_t{1} << k;
+            return target;
+        };
+        addParts(grid, mesh, *reach, some.size(), target_of, parts);
+    }
+}
+
+CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height) {
+    CellParts parts;
+    parts.first.assign(1, 0);
+    if (const auto view = fieldOfView(sensor))
+        cellsByView(grid, mesh, {&*view, 1}, height, parts);
+    else if (sensor.as<Laser>().sweep == SweepAxis::None)
+        addScan(grid, mesh, sensor, parts);
+    else
+        addSweep(grid, mesh, sensor, height, parts);
+    return parts.size() == 0 ? CellSet(grid.size()) : cellsOf(parts, 0, grid.size());
+}
+
+}  // namespace ispace
