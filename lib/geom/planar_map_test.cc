@@ -265,7 +265,7 @@ TEST(BoundedFaces, refusesCrossingsByTheMillion) {
     EXPECT_EQ(facesOf(lines).size(), 199U * 199U);
 }
 
-TEST(Weld, refusesHeapsOfLinesUponEachOther) {
+TEST(Weld, refusesManyLinesUponEachOther) {
     std::vector<Segment2> lines;
     for (int i = 0; i < 20000; ++i) lines.push_back({{i * 1e-3, 0}, {100 - i * 1e-3, 0}});
     EXPECT_THROW(weld(lines), FormatError);

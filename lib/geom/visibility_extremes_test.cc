@@ -72,7 +72,7 @@ TEST(Visibility, EveryFiniteNumberHasAnAnswer) {
     }
 }
 
-TEST(Visibility, HeapsOfCollinearAndTouchingLines) {
+TEST(Visibility, ManyCollinearAndTouchingLines) {
     std::mt19937_64 random(19);
     for (int round = 0; round < 40; ++round) {
         std::vector<Segment2> lines;

@@ -16,7 +16,8 @@ namespace ispace {
 /// is at most A + L d + pi d^2 (Steiner's formula). A and L are at most those
 /// - of its sector for a laser that does not sweep; a tilted or rolled one covers no more, as its
 ///   sector is seen from above, where nothing is longer or larger;
-/// - of the disc of its range for swept lasers, receivers and spherical rangers: nothing they see of
+/// - of the disc of its range for swept lasers, receivers and spherical rangers: nothing they see
+/// of
 ///   a plane is farther away;
 /// - for pinholes of any plane section of the view pyramid down to the depth of the range, and of
 ///   the disc through the farthest point in view, which for those that measure depth is a corner of

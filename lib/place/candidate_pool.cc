@@ -35,13 +35,6 @@ struct SitesAtHeight {
     std::vector<Site> sites;
 };
 
-std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings) {
-    std::vector<Site> sites;
-    sites.reserve(places.size());
-    for (const Point2 place : places) sites.push_back({place, headings});
-    return onNanometres(std::move(sites));
-}
-
 }  // namespace
 
 struct CandidatePool::Data {
@@ -99,7 +92,7 @@ struct CandidatePool::Data {
         std::vector<SitesAtHeight> levels;
         levels.reserve(by_height.size());
         for (const auto& [height, places] : by_height)
-            levels.push_back({height, sitesAt(places, headingsPerPlace(options))});
+            levels.push_back({height, onNanometres(sitesAt(places, headingsPerPlace(options)))});
         return levels;
     }
 
@@ -204,7 +197,8 @@ struct CandidatePool::Data {
                 ++drawn.places;
                 progress.advance(1);
             }
-            drawn.levels.push_back({height, sitesAt(places, headingsPerPlace(options))});
+            drawn.levels.push_back(
+                {height, onNanometres(sitesAt(places, headingsPerPlace(options)))});
         }
         progress.end();
         return drawn;

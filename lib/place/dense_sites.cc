@@ -12,9 +12,9 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "env/point_location.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
-#include "place/inside_index.h"
 #include "place/sites.h"
 #include "place/wall_curves.h"
 
@@ -254,7 +254,7 @@ std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double s
     const double apart = step * kSampleShare;
     const auto samples = samplesOf(wallCurves(free_floor, sheets), origin, apart);
     const Delaunay delaunay(samples.begin(), samples.end());
-    const InsideIndex floor(free_floor);
+    const RegionIndex floor(free_floor);
     std::vector<AxisPlace> found;
     found.reserve(delaunay.number_of_faces());
     for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) {
@@ -264,7 +264,8 @@ std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double s
         if (!(squared >= apart * apart)) continue;
         if (!isBetweenWalls(*face, center, squared)) continue;
         const Vec2 place = snapped(Vec2{center.x(), center.y()});
-        if (floor.isInside(origin + place)) found.push_back({place, snapped(std::sqrt(squared))});
+        if (floor.locate(origin + place) == Side::Inside)
+            found.push_back({place, snapped(std::sqrt(squared))});
     }
     std::vector<Point2> places;
     for (const AxisPlace& kept : thinned(std::move(found), step))

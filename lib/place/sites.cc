@@ -14,13 +14,20 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "env/level.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
-#include "place/inside_index.h"
 #include "place/wall_curves.h"
 
 namespace ispace {
+
+std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings) {
+    std::vector<Site> sites;
+    sites.reserve(places.size());
+    for (const Point2 place : places) sites.push_back({place, headings});
+    return sites;
+}
 
 namespace {
 
@@ -36,39 +43,10 @@ class LineFinder {
                      [&](std::size_t i) { any = any || distance(p, lines_[i]) <= reach; });
         return any;
     }
-    /// The place lies on a line; exact.
-    [[nodiscard]] bool anyAt(Point2 p) const {
-        bool any = false;
-        tree_.search({p, p}, 0, [&](std::size_t i) { any = any || intersects(lines_[i], {p, p}); });
-        return any;
-    }
 
   private:
     std::vector<Segment2> lines_;
     SegmentTree tree_;
-};
-
-/// Polygons with an index; all of them closed sets.
-class PolygonFinder {
-  public:
-    explicit PolygonFinder(std::vector<Polygon> polygons) : polygons_(std::move(polygons)) {
-        std::vector<Box2> boxes;
-        boxes.reserve(polygons_.size());
-        for (const Polygon& polygon : polygons_) boxes.push_back(bounds(polygon));
-        boxes_ = BoxTree(boxes);
-    }
-
-    [[nodiscard]] bool empty() const { return polygons_.empty(); }
-    [[nodiscard]] bool anyHolds(Point2 p) const {
-        bool any = false;
-        boxes_.search(
-            {p, p}, [&](std::size_t i) { any = any || locate(polygons_[i], p) != Side::Outside; });
-        return any;
-    }
-
-  private:
-    std::vector<Polygon> polygons_;
-    BoxTree boxes_;
 };
 
 /// What stands at one height.
@@ -89,35 +67,30 @@ std::vector<Segment2> linesOf(const Regions& indoor, const Slice& slice) {
 }  // namespace
 
 struct SiteValidity::Data {
-    Data(const Environment& environment, SiteRules wanted, Slice slice)
+    Data(const Environment& environment, SiteRules wanted)
         : rules(std::move(wanted)),
-          indoor(environment.indoor().parts),
-          obstacles(linesOf(environment.indoor(), slice)),
-          walls(linesOf(wallSlice(environment, slice.height))),
-          sheets(std::move(slice.sheets)),
-          solids(std::move(slice.solids)),
+          level(environment.level(rules.height)),
+          obstacles(linesOf(environment.indoor(), level->slice())),
+          walls(linesOf(wallSlice(environment, rules.height))),
           keep_out(rules.keep_out),
           keep_in(rules.keep_in) {}
 
     SiteRules rules;
-    InsideIndex indoor;
-    LineFinder obstacles, walls, sheets;
-    PolygonFinder solids, keep_out, keep_in;
+    std::shared_ptr<const Level> level;
+    LineFinder obstacles, walls;
+    PolygonIndex keep_out, keep_in;
 };
 
 SiteValidity::SiteValidity(const Environment& environment, SiteRules rules)
-    : data_(std::make_unique<const Data>(environment, std::move(rules),
-                                         environment.slice(rules.height))) {}
+    : data_(std::make_unique<const Data>(environment, std::move(rules))) {}
 
 SiteValidity::~SiteValidity() = default;
 
 bool SiteValidity::isValid(Point2 place) const {
     const Data& data = *data_;
     const SiteRules& rules = data.rules;
-    if (!data.indoor.isInside(place) || data.solids.anyHolds(place) || data.sheets.anyAt(place))
-        return false;
-    if (data.keep_out.anyHolds(place)) return false;
-    if (!data.keep_in.empty() && !data.keep_in.anyHolds(place)) return false;
+    if (!data.level->isFree(place) || data.keep_out.holder(place)) return false;
+    if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
     // Distances round: a place at exactly the required distance is valid.
     if (rules.clearance > kWeldDistance &&
         data.obstacles.anyWithin(place, rules.clearance - kWeldDistance))

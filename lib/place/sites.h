@@ -21,6 +21,9 @@ struct Site {
     friend bool operator==(const Site&, const Site&) = default;
 };
 
+/// A site with these headings at each place.
+std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings);
+
 /// `count` headings 360 / count apart, the first 0.
 std::vector<Angle> headingsAround(int count);
 

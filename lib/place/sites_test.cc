@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "env/test_plans.h"
 #include "geom/predicates.h"
-#include "place/inside_index.h"
 #include "place/test_arrange.h"
 
 namespace ispace {
@@ -164,41 +163,6 @@ TEST(SiteValidity, DecidesAsThePlainTestWhereLinesRunThroughCellCentres) {
     const Slice slice = room.slice(kScanHeight);
     for (const Point2 p : hardPlaces(room, 5))
         ASSERT_EQ(validity.isValid(p), isPlainlyValid(room, slice, p)) << p.x << ' ' << p.y;
-}
-
-TEST(InsideIndex, DecidesAsLocateOnKnownPoints) {
-    // Small whole numbers: places, corners and lines often meet.
-    std::mt19937_64 random(3);
-    std::uniform_int_distribution<int> whole(0, 6);
-    for (int round = 0; round < 200; ++round) {
-        Region region;
-        const int corners = 3 + round % 5;
-        for (int i = 0; i < corners; ++i)
-            region.outline.push_back({double(whole(random)), double(whole(random))});
-        const InsideIndex index({region});
-        for (int x = -1; x <= 14; ++x)
-            for (int y = -1; y <= 14; ++y) {
-                const Point2 p{x / 2.0, y / 2.0};
-                ASSERT_EQ(index.isInside(p), region.locate(p) == Side::Inside);
-            }
-    }
-    EXPECT_FALSE(InsideIndex({}).isInside({0, 0}));
-    // Of no width.
-    EXPECT_FALSE(InsideIndex({{{{0, 0}, {5, 0}, {2, 0}}, {}}}).isInside({1, 0}));
-}
-
-TEST(InsideIndex, DoesWithoutAKnownPointOnTheBoundary) {
-    Region region{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {}};
-    const Grid cells = InsideIndex({region}).cells();
-    const Point2 center = cells.center(cells.cell(cells.columns / 2, cells.rows / 2));
-    region.holes = {{center, center + Vec2{-0.5, 0.5}, center + Vec2{0.5, 0.5}}};
-    const InsideIndex index({region});
-    ASSERT_EQ(index.cells(), cells) << "few more edges do not change them";
-    for (int x = -10; x <= 10; ++x)
-        for (int y = -10; y <= 10; ++y) {
-            const Point2 p = center + Vec2{0.004 * x, 0.004 * y};
-            EXPECT_EQ(index.isInside(p), region.locate(p) == Side::Inside);
-        }
 }
 
 TEST(ValidSites, KeepOrderAndComeOnce) {

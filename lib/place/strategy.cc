@@ -14,14 +14,6 @@ namespace {
 constexpr double kMaxLines = 10000, kMaxPlaces = 100000;
 constexpr double kMaxScope = 1e6, kMaxDist = 1000, kMinLength = 0.001;  // metres
 
-std::vector<Site> sitesAt(const std::vector<Point2>& places, const ArrangeOptions& options) {
-    const std::vector<Angle> headings = headingsPerPlace(options);
-    std::vector<Site> sites;
-    sites.reserve(places.size());
-    for (const Point2 place : places) sites.push_back({place, headings});
-    return sites;
-}
-
 std::vector<Site> proposeAll(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
     const CandidateDensity& density = options.density;
@@ -29,7 +21,7 @@ std::vector<Site> proposeAll(const ProposalRequest& request) {
     const std::vector<Point2> along = placesAlong(environment.freeFloor(height), density.wall_step,
                                                   kOffWall, environment.slice(height).sheets);
     places.insert(places.end(), along.begin(), along.end());
-    return sitesAt(places, options);
+    return sitesAt(places, headingsPerPlace(options));
 }
 
 std::vector<Site> proposeGrid(const ProposalRequest& request) {
@@ -41,7 +33,7 @@ std::vector<Site> proposeGrid(const ProposalRequest& request) {
         throw UsageError("a grid of " + std::to_string(search.x) + " x " +
                          std::to_string(search.y) +
                          " places is more than a million: use fewer lines (-X, -Y)");
-    return sitesAt(gridPlaces(limits, search), request.options);
+    return sitesAt(gridPlaces(limits, search), headingsPerPlace(request.options));
 }
 
 std::vector<Site> proposeNone(const ProposalRequest& /*request*/) { return {}; }
@@ -63,7 +55,7 @@ std::vector<Site> proposeMedialAxis(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
     return sitesAt(medialPlaces(environment.freeFloor(height), options.density.lattice_step,
                                 environment.slice(height).sheets),
-                   options);
+                   headingsPerPlace(options));
 }
 
 std::vector<Site> proposeListed(const ProposalRequest& request) { return request.options.list; }

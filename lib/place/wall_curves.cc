@@ -7,11 +7,11 @@
 #include <tuple>
 #include <utility>
 
+#include "env/point_location.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
-#include "place/inside_index.h"
 
 namespace ispace {
 
@@ -117,12 +117,12 @@ class Walk {
 std::vector<Segment2> sheetsWithin(const std::vector<Region>& floor,
                                    std::span<const Segment2> edges,
                                    std::span<const Segment2> sheets) {
-    const InsideIndex inside(floor);
+    const RegionIndex index(floor);
     const SegmentTree boundary(edges);
     std::vector<Segment2> within;
     for (const Segment2& sheet : sheets) {
         const Point2 middle = sheet.a + 0.5 * (sheet.b - sheet.a);
-        bool is_free = inside.isInside(middle);
+        bool is_free = index.locate(middle) == Side::Inside;
         if (!is_free) continue;
         boundary.search({middle, middle}, kWeldDistance, [&](std::size_t i) {
             is_free = is_free && distance(middle, edges[i]) > kWeldDistance;

@@ -47,18 +47,18 @@ TEST(ConnectedTree, TakesFewerWhereNotAllHangTogether) {
     EXPECT_EQ(result.best.chosen.size(), 6U);
 }
 
-TEST(ConnectedTree, FewestReachesWhatCanBeReached) {
+TEST(ConnectedTree, MinimumCostReachesWhatCanBeReached) {
     const Row row;
     SilentProgress progress;
     SearchOptions options;
     options.optimizer = Optimizer::Exact;
     for (std::uint64_t wanted = 1; wanted <= 13; ++wanted) {
-        const MinimumCostCover fewest = minimumCostCover(row.problem, wanted, options, progress);
-        ASSERT_TRUE(fewest.is_reached) << wanted;
+        const MinimumCostCover cover = minimumCostCover(row.problem, wanted, options, progress);
+        ASSERT_TRUE(cover.is_reached) << wanted;
         // One sees 4, one of a chain 2 more than those before.
         const double cost = wanted <= 4 ? 1 : static_cast<double>(wanted / 2);
-        EXPECT_EQ(fewest.cost, cost) << wanted;
-        EXPECT_EQ(fewest.cost_bound, cost) << wanted;
+        EXPECT_EQ(cover.cost, cost) << wanted;
+        EXPECT_EQ(cover.cost_bound, cost) << wanted;
     }
     EXPECT_FALSE(minimumCostCover(row.problem, 14, options, progress).is_reached);
 }

@@ -23,7 +23,7 @@ double leastCost(const Problem& problem, std::uint64_t wanted) {
     return least;
 }
 
-TEST(PlaceFewest, EqualsBruteForce) {
+TEST(MinimumCost, EqualsBruteForce) {
     SilentProgress progress;
     int reached = 0;
     for (std::uint64_t round = 0; round < 60; ++round) {
@@ -59,7 +59,7 @@ TEST(PlaceFewest, EqualsBruteForce) {
     EXPECT_GT(reached, 400);
 }
 
-TEST(PlaceFewest, EqualsBruteForceWithCostsFarApart) {
+TEST(MinimumCost, EqualsBruteForceWithCostsFarApart) {
     SilentProgress progress;
     const double costs[] = {1e6, 999'999.999, 0.001, 0.1, 0.2, 1.0 / 3};
     SearchOptions options;
@@ -90,7 +90,7 @@ void addCandidate(CandidateSet& set, const std::vector<std::size_t>& cells) {
     set.addSite(seen);
 }
 
-TEST(PlaceFewest, SmallCostsCountBesideLargeOnes) {
+TEST(MinimumCost, SmallCostsCountBesideLargeOnes) {
     CandidateSet large(10), small(10);
     addCandidate(large, {0, 1, 2, 3, 4, 5, 6, 7, 8});
     addCandidate(small, {9});
@@ -103,7 +103,7 @@ TEST(PlaceFewest, SmallCostsCountBesideLargeOnes) {
     EXPECT_EQ(cover.cost_bound, 1000000.001);
 }
 
-TEST(PlaceFewest, ManyOfEqualCostHideNothingCheaper) {
+TEST(MinimumCost, ManyOfEqualCostHideNothingCheaper) {
     // Greedy takes three of each group of eight where two are enough: 1700 in place of 1500.
     constexpr std::size_t kGroups = 200, kOwn = 300, kOthers = 800;
     constexpr std::size_t kCells = 8 * kGroups + kOwn + kOthers;
@@ -130,7 +130,7 @@ TEST(PlaceFewest, ManyOfEqualCostHideNothingCheaper) {
     EXPECT_GE(cover.cost_bound, 1300);
 }
 
-TEST(PlaceFewest, EvenLevelsHaveFewDigits) {
+TEST(MinimumCost, EvenLevelsHaveFewDigits) {
     // More than 4000 sums, and no bound is far off, as nothing overlaps.
     constexpr std::size_t kOfEach = 30;
     std::vector<CandidateSet> sets(3, CandidateSet(3 * kOfEach));
@@ -153,7 +153,7 @@ TEST(PlaceFewest, EvenLevelsHaveFewDigits) {
     }
 }
 
-TEST(PlaceFewest, WithoutLimitStopsWhereItIsEnough) {
+TEST(MinimumCost, WithoutLimitStopsWhereItIsEnough) {
     RandomProblemOptions options;
     options.columns = 24;
     options.rows = 20;
@@ -174,7 +174,7 @@ bool onceSwapsBegin(const StopWhen& told) {
     return told.phases.find("improving ") != std::string::npos;
 }
 
-TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
+TEST(MinimumCost, HasBoundsBeforeItLooksForLess) {
     RandomProblemOptions options;
     options.columns = 50;
     options.rows = 50;
@@ -197,7 +197,7 @@ TEST(PlaceFewest, HasBoundsBeforeItLooksForLess) {
     EXPECT_GE(stopped, 1);
 }
 
-TEST(PlaceFewest, GreedilyRunsNoSwaps) {
+TEST(MinimumCost, GreedilyRunsNoSwaps) {
     const RandomProblem random = randomProblem(5);
     StopWhen progress(onceSwapsBegin);
     SearchOptions options;
@@ -208,7 +208,7 @@ TEST(PlaceFewest, GreedilyRunsNoSwaps) {
     EXPECT_FALSE(progress.stopped());
 }
 
-TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {
+TEST(MinimumCost, OutOfReachGivesTheBestWithoutIdleSensors) {
     CandidateSet set(10);
     for (std::size_t first = 0; first < 6; first += 2) {
         CellSet seen(10);
@@ -228,7 +228,7 @@ TEST(PlaceFewest, OutOfReachGivesTheBestWithoutIdleSensors) {
     EXPECT_DOUBLE_EQ(cover.cost, 6);
 }
 
-TEST(PlaceFewest, WhatStandsMayBeEnough) {
+TEST(MinimumCost, WhatStandsMayBeEnough) {
     CandidateSet set(2);
     Problem problem;
     problem.weights = {1, 1};

@@ -193,7 +193,7 @@ TEST(Problem, ABudgetBuysSoMany) {
     EXPECT_EQ(affordableCount(0, 0, 1, 7), 0U);
 }
 
-TEST(Problem, TidyIsTheDecimalNumberMeant) {
+TEST(Problem, NormalisedCostIsTheDecimalNumberMeant) {
     EXPECT_EQ(normaliseCost(0.1 + 0.2), 0.3);
     EXPECT_EQ(normaliseCost(327.8252249999999), 327.825225);
     EXPECT_EQ(normaliseCost(4 * 1e-9), 4e-9);
