@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cover/coverage_formats.h"
+
 #include <algorithm>
 
 #include "base/json_writer.h"
 #include "base/number.h"
-#include "cover/coverage_formats.h"
 #include "draw/feature_writer.h"
 #include "geom/boolean.h"
 #include "raster/contour.h"
@@ -134,6 +135,51 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.endAsPoint(spot.place);
     }
     return out.finish();
+}
+
+namespace {
+
+template <PictureFormat Format>
+CoverageFiles mapFiles(const CoverageProduct& product) {
+    MapOptions options = product.map;
+    options.format = Format;
+    return {drawCoverageMap(product.scene, product.coverage, options, product.other), ""};
+}
+
+CoverageFiles csvFiles(const CoverageProduct& product) {
+    return {coverageCsv(product.coverage), ""};
+}
+
+CoverageFiles geoJsonFiles(const CoverageProduct& product) {
+    return {coverageGeoJson(product.scene, product.coverage), ""};
+}
+
+CoverageFiles rosFiles(const CoverageProduct& product) {
+    CoverageRosMap map = coverageRosMap(product.coverage, product.cell, product.beside_name);
+    return {std::move(map.yaml), std::move(map.pgm)};
+}
+
+}  // namespace
+
+std::span<const CoverageFormat> coverageFormats() {
+    static const CoverageFormat kFormats[] = {
+        {.name = "png", .picture = PictureFormat::Png, .write = mapFiles<PictureFormat::Png>},
+        {.name = "svg", .picture = PictureFormat::Svg, .write = mapFiles<PictureFormat::Svg>},
+        {.name = "pdf", .picture = PictureFormat::Pdf, .write = mapFiles<PictureFormat::Pdf>},
+        {.name = "csv", .write = csvFiles},
+        {.name = "geojson", .write = geoJsonFiles},
+        {.name = "ros",
+         .square_cell = 0.05,
+         .suffix = "yaml",
+         .beside_suffix = ".pgm",
+         .write = rosFiles}};
+    return kFormats;
+}
+
+const CoverageFormat& coverageFormat(std::string_view name) {
+    const auto formats = coverageFormats();
+    return *std::find_if(formats.begin(), formats.end(),
+                         [name](const CoverageFormat& format) { return format.name == name; });
 }
 
 }  // namespace ispace

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "cover/coverage.h"
+#include "cover/map.h"
 
 namespace ispace {
 
@@ -26,5 +30,32 @@ struct CoverageRosMap {
 /// not, 0 (occupied) where a cell is not on the free floor. \pre cells are squares of `cell` metres
 /// \param image_name how the YAML names the picture
 CoverageRosMap coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
+
+/// What a product is made of.
+struct CoverageProduct {
+    const Scene& scene;
+    const Coverage& coverage;
+    const Coverage* other = nullptr;  ///< what it is compared with, if it is
+    MapOptions map = {};
+    double cell = 0;               ///< edge of square cells where the format wants them
+    std::string beside_name = {};  ///< by which the product names the file beside it
+};
+struct CoverageFiles {
+    std::string product, beside;
+};
+
+/// One format of products: a row that `coverage --to`, the choice by suffix, and the checks of
+/// options read.
+struct CoverageFormat {
+    std::string_view name;                      ///< as --to takes it
+    std::optional<PictureFormat> picture = {};  ///< it is a map, which has options of its own
+    double square_cell = 0;                     ///< it wants square cells, of this edge unless told
+    std::string_view suffix = name;             ///< of its files, without dot
+    const char* beside_suffix = nullptr;        ///< of a file beside the product, named after it
+    CoverageFiles (*write)(const CoverageProduct& product) = nullptr;
+};
+std::span<const CoverageFormat> coverageFormats();
+/// \pre a format has this name
+const CoverageFormat& coverageFormat(std::string_view name);
 
 }  // namespace ispace

@@ -87,20 +87,19 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
 void writeProduct(const CoverageToolOptions& options, const Scene& scene,
                   const Measured& measured) {
     const std::string& output = options.common.output;
-    if (options.format == "csv") {
-        writeAll(output, coverageCsv(measured.coverage));
-    } else if (options.format == "geojson") {
-        writeAll(output, coverageGeoJson(scene, measured.coverage));
-    } else if (options.format == "ros") {
-        const std::string picture = withSuffix(output, ".pgm");
-        const CoverageRosMap map =
-            coverageRosMap(measured.coverage, std::get<CellSize>(options.measure.cells).edge,
-                           std::filesystem::path(picture).filename().string());
-        writeTogether(std::vector<NamedBytes>{{picture, map.pgm}, {output, map.yaml}});
-    } else {
-        writeAll(output, drawCoverageMap(scene, measured.coverage, options.map,
-                                         measured.other ? &*measured.other : nullptr));
+    const CoverageFormat& format = *options.format;
+    CoverageProduct product{scene, measured.coverage, measured.other ? &*measured.other : nullptr,
+                            options.map};
+    if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
+        product.cell = cells->edge;
+    if (format.beside_suffix == nullptr) {
+        writeAll(output, format.write(product).product);
+        return;
     }
+    const std::string beside = withSuffix(output, format.beside_suffix);
+    product.beside_name = std::filesystem::path(beside).filename().string();
+    const CoverageFiles files = format.write(product);
+    writeTogether(std::vector<NamedBytes>{{beside, files.beside}, {output, files.product}});
 }
 
 void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
@@ -119,8 +118,9 @@ void coverage(CoverageToolOptions options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
-    if (options.format == "ros")
-        claimOutput(withSuffix(options.common.output, ".pgm"), "the picture of the map");
+    if (options.format != nullptr && options.format->beside_suffix != nullptr)
+        claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
+                    "the picture of the map");
     const SceneInput input = readScene({options.operands, options.any_environment, true});
     ispace::warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
@@ -140,7 +140,7 @@ void coverage(CoverageToolOptions options) {
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
     tellOfLargeCells(options, report.grid);
-    if (!options.format.empty()) {
+    if (options.format != nullptr) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
         writeProduct(options, input.scene, measured);

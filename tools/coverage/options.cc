@@ -10,10 +10,11 @@ namespace ispace {
 
 namespace {
 
-const std::vector<std::string> kFormats{"png", "svg", "pdf", "csv", "geojson", "ros"};
-
-/// Edge of cells where a format wants square ones and nobody says how large.
-constexpr double kRosCell = 0.05;
+std::vector<std::string> formatNames() {
+    std::vector<std::string> names;
+    for (const CoverageFormat& format : coverageFormats()) names.emplace_back(format.name);
+    return names;
+}
 
 /// Words of options that become something else once they are read.
 struct Words {
@@ -35,15 +36,6 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
                 Enters::History);
 }
 
-PictureFormat mapFormat(const std::string& name) {
-    if (name == "svg") return PictureFormat::Svg;
-    return name == "pdf" ? PictureFormat::Pdf : PictureFormat::Png;
-}
-
-bool isMap(const std::string& format) {
-    return format == "png" || format == "svg" || format == "pdf";
-}
-
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
     if (!line.given("--output")) {
         for (const char* option : {"--to", "--width", "--color", "--fans", "--trace"})
@@ -55,17 +47,19 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
     const std::string suffix = std::filesystem::path(o.common.output).extension().string();
     const bool is_yaml = suffix == ".yaml" || suffix == ".yml";
-    o.format = outputFormat(to, o.common.output, kFormats, {{"yaml", "ros"}});
-    if (o.format == "ros" && !is_yaml)
+    const std::string name = outputFormat(to, o.common.output, formatNames(), {{"yaml", "ros"}});
+    const CoverageFormat& format = coverageFormat(name);
+    o.format = &format;
+    if (format.beside_suffix != nullptr && !is_yaml)
         throw UsageError(
             "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
-    if (o.format == "ros" && line.given("--grid"))
+    if (format.square_cell > 0 && line.given("--grid"))
         throw UsageError("a ROS map has square cells: give --cell instead of --grid");
-    if (o.format == "ros" && !line.given("--cell")) o.measure.cells = CellSize{kRosCell};
-    o.map.format = mapFormat(o.format);
+    if (format.square_cell > 0 && !line.given("--cell"))
+        o.measure.cells = CellSize{format.square_cell};
     for (const char* option : {"--width", "--color", "--fans", "--trace"})
-        if (line.given(option) && !isMap(o.format))
-            throw UsageError(std::string(option) + " is about pictures, not about " + o.format);
+        if (line.given(option) && !format.picture)
+            throw UsageError(std::string(option) + " is about pictures, not about " + name);
 }
 
 void checkReport(const CoverageToolOptions& o) {
@@ -94,7 +88,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.file("--compare", "LAYOUT", o.other,
               "tell what is gained and lost beside this layout, in figures and on the map",
               Enters::BaseName);
-    line.choice("--to", words.to, kFormats, "format of FILE (default: its suffix, else png)",
+    line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
     constexpr int kNarrowest = 200, kWidest = 10000;
     line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of the map",

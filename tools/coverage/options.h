@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/common_options.h"
+#include "cover/coverage_formats.h"
 #include "cover/map.h"
 #include "cover/requirement.h"
 
@@ -18,8 +19,8 @@ struct CoverageToolOptions {
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
     std::string report;  ///< file for the report as JSON besides stdout; "" for none
-    std::string format;  ///< of the product; "" without one
-    std::string trace;   ///< file of what a search tried, for the map; "" for none
+    const CoverageFormat* format = nullptr;  ///< of the product; null without one
+    std::string trace;  ///< file of what a search tried, for the map; "" for none
     MapOptions map;
     bool any_environment = false;
 };

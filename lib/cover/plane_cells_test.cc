@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/sight.h"
+#include "cover/plane_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <random>
 
 #include "cover/scan_plane.h"
+#include "cover/sight.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
 
