@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "env/level.h"
 
 namespace ispace {
 
@@ -18,8 +19,9 @@ std::vector<Site> proposeAll(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
     const CandidateDensity& density = options.density;
     std::vector<Point2> places = latticePlaces(environment.limits(), density.lattice_step);
-    const std::vector<Point2> along = placesAlong(environment.freeFloor(height), density.wall_step,
-                                                  kOffWall, environment.slice(height).sheets);
+    const auto level = environment.level(height);
+    const std::vector<Point2> along =
+        placesAlong(level->freeFloor(), density.wall_step, kOffWall, level->slice().sheets);
     places.insert(places.end(), along.begin(), along.end());
     return sitesAt(places, headingsPerPlace(options));
 }
@@ -53,9 +55,10 @@ std::vector<Site> proposeAlongWalls(const ProposalRequest& request) {
 
 std::vector<Site> proposeMedialAxis(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
-    return sitesAt(medialPlaces(environment.freeFloor(height), options.density.lattice_step,
-                                environment.slice(height).sheets),
-                   headingsPerPlace(options));
+    const auto level = environment.level(height);
+    return sitesAt(
+        medialPlaces(level->freeFloor(), options.density.lattice_step, level->slice().sheets),
+        headingsPerPlace(options));
 }
 
 std::vector<Site> proposeListed(const ProposalRequest& request) { return request.options.list; }

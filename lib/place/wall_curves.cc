@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "env/level.h"
 #include "env/point_location.h"
 #include "env/walls.h"
 #include "geom/planar_map.h"
@@ -16,19 +17,19 @@
 namespace ispace {
 
 Slice wallSlice(const Environment& environment, double height) {
-    Slice slice;
-    slice.height = height;
-    for (const Element& element : environment.elements()) {
-        const std::string& keyword = element.record.keyword();
-        if (!isWall(element.record) && keyword != "door" && keyword != "window") continue;
-        for (const Sheet& sheet : element.body.sheets)
-            if (sheet.bottom <= height && height <= sheet.top && !sheet.clear)
-                slice.sheets.push_back(sheet.line);
-        for (const Prism& prism : element.body.prisms)
-            if (prism.bottom <= height && height <= prism.top)
-                slice.solids.push_back(prism.footprint);
-    }
-    return slice;
+    const auto level = environment.level(height);
+    const Slice& slice = level->slice();
+    const auto is_wall = [&](std::size_t owner) {
+        const Record& record = environment.elements()[owner].record;
+        return isWall(record) || record.keyword() == "door" || record.keyword() == "window";
+    };
+    Slice walls;
+    walls.height = height;
+    for (std::size_t i = 0; i < slice.sheets.size(); ++i)
+        if (is_wall(slice.sheet_owners[i])) walls.sheets.push_back(slice.sheets[i]);
+    for (std::size_t i = 0; i < slice.solids.size(); ++i)
+        if (is_wall(slice.solid_owners[i])) walls.solids.push_back(slice.solids[i]);
+    return walls;
 }
 
 namespace {
