@@ -4,6 +4,8 @@
 #include <map>
 
 #include "base/number.h"
+#include "env/level.h"
+#include "env/point_location.h"
 #include "env/solid_tree.h"
 #include "sensor/kind.h"
 #include "trace/ray_world.h"
@@ -46,13 +48,12 @@ std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& senso
         warnings.push_back(scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
                            (record.keyword() == "laser" ? ", or let arrange place it" : ""));
     }
-    SolidJudge judge(scene.environment);
     bool listens = with_receivers;
     const auto check = [&](const Sensor& sensor) {
         const Point3 place = sensor.pose.position;
-        const bool inside = judge.isInside(place);
+        const bool inside = scene.environment.level(place.z)->isBuried(place.onFloor());
         if (!inside && place.z >= 0 &&
-            scene.environment.indoor().locate(place.onFloor()) != Side::Outside)
+            scene.environment.indoorIndex().locate(place.onFloor()) != Side::Outside)
             return;
         std::string phrase = sensor.id;
         phrase.append(inside ? " stands inside something solid at "

@@ -2,6 +2,8 @@
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
 #include <iostream>
+#include <map>
+#include <memory>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -10,6 +12,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
+#include "env/level.h"
 #include "layout/scene.h"
 #include "scan/delivery.h"
 #include "scan/options.h"
@@ -38,12 +41,12 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
 }
 
 /// Counts the poses that are inside something solid.
-class PoseDoubts {
+class BuriedPoses {
   public:
-    explicit PoseDoubts(const Environment& environment) : judge_(environment) {}
+    explicit BuriedPoses(const Environment& environment) : environment_(environment) {}
     void look(const std::vector<ReadingJob>& jobs) {
         for (const ReadingJob& job : jobs)
-            if (judge_.isInside(job.pose.position) && count_++ == 0) first_ = job;
+            if (isBuried(job.pose.position) && count_++ == 0) first_ = job;
     }
     [[nodiscard]] std::vector<std::string> phrases() const {
         if (count_ == 0) return {};
@@ -55,7 +58,19 @@ class PoseDoubts {
     }
 
   private:
-    SolidJudge judge_;
+    /// Each height costs a slice, so only those that come first are looked at.
+    bool isBuried(Point3 place) {
+        constexpr std::size_t kMaxHeights = 64;
+        auto known = levels_.find(place.z);
+        if (known == levels_.end()) {
+            if (levels_.size() == kMaxHeights) return false;
+            known = levels_.emplace(place.z, environment_.level(place.z)).first;
+        }
+        return known->second->isBuried(place.onFloor());
+    }
+
+    const Environment& environment_;
+    std::map<double, std::shared_ptr<const Level>> levels_;
     std::int64_t count_ = 0;
     ReadingJob first_;
 };
@@ -139,17 +154,17 @@ void scan(const ScanCommand& command) {
     const auto delivery = makeDelivery(options, sensors, *format, count);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     progress->begin("readings", std::max<std::int64_t>(count, 0));
-    PoseDoubts doubts(scene.environment);
+    BuriedPoses buried(scene.environment);
     std::int64_t done = 0;
     runReadings(*source, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
                 [&](Readings& readings) {
-                    if (moves) doubts.look(readings.jobs);
+                    if (moves) buried.look(readings.jobs);
                     done += static_cast<std::int64_t>(readings.jobs.size());
                     delivery->write(readings);
                 });
     delivery->commit();
     progress->end();
-    warn(options, doubts.phrases());
+    warn(options, buried.phrases());
     std::vector<std::string> files = filesOf(input);
     if (moves) files.push_back(options.poses);
     writeDependencies(options.common, files);
