@@ -1,39 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/warnings.h"
 
-#include <map>
-
 #include "base/number.h"
 #include "env/level.h"
 #include "env/point_location.h"
-#include "env/solid_tree.h"
 #include "sensor/kind.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
-
-struct SolidJudge::Data {
-    const Environment& environment;
-    std::map<double, SolidTree> levels = {};
-
-    /// The solids of one height.
-    const SolidTree* at(double height) {
-        constexpr std::size_t kMaxLevels = 64;
-        const auto known = levels.find(height);
-        if (known != levels.end()) return &known->second;
-        if (levels.size() == kMaxLevels) return nullptr;
-        return &levels.emplace(height, environment.slice(height).solids).first->second;
-    }
-};
-
-SolidJudge::SolidJudge(const Environment& environment)
-    : data_(std::make_unique<Data>(Data{environment})) {}
-SolidJudge::~SolidJudge() = default;
-
-bool SolidJudge::isInside(Point3 place) {
-    const SolidTree* const level = data_->at(place.z);
-    return level != nullptr && level->isInside(place.onFloor(), kRayEpsilon);
-}
 
 std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& sensors,
                                         const std::vector<std::string>& globs,
