@@ -93,7 +93,7 @@ bool wouldBlock(const std::error_code& error) {
 }  // namespace
 
 /// Ends the connection if it does not take a role in time.
-void Connection::expectRole() {
+void ClientConnection::expectRole() {
     timer_.expires_at(heard_ + limits_.roleless);
     timer_.async_wait([self = shared_from_this()](auto aborted) {
         if (aborted || !self->roleless()) return;
@@ -102,7 +102,7 @@ void Connection::expectRole() {
     });
 }
 
-void Connection::makeWay(WallTime since) {
+void ClientConnection::makeWay(WallTime since) {
     if (!roleless() || heard_ > since) return;
     catchUp();
     if (!roleless() || heard_ > since) return;
@@ -110,18 +110,18 @@ void Connection::makeWay(WallTime since) {
 }
 
 /// Reads what has come: while the world took its time, nobody looked.
-void Connection::catchUp() {
+void ClientConnection::catchUp() {
     if (mayAnswer() && !lines_.ready() && !eof_) receive();
 }
 
-void Connection::cutOff(std::string_view text) {
+void ClientConnection::cutOff(std::string_view text) {
     if (out_.abandon()) out_.append("\n");
     owed_ = 0;
     refuse(text);
 }
 
 /// Does all that can be done now, and arranges to be called when more can.
-void Connection::pump() {
+void ClientConnection::pump() {
     answer();
     flush();
     if (closed()) return;
@@ -134,7 +134,7 @@ void Connection::pump() {
     listen();
 }
 
-void Connection::pumpLater() {
+void ClientConnection::pumpLater() {
     if (std::exchange(posted_, true)) return;
     asio::post(socket_.get_executor(), [self = shared_from_this()] {
         self->posted_ = false;
@@ -142,7 +142,7 @@ void Connection::pumpLater() {
     });
 }
 
-void Connection::answer() {
+void ClientConnection::answer() {
     const auto end = steady_clock::now() + kTurn;
     for (int i = 0; i < kRequestsInTurn && mayAnswer() && steady_clock::now() < end; ++i) {
         if (lines_.tooLong())
@@ -157,7 +157,7 @@ void Connection::answer() {
     }
 }
 
-void Connection::stepped() {
+void ClientConnection::stepped() {
     if (!session_) return;
     const bool waited = session_->waiting();
     session_->stepped();
@@ -167,13 +167,13 @@ void Connection::stepped() {
 }
 
 /// What to send next; a scan only when there is nothing else.
-std::string_view Connection::nextPiece() {
+std::string_view ClientConnection::nextPiece() {
     if (out_.front().empty() && session_) out_.put(session_->takeScan());
     return out_.front();
 }
 
 /// Writes as much as the system takes; a handler goes on with the rest.
-void Connection::flush() {
+void ClientConnection::flush() {
     while (!writing_ && !closed()) {
         const std::string_view piece = nextPiece();
         if (piece.empty()) return;
@@ -197,7 +197,7 @@ void Connection::flush() {
     }
 }
 
-void Connection::listen() {
+void ClientConnection::listen() {
     // While a STEP is under way only to see the end of the connection, as long as there is room.
     const bool waits = waiting() && !lines_.ready() && !lines_.tooLong();
     if (reading_ || eof_ || !(mayAnswer() || waits)) return;
@@ -208,7 +208,7 @@ void Connection::listen() {
     });
 }
 
-void Connection::receive() {
+void ClientConnection::receive() {
     std::array<char, kBlock> block;
     std::error_code error;
     const std::size_t size = socket_.read_some(asio::buffer(block), error);
@@ -222,7 +222,7 @@ void Connection::receive() {
 
 /// Sends what there is; then closes. With unread input that would reset the
 /// connection, and the other side might lose what it was told last.
-void Connection::linger() {
+void ClientConnection::linger() {
     if (!std::exchange(ending_, true)) closeAfter(limits_.patience);
     if (writing_ || std::exchange(discarding_, true)) return;
     if (eof_) return close();
@@ -232,14 +232,14 @@ void Connection::linger() {
     discard();
 }
 
-void Connection::closeAfter(std::chrono::nanoseconds time) {
+void ClientConnection::closeAfter(std::chrono::nanoseconds time) {
     timer_.expires_after(time);
     timer_.async_wait([self = shared_from_this()](auto aborted) {
         if (!aborted) self->close();
     });
 }
 
-void Connection::discard() {
+void ClientConnection::discard() {
     constexpr int kBlocksInTurn = 16;
     std::array<char, kBlock> block;
     for (int i = 0; i < kBlocksInTurn; ++i) {
@@ -254,7 +254,7 @@ void Connection::discard() {
     });
 }
 
-void Connection::end() {
+void ClientConnection::end() {
     last_ = true;
     if (session_) {
         session_->finish();
@@ -265,7 +265,7 @@ void Connection::end() {
     discarding_ ? discard() : pump();
 }
 
-void Connection::close() {
+void ClientConnection::close() {
     std::error_code ignored;
     timer_.cancel();
     socket_.close(ignored);

@@ -69,9 +69,9 @@ class Outbox {
 
 /// The transport of one session. It reads, answers, writes, and at the end waits for the other side
 /// to close; handlers keep it alive until then.
-class Connection : public std::enable_shared_from_this<Connection> {
+class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
   public:
-    Connection(asio::ip::tcp::socket socket, const ServerLimits& limits)
+    ClientConnection(asio::ip::tcp::socket socket, const ServerLimits& limits)
         : socket_(std::move(socket)),
           timer_(socket_.get_executor()),
           limits_(limits),

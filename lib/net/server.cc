@@ -82,7 +82,7 @@ struct Server::Data {
     asio::posix::stream_descriptor stopper{io};
     std::optional<WallTime> alarm_time;
     tcp::endpoint local;
-    std::vector<std::shared_ptr<Connection>> connections;  // in the order of their coming
+    std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
 };
 
@@ -112,7 +112,7 @@ void Server::Data::welcome(tcp::socket socket) {
         if (told == connections.end()) return;
         (*told)->close();
     }
-    const auto connection = std::make_shared<Connection>(std::move(socket), limits);
+    const auto connection = std::make_shared<ClientConnection>(std::move(socket), limits);
     connections.push_back(connection);
     if (!full) {
         connection->serve(state);
@@ -127,7 +127,7 @@ void Server::Data::welcome(tcp::socket socket) {
 /// Ends the connection that has gone longest without a role. True if there is a place now.
 bool Server::Data::makeRoom() {
     const WallTime since = steady_clock::now() - limits.roleless_grace;
-    std::vector<std::shared_ptr<Connection>> idle;
+    std::vector<std::shared_ptr<ClientConnection>> idle;
     for (const auto& connection : connections)
         if (connection->roleless() && connection->heard() <= since) idle.push_back(connection);
     std::sort(idle.begin(), idle.end(),
@@ -161,7 +161,7 @@ void Server::Data::relieve() {
     for (const auto& connection : connections) replies += connection->memory();
     if (replies + state.staleBytes() <= limits.unread) return;
     const std::size_t share = limits.unread / (limits.clients + kMaxLingering);
-    std::vector<std::shared_ptr<Connection>> slow;
+    std::vector<std::shared_ptr<ClientConnection>> slow;
     for (const auto& connection : connections)
         if (connection->holds() > share) slow.push_back(connection);
     std::sort(slow.begin(), slow.end(),
