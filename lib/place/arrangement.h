@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/place: candidates and arranging. Uses cover, solve and below; TBB and CGAL inside.
 #pragma once
 
 #include <cstddef>

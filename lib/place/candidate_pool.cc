@@ -155,8 +155,7 @@ struct CandidatePool::Data {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
-                const CandidateViews views(sight, target.grid, kind.model, mount,
-                                           &weights.counted);
+                const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
                                    share))
@@ -215,7 +214,7 @@ struct CandidatePool::Data {
             throw UnmetError(noPlaceText(
                 kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
         }
-        if (!addLevels(set, kind, first.levels, kLeastPlaces) || !first.is_complete) return false;
+        if (!addLevels(set, kind, first.levels, kMinPlaces) || !first.is_complete) return false;
         const double scope = options.scope.value_or(maxRange(kind.model) / kSegments);
         std::vector<std::uint32_t> weights_left = weights.left;
         std::vector<std::uint32_t> values;
@@ -259,9 +258,9 @@ CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
     Made made{std::make_unique<PosedCandidates>(data_->target.grid.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
-    made.is_complete =
-        is_random ? data_->addRandom(*made.set, kind)
-                  : data_->addLevels(*made.set, kind, data_->levelsFor(kind), kLeastPlaces);
+    made.is_complete = is_random
+                           ? data_->addRandom(*made.set, kind)
+                           : data_->addLevels(*made.set, kind, data_->levelsFor(kind), kMinPlaces);
     data_->bytes += made.set->bytes();
     return made;
 }

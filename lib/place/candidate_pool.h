@@ -7,7 +7,7 @@
 
 #include "cover/target.h"
 #include "place/arrange_options.h"
-#include "place/posed_candidates.h"
+#include "place/candidate_views.h"
 #include "place/sensor_group.h"
 #include "trace/worlds.h"
 

@@ -4,31 +4,63 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "base/progress.h"
 #include "cover/sight.h"
-#include "place/posed_candidates.h"
+#include "geom/pose.h"
 #include "place/sites.h"
 #include "raster/grid.h"
+#include "solve/candidate_set.h"
 
 namespace ispace {
+
+/// Candidates with their poses; those of one site differ only in heading.
+class PosedCandidates : public CandidateSet {
+  public:
+    using CandidateSet::CandidateSet;
+
+    /// As CandidateSet::addSite(); candidate k has headings[k]. \pre as many headings as ranges
+    /// \param mount its heading is not used
+    void addSite(const Pose3& mount, std::span<const Angle> headings,
+                 std::span<const PartRange> ranges, const CellParts& parts) {
+        CandidateSet::addSite(ranges, parts);
+        mounts_.push_back(mount);
+        headings_.insert(headings_.end(), headings.begin(), headings.end());
+    }
+    [[nodiscard]] Pose3 pose(std::size_t candidate) const {
+        Pose3 pose = mounts_[siteOf(candidate)];
+        pose.heading = headings_[candidate];
+        return pose;
+    }
+    /// Memory, that of the poses included.
+    [[nodiscard]] std::size_t bytes() const {
+        return CandidateSet::bytes() + mounts_.size() * sizeof(Pose3) +
+               headings_.size() * sizeof(Angle);
+    }
+
+  private:
+    std::vector<Pose3> mounts_;    // by site
+    std::vector<Angle> headings_;  // by candidate
+};
 
 /// What a kind of sensor sees of the cells of a grid from anywhere, mounted at one height with one
 /// tilt and roll: the same cells as Sight::cellsOf() for a sensor there. Thread-safe.
 class CandidateViews {
   public:
     /// Keeps references.
-    /// \param mount its height, tilt and roll count, its place and heading do not
-    /// \param counted cells that weigh something, if not all do: candidates then see these as
-    ///        they should, and others or not as it comes, which makes them smaller
+    /// \param mount only height, tilt and roll are used
+    /// \param counted the cells with weight; null: all. What candidates see of other cells is then
+    ///        arbitrary, which saves memory
     CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
 
-    /// True if what it sees does not depend on its heading: a laser that looks all around, a cone
-    /// that looks straight down. Only the first heading of a site is then worth a candidate.
+    /// True if the view does not depend on the heading: a laser with a field of view of 360
+    /// degrees, a cone that points straight down. A site then has one candidate, with its first
+    /// heading.
     [[nodiscard]] bool isRound() const;
 
     struct Data;
@@ -38,17 +70,17 @@ class CandidateViews {
     std::unique_ptr<const Data> data_;
 };
 
-/// From so many places at least candidates are made, however early one stops: something to choose
-/// from, which takes milliseconds where a slice is looked at.
-constexpr std::size_t kLeastPlaces = 64;
+/// Candidates are made from at least this many places, however early the search is stopped, so that
+/// there is something to choose from. Takes milliseconds.
+constexpr std::size_t kMinPlaces = 64;
 
-/// Appends the candidates of all sites, in order: of each its headings (only the first if
-/// views.isRound()) are the candidates of one site of the set. The work is shared out over all
-/// cores, some sites at a time, so that hardly more memory is needed than the set takes; the result
-/// does not depend on the number of threads. Sites all over the list are looked at first. False if
-/// progress said to stop: then those that were done are there, in order, at least `least` of them
-/// (or all), spread over the list. \throws UsageError once set.bytes() is more than most_bytes
+/// Appends the candidates of all sites, in order: each site becomes one site of the set, with a
+/// candidate for each heading (only the first if views.isRound()). Works in parallel on a few sites
+/// at a time, so that memory stays close to that of the set; the result does not depend on the
+/// number of threads. A sample spread over the list comes first. False if progress said stop: then
+/// the set has the sites done so far, in order, at least `least` of them (or all), spread over the
+/// list. \throws UsageError once set.bytes() is more than most_bytes
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t most_bytes, Progress& progress, std::size_t least = kLeastPlaces);
+                   std::size_t most_bytes, Progress& progress, std::size_t least = kMinPlaces);
 
 }  // namespace ispace

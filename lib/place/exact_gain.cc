@@ -241,9 +241,9 @@ struct ExactGain::Data {
 ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
                      const FloorWeights& worth, const RefineOptions& options)
     : data_(new Data{movables, options, {scene.environment, options.plane}}) {
-    if (worth.weights.size() > kMostZones)
+    if (worth.weights.size() > kMaxZones)
         throw UsageError("sensors cannot be refined for " + std::to_string(worth.weights.size()) +
-                         " weighted zones, wanted at most " + std::to_string(kMostZones));
+                         " weighted zones, wanted at most " + std::to_string(kMaxZones));
     data_->floors = floorsOf(scene.environment, worth);
     for (const Floor& floor : data_->floors) {
         if (floor.box.empty()) continue;

@@ -19,14 +19,14 @@ namespace ispace {
 class ExactGain {
   public:
     /// All movables stand at their poses.
-    /// \throws UsageError for sensors without an exact region and for more than kMostZones weights
+    /// \throws UsageError for sensors without an exact region and for more than kMaxZones weights
     ExactGain(const Scene& scene, std::span<const Movable> movables, const FloorWeights& worth,
               const RefineOptions& options);
     ~ExactGain();
     ExactGain(const ExactGain&) = delete;
     ExactGain& operator=(const ExactGain&) = delete;
 
-    static constexpr std::size_t kMostZones = 60;
+    static constexpr std::size_t kMaxZones = 60;
 
     /// Worth of all floor that counts, m2 times weight.
     [[nodiscard]] double total() const;

@@ -203,8 +203,8 @@ class Search {
 
 void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                      const FloorWeights& weights) {
-    if (weights.weights.size() > ExactGain::kMostZones)
-        throw UsageError("--refine knows at most " + std::to_string(ExactGain::kMostZones) +
+    if (weights.weights.size() > ExactGain::kMaxZones)
+        throw UsageError("--refine knows at most " + std::to_string(ExactGain::kMaxZones) +
                          " weights");
     const auto refuse = [](const std::string& whose) {
         throw UsageError("--refine: the exact region of " + whose +
