@@ -39,7 +39,7 @@ class CommandLine {
     /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
     void text(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);
-    /// The name of a file, which an empty variable of a shell script is not.
+    /// The name of a file; an empty one, as of an unset shell variable, is refused.
     void file(const std::string& names, const std::string& value, std::string& variable,
               const std::string& help, Enters enters);
     /// May be given several times.
@@ -48,7 +48,7 @@ class CommandLine {
     void flag(const std::string& names, bool& variable, const std::string& help, Enters enters);
     /// How often it was given (-vv).
     void flag(const std::string& names, int& variable, const std::string& help, Enters enters);
-    /// A pair --name / --no-name; `off` wins if both are given, empty if neither is.
+    /// A pair --name / --no-name; `off` wins if both are given, and neither leaves it empty.
     void switchFlag(const std::string& on, const std::string& off, std::optional<bool>& variable,
                     const std::string& help, Enters enters);
     /// Any other option: `take` gets the text; what it throws (UsageError) is prefixed with the
@@ -56,11 +56,11 @@ class CommandLine {
     void parsed(const std::string& names, const std::string& value,
                 std::function<void(const std::string&)> take, const std::string& help,
                 Enters enters);
-    /// Options that work one after another: `take` gets the texts of all of them in the order of
-    /// the command line, and so does the history line. Repeatable.
+    /// Repeatable options whose order matters among each other: `take` and the history line get
+    /// them in the order of the command line.
     void ordered(const std::string& names, const std::string& value,
                  std::function<void(const std::string&)> take, const std::string& help);
-    /// -MD and -MF FILE, as compilers have them, about the product `output`.
+    /// -MD and -MF FILE, as compilers have them, for the product `output`.
     void dependencies(DependencyOptions& options, const std::string& output);
     /// A whole number in [lowest, highest].
     void count(const std::string& names, const std::string& value, std::optional<int>& variable,
@@ -78,7 +78,7 @@ class CommandLine {
     /// One of a fixed set of words.
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
                 const std::string& help, Enters enters);
-    /// An option that there is not, though somebody may look for it: what to do instead.
+    /// An option that no longer exists, and what to use instead.
     void renamed(const std::string& name, const std::string& hint);
     /// The operands in order; at most `most`.
     void operands(std::vector<std::string>& variable, std::size_t most);

@@ -22,24 +22,24 @@ struct CommonOptions {
     std::optional<bool> progress;
     DependencyOptions dependencies;
 };
-/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` says what the product is. Without
-/// it there is no -o, -MD and -MF: the tool writes elsewhere.
+/// Declares -MD -MF -o -q -v -j --seed --progress; `output_help` describes the product; if empty
+/// there is no -o, -MD and -MF.
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
-/// Says `text` on stderr, if the user wants to hear more (-v) and not less (-q).
+/// Prints `text` on stderr with -v and without -q.
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
 
-/// Says each warning on stderr, unless the user wants to hear less (-q).
+/// Prints each warning on stderr unless -q is given.
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings);
 
-/// The same for sentences; of many the first 20, and how many more there are.
+/// The same for sentences: the first 20, and the number of further ones.
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const std::string> sentences);
 
 /// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
-/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants: fewer
-/// work longer, and that is all. 1 starts no thread.
+/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants. 1 starts
+/// no thread.
 void limitThreads(int threads);
 
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
@@ -52,14 +52,14 @@ std::string suffixOf(const std::string& output);
 /// "a, b or c"
 std::string listOf(const std::vector<std::string>& words);
 
-/// The usual suffix of a format of another name: {"log", "carmen"}; "": it has none.
+/// The usual suffix of a format whose name is another: {"log", "carmen"}; "": none.
 struct SuffixOf {
     std::string suffix, format;
 };
 
-/// Format of a product: `to` if given, else the one whose name or usual suffix `output` ends with,
-/// in any case, else, where that has no suffix, the first of `known`.
-/// \param to nothing for a tool without --to \throws UsageError for any other suffix
+/// Format of a product: `to` if given, else the one whose name or usual suffix is the suffix of
+/// `output`, in any case; without a suffix the first of `known`. \param to nothing for a product
+/// without --to \throws UsageError for any other suffix
 std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
                          const std::vector<std::string>& known,
                          const std::vector<SuffixOf>& others = {});
@@ -67,7 +67,7 @@ std::string outputFormat(const std::optional<std::string>& to, const std::string
 /// Refuses binary data for a terminal. \throws UsageError
 void refuseTerminal(const std::string& output, const std::string& what);
 
-/// What --grid and --cell say.
+/// The values of --grid and --cell.
 struct CellWords {
     std::optional<CellCount> grid;
     std::optional<double> cell;
@@ -75,10 +75,11 @@ struct CellWords {
     /// Nothing where neither is given. \throws UsageError for both
     [[nodiscard]] std::optional<CellChoice> choice() const;
 };
-/// Declares `--grid P[,Q]`, at most 10 000 a side, and `--cell M`; `purpose`: what cells are for.
+/// Declares `--grid P[,Q]`, at most 10 000 a side, and `--cell M`; `purpose` of the cells, for
+/// help.
 void addCellOptions(CommandLine& line, CellWords& words, const std::string& purpose);
 
-/// `--any-environment`: go on where the digest in LAYOUT is another than ENV's.
+/// `--any-environment`: continue if the digest in LAYOUT is not ENV's.
 void addAnyEnvironmentOption(CommandLine& line, bool& any_environment);
 
 /// `500M`, `2G`, `1.5GB`: powers of 1024, any case. \throws UsageError

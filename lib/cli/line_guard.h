@@ -8,20 +8,16 @@
 
 namespace ispace {
 
-/// Keeps files of lines whole when this process is killed: a write that SIGKILL cuts short leaves a
-/// piece of a line, which nobody in the process can take back.
-///
-/// A process of its own (in a session of its own, so that signals to a group or a terminal pass it
-/// by) waits for the end of this one and then cuts each file behind its last newline. Files that
-/// end with one stay as they are. It dies with this process when everything of a batch job is
-/// killed at once.
+/// Keeps files of lines whole when this process is killed: a write that SIGKILL interrupts leaves
+/// part of a line, which this process cannot undo. A second process (in its own session, out of
+/// reach of signals to a group or terminal) waits for the end of this one and truncates each file
+/// after its last newline. It cannot help if a batch system kills both at once.
 class LineGuard {
   public:
-    /// Regular files that exist; others (devices, pipes) are left out. `lock`: a descriptor to be
-    /// kept until they are looked after, or -1: what locks the files. \throws std::system_error if
-    /// there can be no other process
+    /// Takes existing regular files and ignores others. `lock`: a descriptor that locks the files,
+    /// kept open until they are done, or -1. \throws std::system_error if no process can be started
     explicit LineGuard(const std::vector<std::string>& files, int lock = -1);
-    /// Waits until the files are looked after.
+    /// Waits until the files are done.
     ~LineGuard();
     LineGuard(const LineGuard&) = delete;
     LineGuard& operator=(const LineGuard&) = delete;

@@ -14,12 +14,12 @@ namespace ispace {
 
 /// How a tool that takes `ENV [LAYOUT]` reads its operands.
 struct SceneRequest {
-    std::vector<std::string> operands;  ///< at most two, in any order; told apart by content
-    bool any_environment = false;       ///< a digest that differs is no error
+    std::vector<std::string> operands;  ///< at most two, in any order; recognised by content
+    bool any_environment = false;       ///< another digest is not an error
     /// Read LAYOUT from stdin where ENV holds no placed sensor, or where there is no operand
     /// (scan and coverage); otherwise a missing operand is a usage error (arrange).
     bool layout_from_stdin = true;
-    /// Keywords of what makes an ENV complete: with one that is placed, no LAYOUT is read.
+    /// Keywords of sensors; an ENV with a placed one needs no LAYOUT.
     std::vector<std::string> sensors = {"laser", "ranger", "camera", "ultrasound"};
 };
 
@@ -30,7 +30,7 @@ struct SceneInput {
     std::optional<Document> layout;
     std::string environment_operand;  ///< "-" for stdin; found through LAYOUT if left out
     std::string layout_operand;       ///< "" without LAYOUT
-    /// As history lines name them: the operands given, and "-" for a stdin read without one.
+    /// For history lines: the operands given, and "-" if stdin was read without one.
     std::vector<std::string> named;
 };
 
@@ -47,7 +47,7 @@ struct OtherLayout {
     Scene scene;
     std::vector<std::string> files;  ///< that it was read from, for -MD
 };
-/// Reads it from `operand`, which may be - where stdin is not read yet. \throws as readScene, and
+/// Reads it from `operand`, which may be - if stdin was not read yet. \throws as readScene, and
 /// FormatError if it is no layout
 OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
                             bool any_environment);
@@ -63,29 +63,28 @@ void checkDigest(const Document& layout, std::span<const Record> environment,
 /// Reads everything on stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
 
-/// `file=` of an `environment` record in a layout written to `output`: the way from its folder to
-/// ENV, never absolute; "" if ENV came from stdin or another pipe.
+/// `file=` of an `environment` record in a layout written to `output`: the path of ENV relative to
+/// its folder, never absolute; "" if ENV came from a stream.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
 
 /// How a tool that takes any number of environments and layouts reads them as one.
 struct InputRequest {
     std::vector<std::string> inputs;  ///< "-" for stdin
     ImportOptions import;
-    std::vector<Record> added;  ///< that edits will add: plans are imported in their light
+    std::vector<Record> added;  ///< by edits; importers of plans must know them
     bool compiles = true;       ///< a layout's digest must match, unless any_environment
     bool any_environment = false;
     bool may_be_empty = false;  ///< an empty stdin is an environment without records
 };
 
-/// All inputs as one document: environments in their order, then layouts, whose records take the
-/// place of those with the same id. Layouts alone bring the environment along that they name, if it
-/// is to be compiled. Names of files are relative to the current folder; history,
-/// notes, warnings and sources are those of all.
-/// \throws as parseDocument; FormatError for doubled ids and for a digest that differs
+/// Joins all inputs: environments in their order, then layouts, whose records replace those with
+/// the same id. If only layouts are given and `compiles` is set, the environment that they name is
+/// read, too. File names are relative to the current folder; history, notes, warnings and sources
+/// are joined. \throws as parseDocument; FormatError for doubled ids and for a digest that differs
 Document readInputs(const InputRequest& request);
 
-/// Makes the names of files in the records, which are relative to `from`, relative to `to`; "" is
-/// the current folder. Absolute names stay.
+/// Rewrites file names in the records from relative to `from` to relative to `to`; "" is the
+/// current folder. Absolute names stay.
 void rebaseFiles(std::vector<Record>& records, const std::string& from, const std::string& to);
 
 }  // namespace ispace

@@ -12,14 +12,14 @@
 
 namespace ispace {
 
-/// A stream into an OutputFile, for what is too large to be held in memory as a whole.
+/// A stream into an OutputFile, for products that are too large for memory.
 class FileStream : private std::streambuf {
   public:
     /// \throws std::system_error if the file cannot be made there
     explicit FileStream(const std::string& target);
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
-    /// Writes what is left and puts the file in its place. \throws std::system_error naming the
+    /// Writes the rest and puts the file in its place. \throws std::system_error naming the
     /// target, a full disk included, whenever it happened
     void commit();
 
@@ -32,27 +32,26 @@ class FileStream : private std::streambuf {
     std::ostream stream_;
 };
 
-/// A rule for make: `target` depends on `sources`, each named once, in their order; streams are
-/// left out. Each source also stands as a target of its own without recipe, so that make goes on
-/// when a file that is no longer used was deleted. Characters with a meaning in names are written
-/// as make wants them. \throws UsageError for names that make cannot read: with = ; control
-/// characters, two %, ~ at the beginning, or a blank, backslash or ) at the end
+/// A rule for make: `target` depends on `sources`, each named once, in their order, without
+/// streams. Each source is also a target without recipe, so that make continues if a file that is
+/// no longer used was deleted. Special characters are escaped for make. \throws UsageError for
+/// names that make cannot read: with = ; control characters, two %, ~ at the beginning, or a blank,
+/// backslash or ) at the end
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
 /// Checks -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name
 void checkDependencies(const DependencyOptions& options, const std::string& output);
 
-/// Claims the product and its rule, see claimOutput: a tool begins with this.
+/// Claims the product and its rule, see claimOutput(); a tool calls it first.
 void claimOutputs(const CommonOptions& options);
 
-/// Writes the rule of -o if it is wanted. \param files all that the product was made from
+/// Writes the rule of -o if wanted. \param files all sources of the product
 void writeDependencies(const CommonOptions& options, std::span<const std::string> files);
 
-/// Names of files that a run writes many of: `-o` names a folder (one that exists, or with / at its
-/// end), or is a pattern with %d or %04d for the frame's number and %s for the sensor's id; %% is a
-/// percent sign. In a folder files are called ID-0000. What a
-/// file's name should not hold, a / in an id, control characters, a dot or dash at its beginning,
-/// is written _.
+/// Names of the files of a run that writes many: `-o` names a folder (one that exists, or with / at
+/// its end), or is a pattern with %d or %04d for the frame's number and %s for the sensor's id; %%
+/// is a percent sign. In a folder files are called ID-0000. Characters unfit for names, as / in an
+/// id, control characters and a leading dot or dash, become _.
 class OutputSet {
   public:
     /// Nothing if `output` is one file or stdout.
@@ -68,7 +67,7 @@ class OutputSet {
     /// Name of the file of a reading: the suffix of a pattern stands in place of its format's own.
     [[nodiscard]] std::string fileOf(const std::string& id, int frame,
                                      const std::string& ending) const;
-    /// Name of a file that stands beside it.
+    /// Name of a file beside it.
     [[nodiscard]] std::string fileBeside(const std::string& id, int frame,
                                          const std::string& ending) const;
 

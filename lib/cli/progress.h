@@ -37,8 +37,7 @@ class ProgressBar final : public Progress {
     bool shown_ = false;
 };
 
-/// A ProgressBar where progress is wanted, or where nobody said and stderr is a terminal; else one
-/// that says nothing.
+/// A ProgressBar if `wanted`, or by default if stderr is a terminal; else one that is silent.
 std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
                                        bool quiet);
 
@@ -50,12 +49,12 @@ class SearchWatch final : public Progress {
 
     void begin(std::string_view phase, std::int64_t total) override { shown_->begin(phase, total); }
     void advance(std::int64_t count) override { shown_->advance(count); }
-    /// With a limit also says how much time is left.
+    /// With a limit, also shows the time left.
     void note(std::string_view text) override;
     void end() override { shown_->end(); }
     [[nodiscard]] bool stopped() const override;
 
-    /// The signal that came, 0 if none did.
+    /// The signal received, 0 if none.
     [[nodiscard]] int signal() const { return signals_.signal(); }
 
   private:
@@ -65,7 +64,7 @@ class SearchWatch final : public Progress {
     StopSignals signals_;
 };
 
-/// Ends this process by the signal, as if nobody had caught it.
+/// Ends this process by the signal, as if it had not been caught.
 [[noreturn]] void endBySignal(int signal);
 
 }  // namespace ispace

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/cli: option tables, operands, progress bar, runTool. The only folder that prints. Uses all
 // of the library and CLI11.
-//
-// A program that holds this file's object ends with status 1 and one line, and not by an abort,
-// where memory or a thread is refused and nobody can catch an exception: in libraries' threads, in
-// functions that must not throw, and before main(). Without such a reason it stays an abort, which
-// is a mistake in the program.
+// A program linked with this file ends with status 1 and one line if memory or a thread is refused
+// where no exception can be caught: in libraries' threads, in noexcept functions, and before
+// main(). Any other std::terminate() remains an abort, a bug.
 #pragma once
 
 #include <functional>
@@ -20,21 +18,21 @@ struct TextRequested {
     std::string text;
 };
 
-/// Runs a tool's body, prints what it throws to stderr, one line an error, and returns the exit
-/// status: 0 done; 1 bad data or failed I/O; 2 usage; 3 a stated requirement not met. A closed
-/// pipe ends the process silently.
+/// Runs a tool's body, prints what it throws to stderr, one line per error, and returns the exit
+/// status: 0 done; 1 bad data or failed I/O; 2 usage; 3 a stated requirement not met. A closed pipe
+/// ends the process silently.
 int runTool(const std::string& tool, const std::function<void()>& body);
 
 /// Writes the pieces and a newline to stderr. Needs no memory, and waits where stderr is
 /// non-blocking. May be called at any time, also before main().
 void sayLine(std::initializer_list<std::string_view> pieces) noexcept;
 
-/// What is said where memory ran out, once: libraries may find it out again at the end. Needs none.
+/// Reports, once, that memory ran out; allocates nothing.
 void sayMemoryIsOut(std::string_view tool) noexcept;
 
-/// Turns TERM and INT into a request to end. While it lives neither ends the process by itself, but
-/// for a second INT; after it both are ignored: what is left to do then is to exit. It needs no
-/// thread: whoever works asks whether a signal came. One at a time in a process.
+/// Turns TERM and INT into requests to stop. While it lives only a second INT ends the process;
+/// afterwards both are ignored, since only exiting is left. No thread is involved: workers poll
+/// signal(). One at a time in a process.
 class StopSignals {
   public:
     /// \throws std::system_error
@@ -43,9 +41,9 @@ class StopSignals {
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;
 
-    /// The number of the last signal that came, 0 if none did. From any thread.
+    /// The last signal received, 0 if none. From any thread.
     [[nodiscard]] int signal() const;
-    /// A descriptor that can be read once a signal came, for who waits; it is not to be read.
+    /// A descriptor that becomes readable with a signal, to wait for; do not read it.
     [[nodiscard]] int descriptor() const { return descriptor_; }
 
   private:

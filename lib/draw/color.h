@@ -32,13 +32,13 @@ constexpr std::size_t kSeriesColors = 7;
 /// vision tell apart, without its yellow, too pale on white; it repeats after kSeriesColors.
 Color seriesColor(std::size_t index);
 
-/// Of the two, mixed as they stand: `share` of `b`, 0..1; opacity of `a`.
+/// Mixes two colours in sRGB: `share` of `b`, 0..1; opacity of `a`.
 Color mixed(Color a, Color b, double share);
 
 /// `share` of the colour on white.
 Color tint(Color color, double share);
 
-/// How light a colour looks, 0..1: what is left of it in grey (luma of BT.709).
+/// Lightness of a colour in grey, 0..1 (luma of BT.709).
 double lightness(Color color);
 
 /// Between colours (0xRRGGBB) at equal distances: 0 is the first, 1 the last. \pre two stops or
@@ -53,8 +53,8 @@ Color turboColor(double share);
 /// so that it reads in grey as well; the first is well below white.
 Color sequentialColor(int level, int levels);
 
-/// Colours of all pictures but those of data and materials. Floor that is not seen is the lightest,
-/// so that what is seen stands out in grey as well.
+/// Colours of all pictures except of data and materials. Unseen floor is the lightest, so that seen
+/// floor stands out in grey as well.
 namespace palette {
 constexpr Color kInk = Color::rgb(0x1F2328);
 constexpr Color kFaintInk = Color::rgb(0x57606A);
@@ -82,7 +82,7 @@ constexpr Color kObject = Color::rgb(0xE2D9CD);
 constexpr Color kObjectEdge = Color::rgb(0x9A9085);
 constexpr Color kZone = Color::rgb(0x6E3A8E);
 
-/// Floor that several sensors see, where colours tell which one does: below the stripes.
+/// Floor that several sensors see, below the stripes in their colours.
 constexpr Color kShared = Color::rgb(0xD4D4D4);
 constexpr Color kSharedHatch = Color::rgb(0x6B6B6B);
 /// Of comparisons: blue and orange, far apart for any colour vision; in grey the hatch tells.

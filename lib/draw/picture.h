@@ -49,7 +49,7 @@ struct Image {
     }
 };
 
-/// Reads a PNG back, e.g. to look at what was drawn; transparency counts as black.
+/// Decodes a PNG, e.g. to check a drawing; transparency counts as black.
 /// \throws FormatError if the bytes are no whole PNG
 Image decodePng(std::string_view bytes);
 std::string encodePng(const Image& image);
@@ -254,7 +254,7 @@ Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape);
 double roundStep(double least);
 
 /// A bar of round length in black and white pieces, at most `most` page units long, with its length
-/// and what else is to be said; `corner` is its lower left end on the page, `em` the size of text.
+/// and more text; `corner` is its lower left end on the page, `em` the size of text.
 void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,
                   const std::string& more = "");
 

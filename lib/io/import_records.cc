@@ -2,9 +2,7 @@
 #include "io/import_records.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "base/number.h"
 #include "env/walls.h"
@@ -69,11 +67,6 @@ void ImportRecords::outline(const Region& region) {
     for (const Polygon& hole : region.holes) fence({hole, true, 0});
 }
 
-void ImportRecords::region(const Region& region, Point2 inside_point) {
-    outline(region);
-    inside(inside_point);
-}
-
 void ImportRecords::inside(Point2 point) { setPoint(add("inside", 0), "at", point); }
 
 void ImportRecords::zone(const std::string& id, Point2 middle, Angle heading, double length,
@@ -110,13 +103,6 @@ std::string ImportRecords::freeId(std::string_view name, const std::string& fall
 
 void failFile(const std::string& name, const std::string& message, int line) {
     throw FormatError(Diagnostic{displayName(name), line, line == 0 ? 0 : 1, message});
-}
-
-std::string reasonNotToRead(const std::string& path) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (error) return error.message();
-    return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -28,8 +28,6 @@ class ImportRecords {
     void wall(const Segment2& line, const std::string& id, int file_line);
     /// Outline and holes as closed fences.
     void outline(const Region& region);
-    /// The same, and a point inside.
-    void region(const Region& region, Point2 inside);
     void inside(Point2 point);
     /// A rectangle of the floor, by its middle.
     void zone(const std::string& id, Point2 middle, Angle heading, double length, double width);
@@ -73,10 +71,6 @@ auto withFileName(const std::string& name, Read read) {
         throw FormatError(std::move(all));
     }
 }
-
-/// Why a file named by another one cannot be read: it is missing, or not a regular file (devices
-/// and pipes may never end); "" if it can.
-std::string reasonNotToRead(const std::string& path);
 
 /// A unit of drawings.
 struct LengthUnit {

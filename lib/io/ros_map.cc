@@ -161,6 +161,14 @@ std::string imagePath(const std::string& image, const std::string& map_name) {
     return (folder / image).string();
 }
 
+/// Why the picture cannot be read, or "". Devices and pipes are refused: they may never end.
+std::string reasonNotToRead(const std::string& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (error) return error.message();
+    return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";
+}
+
 /// \throws FormatError where map.yaml names it
 std::string readImage(const MapHeader& header, const std::string& path, const std::string& name) {
     const auto refuse = [&](const std::string& reason, const char* hint) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/plan: what a scene looks like from above, as shapes of a picture. Uses layout, draw, raster.
+// lib/plan: the plan of a scene, its view from above as shapes of a picture. Uses layout, draw,
+// raster.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +17,10 @@
 
 namespace ispace {
 
-/// Mark of a sensor: a body by its kind, and an arrow where it looks aside.
+/// Mark of a sensor: a body by its kind, and an arrow if it faces sideways.
 struct SensorMark {
     SensorSign sign = SensorSign::Disc;
-    std::optional<Angle> heading = {};  ///< as seen, y up; none: it looks straight up or down
+    std::optional<Angle> heading = {};  ///< as seen, y up; none: straight up or down
     Color color = palette::kInk;
     bool hollow = false;
 };
@@ -27,13 +28,13 @@ struct SensorMark {
 /// The bearings that a placed sensor shows on a plan.
 BearingSpan bearingsOf(const Scene& scene, const Placed& placed);
 
-/// The level part of where a pose looks, if there is one.
+/// The horizontal direction of a pose, if it has one.
 std::optional<Angle> headingOf(const Pose3& pose);
 
-/// At a place of the page.
+/// Draws it at a place of the page.
 void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, double radius);
 
-/// Puts signs and labels where they cover least. All in page units.
+/// Places signs and labels where they cover little, in page units.
 class LabelPlacer {
   public:
     LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {}
@@ -61,7 +62,7 @@ class LabelPlacer {
 struct PlanStyle {
     PageView view = {};
     double em = 10;    ///< size of text, page units
-    Box2 box = {};     ///< what is shown, metres: what lies outside is cut off
+    Box2 box = {};     ///< the part shown, metres
     double cut = 1.2;  ///< walls are cut at this height: lower ones are seen from above
     /// Below an overlay: things in two greys, dark where they stand at the cut, else pale and
     /// translucent; no coverings, no fills of zones.
@@ -77,20 +78,20 @@ class PlanDrawing {
     /// Indoor floor with its coverings, holes of it that are no room.
     void drawFloor();
     void drawZones();
-    /// A sector about each sensor that looks aside: its bearings, not its range, which is mostly
-    /// longer than the plan can show.
+    /// A sector about each sensor that faces sideways, with its bearings but not its range, which
+    /// is mostly longer than the plan.
     void drawFieldsOfView();
-    /// What stands in the room, the higher on top.
+    /// Things in the room, higher ones on top.
     void drawThings();
     void drawWalls();
     void drawOpenings();
-    /// What begins above people's heads, dashed. (A neutral plan shows it among the things.)
+    /// Things above people's heads, dashed. (A neutral plan shows them among the others.)
     void drawOverhead();
     void drawRobots();
     void drawSensors();
-    /// Names of zones, of things that have room for them, of all that is placed.
+    /// Names of zones, of things with enough space, and of all that is placed.
     void drawNames();
-    // Instead of all that the map at a height: free floor, then solids and sheets.
+    // Instead, the map at a height: free floor, then solids and sheets.
     void drawFreeFloor(double height);
     void drawObstacles(double height);
 
@@ -137,16 +138,14 @@ class PlanLayer {
     Picture& picture_;
 };
 
-/// What a plan shows: the limits with walls' thickness, and what stands near them.
+/// The area a plan shows: the limits with walls' thickness, and what stands near them.
 Box2 planBox(const Scene& scene);
 
-/// What lies in holes of the indoor region and is no room, as curves by the even-odd rule.
+/// Holes of the indoor region that are not rooms, as curves by the even-odd rule.
 std::vector<Polygon> outsideOf(const Regions& indoor);
 
 /// A room's own walls count as walls, not as things in it.
 bool isWall(const Element& element);
-/// What of a wall stops sight at this height; the rest is an open door's lintel, a sill, glass.
-bool stopsAt(const Sheet& sheet, double height);
 bool standsAt(double bottom, double top, double height);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What drawings, GeoJSON and maps need to know of an element: its colour, its lines, its area.
+// Elements as drawings, GeoJSON and maps show them: colours, lines, areas and footprints.
 #pragma once
 
 #include <cstddef>
@@ -21,25 +21,24 @@ struct PartAbove {
     bool hidden = false;  ///< another part of the body is above all of it
 };
 
-/// Prisms and meshes of a body, lower ones first; no sheets, no plates. Parts hidden below one
-/// other convex part are told, within a micrometre.
+/// Prisms and meshes of a body, lower ones first; no sheets, no plates. Parts below one convex part
+/// are marked hidden, within a micrometre.
 std::vector<PartAbove> partsFromAbove(const Body& body);
 
-/// What triangles cover of the floor, by the even-odd rule. Exact (see unite) for the few triangles
-/// of simple bodies; of larger meshes the outline of cells of a 500th of the longer side, smoothed
-/// by half a cell. O(triangles + cells).
+/// The floor that triangles cover, by the even-odd rule. Exact (see unite) for few triangles; for
+/// larger meshes the outline of cells, a 500th of the longer side, smoothed by half a cell.
+/// O(triangles + cells).
 std::vector<Polygon> silhouette(const Mesh& mesh);
 
-/// What prisms and meshes of a body cover of the floor: disjoint pieces. Where several parts count,
-/// none of them above all others, holes of meshes are dropped: what a mesh encloses is covered,
-/// too. A single part keeps its holes.
+/// The floor that prisms and meshes of a body cover, in disjoint pieces. A single part keeps its
+/// holes; if several parts count, none above all others, holes of meshes are dropped.
 std::vector<Region> footprintOf(const Body& body);
 
 /// Disjoint pieces of the area that curves bound, outlines counter-clockwise and holes clockwise,
 /// that touch at points only. O(curves^2).
 std::vector<Region> regionsOf(std::vector<Polygon> curves);
 
-/// The colour of a material as screens and paper have it: sRGB of its linear RGB, with its opacity.
+/// The colour of a material in sRGB, with its opacity.
 Color displayColor(Material material);
 
 /// What a plan draws of an element as lines: mid-lines of walls, and where doors and windows are.

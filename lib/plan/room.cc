@@ -85,10 +85,6 @@ bool standsAt(double bottom, double top, double height) {
     return bottom <= height && height <= top;
 }
 
-bool stopsAt(const Sheet& sheet, double height) {
-    return !sheet.clear && standsAt(sheet.bottom, sheet.top, height);
-}
-
 Box2 planBox(const Scene& scene) {
     const Environment& environment = scene.environment;
     Box2 box = environment.limits();

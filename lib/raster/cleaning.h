@@ -14,7 +14,7 @@ struct MapRoom {
     CellPlace offset;  ///< of the cut in the map
 };
 
-/// Metres: on a map made by a robot what is smaller is noise of its sensor.
+/// Metres; smaller features of a robot's map are noise of its sensor.
 constexpr double kNoiseWidth = 0.5;
 
 /// What cleanRoom() did, in pieces and cells.
@@ -25,26 +25,24 @@ struct Cleaning {
     std::size_t edges = 0;  ///< sides of cells around the clean floor
 
     Cleaning& operator+=(const Cleaning& other);
-    /// The map is so noisy that its walls are ragged, too: a speck or spike for each hundred edges.
+    /// True if the map is so noisy that its walls are ragged: a speck or spike per hundred edges.
     [[nodiscard]] bool isRagged() const { return 100 * (specks + spikes) > edges; }
 };
 
-/// Takes what is below a robot map's own noise out of a room, as far as it is small in metres, too:
+/// Removes a robot map's noise from a room, features that are also small in metres:
 ///
 /// - Specks become floor: islands of one or two occupied cells, or as many as chance joins where
 ///   single ones are as frequent as on this map; islands that hold no occupied cell, pinholes
-///   between rays, of up to eight. None is wider than `width`, and legs of tables stay from three
-///   cells on.
+///   between rays, of up to eight. None is wider than `width`; legs of tables stay from three cells
+///   on.
 /// - Spikes go: strips of floor that are one cell wide, or up to `width` where no occupied cell is
-///   near, and what hangs on them, unless that is a room by itself (kMinRoomArea, kMinRoomWidth) or
-///   holds one of `keep`. Strips that rooms need to hang together stay.
+///   near, and what is connected only through them, unless that is a room (kMinRoomArea,
+///   kMinRoomWidth) or holds one of `keep`. Strips that connect rooms stay.
 /// - Slits of unknown between rays, one cell wide and with a dead end, become floor.
 /// - Bumps of straight walls, one cell deep and up to three long, become flat; corners keep
 ///   their places.
-///
-/// Cells of 0.3 times the width and more mean something, and nothing is done. What is left is
-/// connected by sides. O(cells). \param resolution, width metres: of a cell, and below which
-/// features are noise
+/// With cells of 0.3 times the width or more nothing is done. The result is connected by sides.
+/// O(cells). \param resolution, width metres: of a cell, and below which features are noise
 Cleaning cleanRoom(MapRoom& room, double resolution, double width,
                    const std::vector<CellPlace>& keep);
 

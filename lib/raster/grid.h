@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/raster: grids of cells, scanlines, contours, components, morphology, pictures in. Uses geom
-// and below; OpenCV and libpng inside.
+// lib/raster: grids and sets of cells, scanlines, contours, morphology, pictures as maps. Uses
+// geom; OpenCV and libpng inside.
 #pragma once
 
 #include <cstddef>
@@ -93,9 +93,9 @@ struct GridAxis {
 /// Sorts the centres of a window of cells into inside, boundary and outside of closed curves.
 ///
 /// For each row an edge that crosses it flips all cells to its left, so that after the last edge a
-/// cell's parity is the number of flips at cells from it on. Where the flip starts is computed in
-/// doubles and, where that may be off by rounding, settled by orientation(), which makes the result
-/// exact. Rows are bits: parities of 64 cells come of six shifts.
+/// cell's parity is the number of flips at cells from it on. The start of a flip is computed in
+/// doubles and, near rounding errors, settled by orientation(), so the result is exact. Rows are
+/// bits: parities of 64 cells take six shifts.
 class Scanline {
   public:
     Scanline() = default;

@@ -13,7 +13,7 @@ namespace ispace {
 /// A region that occupies more of the picture's border than this is probably the outside.
 constexpr double kOutsideShare = 0.5;
 
-/// The least area (square metres) and width (metres) of a room.
+/// Minimum area (square metres) and width (metres) of a room.
 constexpr double kMinRoomArea = 1, kMinRoomWidth = 0.5;
 
 /// The piece of the free cells that is most likely the room; none if there is no piece.
@@ -21,8 +21,8 @@ constexpr double kMinRoomArea = 1, kMinRoomWidth = 0.5;
 /// Pieces below 1 m2 that are small against the largest one, below 1/16 of it, are no rooms. A
 /// piece at the picture's border, along a share f of it, is probably the outside or open to it: it
 /// is taken only if its area times min(1/8, 1 - f) is larger than the largest piece that does not
-/// touch the border. So a cave that fills its picture wins over hollow rocks, but the yard around
-/// a house does not win over the house.
+/// touch the border. So a cave that fills its picture beats hollow rocks, but the yard around a
+/// house does not beat the house.
 std::optional<std::size_t> likeliestRoom(const CellPieces& pieces, double resolution);
 
 /// The pieces that are closed rooms: away from the picture's border, at least kMinRoomArea large

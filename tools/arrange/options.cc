@@ -101,8 +101,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
                 "urg-04lx:3 or laser,range=4,fov=180:3",
                 Enters::History);
     line_.texts("--fixed", "ID", options_.fixed,
-                "only these sensors of LAYOUT stay where they are (globs allowed), the others are "
-                "placed anew; without it all that have a place stay",
+                "keep only these sensors of LAYOUT in place (globs allowed) and place the others "
+                "again; by default all placed sensors stay",
                 Enters::History);
     addPlaceOptions();
     addMountOptions();
@@ -131,7 +131,7 @@ void ArrangeCommand::addPlaceOptions() {
     line_.parsed(
         "--candidates", "GRID,WALL,HEADINGS",
         [&how](const std::string& text) { how.density = readDensity(text); },
-        "of all: steps of the lattice and along walls, headings a place (default 0.25,0.25,16)",
+        "of all: steps of the lattice and along walls, headings per place (default 0.25,0.25,16)",
         Enters::History);
     line_.file("--places", "FILE", options_.places_file,
                "of list: lines X,Y[,HEADING] (CSV), - is stdin", Enters::BaseName);
@@ -139,8 +139,8 @@ void ArrangeCommand::addPlaceOptions() {
         for (const StrategyOption& option : row.options) addStrategyOption(row, option);
     line_.count(
         "--deg", "N", how.headings, 1, kMaxHeadings,
-        "headings a place, 360/N degrees apart, the first 0, of wall the inner normal "
-        "(default 8 of grid and random, else those of --candidates; of wall the normals alone)",
+        "headings per place, 360/N degrees apart from 0, or from the inner normal of a wall "
+        "(default: 8 for grid and random, the normal for wall, else as in --candidates)",
         Enters::History);
 }
 
@@ -170,7 +170,7 @@ void ArrangeCommand::addMountOptions() {
         [&mount](const std::string& text) {
             mount.heights = numbers("H", text, Unit::Length, 1, 100, 0, 1000);
         },
-        "heights to choose from (default 0.15, or as the mount has it)", Enters::History);
+        "heights to choose from (default 0.15, or that of the mount)", Enters::History);
     line_.parsed(
         "--tilt", "DEG[,DEG...]",
         [&mount](const std::string& text) {
@@ -178,9 +178,9 @@ void ArrangeCommand::addMountOptions() {
             for (const double tilt : numbers("DEG", text, Unit::Angle, 1, 100, -90, 90))
                 mount.tilts.push_back(Angle::degrees(tilt));
         },
-        "tilts to choose from, for sensors that do not say theirs (default 0)", Enters::History);
+        "tilts to choose from, for sensors without one of their own (default 0)", Enters::History);
     line_.meters("--clearance", mount.clearance, 0, 1000,
-                 "least distance from walls and objects at that height", Enters::History);
+                 "minimum distance from walls and objects at that height", Enters::History);
     line_.texts("--keep-out", "ZONE", options_.zones.keep_out, "no sensor stands there",
                 Enters::History);
     line_.texts("--keep-in", "ZONE", options_.zones.keep_in, "sensors stand only there",
@@ -190,7 +190,7 @@ void ArrangeCommand::addMountOptions() {
 void ArrangeCommand::addGoalOptions() {
     ArrangeOptions& how = options_.how;
     line_.texts("--zone", "ZONE", options_.zones.targets,
-                "cover this part of the floor alone: the id of a zone, rect:X,Y,X,Y or "
+                "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y or "
                 "poly:X,Y;X,Y;...",
                 Enters::History);
     line_.texts("--weight", "ZONE=W", options_.zones.weights,
@@ -199,19 +199,18 @@ void ArrangeCommand::addGoalOptions() {
     line_.count("--redundancy", "K", how.redundancy, 1, kMaxTimes,
                 "floor counts if K sensors see it", Enters::History);
     line_.flag("--connected", how.is_connected,
-               "views must hang together: each shares a cell with another, and so all of them",
-               Enters::History);
+               "views must form one connected whole by sharing cells", Enters::History);
     line_.parsed(
         "--target", "SHARE", [&how](const std::string& text) { how.target = readShare(text); },
         "place the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
-        "is then the most; exit with 3 if it cannot be reached",
+        "is then a maximum; exit with 3 if it cannot be reached",
         Enters::History);
     line_.parsed(
         "--budget", "COST",
         [&how](const std::string& text) {
             how.budget = readNumber(text, 0, 1e9, "a cost from 0 on");
         },
-        "buy no more than this, at cost= each (default 1); COUNT is then the most",
+        "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that rangers and ultrasound cover, 0 is the floor",
@@ -230,23 +229,23 @@ void ArrangeCommand::addSearchOptions() {
                 Enters::History);
     line_.parsed(
         "--gap", "SHARE", [&how](const std::string& text) { how.search.gap = readGap(text); },
-        "end once value and bound are this near, e.g. 1%", Enters::History);
+        "end once value and bound are this close, e.g. 1%", Enters::History);
     constexpr double kMaxWait = 1e9;
     line_.duration("--time-limit", options_.time_limit, 0, kMaxWait,
                    "end with the best so far after this time (500ms, 2s, 1min), marked complete=no",
                    Enters::History);
     line_.flag("--refine", how.refine,
-               "go on from the best in continuous place and heading, by exact area",
+               "improve the best layout in continuous places and headings, by exact area",
                Enters::History);
     line_.parsed(
         "--max-memory", "SIZE",
         [&how](const std::string& text) { how.most_bytes = byteCount(text); },
-        "what candidates and the tree of exact may take, e.g. 2G (default 8G)", Enters::Nothing);
+        "limit for candidates and the tree of exact, e.g. 2G (default 8G)", Enters::Nothing);
 }
 
 void ArrangeCommand::addFileOptions() {
     line_.file("--curve", "FILE", options_.curve_file,
-               "also tell what 1, 2, ... sensors cover: print it, and write FILE (.csv, .png, .svg "
+               "also print what 1, 2, ... sensors cover, and write it to FILE (.csv, .png, .svg "
                "or .pdf)",
                Enters::Nothing);
     line_.file("--trace", "FILE", options_.trace_file,

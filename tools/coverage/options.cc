@@ -24,13 +24,12 @@ struct Words {
 };
 
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
-    addCellOptions(line, words.cells, "that figures count");
+    addCellOptions(line, words.cells, "that metrics count");
     line.choice("--grid-of", words.cells_by, {"region", "beams"},
                 "a cell is seen if it lies in what a laser sees, or in the polygon of its beam "
                 "ends (default region)",
                 Enters::History);
-    line.meters("--height", measure.height, 0, 1000, "height at which free floor is judged",
-                Enters::History);
+    line.meters("--height", measure.height, 0, 1000, "height of the free floor", Enters::History);
     line.meters("--plane", measure.plane, 0, 1000,
                 "height of the plane that rangers and ultrasound cover, 0 is the floor",
                 Enters::History);
@@ -78,15 +77,15 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                      "stdin unless ENV holds placed sensors. The report goes to stdout.");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
-    line.file("--report", "FILE", o.report, "write the report there, too, as JSON (.json)",
+    line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
               Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
-               "exit with 3 if less is covered, by exact figures where they are known: 95% of the "
-               "indoor floor, free:95%, zone:NAME=95%; may be given several times",
+               "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
+               "indoor floor, free:95%, zone:NAME=95%",
                Enters::History);
     line.file("--compare", "LAYOUT", o.other,
-              "tell what is gained and lost beside this layout, in figures and on the map",
+              "report gains and losses against this layout, in numbers and on the map",
               Enters::BaseName);
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
@@ -94,7 +93,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of the map",
                Enters::History);
     line.choice("--color", words.color, {"redundancy", "sensor"},
-                "what the colour of the floor tells: how many sensors see it, or which (default "
+                "colour the floor by how many sensors see it, or by which (default "
                 "redundancy)",
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <memory>
 
@@ -14,9 +13,8 @@
 #include "cli/run_tool.h"
 #include "env/level.h"
 #include "layout/scene.h"
-#include "scan/delivery.h"
 #include "scan/options.h"
-#include "scan/pose_sensor.h"
+#include "scan/readings.h"
 #include "sense/sensors.h"
 #include "sense/warnings.h"
 
@@ -44,7 +42,7 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
 class BuriedPoses {
   public:
     explicit BuriedPoses(const Environment& environment) : environment_(environment) {}
-    void look(const std::vector<ReadingJob>& jobs) {
+    void count(const std::vector<ReadingJob>& jobs) {
         for (const ReadingJob& job : jobs)
             if (isBuried(job.pose.position) && count_++ == 0) first_ = job;
     }
@@ -58,7 +56,7 @@ class BuriedPoses {
     }
 
   private:
-    /// Each height costs a slice, so only those that come first are looked at.
+    /// A height costs a slice, so only the first ones are tested.
     bool isBuried(Point3 place) {
         constexpr std::size_t kMaxHeights = 64;
         auto known = levels_.find(place.z);
@@ -74,15 +72,6 @@ class BuriedPoses {
     std::int64_t count_ = 0;
     ReadingJob first_;
 };
-
-void warn(const ScanToolOptions& options, const std::vector<std::string>& warnings) {
-    constexpr std::size_t kMax = 20;
-    if (options.common.quiet) return;
-    for (std::size_t i = 0; i < std::min(kMax, warnings.size()); ++i)
-        std::cerr << "scan: warning: " << warnings[i] << '\n';
-    if (warnings.size() > kMax)
-        std::cerr << "scan: warning: and " << warnings.size() - kMax << " more\n";
-}
 
 std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors) {
     if (options.poses.empty())
@@ -130,18 +119,18 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
     limitThreads(options.common.threads);
     const SceneInput input = readScene(requestOf(options));
-    ispace::warn(options.common, "scan", input.environment.warnings);
+    warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
     const auto is_selected = [&](std::size_t i) {
         return isSelected(scene.ids[i], options.select);
     };
-    if (!moves) warn(options, leftOut(scene, kUnread, "simulated", is_selected));
+    if (!moves) warn(options.common, "scan", leftOut(scene, kUnread, "simulated", is_selected));
     const Sensors sensors =
         moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
-    if (!moves) warn(options, sensorWarnings(scene, sensors, options.select));
+    if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
-    warn(options, format->warnings());
+    warn(options.common, "scan", format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
 
     Worlds worlds(scene.environment);
@@ -158,13 +147,13 @@ void scan(const ScanCommand& command) {
     std::int64_t done = 0;
     runReadings(*source, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
                 [&](Readings& readings) {
-                    if (moves) buried.look(readings.jobs);
+                    if (moves) buried.count(readings.jobs);
                     done += static_cast<std::int64_t>(readings.jobs.size());
                     delivery->write(readings);
                 });
     delivery->commit();
     progress->end();
-    warn(options, buried.phrases());
+    warn(options.common, "scan", buried.phrases());
     std::vector<std::string> files = filesOf(input);
     if (moves) files.push_back(options.poses);
     writeDependencies(options.common, files);

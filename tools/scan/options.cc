@@ -46,11 +46,12 @@ void ScanCommand::declare() {
     line_.texts("--select", "GLOB", o.select, "read only sensors whose ids match (* ? [a-z])",
                 Enters::History);
     constexpr int kMaxFrames = 1'000'000'000;
-    line_.count("--frames", "N", o.frames, 1, kMaxFrames,
-                "readings of each sensor, at its rate (default 1); of --motion the most it takes",
-                Enters::History);
-    line_.switchFlag("--noise", "--no-noise", noise_, "the devices' noise, by --seed (default off)",
-                     Enters::History);
+    line_.count(
+        "--frames", "N", o.frames, 1, kMaxFrames,
+        "readings of each sensor, at its rate (default 1); with --motion, at most this many",
+        Enters::History);
+    line_.switchFlag("--noise", "--no-noise", noise_,
+                     "add the devices' noise, from --seed (default off)", Enters::History);
     line_.file("--poses", "FILE", o.poses,
                "one reading at each pose of a TUM trajectory, - for stdin: `t x y z qx qy qz qw`",
                Enters::BaseName);
@@ -59,26 +60,26 @@ void ScanCommand::declare() {
                "laser,range=8,fov=270 (default: the one sensor there is)",
                Enters::History);
     line_.flag("--motion", o.motion,
-               "drive along the poses at the sensor's rate, each beam from where it then is",
+               "drive along the poses at the sensor's rate, each beam from its own place",
                Enters::History);
     line_.choice("--coordinates", coordinates_, {"world", "sensor"},
                  "frame of the points in csv, pcd and ply (default world)", Enters::History);
-    line_.choice("--encoding", encoding_, {"binary", "ascii"}, "of pcd and ply (default binary)",
-                 Enters::History);
+    line_.choice("--encoding", encoding_, {"binary", "ascii"},
+                 "encoding of pcd and ply (default binary)", Enters::History);
     constexpr double kMaxScale = 1e6;
     line_.parsed(
         "--depth-scale", "N",
         [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMaxScale); },
-        "depth png: units a metre (default 1000: millimetres)", Enters::History);
+        "depth png: units per metre (default 1000: millimetres)", Enters::History);
     line_.switchFlag("--color", "--no-color", color_,
                      "depth png: also NAME-color.png for people (default on)", Enters::History);
-    line_.count("--size", "N", o.map_pixels, 200, 8000, "obstacle map png: pixels a side",
+    line_.count("--size", "N", o.map_pixels, 200, 8000, "obstacle map png: pixels per side",
                 Enters::History);
     constexpr double kColdest = -100, kHottest = 100;
     line_.parsed(
         "--temperature", "C",
         [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
-        "of the air, for ultrasound (default 20)", Enters::History);
+        "air temperature for ultrasound, Celsius (default 20)", Enters::History);
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
     addAnyEnvironmentOption(line_, o.any_environment);

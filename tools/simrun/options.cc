@@ -66,8 +66,7 @@ void SimrunCommand::declareServer() {
     constexpr int kMaxClients = 100'000;
     line_.parsed(
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
-        "where clients connect; port 0: one the system gives (default 127.0.0.1:0)",
-        Enters::Nothing);
+        "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(

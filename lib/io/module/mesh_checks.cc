@@ -36,7 +36,6 @@ class NodeGraph {
     /// \return its number, from 0
     Node add();
     void hang(Node child, Node parent) { children_[parent].push_back(child); }
-    [[nodiscard]] std::size_t size() const { return children_.size(); }
 
     /// \throws std::runtime_error: a circle, more than kMaxMeshNodeDepth below each other, or
     ///         more than kMaxMeshNodes below one, with all repetitions
