@@ -9,8 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "geom/curve.h"
-
 namespace ispace {
 
 namespace {
