@@ -1,18 +1,158 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cover/coverage.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cassert>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/metrics.h"
+#include "cover/sight.h"
 #include "geom/boolean.h"
 #include "sense/scan.h"
+#include "sense/ultrasound.h"
+#include "trace/ray_world.h"
 
 namespace ispace {
 
+std::optional<std::vector<Curve>> regionHeardByEnough(
+    std::span<const SensorView* const> receivers) {
+    std::vector<Layer> layers;
+    layers.reserve(receivers.size());
+    for (const SensorView* view : receivers) {
+        if (!view->region) return std::nullopt;
+        layers.push_back({.curves = *view->region});
+    }
+    try {
+        return Overlay(layers).curves([](const LayerLabel& label) {
+            return label.count >= static_cast<std::int32_t>(kMinReceivers);
+        });
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+}
+
 namespace {
+
+SensorView viewOf(const Sensor& sensor, std::size_t index) {
+    return {.kind = &kindOf(sensor.model),
+            .index = index,
+            .id = sensor.id,
+            .model = deviceName(sensor.model),
+            .pose = sensor.pose,
+            .max_range = maxRange(sensor.model)};
+}
+
+/// Cells whose centre lies in the polygon through the sensor and the ends of its beams, seen from
+/// above; a beam without return ends at max_range (thesis, section 4.5.2). `beams` as of castBeams.
+CellSet cellsAmongBeams(const Grid& grid, const Sensor& sensor, std::span<const float> beams) {
+    const Point3 origin = sensor.pose.position;
+    Polygon outline;
+    outline.reserve(beams.size() + 1);
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+        const double range = std::min(static_cast<double>(beams[k]), sensor.as<Laser>().max_range);
+        const Vec3 beam = sensor.pose.beam(sensor.as<Laser>().bearing(static_cast<int>(k)));
+        outline.push_back((origin + range * beam).onFloor());
+    }
+    if (sensor.as<Laser>().span() < Angle::degrees(360)) outline.push_back(origin.onFloor());
+    const std::vector<Polygon> curves = {std::move(outline)};
+    return cellsWithin(grid, curves);
+}
+
+/// Finds what every laser, ranger and receiver of a scene sees, in this order; shared out over all
+/// cores.
+class Viewer {
+  public:
+    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options)
+        : scene_(scene), worlds_(worlds), grid_(grid), options_(options) {}
+
+    std::vector<SensorView> run() {
+        makeViews();
+        tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
+            // Whoever waits for others in here does not begin with another sensor.
+            tbb::this_task_arena::isolate([&] { look(views_[i]); });
+        });
+        return std::move(views_);
+    }
+
+  private:
+    void makeViews() {
+        for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
+            const Sensor& sensor = scene_.sensors[i];
+            if (!kindOf(sensor.model).perceives) continue;
+            views_.push_back(viewOf(sensor, i));
+            if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
+            sight_.prepare(sensor);
+        }
+        std::stable_sort(views_.begin(), views_.end(),
+                         [&](const SensorView& a, const SensorView& b) {
+                             return sensorOf(a).model.index() < sensorOf(b).model.index();
+                         });
+    }
+    [[nodiscard]] const Sensor& sensorOf(const SensorView& view) const {
+        return scene_.sensors[view.index];
+    }
+
+    [[nodiscard]] bool isBuried(const Sensor& sensor) const {
+        const Point3 place = sensor.pose.position;
+        return sight_.levelAt(place.z)->isBuried(place.onFloor());
+    }
+
+    void look(SensorView& view) const {
+        const Sensor& sensor = sensorOf(view);
+        const Laser* laser = std::get_if<Laser>(&sensor.model);
+        if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
+        // Beams are those of one scan: of a sweep they outline nothing.
+        const bool by_beams = laser != nullptr && options_.cells_by == CellRule::Beams &&
+                              laser->sweep == SweepAxis::None;
+        view.cells = by_beams && (scansSlice(sensor) || !isBuried(sensor))
+                         ? cellsAmongBeams(grid_, sensor, view.beams)
+                         : sight_.cellsOf(grid_, sensor);
+        if (!options_.exact) return;
+        try {
+            view.region = sight_.regionOf(sensor);
+        } catch (const FormatError&) {
+            view.region.reset();  // more shadows than can be laid over each other
+        }
+    }
+
+    const Scene& scene_;
+    Worlds& worlds_;
+    const Grid& grid_;
+    const CoverageOptions& options_;
+    Sight sight_{scene_.environment, options_.plane, &worlds_};
+    std::vector<SensorView> views_;
+};
+
+/// Where at least kMinReceivers hear.
+SeenSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
+    SeenSet set;
+    set.cells = CellSet(grid.size());
+    std::vector<std::uint16_t> heard(grid.size());
+    for (const SensorView* view : receivers)
+        view->cells.forEach([&](std::size_t cell) {
+            if (++heard[cell] == kMinReceivers) set.cells.set(cell);
+        });
+    set.region = regionHeardByEnough(receivers);
+    return set;
+}
+
+/// The sets that count, of these views: each laser and ranger, then all receivers together.
+std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
+    std::vector<SeenSet> sets;
+    std::vector<const SensorView*> receivers;
+    for (const SensorView& view : views) {
+        if (view.isPartial())
+            receivers.push_back(&view);
+        else
+            sets.push_back({view.cells, view.region});
+    }
+    if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid));
+    return sets;
+}
 
 SensorMetrics metricsOf(const Scene& scene, const SensorView& view) {
     SensorMetrics metrics{.id = view.id, .model = view.model, .kind = view.kind};
@@ -24,12 +164,12 @@ SensorMetrics metricsOf(const Scene& scene, const SensorView& view) {
 
 /// Cells are a bit a sensor, twice: of its view, and of the set it is.
 void mustFit(const Scene& scene, const Grid& grid) {
-    constexpr double kMostBytes = 8e9;
+    constexpr double kMaxBytes = 8e9;
     const auto sensors =
         std::count_if(scene.sensors.begin(), scene.sensors.end(),
                       [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
     const double bytes = static_cast<double>(sensors) * static_cast<double>(grid.size()) / 4;
-    if (bytes > kMostBytes)
+    if (bytes > kMaxBytes)
         throw UsageError("cells of all sensors take " + formatFixed(bytes / 1e9, 1) +
                          " GB: use fewer cells");
 }
@@ -92,7 +232,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     coverage.target = makeTarget(environment, options.cells, options.height);
     const Grid& grid = coverage.target.grid;
     mustFit(scene, grid);
-    coverage.sensors = viewsOf(scene, worlds, grid, options);
+    coverage.sensors = Viewer(scene, worlds, grid, options).run();
     coverage.sets = setsOf(coverage.sensors, grid);
 
     CoverageReport& report = coverage.report;

@@ -59,7 +59,7 @@ struct UnseenSpot {
 };
 
 /// Pieces of less m2 are left out: what rounding cuts off.
-constexpr double kLeastPiece = 1e-4;
+constexpr double kMinPiece = 1e-4;
 
 /// What another layout of the same room sees, beside this one.
 struct Comparison {

@@ -132,7 +132,7 @@ TEST(ExactCoverage, MetricsFitTogether) {
             unseen += spot.area;
             EXPECT_EQ(scene.environment.indoor().locate(spot.place), Side::Inside);
         }
-        EXPECT_NEAR(unseen, (1 - *report.free_coverage.exact) * report.free_area, kLeastPiece * 20);
+        EXPECT_NEAR(unseen, (1 - *report.free_coverage.exact) * report.free_area, kMinPiece * 20);
         EXPECT_TRUE(std::is_sorted(
             report.unseen.begin(), report.unseen.end(),
             [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; }));

@@ -187,14 +187,14 @@ std::string seenBy(std::size_t first, std::size_t last) {
 
 /// A row for each number of sensors, of many the greater ones together.
 void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
-    constexpr std::size_t kMostRows = 8;
+    constexpr std::size_t kMaxRows = 8;
     const auto exact = [&report](std::size_t k) { return (*report.redundancy_exact)[k]; };
     std::size_t end = report.redundancy.size();
     while (end > 1 && report.redundancy[end - 1] == 0 &&
            (!report.redundancy_exact || exact(end - 1) < 1e-9))
         --end;
     for (std::size_t k = 0; k < end; ++k) {
-        const std::size_t last = k + 1 == kMostRows ? end - 1 : k;
+        const std::size_t last = k + 1 == kMaxRows ? end - 1 : k;
         Metric share;
         if (report.coverage.grid) share.grid = 0;
         if (report.redundancy_exact) share.exact = 0;

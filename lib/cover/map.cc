@@ -13,7 +13,7 @@ namespace ispace {
 
 namespace {
 
-constexpr int kLeastWidth = 200, kMostWidth = 12000;
+constexpr int kMinWidth = 200, kMaxWidth = 12000;
 
 /// Where everything lies on the page, in its units.
 struct Page {
@@ -125,10 +125,10 @@ void drawPlanSeen(Picture& picture, const MapPicture& map) {
 
 std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const MapOptions& options,
                             const Coverage* other) {
-    if (options.width < kLeastWidth || options.width > kMostWidth)
+    if (options.width < kMinWidth || options.width > kMaxWidth)
         throw UsageError("a map " + std::to_string(options.width) +
-                         " pixels wide cannot be drawn, wanted " + std::to_string(kLeastWidth) +
-                         " to " + std::to_string(kMostWidth));
+                         " pixels wide cannot be drawn, wanted " + std::to_string(kMinWidth) +
+                         " to " + std::to_string(kMaxWidth));
     MapPicture map{scene, coverage, options, other};
     map.em = std::max(10.0, options.width / 1200.0 * 17);
     map.terse = options.width < 50 * map.em;

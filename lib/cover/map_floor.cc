@@ -120,7 +120,7 @@ void drawRedundancy(Picture& picture, const MapPicture& map) {
 void drawShared(Picture& picture, const MapPicture& map, const std::vector<Curves>& sets) {
     const Curves shared = seenCurves(map, 2);
     picture.area(shared, {palette::kShared});
-    if (sets.size() > kMostStriped) {
+    if (sets.size() > kMaxStriped) {
         picture.area(shared, {Hatch{palette::kSharedHatch, 0.6 * map.em, 0.08 * map.em}});
         return;
     }
@@ -243,15 +243,15 @@ std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& c
 }
 
 Shades shadesFor(const CoverageReport& report) {
-    constexpr std::uint32_t kMostShades = 6;
-    constexpr double kLeastShare = 1e-6;  // slivers of exact regions make no class
+    constexpr std::uint32_t kMaxShades = 6;
+    constexpr double kMinShare = 1e-6;  // slivers of exact regions make no class
     const std::vector<double>& shares =
         report.redundancy_exact ? *report.redundancy_exact : report.redundancy;
     std::uint32_t most = 1;
     for (std::uint32_t k = 1; k < shares.size(); ++k)
-        if (shares[k] > kLeastShare) most = k;
+        if (shares[k] > kMinShare) most = k;
     Shades shades;
-    shades.width = (most + kMostShades - 1) / kMostShades;
+    shades.width = (most + kMaxShades - 1) / kMaxShades;
     shades.count = shades.of(most);
     return shades;
 }

@@ -155,7 +155,7 @@ TEST(MapFloor, ColoursOfSensorsAreLightButDarkerThanUnseenFloor) {
 
 TEST(MapFloor, ManySensorsShareAPlainHatch) {
     std::string lines = "ispace size=8,8\n";
-    for (std::size_t i = 0; i <= kMostStriped; ++i)
+    for (std::size_t i = 0; i <= kMaxStriped; ++i)
         lines += "laser at=0,0 heading=45 fov=90 range=20\n";
     const PlanPixels pixels(mapOf(lines, {.color = MapColor::Sensor}), 8);
     EXPECT_GT(pixels.shareOf(kShared, 2, 2, 40), 0.7);

@@ -114,7 +114,7 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
     add({Sign::Patch, kFloor, kObjectEdge, "no sensor", ""}, 0, 1);
     if (sets > 0) add({Sign::None, {}, {}, "one (in its colour)", ""}, 1, 2);
     if (sets < 2) return block;
-    const bool striped = sets <= kMostStriped;
+    const bool striped = sets <= kMaxStriped;
     add({Sign::Hatched, kShared, kSharedHatch, striped ? "more (striped)" : "more", ""}, 2, all);
     return block;
 }

@@ -30,9 +30,9 @@ std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
 
 void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
                   const Stroke& line) {
-    constexpr std::size_t kMostBands = 12;  // soft rims help to tell few views apart, and hide many
+    constexpr std::size_t kMaxBands = 12;  // soft rims help to tell few views apart, and hide many
     const bool plain = map.other == nullptr && map.options.color == MapColor::Redundancy;
-    if (plain && map.coverage.sets.size() <= kMostBands) {
+    if (plain && map.coverage.sets.size() <= kMaxBands) {
         const Box2& limits = map.limits();
         const double rim = std::min(
             0.9 * map.em, 0.04 * map.view.scale * std::min(limits.width(), limits.depth()));
@@ -220,11 +220,11 @@ void drawSpotSign(Picture& picture, Point2 page, const std::string& number, doub
 }
 
 std::size_t markedSpots(const MapPicture& map) {
-    constexpr double kLeastShare = 0.0025;  // of the room
+    constexpr double kMinShare = 0.0025;  // of the room
     const CoverageReport& report = map.coverage.report;
     const std::size_t most = std::min<std::size_t>(map.terse ? 3 : 5, report.unseen.size());
     std::size_t count = 0;
-    while (count < most && report.unseen[count].area >= kLeastShare * report.indoor_area) ++count;
+    while (count < most && report.unseen[count].area >= kMinShare * report.indoor_area) ++count;
     return count;
 }
 
@@ -256,7 +256,7 @@ namespace {
 constexpr int kLevels = 32;
 
 /// Dots of less than this radius (page units) have neither tick nor rim: nobody would see them.
-constexpr double kLeastTicked = 2;
+constexpr double kMinTicked = 2;
 
 /// Radius of a dot on the page: dots of a lattice over the plan leave room between them.
 double dotRadius(const MapPicture& map, std::size_t places) {
@@ -264,8 +264,8 @@ double dotRadius(const MapPicture& map, std::size_t places) {
     const double area = map.view.scale * map.view.scale * limits.width() * limits.depth();
     const double spacing = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, places)));
     const double ticked = 0.24 * spacing;  // with room for the tick
-    return ticked > kLeastTicked ? std::min(ticked, 0.26 * map.em)
-                                 : std::clamp(0.38 * spacing, 0.6, kLeastTicked);
+    return ticked > kMinTicked ? std::min(ticked, 0.26 * map.em)
+                                 : std::clamp(0.38 * spacing, 0.6, kMinTicked);
 }
 
 /// Dots and ticks of one colour.
@@ -329,7 +329,7 @@ void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
     for (int i = 0; i < kLevels; ++i) {
         const Dots& own = levels[static_cast<std::size_t>(i)];
         const Color color = triedColor(i / (kLevels - 1.0));
-        if (radius > kLeastTicked) {
+        if (radius > kMinTicked) {
             // Pale rims lift dots off dark floor; the palest dot is darker than any pale floor.
             const double rim = std::min(0.25 * radius, map.em / 16);
             picture.lines(own.dots, {Stroke{palette::kWhite, 2 * (radius + rim)}});

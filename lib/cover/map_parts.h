@@ -69,7 +69,7 @@ Color setColor(const MapPicture& map, std::size_t set);
 Color floorColor(const MapPicture& map, std::size_t set);
 Color stripeColor(const MapPicture& map, std::size_t set);
 /// Sets more than these share stripes without colours.
-constexpr std::size_t kMostStriped = 6;
+constexpr std::size_t kMaxStriped = 6;
 
 /// Indoor floor in the colours of coverage. In metres: a view is open.
 void drawCoverage(Picture& picture, const MapPicture& map);

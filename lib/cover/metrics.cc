@@ -214,7 +214,7 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
     });
     double sum = 0, largest = 0;
     for (const double area : overlay.areasOf(covered)) {
-        if (area < kLeastPiece) continue;
+        if (area < kMinPiece) continue;
         ++report.pieces;
         sum += area;
         largest = std::max(largest, area);
@@ -224,7 +224,7 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
         [](const LayerLabel& label) { return label.count == 0 && (label.marks & kFreeMark) != 0; });
     const std::vector<double> areas = overlay.areasOf(unseen);
     for (std::size_t i = 0; i < unseen.size(); ++i)
-        if (areas[i] >= kLeastPiece) report.unseen.push_back({interiorPoint(unseen[i]), areas[i]});
+        if (areas[i] >= kMinPiece) report.unseen.push_back({interiorPoint(unseen[i]), areas[i]});
     std::stable_sort(report.unseen.begin(), report.unseen.end(),
                      [](const UnseenSpot& a, const UnseenSpot& b) { return a.area > b.area; });
 }
@@ -291,7 +291,7 @@ std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
         });
     }
     for (ZoneMetrics& zone : metrics)
-        if (zone.area < kLeastPiece) zone.area = 0;
+        if (zone.area < kMinPiece) zone.area = 0;
     return metrics;
 }
 
