@@ -8,6 +8,16 @@
 
 namespace ispace {
 
+bool BurialTest::isBuried(Point3 place) {
+    constexpr std::size_t kMaxHeights = 64;
+    auto known = levels_.find(place.z);
+    if (known == levels_.end()) {
+        if (levels_.size() == kMaxHeights) return false;
+        known = levels_.emplace(place.z, environment_.level(place.z)).first;
+    }
+    return known->second->isBuried(place.onFloor());
+}
+
 std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& sensors,
                                         const std::vector<std::string>& globs,
                                         bool with_receivers) {
@@ -21,10 +31,11 @@ std::vector<std::string> sensorWarnings(const Scene& scene, const Sensors& senso
         warnings.push_back(scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
                            (record.keyword() == "laser" ? ", or let arrange place it" : ""));
     }
+    BurialTest burial(scene.environment);
     bool listens = with_receivers;
     const auto check = [&](const Sensor& sensor) {
         const Point3 place = sensor.pose.position;
-        const bool inside = scene.environment.level(place.z)->isBuried(place.onFloor());
+        const bool inside = burial.isBuried(place);
         if (!inside && place.z >= 0 &&
             scene.environment.indoorIndex().locate(place.onFloor()) != Side::Outside)
             return;

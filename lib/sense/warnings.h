@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sense/sensors.h"
 
 namespace ispace {
+
+/// Tells which places are buried, see Level. Each height costs a slice, so it looks at the first 64
+/// only and says no at others.
+class BurialTest {
+  public:
+    explicit BurialTest(const Environment& environment) : environment_(environment) {}
+    [[nodiscard]] bool isBuried(Point3 place);
+
+  private:
+    const Environment& environment_;
+    std::map<double, std::shared_ptr<const Level>> levels_;
+};
 
 /// What a user may not have meant, a phrase each: sensors without a place, which are left out, and
 /// sensors that stand inside something solid or outside the room.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include "base/error.h"
@@ -11,7 +10,6 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
-#include "env/level.h"
 #include "layout/scene.h"
 #include "scan/options.h"
 #include "scan/readings.h"
@@ -41,10 +39,10 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
 /// Counts the poses that are inside something solid.
 class BuriedPoses {
   public:
-    explicit BuriedPoses(const Environment& environment) : environment_(environment) {}
+    explicit BuriedPoses(const Environment& environment) : burial_(environment) {}
     void count(const std::vector<ReadingJob>& jobs) {
         for (const ReadingJob& job : jobs)
-            if (isBuried(job.pose.position) && count_++ == 0) first_ = job;
+            if (burial_.isBuried(job.pose.position) && count_++ == 0) first_ = job;
     }
     [[nodiscard]] std::vector<std::string> phrases() const {
         if (count_ == 0) return {};
@@ -56,19 +54,7 @@ class BuriedPoses {
     }
 
   private:
-    /// A height costs a slice, so only the first ones are tested.
-    bool isBuried(Point3 place) {
-        constexpr std::size_t kMaxHeights = 64;
-        auto known = levels_.find(place.z);
-        if (known == levels_.end()) {
-            if (levels_.size() == kMaxHeights) return false;
-            known = levels_.emplace(place.z, environment_.level(place.z)).first;
-        }
-        return known->second->isBuried(place.onFloor());
-    }
-
-    const Environment& environment_;
-    std::map<double, std::shared_ptr<const Level>> levels_;
+    BurialTest burial_;
     std::int64_t count_ = 0;
     ReadingJob first_;
 };
