@@ -265,7 +265,7 @@ double dotRadius(const MapPicture& map, std::size_t places) {
     const double spacing = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, places)));
     const double ticked = 0.24 * spacing;  // with room for the tick
     return ticked > kMinTicked ? std::min(ticked, 0.26 * map.em)
-                                 : std::clamp(0.38 * spacing, 0.6, kMinTicked);
+                               : std::clamp(0.38 * spacing, 0.6, kMinTicked);
 }
 
 /// Dots and ticks of one colour.

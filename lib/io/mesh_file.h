@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "record/record.h"
 #include "io/input.h"
 #include "io/mesh_parts.h"
+#include "record/record.h"
 
 namespace ispace {
 

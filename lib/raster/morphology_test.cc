@@ -73,7 +73,6 @@ TEST(DeepestPlaces, AreFarFromTheRimAndTheGridsEdge) {
     EXPECT_EQ(places[1].y, 1);
 }
 
-
 TEST(SquaredDistances, EqualBruteForce) {
     std::mt19937_64 random(3);
     for (int round = 0; round < 60; ++round) {

@@ -101,7 +101,7 @@ TEST(Sites, KeepTheirClearance) {
     };
     for (const Point2 p : latticePlaces(plan.limits(), 0.17))
         ASSERT_EQ(validity.isValid(p), free_of_rules.isValid(p) && nearest(lines, p) >= 0.2503 &&
-                                        nearest(walls, p) <= 0.6007);
+                                           nearest(walls, p) <= 0.6007);
 }
 
 /// A plan whose records are moved by a displacement.
