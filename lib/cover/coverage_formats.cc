@@ -139,10 +139,10 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
 
 namespace {
 
-template <PictureFormat Format>
+template <PictureFormat kFormat>
 CoverageFiles mapFiles(const CoverageProduct& product) {
     MapOptions options = product.map;
-    options.format = Format;
+    options.format = kFormat;
     return {drawCoverageMap(product.scene, product.coverage, options, product.other), ""};
 }
 
@@ -162,7 +162,7 @@ CoverageFiles rosFiles(const CoverageProduct& product) {
 }  // namespace
 
 std::span<const CoverageFormat> coverageFormats() {
-    static const CoverageFormat kFormats[] = {
+    static constexpr CoverageFormat kFormats[] = {
         {.name = "png", .picture = PictureFormat::Png, .write = mapFiles<PictureFormat::Png>},
         {.name = "svg", .picture = PictureFormat::Svg, .write = mapFiles<PictureFormat::Svg>},
         {.name = "pdf", .picture = PictureFormat::Pdf, .write = mapFiles<PictureFormat::Pdf>},
