@@ -17,7 +17,7 @@ namespace {
 constexpr double kMapResolution = 0.05;
 
 template <DocumentKind kKind>
-std::string recordsAs(Document document) {
+std::string recordsAs(Document&& document) {
     document.kind = kKind;
     return writeRecordText(document);
 }
@@ -51,7 +51,7 @@ constexpr ExportFormat kFormats[] = {
     {.name = "yaml",
      .suffix = "yaml",
      .help = "Records of either kind in YAML.",
-     .write_records = [](Document document) { return writeYaml(document); }},
+     .write_records = [](Document&& document) { return writeYaml(document); }},
     {.name = "obj",
      .suffix = "obj",
      .help = "A mesh in metres, z up, with its materials in FILE.mtl beside it. Walls without "

@@ -37,7 +37,7 @@ struct ExportFormat {
     std::string_view binary = "";  ///< how messages call what no terminal shows; "" for text
     bool takes_slice = false;
     /// Records are written as they are, without a scene: the other writer is null.
-    std::string (*write_records)(Document document) = nullptr;
+    std::string (*write_records)(Document&& document) = nullptr;
     ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
     /// A file that stands beside the product and is named after it.
     std::string_view beside_suffix = "";  ///< ".pgm"; "" for none
