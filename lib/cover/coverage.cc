@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -71,9 +73,20 @@ class Viewer {
 
     std::vector<SensorView> run() {
         makeViews();
-        tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
-            // Whoever waits for others in here does not begin with another sensor.
-            tbb::this_task_arena::isolate([&] { look(views_[i]); });
+        // Height by height, so that no level is made twice.
+        std::map<double, std::vector<std::size_t>> at_height;
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            at_height[sensorOf(views_[i]).pose.position.z].push_back(i);
+        const std::vector<std::pair<double, std::vector<std::size_t>>> groups(at_height.begin(),
+                                                                              at_height.end());
+        tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t k) {
+            // Whoever waits for others in here does not begin with another level or sensor.
+            tbb::this_task_arena::isolate([&] {
+                const auto level = sight_.levelAt(groups[k].first);
+                tbb::parallel_for(std::size_t{0}, groups[k].second.size(), [&](std::size_t i) {
+                    tbb::this_task_arena::isolate([&] { look(views_[groups[k].second[i]]); });
+                });
+            });
         });
         return std::move(views_);
     }
@@ -115,7 +128,7 @@ class Viewer {
         try {
             view.region = sight_.regionOf(sensor);
         } catch (const FormatError&) {
-            view.region.reset();  // more shadows than can be laid over each other
+            view.region.reset();  // more crossings than can be laid over each other
         }
     }
 

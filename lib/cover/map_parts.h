@@ -74,7 +74,7 @@ constexpr std::size_t kMaxStriped = 6;
 /// Indoor floor in the colours of coverage. In metres: a view is open.
 void drawCoverage(Picture& picture, const MapPicture& map);
 
-// Sensors (map_sensors.cc).
+// Sensors (map_marks.cc).
 
 /// The set (of Coverage::sets) to which a sensor belongs: all receivers make one.
 std::size_t setOf(const Coverage& coverage, std::size_t sensor);
@@ -98,7 +98,7 @@ std::size_t markedSpots(const MapPicture& map);
 /// `frame` (page units).
 void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame);
 
-// What a search tried (map_trace.cc).
+// What a search tried (map_marks.cc).
 
 /// A place that was tried: the best value there, of any sensor and heading.
 struct TriedPlace {

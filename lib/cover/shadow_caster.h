@@ -28,7 +28,7 @@ class ShadowCaster {
     /// within kChordError (of receivers and spherical rangers that see farther than some hundred
     /// times their height over the plane somewhat worse). Empty curves: nothing is seen; nothing:
     /// not known. O(n log n) in the triangles near the field of view and the crossings of their
-    /// shadows. 	hrows FormatError for shadows that cross by the ten million
+    /// shadows. \throws FormatError for shadows that cross by the ten million
     [[nodiscard]] std::optional<std::vector<Curve>> regionSeen(const Sensor& sensor,
                                                                double height) const;
 

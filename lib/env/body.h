@@ -73,7 +73,7 @@ std::vector<Segment2> wallLines(const Record& record, Diagnostics& findings);
 /// cube, pillar boxes (pillar kind=round a cylinder). Boxes stand upon each other, each a little
 /// different; a screen is a board on two posts with feet as deep as its width. The bars of an infra
 /// frame, 5 cm square, run from edge to edge, evenly; it hangs at its height without posts. A mesh
-/// is as its file has it, see mesh_body.h. A floor is a pattern of plates.
+/// is as its file has it. A floor is a pattern of plates.
 Body bodyOf(const Record& record);
 
 /// Area named by a `zone` record.

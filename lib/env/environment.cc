@@ -265,14 +265,25 @@ std::vector<Region> Environment::freeFloor(double height) const {
     return level(height)->freeFloor();
 }
 
-/// The levels last asked for, the latest at the end.
+/// The levels last asked for, the latest at the end, and those that somebody else still holds.
 struct Environment::Levels {
-    /// Each takes some 100 bytes a line, and 300 once somebody looks about in it.
+    /// A slice takes some 100 bytes a line, and 300 more once somebody looks about in it; free
+    /// floor and indexes are of the same order.
     static constexpr std::ptrdiff_t kMaxKept = 64;
     static constexpr std::size_t kMaxLines = 500'000;
 
     std::mutex mutex;
     std::vector<std::shared_ptr<const Level>> kept;
+    std::vector<std::weak_ptr<const Level>> let_go;
+
+    /// One of this height that is held by somebody, or a new one.
+    std::shared_ptr<const Level> find(double height, const std::shared_ptr<const Data>& data) {
+        std::erase_if(let_go, [](const auto& level) { return level.expired(); });
+        for (const auto& held : let_go)
+            if (auto level = held.lock(); level != nullptr && level->height() == height)
+                return level;
+        return std::shared_ptr<const Level>(new Level(data, height));
+    }
 
     /// Takes out those that are too many, the latest excepted.
     std::vector<std::shared_ptr<const Level>> takeSurplus() {
@@ -286,6 +297,7 @@ struct Environment::Levels {
         std::vector<std::shared_ptr<const Level>> surplus(std::move_iterator(kept.begin()),
                                                           std::move_iterator(first));
         kept.erase(kept.begin(), first);
+        let_go.insert(let_go.end(), surplus.begin(), surplus.end());
         return surplus;
     }
 };
@@ -300,7 +312,7 @@ std::shared_ptr<const Level> Environment::level(double height) const {
     if (known != kept.end()) {
         std::rotate(known, known + 1, kept.end());
     } else {
-        kept.push_back(std::shared_ptr<const Level>(new Level(data_, height)));
+        kept.push_back(levels_->find(height, data_));
         surplus = levels_->takeSurplus();
     }
     return kept.back();

@@ -186,7 +186,7 @@ std::vector<KeySpec> openingKeys(double standard_width) {
     heading.default_value.reset();
     return {{.name = "wall",
              .type = KeyType::Word,
-             .help = "id of the wall, fence or room it is in; left out: the wall nearest to `at`",
+             .help = "id of the wall, fence or room it is in; left out: the nearest wall",
              .role = Role::Reference},
             {.name = "offset",
              .type = KeyType::Number,

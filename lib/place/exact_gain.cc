@@ -127,6 +127,7 @@ struct ExactGain::Data {
     std::vector<Floor> floors = {};
     Box2 floor_box = {};
     std::vector<View> standing = {}, moving = {};
+    std::vector<std::shared_ptr<const Level>> levels = {};  // of the movables, held while they move
 
     /// The sensor in hand: the floor where it is the one that is still missing, within `near`.
     std::size_t in_hand = 0;
@@ -253,6 +254,7 @@ ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
     data_->addStanding(scene.sensors);
     data_->moving.reserve(movables.size());
     for (std::size_t i = 0; i < movables.size(); ++i) {
+        data_->levels.push_back(data_->sight.levelAt(movables[i].pose.position.z));
         data_->moving.push_back(data_->viewOf(i, movables[i].pose));
     }
     data_->around.resize(movables.size());

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// What at least `demand` sensors see is worth, exactly: its area in closed form (Overlay)
+/// The exact gain of what at least `multiplicity` sensors see: its area in closed form (Overlay)
 /// times the weight that it has. Lasers and rangers count one by one, all ultrasonic receivers
 /// together as one, where enough of them hear.
 ///
@@ -20,7 +20,7 @@ class ExactGain {
   public:
     /// All movables stand at their poses.
     /// \throws UsageError for sensors without an exact region and for more than kMaxZones weights
-    ExactGain(const Scene& scene, std::span<const Movable> movables, const FloorWeights& worth,
+    ExactGain(const Scene& scene, std::span<const Movable> movables, const FloorWeights& weights,
               const RefineOptions& options);
     ~ExactGain();
     ExactGain(const ExactGain&) = delete;
@@ -28,9 +28,9 @@ class ExactGain {
 
     static constexpr std::size_t kMaxZones = 60;
 
-    /// Worth of all floor that counts, m2 times weight.
+    /// Weight of all floor that counts, m2 times weight.
     [[nodiscard]] double total() const;
-    /// Worth of what is seen as all stand now. O(n log n) in all regions and walls.
+    /// Weight of what is seen as all stand now. O(n log n) in all regions and walls.
     [[nodiscard]] double value() const;
 
     /// From here on this sensor moves and all others stay.
