@@ -122,6 +122,13 @@ TEST(Level, FewAreKept) {
     EXPECT_TRUE(held->isFree({0, 0}));
 }
 
+TEST(Level, IsFoundAgainWhileSomebodyHoldsIt) {
+    const Environment room = environment(kRoom);
+    const auto held = room.level(0.001);
+    for (int i = 0; i < 200; ++i) static_cast<void>(room.level(0.01 + 0.001 * i));
+    EXPECT_EQ(room.level(0.001), held);
+}
+
 TEST(Level, LargeOnesAreKeptOneByOne) {
     std::string lines = "ispace at=0,0 size=80,60\n";
     for (int i = 0; i < 150; ++i)
