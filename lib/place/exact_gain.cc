@@ -240,12 +240,12 @@ struct ExactGain::Data {
 };
 
 ExactGain::ExactGain(const Scene& scene, std::span<const Movable> movables,
-                     const FloorWeights& worth, const RefineOptions& options)
+                     const FloorWeights& weights, const RefineOptions& options)
     : data_(new Data{movables, options, {scene.environment, options.plane}}) {
-    if (worth.weights.size() > kMaxZones)
-        throw UsageError("sensors cannot be refined for " + std::to_string(worth.weights.size()) +
+    if (weights.weights.size() > kMaxZones)
+        throw UsageError("sensors cannot be refined for " + std::to_string(weights.weights.size()) +
                          " weighted zones, wanted at most " + std::to_string(kMaxZones));
-    data_->floors = floorsOf(scene.environment, worth);
+    data_->floors = floorsOf(scene.environment, weights);
     for (const Floor& floor : data_->floors) {
         if (floor.box.empty()) continue;
         data_->floor_box.add(floor.box.low);
