@@ -51,7 +51,8 @@ ISPACE_SIMD_CLONES
 void invert(const double* inverse, std::size_t count, float limit, float* ranges) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto range = static_cast<float>(1 / inverse[i]);
-        ranges[i] = range <= limit && range >= 0 ? range : kNoReturn;
+        ranges[i] = range;
+        if (!(range <= limit && range >= 0)) ranges[i] = kNoReturn;
     }
 }
 
