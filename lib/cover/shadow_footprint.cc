@@ -100,21 +100,6 @@ ConeCut coneOnPlane(Vec3 axis, Angle half, double drop, double reach) {
     return {false, std::move(curve)};
 }
 
-Box2 common(const Box2& a, const Box2& b) {
-    return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
-            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
-}
-
-Box2 boundsOf(std::span<const Curve> curves) {
-    Box2 box;
-    for (const Curve& curve : curves) {
-        const Box2 one = bounds(curve);
-        box.add(one.low);
-        box.add(one.high);
-    }
-    return box;
-}
-
 }  // namespace
 
 CurveEdge arcThrough(Point2 a, Point2 middle, Point2 b) {
@@ -167,7 +152,7 @@ Polygon halfOf(const Polygon& polygon, Vec2 normal, double offset) {
 void Footprint::mark(std::vector<Curve> curves) {
     const std::uint64_t bit = marks + 1;
     marks |= bit;
-    box = common(box, boundsOf(curves));
+    box = common(box, boundsOfAll(curves));
     layers.push_back({std::move(curves), false, 0, bit});
 }
 

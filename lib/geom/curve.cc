@@ -101,6 +101,21 @@ Box2 bounds(const Curve& curve) {
     return box;
 }
 
+Box2 boundsOfAll(std::span<const Curve> curves) {
+    Box2 box;
+    for (const Curve& curve : curves) {
+        const Box2 own = bounds(curve);
+        box.add(own.low);
+        box.add(own.high);
+    }
+    return box;
+}
+
+Box2 common(const Box2& a, const Box2& b) {
+    return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+}
+
 Polygon chords(const Curve& curve, double error) {
     Polygon polygon;
     polygon.reserve(curve.size());

@@ -37,6 +37,10 @@ double perimeter(const Curve& curve);
 double perimeter(std::span<const Curve> curves);
 /// A box that contains the curve; around arcs it need not be the smallest.
 Box2 bounds(const Curve& curve);
+/// The box around all of them.
+Box2 boundsOfAll(std::span<const Curve> curves);
+/// What lies in both; where nothing does, low is beyond high in x or in y.
+Box2 common(const Box2& a, const Box2& b);
 
 /// The curve with chords for arcs: vertices lie on the arcs, chords at most `error` from them.
 Polygon chords(const Curve& curve, double error = kChordError);

@@ -31,23 +31,8 @@ struct Floor {
     Box2 box;
 };
 
-Box2 boxOf(std::span<const Curve> curves) {
-    Box2 box;
-    for (const Curve& curve : curves) {
-        const Box2 own = bounds(curve);
-        box.add(own.low);
-        box.add(own.high);
-    }
-    return box;
-}
-
 bool meet(const Box2& a, const Box2& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
-}
-
-Box2 common(const Box2& a, const Box2& b) {
-    return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
-            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
 }
 
 bool isVoid(const Box2& box) { return box.low.x > box.high.x || box.low.y > box.high.y; }
@@ -103,7 +88,7 @@ std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& 
             floors.push_back({weight, overlay.curves(weighs), {}});
         }
     }
-    for (Floor& floor : floors) floor.box = boxOf(floor.curves);
+    for (Floor& floor : floors) floor.box = boundsOfAll(floor.curves);
     return floors;
 }
 
@@ -114,7 +99,7 @@ struct View {
 
     View(std::vector<Curve> curves, bool is_receiver)
         : layer{.curves = std::move(curves), .number = is_receiver ? kOneReceiver : kOneSet} {
-        box = boxOf(layer.curves);
+        box = boundsOfAll(layer.curves);
     }
 };
 
