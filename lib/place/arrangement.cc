@@ -8,6 +8,7 @@
 #include "base/number.h"
 #include "cover/coverage.h"
 #include "layout/schemas.h"
+#include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "place/scene_problem.h"
 #include "solve/mps_file.h"
@@ -106,7 +107,7 @@ void measure(Arrangement& result, SceneProblem& model) {
                              model.target().grid == measured.target.grid;
     const Coverage searched = model.coverageOf(result.sensors);
     if (!is_coverage) result.value = model.share(model.valueOf(searched));
-    result.idle = model.idleIn(searched);
+    result.idle = idleSensors(model, searched);
 }
 
 /// [n]: value of the best n of these sensors, chosen greedily. If coverage must be connected, a

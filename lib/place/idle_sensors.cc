@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "place/scene_value.h"
+#include "place/scene_problem.h"
 
 namespace ispace {
 
@@ -175,23 +175,22 @@ std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Cho
     });
 }
 
-std::vector<std::string> idleSensors(const Problem& problem, const Coverage& coverage,
-                                     const Scene& standing, int unit) {
+std::vector<std::string> idleSensors(const SceneProblem& model, const Coverage& coverage) {
     std::vector<const SensorView*> own;
     std::vector<CountedView> views;
     for (const SensorView& view : coverage.sensors) {
-        if (stands(view, standing)) continue;
+        if (model.stands(view)) continue;
         own.push_back(&view);
-        views.push_back({view.cells, view.isPartial() ? 1 : unit});
+        views.push_back({view.cells, model.multiplicityOf(view)});
     }
-    const auto idle = idleAmong(problem, views, [&](const std::vector<bool>& left) {
+    const auto idle = idleAmong(model.problem(), views, [&](const std::vector<bool>& left) {
         Coverage rest;
         for (const SensorView& view : coverage.sensors) {
             const auto at = std::find(own.begin(), own.end(), &view) - own.begin();
-            if (stands(view, standing) || left[static_cast<std::size_t>(at)])
+            if (model.stands(view) || left[static_cast<std::size_t>(at)])
                 rest.sensors.push_back(view);
         }
-        return isConnected(problem, rest, standing);
+        return model.isConnected(rest);
     });
     std::vector<std::string> ids;
     ids.reserve(idle.size());

@@ -14,14 +14,14 @@
 
 namespace ispace {
 
+class SceneProblem;
+
 /// Choices that can all be left out without loss of value or of connection, ascending; later ones
 /// are preferred. O(choices * cells / 64 + runs)
 std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Choice> chosen);
 
-/// Ids of such sensors of a measured scene, in which those of `standing` come first and stay.
-/// `unit`: multiplicity of sensors other than receivers.
-std::vector<std::string> idleSensors(const Problem& problem, const Coverage& coverage,
-                                     const Scene& standing, int unit);
+/// Ids of such sensors among those placed in a scene that the model measured.
+std::vector<std::string> idleSensors(const SceneProblem& model, const Coverage& coverage);
 
 /// Spreads idle choices: moves each in turn to the site farthest from all other sensors, among
 /// those that see anything of weight, with the heading that sees most of what few others see.

@@ -13,7 +13,6 @@
 #include "place/any_place.h"
 #include "place/idle_sensors.h"
 #include "place/refine.h"
-#include "place/scene_value.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
 #include "solve/problem.h"
@@ -88,7 +87,7 @@ void SceneProblem::setMultiplicities(const Coverage& standing) {
     problem_.achieved.assign(target_.grid.size(), 0);
     problem_.standing = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) {
-        const int part = view.isPartial() ? 1 : unit_;
+        const int part = multiplicityOf(view);
         view.cells.forEach([&](std::size_t cell) {
             problem_.achieved[cell] =
                 static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + part, 0xffff));
@@ -159,15 +158,46 @@ Coverage SceneProblem::coverageOf(const std::vector<ArrangedSensor>& sensors) {
 }
 
 std::uint64_t SceneProblem::valueOf(const Coverage& coverage) const {
-    return ispace::valueOf(problem_, coverage, unit_);
+    std::vector<int> met(problem_.cells());
+    for (const SensorView& view : coverage.sensors) {
+        const int part = multiplicityOf(view);
+        view.cells.forEach([&](std::size_t cell) { met[cell] += part; });
+    }
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+        if (met[i] >= problem_.required) value += problem_.weights[i];
+    return value;
 }
 
 bool SceneProblem::isConnected(const Coverage& coverage) const {
-    return ispace::isConnected(problem_, coverage, scene_);
-}
-
-std::vector<std::string> SceneProblem::idleIn(const Coverage& coverage) const {
-    return idleSensors(problem_, coverage, scene_, unit_);
+    CellSet counted(problem_.cells());
+    for (std::size_t i = 0; i < problem_.cells(); ++i)
+        if (problem_.weights[i] > 0) counted.set(i);
+    std::vector<CellSet> waiting;
+    CellSet reached(problem_.cells());
+    for (const SensorView& view : coverage.sensors) {
+        CellSet cells = view.cells;
+        cells &= counted;
+        if (stands(view))
+            reached |= cells;
+        else
+            waiting.push_back(std::move(cells));
+    }
+    if (reached.empty() && !waiting.empty()) {
+        reached = waiting.back();
+        waiting.pop_back();
+    }
+    // Joins what shares a cell with what is joined already until nothing does.
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t i = 0; i < waiting.size(); ++i) {
+            if (countCommon(waiting[i], reached) == 0) continue;
+            reached |= waiting[i];
+            waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i--));
+            grows = true;
+        }
+    }
+    return waiting.empty();
 }
 
 void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {

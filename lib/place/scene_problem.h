@@ -64,10 +64,19 @@ class SceneProblem {
     [[nodiscard]] std::vector<ArrangedSensor> sensorsOf(const std::vector<Choice>& chosen) const;
     /// On the grid of the search.
     [[nodiscard]] Coverage coverageOf(const std::vector<ArrangedSensor>& sensors);
+    /// True for a sensor of such a coverage that stands already.
+    [[nodiscard]] bool stands(const SensorView& view) const {
+        return view.index < scene_.sensors.size();
+    }
+    /// What a sensor adds to the multiplicity of a cell it sees, see Kind.
+    [[nodiscard]] int multiplicityOf(const SensorView& view) const {
+        return view.isPartial() ? 1 : unit_;
+    }
+    /// As valueOf() of the sensors.
     [[nodiscard]] std::uint64_t valueOf(const Coverage& coverage) const;
+    /// True if the views of all sensors hang together, those that stand being one part, see
+    /// Problem::is_connected. O(sensors^2 * cells / 64)
     [[nodiscard]] bool isConnected(const Coverage& coverage) const;
-    /// Ids of arranged sensors that add nothing, see idleSensors().
-    [[nodiscard]] std::vector<std::string> idleIn(const Coverage& coverage) const;
     /// Spreads choices that add nothing. \pre the choices have a value: else they may be some of
     /// the many that the required multiplicity takes
     void spreadIdle(std::vector<Choice>& chosen) const;
