@@ -164,12 +164,17 @@ std::string bounds(const KeySpec& key) {
     return text;
 }
 
+/// The help as a sentence. A value that it begins with (yes:, x,y) keeps its case.
+std::string sentence(std::string help) {
+    const auto first = help.substr(0, help.find(' '));
+    if (first.find_first_of(":,") == std::string::npos && help[0] >= 'a' && help[0] <= 'z')
+        help[0] = static_cast<char>(help[0] - 'a' + 'A');
+    return roff(help) + ".\n";
+}
+
 void appendKey(std::string& out, const KeySpec& key) {
     out += ".TP\n.BR " + key.name + "= \"\\fI" + roff(valueForm(key)) + "\\fR\"\n";
-    std::string help = key.help;
-    if (!help.empty() && help[0] >= 'a' && help[0] <= 'z' && !help.starts_with("x,"))
-        help[0] = static_cast<char>(help[0] - 'a' + 'A');
-    out += roff(help) + ".\n";
+    out += sentence(key.help);
     if (const std::string limits = bounds(key); !limits.empty()) out += roff(limits) + ".\n";
     if (key.required) out += "Must be given.\n";
     if (key.default_value) out += "Default: " + roff(formatValue(key, *key.default_value)) + ".\n";
@@ -197,11 +202,7 @@ RecordType typeOf(const std::string& name, int line) {
 }  // namespace
 
 std::string manualOf(const Schema& schema) {
-    std::string out = ".SS " + schema.keyword + "\n";
-    std::string help = schema.help;
-    if (!help.empty() && help[0] >= 'a' && help[0] <= 'z')
-        help[0] = static_cast<char>(help[0] - 'a' + 'A');
-    out += roff(help) + ".\n";
+    std::string out = ".SS " + schema.keyword + "\n" + sentence(schema.help);
     // Every record has an id; the page says so once.
     for (std::size_t i = 1; i < schema.keys.size(); ++i) appendKey(out, schema.keys[i]);
     return out;

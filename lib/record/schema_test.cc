@@ -34,7 +34,7 @@ TEST(Manual, NamesValuesBoundsAndDefaults) {
         "desk", RecordType::Other, "a desk", {testKey("id", KeyType::Word), sizeKey(), kind, tilt}};
     EXPECT_EQ(manualOf(schema),
               ".SS desk\nA desk.\n"
-              ".TP\n.BR size= \"\\fIM,M[,M]\\fR\"\nLength,width[,height].\nAbove 0.\n"
+              ".TP\n.BR size= \"\\fIM,M[,M]\\fR\"\nlength,width[,height].\nAbove 0.\n"
               "Default: 1.2,0.8.\n"
               ".TP\n.BR kind= \"\\fIplain|two\\-tone\\fR\"\n\\-what it is.\n"
               ".TP\n.BR tilt= \"\\fIDEG\\fR\"\nHelp on tilt.\nAt least \\-90, at most 90.\n"
