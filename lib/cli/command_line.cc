@@ -32,6 +32,12 @@ void rewriteCompilerNames(std::vector<std::string>& words) {
     }
 }
 
+/// "--output", "-X" where that is the only name, "-MF"
+std::string nameOf(const CLI::Option& option) {
+    const std::string name = option.get_name();
+    return isCompilerName(std::string_view(name).substr(2)) ? name.substr(1) : name;
+}
+
 /// "-o, --output FILE"
 std::string signature(const CLI::Option& option, const std::string& value) {
     std::string names;
@@ -94,6 +100,8 @@ struct CommandLine::Data {
     [[noreturn]] void usage(const std::string& message) const {
         throw UsageError(message + " (see " + tool + " --help)");
     }
+    /// In our words: an option without its value, or given too often.
+    void explain(const std::string& mismatch) const;
     void sortOut(const std::vector<std::string>& words);
     [[nodiscard]] std::string hintFor(const std::string& unknown) const;
     /// Calls visit(entry, text) for the ordered options as they came.
@@ -155,14 +163,14 @@ void CommandLine::flag(const std::string& names, int& variable, const std::strin
 
 void CommandLine::switchFlag(const std::string& on, const std::string& off,
                              std::optional<bool>& variable, const std::string& help,
-                             Enters enters) {
-    const auto set = [&variable](bool value) {
-        return [&variable, value](std::int64_t) { variable = value; };
+                             const std::string& off_help, Enters enters) {
+    const auto add = [&](const std::string& name, bool value, const std::string& text) {
+        const auto set = [&variable, value](std::int64_t) { variable = value; };
+        data_->keep(data_->app.add_flag_function(name, set)->disable_flag_override(), "", text,
+                    enters);
     };
-    data_->keep(data_->app.add_flag_function(on, set(true))->disable_flag_override(), "", help,
-                enters);
-    data_->keep(data_->app.add_flag_function(off, set(false))->disable_flag_override(), "",
-                "do not", enters);
+    add(on, true, help);
+    add(off, false, off_help);
 }
 
 void CommandLine::parsed(const std::string& names, const std::string& value,
@@ -293,6 +301,17 @@ std::string CommandLine::Data::hintFor(const std::string& unknown) const {
     return didYouMean(unknown, known);
 }
 
+void CommandLine::Data::explain(const std::string& mismatch) const {
+    for (const Entry& entry : entries) {
+        const CLI::Option& option = *entry.option;
+        if (!mismatch.starts_with(option.get_name() + ": ")) continue;
+        if (option.count() > 1)
+            usage(nameOf(option) + ": may be given once, and is given " +
+                  std::to_string(option.count()) + " times");
+        usage(nameOf(option) + ' ' + entry.value + ": the value is missing");
+    }
+}
+
 void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
     bool options_ended = false;
     for (const std::string& word : words) {
@@ -321,6 +340,9 @@ void CommandLine::parse(int argc, const char* const* argv) {
     std::reverse(words.begin(), words.end());
     try {
         d.app.parse(words);
+    } catch (const CLI::ArgumentMismatch& error) {
+        d.explain(error.what());
+        d.usage(error.what());
     } catch (const CLI::ParseError& error) {
         d.usage(error.what());
     }
@@ -340,10 +362,6 @@ bool CommandLine::given(const std::string& name) const { return data_->app.count
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
     std::string line = data_->tool;
     for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
-    const auto name_of = [](const CLI::Option& option) {
-        return option.get_lnames().empty() ? "-" + option.get_snames().front()
-                                           : "--" + option.get_lnames().front();
-    };
     bool ordered_done = false;
     for (const Data::Entry& entry : data_->entries) {
         const CLI::Option& option = *entry.option;
@@ -352,12 +370,12 @@ std::string CommandLine::historyLine(const std::vector<std::string>& operands) c
             // Where the first of them stands in the man page they all follow, as they came.
             if (!std::exchange(ordered_done, true))
                 data_->forEachOrdered([&](const Data::Entry& one, const std::string& text) {
-                    line += ' ' + name_of(*one.option);
+                    line += ' ' + nameOf(*one.option);
                     line += ' ' + shellQuote(text);
                 });
             continue;
         }
-        const std::string name = name_of(option);
+        const std::string name = nameOf(option);
         if (entry.value.empty()) {
             line += ' ' + name;
             continue;

@@ -50,7 +50,7 @@ class CommandLine {
     void flag(const std::string& names, int& variable, const std::string& help, Enters enters);
     /// A pair --name / --no-name; `off` wins if both are given, and neither leaves it empty.
     void switchFlag(const std::string& on, const std::string& off, std::optional<bool>& variable,
-                    const std::string& help, Enters enters);
+                    const std::string& help, const std::string& off_help, Enters enters);
     /// Any other option: `take` gets the text; what it throws (UsageError) is prefixed with the
     /// option's name.
     void parsed(const std::string& names, const std::string& value,

@@ -77,7 +77,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
                 Enters::History);
     line.switchFlag("--progress", "--no-progress", options.progress,
                     "show progress of long work on stderr (default: if that is a terminal)",
-                    Enters::Nothing);
+                    "show none", Enters::Nothing);
 }
 
 void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
@@ -91,14 +91,17 @@ void warn(const CommonOptions& options, const std::string& tool,
         std::cerr << tool << ": " << printable(warning.text()) << '\n';
 }
 
+void warn(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
+    if (!options.quiet) std::cerr << tool << ": warning: " << sentence << '\n';
+}
+
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const std::string> sentences) {
     constexpr std::size_t kMaxSentences = 20;
-    if (options.quiet) return;
     for (const std::string& sentence : sentences.first(std::min(kMaxSentences, sentences.size())))
-        std::cerr << tool << ": warning: " << sentence << '\n';
+        warn(options, tool, sentence);
     if (sentences.size() > kMaxSentences)
-        std::cerr << tool << ": warning: and " << sentences.size() - kMaxSentences << " more\n";
+        warn(options, tool, "and " + std::to_string(sentences.size() - kMaxSentences) + " more");
 }
 
 void limitThreads(int threads) {

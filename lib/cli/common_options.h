@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "cli/command_line.h"
 #include "cover/target.h"
 
@@ -33,9 +34,22 @@ void talk(const CommonOptions& options, const std::string& tool, const std::stri
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const Diagnostic> warnings);
 
+/// The same for a sentence.
+void warn(const CommonOptions& options, const std::string& tool, const std::string& sentence);
+
 /// The same for sentences: the first 20, and the number of further ones.
 void warn(const CommonOptions& options, const std::string& tool,
           std::span<const std::string> sentences);
+
+/// What `read` returns; the option's name is put before what it throws (UsageError).
+template <typename Read>
+auto ofOption(const std::string& name, const Read& read) {
+    try {
+        return read();
+    } catch (const UsageError& error) {
+        throw UsageError(name + ": " + error.what());
+    }
+}
 
 /// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
 /// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants. 1 starts

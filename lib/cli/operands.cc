@@ -23,9 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Document read(const std::string& operand) {
-    const std::string bytes = operand == "-" ? readStdin() : readAll(operand);
+Document parse(std::string_view bytes, const std::string& operand) {
     return parseDocument(bytes, operand, ImportOptions(), sceneSchemas());
+}
+
+Document read(const std::string& operand) {
+    return parse(operand == "-" ? readStdin() : readAll(operand), operand);
 }
 
 bool hasPlaced(const Document& document, const std::vector<std::string>& keywords) {
@@ -35,18 +38,13 @@ bool hasPlaced(const Document& document, const std::vector<std::string>& keyword
     });
 }
 
-void checkStreams(const std::vector<std::string>& operands) {
-    if (std::count(operands.begin(), operands.end(), "-") > 1)
-        throw UsageError("stdin cannot be read twice: only one operand can be -");
-}
-
 /// The operands as they are found, before they are joined.
 class OperandReader {
   public:
     explicit OperandReader(const SceneRequest& request) : request_(request) {}
 
     SceneInput read() {
-        checkStreams(request_.operands);
+        mustReadStdinOnce(request_.operands);
         named_ = request_.operands;
         for (const std::string& operand : request_.operands) take(operand, ispace::read(operand));
         if (wantsStdin()) {
@@ -86,7 +84,14 @@ class OperandReader {
     void takeLayoutFromStdin() {
         if (environment_operand_ == "-")
             throw UsageError("the environment on stdin holds no placed sensor: give a LAYOUT");
-        Document document = ispace::read("-");
+        const std::string bytes = readStdin();
+        if (bytes.empty())
+            throw FormatError({"stdin", 0, 0,
+                               "empty, where a layout (`#3dm 1`) is wanted" +
+                                   (environment_ ? ": " + displayName(environment_operand_) +
+                                                       " holds no placed sensor"
+                                                 : "")});
+        Document document = parse(bytes, "-");
         if (document.kind != DocumentKind::Layout)
             throw FormatError(
                 {"stdin", 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
@@ -104,8 +109,7 @@ class OperandReader {
         const fs::path folder =
             layout_operand_ == "-" ? fs::path() : fs::path(layout_operand_).parent_path();
         const std::string operand = (folder / reference->file).string();
-        Document document = parseDocument(bytesReferenced(*reference, operand), operand,
-                                          ImportOptions(), sceneSchemas());
+        Document document = parse(bytesReferenced(*reference, operand), operand);
         if (document.kind != DocumentKind::Environment)
             throw FormatError(
                 reference->record.finding("file", operand + " is a layout, not an environment"));
@@ -144,6 +148,14 @@ void checkDigest(const Document& layout, std::span<const Record> environment,
                       "…): arrange again, or go on with --any-environment"));
 }
 
+void mustReadStdinOnce(const std::vector<std::string>& files) {
+    const auto is_stdin = [](const std::string& file) {
+        return file == "-" || file == "/dev/stdin" || file == "/dev/fd/0";
+    };
+    if (std::count_if(files.begin(), files.end(), is_stdin) > 1)
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
+}
+
 std::string readStdin() {
     if (isTerminalInput())
         throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
@@ -156,7 +168,7 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
                             bool any_environment) {
     std::vector<std::string> operands = input.named;
     operands.push_back(operand);
-    checkStreams(operands);
+    mustReadStdinOnce(operands);
     const Document layout = read(operand);
     if (layout.kind != DocumentKind::Layout)
         throw FormatError(

@@ -60,6 +60,9 @@ std::string bytesReferenced(const EnvironmentReference& reference, const std::st
 void checkDigest(const Document& layout, std::span<const Record> environment,
                  const std::string& environment_operand);
 
+/// \throws UsageError if two of these files are stdin
+void mustReadStdinOnce(const std::vector<std::string>& files);
+
 /// Reads everything on stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
 

@@ -30,20 +30,16 @@ struct Measured {
     std::optional<Coverage> other;
 };
 
-void warn(const CoverageToolOptions& options, const std::string& text) {
-    if (!options.common.quiet) std::cerr << "coverage: warning: " << text << '\n';
-}
-
 /// Of what a user may not have meant, and of what is left out.
-void warnOfDoubts(const CoverageToolOptions& options, const Scene& scene) {
-    for (const std::string& doubt : sensorWarnings(scene, sensorsOf(scene, {}), {}, true))
-        warn(options, doubt);
+void warnOfDoubts(const CommonOptions& options, const Scene& scene) {
+    warn(options, "coverage", sensorWarnings(scene, sensorsOf(scene, {}), {}, true));
     if (const std::size_t count = sensorsOf<Receiver>(scene).size();
         count > 0 && count < kMinReceivers)
-        warn(options, "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
-                          " receivers have to hear a tag, here are " + std::to_string(count));
+        warn(options, "coverage",
+             "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
+                 " receivers have to hear a tag, here are " + std::to_string(count));
     constexpr std::string_view kUnmeasured[] = {"camera"};
-    for (const std::string& phrase : leftOut(scene, kUnmeasured, "measured")) warn(options, phrase);
+    warn(options, "coverage", leftOut(scene, kUnmeasured, "measured"));
 }
 
 /// Nobody asked for cells, and they are not as small as usual.
@@ -77,11 +73,11 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
 
 /// What a search tried, from stdin only where that is not read yet.
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SceneInput& input) {
-    if (options.trace != "-")
-        return readTrace(readAll(options.trace), displayName(options.trace)).poses;
-    if (options.other == "-" || std::count(input.named.begin(), input.named.end(), "-") > 0)
-        throw UsageError("stdin cannot be read twice: only one operand can be -");
-    return readTrace(readStdin(), displayName(options.trace)).poses;
+    std::vector<std::string> streams = input.named;
+    streams.insert(streams.end(), {options.other, options.trace});
+    mustReadStdinOnce(streams);
+    const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
+    return readTrace(bytes, displayName(options.trace)).poses;
 }
 
 void writeProduct(const CoverageToolOptions& options, const Scene& scene,
@@ -122,7 +118,7 @@ void coverage(CoverageToolOptions options) {
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
                     "the picture of the map");
     const SceneInput input = readScene({options.operands, options.any_environment, true});
-    ispace::warn(options.common, "coverage", input.environment.warnings);
+    warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
     if (!options.other.empty()) {
@@ -136,7 +132,7 @@ void coverage(CoverageToolOptions options) {
     if (!options.report.empty()) mustBeWritable(options.report);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
-    warnOfDoubts(options, input.scene);
+    warnOfDoubts(options.common, input.scene);
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
     tellOfLargeCells(options, report.grid);

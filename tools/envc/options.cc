@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
+#include "cli/operands.h"
 
 namespace ispace {
 
@@ -20,12 +21,10 @@ std::vector<std::string> formatNames(bool of_slices) {
 }
 
 double heightFrom(const std::string& text) {
-    KeySpec key;
-    key.name = "height";
-    key.unit = Unit::Length;
-    key.lower = -1000;
-    key.upper = 1000;
-    return std::get<double>(parseValue(key, text));
+    constexpr double kMost = 1000;
+    return std::get<double>(parseValue(
+        {.name = "height", .unit = Unit::Length, .help = "", .lower = -kMost, .upper = kMost},
+        text));
 }
 
 void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {
@@ -35,7 +34,7 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
     const auto take_slice = [&options](const std::string& text) {
         options.slice = heightFrom(text);
     };
-    line.parsed("--slice", "M", take_slice, "write the map of obstacles at this height instead",
+    line.parsed("--slice", "M", take_slice, "write the cut through the room at this height instead",
                 Enters::History);
     line.meters("--resolution", options.import.resolution, 0.001, 100,
                 "metres per pixel of a picture, or per cell of a ROS map that is written "
@@ -67,27 +66,26 @@ void addEditOptions(CommandLine& line, std::vector<Edit>& edits) {
     edit(Edit::Kind::Delete, "ID", "remove");
 }
 
+/// Two or `most` numbers, the first two of them a place.
+Tuple placeFrom(const char* name, Unit unit, std::size_t most, const std::string& text) {
+    return std::get<Tuple>(parseValue({.name = name,
+                                       .type = KeyType::Tuple,
+                                       .unit = unit,
+                                       .help = "",
+                                       .min_count = 2,
+                                       .max_count = most,
+                                       .lower = -kFarthestPlan,
+                                       .upper = kFarthestPlan},
+                                      text));
+}
+
 Point2 pointFrom(const std::string& text) {
-    KeySpec key;
-    key.name = "point";
-    key.type = KeyType::Tuple;
-    key.unit = Unit::Length;
-    key.min_count = key.max_count = 2;
-    key.lower = -kFarthestPlan;
-    key.upper = kFarthestPlan;
-    const Tuple at = std::get<Tuple>(parseValue(key, text));
+    const Tuple at = placeFrom("point", Unit::Length, 2, text);
     return {at[0], at[1]};
 }
 
 Pose2 poseFrom(const std::string& text) {
-    KeySpec key;
-    key.name = "origin";
-    key.type = KeyType::Tuple;
-    key.min_count = 2;
-    key.max_count = 3;
-    key.lower = -kFarthestPlan;
-    key.upper = kFarthestPlan;
-    const Tuple at = std::get<Tuple>(parseValue(key, text));
+    const Tuple at = placeFrom("origin", Unit::None, 3, text);
     return {{at[0], at[1]}, Angle::degrees(at.size() > 2 ? at[2] : 0)};
 }
 
@@ -122,7 +120,8 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
         "join ends of a plan's lines that are this close (default: 5 mm in DXF and ARIA maps)",
         Enters::History);
     line.meters("--simplify", import.simplify, 0, 1000,
-                "simplify outlines of plans by at most this (default: one cell of a map, else 0)",
+                "simplify outlines of plans by at most this (default: one cell of a map, "
+                "two where it is noisy, else 0)",
                 Enters::History);
     line.meters(
         "--clean", import.clean, 0, 100,
@@ -149,8 +148,7 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
 }
 
 void checkCombination(const CommandLine& line, const EnvcOptions& options) {
-    if (std::count(options.inputs.begin(), options.inputs.end(), "-") > 1)
-        throw UsageError("stdin cannot be read twice: only one operand can be -");
+    mustReadStdinOnce(options.inputs);
     if (options.json && !options.info) throw UsageError("--json is the form of --info: give both");
     if (options.check && (options.info || options.slice || line.given("--to") ||
                           line.given("--output") || options.common.dependencies.wanted))
@@ -192,7 +190,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     std::string to;
     bool closed = false;
     CommandLine line("envc", "[INPUT]...",
-                     "Compile, check, convert and edit rooms (.env, YAML, .glb, floor plans, "
+                     "Compile, check, convert, edit and draw rooms (.env, YAML, .glb, floor plans, "
                      "meshes) and layouts (.3dm); without INPUT, or for -, read stdin.");
     line.operands(options.inputs, 1000);
     addProductOptions(line, options, to);

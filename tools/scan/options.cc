@@ -50,8 +50,8 @@ void ScanCommand::declare() {
         "--frames", "N", o.frames, 1, kMaxFrames,
         "readings of each sensor, at its rate (default 1); with --motion, at most this many",
         Enters::History);
-    line_.switchFlag("--noise", "--no-noise", noise_,
-                     "add the devices' noise, from --seed (default off)", Enters::History);
+    line_.switchFlag("--noise", "--no-noise", noise_, "add the devices' noise, from --seed",
+                     "read without noise (default)", Enters::History);
     line_.file("--poses", "FILE", o.poses,
                "one reading at each pose of a TUM trajectory, - for stdin: `t x y z qx qy qz qw`",
                Enters::BaseName);
@@ -72,7 +72,8 @@ void ScanCommand::declare() {
         [&o](const std::string& text) { o.depth_per_metre = numberWithin(text, 1, kMaxScale); },
         "depth png: units per metre (default 1000: millimetres)", Enters::History);
     line_.switchFlag("--color", "--no-color", color_,
-                     "depth png: also NAME-color.png for people (default on)", Enters::History);
+                     "depth png: also NAME-color.png for people (default)",
+                     "depth png: no such picture", Enters::History);
     line_.count("--size", "N", o.map_pixels, 200, 8000, "obstacle map png: pixels per side",
                 Enters::History);
     constexpr double kColdest = -100, kHottest = 100;

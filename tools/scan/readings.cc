@@ -55,11 +55,7 @@ Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
     std::optional<Record> of_model;
     std::string id;
     if (!options.model.empty()) {
-        try {
-            of_model = recordOfModel(options.model, devices);
-        } catch (const UsageError& error) {
-            throw UsageError(std::string("--model: ") + error.what());
-        }
+        of_model = ofOption("--model", [&] { return recordOfModel(options.model, devices); });
         id = of_model->writtenId().empty() ? of_model->keyword() + "1" : of_model->writtenId();
     }
     const std::size_t only = of_model ? 0 : onlySensor(scene, options.select);

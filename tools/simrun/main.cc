@@ -107,10 +107,10 @@ void simrun(const SimrunCommand& command) {
             claimOutput(file, "a file of --record");
     const SceneInput input = readScene({options.operands, options.any_environment, false});
     warn(options.common, "simrun", input.environment.warnings);
-    warnOfLeftOut(input.scene, options.common.quiet);
+    warnOfLeftOut(input.scene, options.common);
     World world(input.scene, options.step);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
-    CollisionLog collisions(world, options.common.quiet);
+    CollisionLog collisions(world, options.common);
     simulation.onStep([&collisions] { collisions.tell(); });
 
     checkRecord(options, world);

@@ -80,7 +80,7 @@ void SimrunCommand::declareServer() {
         },
         "clients served at once; more are refused (default 256)", Enters::Nothing);
     line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
-                     "whether the request SHUTDOWN ends the run or is refused (default on)",
+                     "let the request SHUTDOWN end the run (default)", "refuse it",
                      Enters::Nothing);
 }
 

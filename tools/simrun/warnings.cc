@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/warnings.h"
 
-#include <iostream>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -13,33 +13,32 @@ namespace ispace {
 namespace {
 
 constexpr int kMaxCollisions = 100;
-constexpr const char* kWarning = "simrun: warning: ";
+constexpr const char* kTool = "simrun";
 
-void say(const World& world, const Collision& collision) {
+std::string textOf(const World& world, const Collision& collision) {
     const Point2 place = world.status(collision.robot).pose.position;
-    std::cerr << kWarning << "t=" << formatMilliseconds(collision.time) << ' '
-              << world.robots()[collision.robot].id << " at " << formatFixed(place.x, 3) << ','
-              << formatFixed(place.y, 3) << " ran into " << collision.into << '\n';
+    return "t=" + formatMilliseconds(collision.time) + ' ' + world.robots()[collision.robot].id +
+           " at " + formatFixed(place.x, 3) + ',' + formatFixed(place.y, 3) + " ran into " +
+           std::string(collision.into);
 }
 
 }  // namespace
 
 void CollisionLog::tell() {
-    if (quiet_) return;
     for (const Collision& collision : world_->collisions()) {
         if (count_ == kMaxCollisions) return;
-        say(*world_, collision);
-        if (++count_ == kMaxCollisions) std::cerr << kWarning << "no more of these are told\n";
+        warn(*options_, kTool, textOf(*world_, collision));
+        if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
     }
 }
 
-void warnOfLeftOut(const Scene& scene, bool quiet) {
-    if (quiet) return;
+void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {
     for (const PendingSensor& sensor : scene.pending)
         if (std::holds_alternative<Laser>(sensor.model))
-            std::cerr << kWarning << sensor.id
-                      << " has no place and is left out: give it `at` or `on`, or let arrange "
-                         "place it\n";
+            warn(options, kTool,
+                 sensor.id +
+                     " has no place and is left out: give it `at` or `on`, or let arrange "
+                     "place it");
     constexpr std::string_view kKinds[] = {"ranger", "camera", "ultrasound", "tag", "mat", "gate"};
     std::vector<std::string> phrases = leftOut(scene, kKinds, "simulated");
     for (const char* key : {"path", "walk"}) {
@@ -51,7 +50,7 @@ void warnOfLeftOut(const Scene& scene, bool quiet) {
         }
         if (!ids.empty()) phrases.push_back(leftOutText(key, "simulated", ids));
     }
-    for (const std::string& phrase : phrases) std::cerr << kWarning << phrase << '\n';
+    warn(options, kTool, phrases);
 }
 
 }  // namespace ispace

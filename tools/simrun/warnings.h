@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cli/common_options.h"
 #include "layout/scene.h"
 #include "sim/world.h"
 
@@ -9,17 +10,18 @@ namespace ispace {
 /// Says on stderr what robots run into, up to a number of lines that nobody reads beyond.
 class CollisionLog {
   public:
-    CollisionLog(const World& world, bool quiet) : world_(&world), quiet_(quiet) {}
+    CollisionLog(const World& world, const CommonOptions& options)
+        : world_(&world), options_(&options) {}
     /// Tells the collisions of the world's last step.
     void tell();
 
   private:
     const World* world_;
-    bool quiet_;
+    const CommonOptions* options_;
     int count_ = 0;
 };
 
 /// Says what takes no part: lasers without a place, and what is not simulated yet.
-void warnOfLeftOut(const Scene& scene, bool quiet);
+void warnOfLeftOut(const Scene& scene, const CommonOptions& options);
 
 }  // namespace ispace
