@@ -146,6 +146,11 @@ CoverageFiles mapFiles(const CoverageProduct& product) {
     return {drawCoverageMap(product.scene, product.coverage, options, product.other), ""};
 }
 
+template <PictureFormat kFormat>
+constexpr CoverageFormat mapFormat() {
+    return {.name = nameOf(kFormat), .picture = kFormat, .write = mapFiles<kFormat>};
+}
+
 CoverageFiles csvFiles(const CoverageProduct& product) {
     return {coverageCsv(product.coverage), ""};
 }
@@ -162,17 +167,16 @@ CoverageFiles rosFiles(const CoverageProduct& product) {
 }  // namespace
 
 std::span<const CoverageFormat> coverageFormats() {
-    static constexpr CoverageFormat kFormats[] = {
-        {.name = "png", .picture = PictureFormat::Png, .write = mapFiles<PictureFormat::Png>},
-        {.name = "svg", .picture = PictureFormat::Svg, .write = mapFiles<PictureFormat::Svg>},
-        {.name = "pdf", .picture = PictureFormat::Pdf, .write = mapFiles<PictureFormat::Pdf>},
-        {.name = "csv", .write = csvFiles},
-        {.name = "geojson", .write = geoJsonFiles},
-        {.name = "ros",
-         .square_cell = 0.05,
-         .suffix = "yaml",
-         .beside_suffix = ".pgm",
-         .write = rosFiles}};
+    static constexpr CoverageFormat kFormats[] = {mapFormat<PictureFormat::Png>(),
+                                                  mapFormat<PictureFormat::Svg>(),
+                                                  mapFormat<PictureFormat::Pdf>(),
+                                                  {.name = "csv", .write = csvFiles},
+                                                  {.name = "geojson", .write = geoJsonFiles},
+                                                  {.name = "ros",
+                                                   .square_cell = 0.05,
+                                                   .suffix = "yaml",
+                                                   .beside_suffix = ".pgm",
+                                                   .write = rosFiles}};
     return kFormats;
 }
 

@@ -55,6 +55,10 @@ Image decodePng(std::string_view bytes);
 std::string encodePng(const Image& image);
 
 enum class PictureFormat { Png, Svg, Pdf };
+/// Its suffix, and its name on the command line.
+constexpr std::string_view nameOf(PictureFormat format) {
+    return format == PictureFormat::Png ? "png" : format == PictureFormat::Svg ? "svg" : "pdf";
+}
 
 /// A line's style; widths and dashes are in page units, whatever the view.
 struct Stroke {

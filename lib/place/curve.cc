@@ -227,4 +227,26 @@ std::string drawCurve(const std::vector<CurvePoint>& points, const std::string& 
     return picture.write(format);
 }
 
+namespace {
+
+constexpr const char* kCsv = "csv";
+constexpr PictureFormat kPictures[] = {PictureFormat::Png, PictureFormat::Svg, PictureFormat::Pdf};
+
+}  // namespace
+
+std::vector<std::string> curveFormats() {
+    std::vector<std::string> names = {kCsv};
+    for (const PictureFormat picture : kPictures) names.emplace_back(nameOf(picture));
+    return names;
+}
+
+std::string curveFile(const std::vector<CurvePoint>& points, const std::string& format) {
+    constexpr int kWidth = 900;
+    if (format == kCsv) return curveCsv(points);
+    const auto* const picture =
+        std::find_if(std::begin(kPictures), std::end(kPictures),
+                     [&format](PictureFormat one) { return nameOf(one) == format; });
+    return drawCurve(points, "Coverage by number of sensors", *picture, kWidth);
+}
+
 }  // namespace ispace

@@ -17,6 +17,10 @@ struct CurvePoint {
 
 /// CSV: a header `sensors,value,bound`, then a line per point, as fractions.
 std::string curveCsv(const std::vector<CurvePoint>& points);
+/// The formats of a file with a curve: csv, png, svg, pdf.
+std::vector<std::string> curveFormats();
+/// The file in one of them.
+std::string curveFile(const std::vector<CurvePoint>& points, const std::string& format);
 /// An aligned table in per cent.
 std::string curveText(const std::vector<CurvePoint>& points);
 

@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 constexpr double kMaxLines = 10000, kMaxPlaces = 100000;
-constexpr double kMaxScope = 1e6, kMaxDist = 1000, kMinLength = 0.001;  // metres
+constexpr double kMaxLength = 1e6, kMaxDist = 1000, kMinLength = 0.001;  // metres
 
 std::vector<Site> proposeAll(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
@@ -63,6 +63,19 @@ std::vector<Site> proposeMedialAxis(const ProposalRequest& request) {
 
 std::vector<Site> proposeListed(const ProposalRequest& request) { return request.options.list; }
 
+constexpr StrategyOption kDensity = {
+    .name = "--candidates",
+    .field = &ArrangeOptions::density,
+    .lowest = kMinLength,
+    .highest = kMaxLength,
+    .help = "steps of the lattice and along walls, headings per place (default 0.25,0.25,16)",
+    .refusal = "the thesis' strategies have their own numbers"};
+constexpr StrategyOption kDensityOptions[] = {kDensity};
+constexpr StrategyOption kListOptions[] = {kDensity,
+                                           {.name = "--places",
+                                            .field = &ArrangeOptions::list,
+                                            .help = "lines X,Y[,HEADING] (CSV), - is stdin",
+                                            .is_needed = true}};
 constexpr StrategyOption kGridOptions[] = {
     {"-X", &ArrangeOptions::x, 1, kMaxLines,
      "interior lines across x (default: 5 per maximum range)"},
@@ -72,7 +85,7 @@ constexpr StrategyOption kRandomOptions[] = {
     {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first"},
     {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces,
      "places tried about the best of them, for each sensor"},
-    {"--scope", &ArrangeOptions::scope, kMinLength, kMaxScope,
+    {"--scope", &ArrangeOptions::scope, kMinLength, kMaxLength,
      "radius in which these lie (default: maximum range / 5)"}};
 constexpr StrategyOption kWallOptions[] = {
     {"--dist", &ArrangeOptions::dist, kMinLength, kMaxDist, "distance from the wall",
@@ -80,13 +93,15 @@ constexpr StrategyOption kWallOptions[] = {
     {"--times", &ArrangeOptions::times, 1, kMaxPlaces, "places per wall"}};
 
 constexpr StrategyRow kRows[] = {
-    {Strategy::All, "all", "default: a lattice and along walls", false, 0, {}, proposeAll},
+    {Strategy::All, "all", "default: a lattice and along walls", false, 0, kDensityOptions,
+     proposeAll},
     {Strategy::Grid, "grid", "Ordinary Grid of the thesis", true, 8, kGridOptions, proposeGrid,
      "use more grid lines (-X, -Y)"},
     {Strategy::Random, "random", "its Hierarchical Random", true, 8, kRandomOptions, proposeNone},
     {Strategy::Wall, "wall", "its Along Wall", true, 0, kWallOptions, proposeAlongWalls},
-    {Strategy::Medial, "medial", "axis of the free floor", false, 0, {}, proposeMedialAxis},
-    {Strategy::List, "list", "the places of --places", false, 0, {}, proposeListed}};
+    {Strategy::Medial, "medial", "axis of the free floor", false, 0, kDensityOptions,
+     proposeMedialAxis},
+    {Strategy::List, "list", "the places of --places", false, 0, kListOptions, proposeListed}};
 
 }  // namespace
 
@@ -101,6 +116,14 @@ const StrategyRow* strategyNamed(std::string_view name) {
     const auto row = std::find_if(std::begin(kRows), std::end(kRows),
                                   [name](const StrategyRow& one) { return one.name == name; });
     return row == std::end(kRows) ? nullptr : row;
+}
+
+bool takes(Strategy strategy, MountOn mount, const StrategyOption& option) {
+    const auto options = rowOf(strategy).options;
+    return option.or_mount == mount ||
+           std::any_of(options.begin(), options.end(), [&option](const StrategyOption& own) {
+               return own.name == std::string_view(option.name);
+           });
 }
 
 std::vector<Angle> headingsPerPlace(const ArrangeOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "place/test_arrange.h"
@@ -11,18 +12,29 @@ namespace ispace {
 namespace {
 
 TEST(Strategies, NamesAndOptionsAreDistinct) {
-    std::set<std::string_view> names, options;
+    std::set<std::string_view> names;
+    std::map<std::string_view, std::string_view> helps;
     for (const StrategyRow& row : strategies()) {
         EXPECT_TRUE(names.insert(row.name).second) << row.name;
         EXPECT_EQ(&rowOf(row.strategy), &row);
         EXPECT_EQ(strategyNamed(row.name), &row);
         EXPECT_EQ(nameOf(row.strategy), row.name);
         for (const StrategyOption& option : row.options) {
-            EXPECT_TRUE(options.insert(option.name).second) << option.name;
-            EXPECT_LT(option.lowest, option.highest);
+            EXPECT_EQ(helps.try_emplace(option.name, option.help).first->second, option.help);
+            EXPECT_LE(option.lowest, option.highest);
+            EXPECT_TRUE(takes(row.strategy, MountOn::Floor, option)) << option.name;
         }
     }
     EXPECT_EQ(strategyNamed("nothing"), nullptr);
+}
+
+TEST(Strategies, TakeTheirOwnOptionsAndThoseOfTheMount) {
+    const StrategyOption& density = rowOf(Strategy::All).options.front();
+    EXPECT_TRUE(takes(Strategy::Medial, MountOn::Floor, density));
+    EXPECT_FALSE(takes(Strategy::Grid, MountOn::Floor, density));
+    const StrategyOption& distance = rowOf(Strategy::Wall).options.front();
+    EXPECT_FALSE(takes(Strategy::All, MountOn::Floor, distance));
+    EXPECT_TRUE(takes(Strategy::All, MountOn::Wall, distance));
 }
 
 TEST(Strategies, ProposeFromTheirOptions) {

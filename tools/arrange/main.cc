@@ -16,6 +16,7 @@
 #include "layout/scene.h"
 #include "layout/schemas.h"
 #include "place/arrangement.h"
+#include "place/curve.h"
 #include "record/text.h"
 #include "sense/ultrasound.h"
 #include "solve/problem.h"
@@ -35,18 +36,14 @@ struct Work {
     std::vector<std::string> files;  ///< for -MD
 };
 
-void warn(const ArrangeToolOptions& options, const std::string& text) {
-    if (!options.common.quiet) std::cerr << "arrange: warning: " << text << '\n';
-}
-
 NamedZone zoneOf(const ArrangeToolOptions& options, const std::string& text,
                  const Environment& environment) {
     NamedZone zone = readZone(text, environment);
     if (zone.is_center_outside)
-        warn(options, "the centre of gravity of " + zone.name +
-                          " lies outside of it; a point inside is (" +
-                          formatFixed(zone.inside.x, 2) + ", " + formatFixed(zone.inside.y, 2) +
-                          "): is it the zone that is meant?");
+        warn(options.common, "arrange",
+             "the centre of gravity of " + zone.name + " lies outside of it; a point inside is (" +
+                 formatFixed(zone.inside.x, 2) + ", " + formatFixed(zone.inside.y, 2) +
+                 "): is it the zone that is meant?");
     return zone;
 }
 
@@ -66,18 +63,19 @@ void readZones(const ArrangeToolOptions& options, const Environment& environment
 }
 
 Work read(const ArrangeToolOptions& options) {
-    const bool lists_stdin = options.places_file == "-";
-    if (lists_stdin && std::any_of(options.operands.begin(), options.operands.end(), isStream))
-        throw UsageError("stdin cannot be read twice: only one operand can be -");
+    std::vector<std::string> streams = options.operands;
+    streams.push_back(options.places_file);
+    mustReadStdinOnce(streams);
     const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
     const std::vector<std::string_view> kinds = keywordsOf(&SensorKind::is_arranged);
     std::vector<SensorSpec> added;
     added.reserve(options.sensors.size());
     for (const std::string& spec : options.sensors)
-        added.push_back(readSensorSpec(spec, kinds, sceneSchemas(), devices));
+        added.push_back(ofOption(
+            "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
     Work work{readScene({options.operands, options.any_environment, false}), {}, options.how, {}};
     SceneInput& input = work.input;
-    ispace::warn(options.common, "arrange", input.environment.warnings);
+    warn(options.common, "arrange", input.environment.warnings);
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.layout = withoutPlaces(*input.layout, options.fixed);
@@ -87,7 +85,7 @@ Work read(const ArrangeToolOptions& options) {
         return !records[i].has("at") && !records[i].has("on");
     };
     for (const std::string& phrase : leftOut(input.scene, kUnplaced, "placed", is_pending))
-        warn(options, phrase);
+        warn(options.common, "arrange", phrase);
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);
     if (work.groups.empty())
@@ -96,7 +94,8 @@ Work read(const ArrangeToolOptions& options) {
     work.files = filesOf(input);
     if (!options.places_file.empty()) {
         work.how.list =
-            readSites(lists_stdin ? readStdin() : readAll(options.places_file), options.places_file,
+            readSites(options.places_file == "-" ? readStdin() : readAll(options.places_file),
+                      options.places_file,
                       headingsAround(work.how.headings.value_or(work.how.density.headings)));
         work.files.push_back(options.places_file);
     }
@@ -115,7 +114,8 @@ void writeLayout(const ArrangeCommand& command, const Work& work, const Arrangem
         layoutDocument(parts, input.layout ? &*input.layout : nullptr, work.groups, arrangement);
     if (!options.trace_file.empty())
         writeAll(options.trace_file, writeTrace({parts.history, arrangement.tried}));
-    if (!options.curve_file.empty()) writeCurve(options, arrangement.curve);
+    if (const std::string& file = options.curve_file; !file.empty())
+        writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     writeAll(options.common.output, writeRecordText(layout));
     writeDependencies(options.common, work.files);
 }
@@ -162,7 +162,7 @@ void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
                    const Arrangement& arrangement) {
     std::string text = reasonForNothing(work, arrangement);
     if (text.empty()) text = idleText(arrangement);
-    if (!text.empty()) warn(options, text);
+    if (!text.empty()) warn(options.common, "arrange", text);
 }
 
 void arrangeSensors(const ArrangeCommand& command) {

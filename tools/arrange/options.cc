@@ -2,12 +2,14 @@
 #include "arrange/options.h"
 
 #include <algorithm>
+#include <set>
 #include <type_traits>
 #include <variant>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "place/curve.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -16,7 +18,6 @@ namespace {
 
 /// As many as a room may ask for, and no slip of a digit.
 constexpr int kMaxHeadings = 3600;
-constexpr double kMaxLength = 1e6;  // metres
 
 /// Numbers of a unit, parted by commas.
 Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t least,
@@ -32,15 +33,14 @@ Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t 
     return std::get<Tuple>(parseValue(key, text));
 }
 
-CandidateDensity readDensity(const std::string& text) {
+CandidateDensity readDensity(const std::string& text, double lowest, double highest) {
     const std::string wanted =
         '`' + text + "` is not GRID,WALL,HEADINGS: two steps in metres and a whole number";
     const auto last = text.rfind(',');
     if (std::count(text.begin(), text.end(), ',') != 2) throw UsageError(wanted);
     const auto headings = parseInteger(text.substr(last + 1));
     if (!headings || *headings < 1 || *headings > kMaxHeadings) throw UsageError(wanted);
-    const Tuple steps =
-        numbers("steps", text.substr(0, last), Unit::Length, 2, 2, 0.001, kMaxLength);
+    const Tuple steps = numbers("steps", text.substr(0, last), Unit::Length, 2, 2, lowest, highest);
     return {steps[0], steps[1], static_cast<int>(*headings)};
 }
 
@@ -71,6 +71,10 @@ std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
     words.reserve(kCount);
     for (const Value value : values) words.emplace_back(nameOf(value));
     return words;
+}
+
+[[noreturn]] void refuseWithEffort(const std::string& option) {
+    throw UsageError("--effort chooses places and headings itself: leave out " + option);
 }
 
 /// \pre it is the word of one of them
@@ -128,15 +132,10 @@ void ArrangeCommand::addPlaceOptions() {
         names.emplace_back(row.name);
     }
     line_.choice("--strategy", words_.strategy, names, help, Enters::History);
-    line_.parsed(
-        "--candidates", "GRID,WALL,HEADINGS",
-        [&how](const std::string& text) { how.density = readDensity(text); },
-        "of all: steps of the lattice and along walls, headings per place (default 0.25,0.25,16)",
-        Enters::History);
-    line_.file("--places", "FILE", options_.places_file,
-               "of list: lines X,Y[,HEADING] (CSV), - is stdin", Enters::BaseName);
+    std::set<std::string_view> added;
     for (const StrategyRow& row : strategies())
-        for (const StrategyOption& option : row.options) addStrategyOption(row, option);
+        for (const StrategyOption& option : row.options)
+            if (added.insert(option.name).second) addStrategyOption(row, option);
     line_.count(
         "--deg", "N", how.headings, 1, kMaxHeadings,
         "headings per place, 360/N degrees apart from 0, or from the inner normal of a wall "
@@ -149,7 +148,16 @@ void ArrangeCommand::addStrategyOption(const StrategyRow& row, const StrategyOpt
     const auto add = [&](auto field) {
         auto& value = options_.how.*field;
         using Value = std::remove_reference_t<decltype(value)>;
-        if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>)
+        if constexpr (std::is_same_v<Value, CandidateDensity>)
+            line_.parsed(
+                option.name, "GRID,WALL,HEADINGS",
+                [&value, &option](const std::string& text) {
+                    value = readDensity(text, option.lowest, option.highest);
+                },
+                help, Enters::History);
+        else if constexpr (std::is_same_v<Value, std::vector<Site>>)
+            line_.file(option.name, "FILE", options_.places_file, help, Enters::BaseName);
+        else if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>)
             line_.count(option.name, "N", value, static_cast<int>(option.lowest),
                         static_cast<int>(option.highest), help, Enters::History);
         else
@@ -259,9 +267,9 @@ void ArrangeCommand::addFileOptions() {
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
+    if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     settleStrategy();
     how.cells = words_.cells.choice();
-    if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     if (how.mount.on == MountOn::Frame &&
         (line_.given("--strategy") || line_.given("--effort") || line_.given("--z")))
         throw UsageError(
@@ -286,38 +294,39 @@ void ArrangeCommand::settle() {
     settleFiles();
 }
 
+void ArrangeCommand::checkStrategyOption(const StrategyRow& row,
+                                         const StrategyOption& option) const {
+    const ArrangeOptions& how = options_.how;
+    const std::string name(row.name);
+    if (!line_.given(option.name)) {
+        if (option.is_needed && how.strategy == row.strategy)
+            throw UsageError("--strategy " + name + ": give the " + name + " with " + option.name +
+                             " FILE");
+        return;
+    }
+    if (takes(how.strategy, how.mount.on, option)) return;
+    if (!words_.effort.empty()) refuseWithEffort(option.name);
+    throw UsageError(std::string(option.name) + " is about --strategy " + name + ": " +
+                     option.refusal);
+}
+
 void ArrangeCommand::settleStrategy() {
     ArrangeOptions& how = options_.how;
     if (!words_.effort.empty()) {
-        for (const char* option : {"--strategy", "--deg", "--candidates", "--places"})
-            if (line_.given(option))
-                throw UsageError(std::string("--effort chooses places and headings itself: leave "
-                                             "out ") +
-                                 option);
         how.strategy = words_.effort == "low" ? Strategy::Random : Strategy::Grid;
         how.headings = words_.effort == "high" ? 16 : 8;
+        for (const char* option : {"--strategy", "--deg"})
+            if (line_.given(option)) refuseWithEffort(option);
     } else if (!words_.strategy.empty()) {
         how.strategy = strategyNamed(words_.strategy)->strategy;
-    } else if (!options_.places_file.empty()) {
-        how.strategy = Strategy::List;
+    } else {
+        for (const StrategyRow& row : strategies())
+            for (const StrategyOption& option : row.options)
+                if (option.is_needed && line_.given(option.name)) how.strategy = row.strategy;
     }
-    const auto only_with = [&](const StrategyRow& row, const char* option) {
-        if (how.strategy != row.strategy && line_.given(option))
-            throw UsageError(std::string(option) + " is about --strategy " + std::string(row.name) +
-                             ": give that, too");
-    };
     for (const StrategyRow& row : strategies())
-        for (const StrategyOption& option : row.options)
-            if (!option.or_mount || words_.mount != nameOf(*option.or_mount))
-                only_with(row, option.name);
-    only_with(rowOf(Strategy::List), "--places");
-    if (how.strategy == Strategy::List && options_.places_file.empty())
-        throw UsageError("--strategy list: give the list with --places FILE");
+        for (const StrategyOption& option : row.options) checkStrategyOption(row, option);
     const bool is_thesis = isOfThesis(how.strategy);
-    if (is_thesis && line_.given("--candidates"))
-        throw UsageError(
-            "--candidates is about --strategy all: the thesis' strategies have their "
-            "own numbers");
     how.search.optimizer = is_thesis ? Optimizer::Greedy : Optimizer::Swap;
     if (!words_.optimize.empty()) how.search.optimizer = valueOf(words_.optimize, kOptimizers);
 }
@@ -328,8 +337,7 @@ void ArrangeCommand::settleFiles() const {
                                      {"--export-mps", &options_.mps_file}})
         if (*file == "-" || *file == "/dev/stdout" || *file == "/dev/fd/1")
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
-    if (!options_.curve_file.empty())
-        (void)outputFormat({}, options_.curve_file, {"csv", "png", "svg", "pdf"});
+    if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
 }
 
 }  // namespace ispace

@@ -51,6 +51,7 @@ class ArrangeCommand {
     void addFileOptions();
     void settle();
     void settleStrategy();
+    void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
 
     /// Words of options that become something else once all are known.

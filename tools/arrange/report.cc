@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
 
@@ -97,20 +96,6 @@ std::string idleText(const Arrangement& arrangement) {
     if (idle.size() > kMaxNamed)
         text += " and " + std::to_string(idle.size() - kMaxNamed) + " more";
     return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
-}
-
-void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve) {
-    const std::string& file = options.curve_file;
-    const std::string format = outputFormat({}, file, {"csv", "png", "svg", "pdf"});
-    if (format == "csv") {
-        writeAll(file, curveCsv(curve));
-        return;
-    }
-    PictureFormat picture = PictureFormat::Png;
-    if (format == "svg") picture = PictureFormat::Svg;
-    if (format == "pdf") picture = PictureFormat::Pdf;
-    constexpr int kWidth = 900;
-    writeAll(file, drawCurve(curve, "Coverage by number of sensors", picture, kWidth));
 }
 
 }  // namespace ispace

@@ -18,7 +18,4 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
 /// The sensors that could as well be left out, as a sentence without end; "" if there are none.
 std::string idleText(const Arrangement& arrangement);
 
-/// Writes --curve's file in the format of its suffix.
-void writeCurve(const ArrangeToolOptions& options, const std::vector<CurvePoint>& curve);
-
 }  // namespace ispace
