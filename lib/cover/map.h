@@ -25,7 +25,7 @@ enum class FanStyle {
 
 struct MapOptions {
     PictureFormat format = PictureFormat::Png;
-    int width = 1200;        ///< pixels; svg and pdf use it as their nominal width
+    int width = 1200;        ///< of PNG and SVG, in pixels
     std::string title = {};  ///< e.g. base name of ENV; "" for none
     MapColor color = MapColor::Redundancy;
     FanStyle fans = FanStyle::Contours;
@@ -36,7 +36,8 @@ struct MapOptions {
 /// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,
 /// heading and view, the largest unseen spots, legend, scale bar, the metrics. Returns the bytes of
 /// the file; equal input gives equal bytes. Covered floor is drawn from coverage.overlay, whatever
-/// the size of the picture sharp, or from cells where there is none.
+/// the size of the picture sharp, or from cells where there is none. A PDF is to scale: on A4 or
+/// A3, the plan at the largest usual scale (1:20, 1:25, 1:50, …) that fits.
 ///
 /// `other`, if not null, is what coverage was compared with (compare()): the colours then tell the
 /// indoor floor that both see, this one alone (gained), and the other alone (lost), and the other's

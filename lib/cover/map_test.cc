@@ -149,6 +149,31 @@ TEST(Map, PdfIsAPdfWithoutDate) {
     EXPECT_EQ(pdf.find("Date"), std::string::npos);
 }
 
+TEST(Map, PdfIsToScaleOnA4OrA3WhateverTheWidth) {
+    const double points = 72 / 25.4, small = std::sqrt(0.5);
+    const auto page_of = [](const std::string& room, int width) {
+        const std::string pdf =
+            mapOf(room + "\nlaser at=0,0 heading=30\n", {PictureFormat::Pdf, width, "a room"});
+        const std::string name = "/MediaBox [ 0 0 ";
+        const char* text = pdf.c_str() + pdf.find(name) + name.size();
+        char* end = nullptr;
+        const double across = std::strtod(text, &end);
+        return Vec2{across, std::strtod(end, nullptr)};
+    };
+    // Beside the legend 9.5 m take 190 mm of A4 at 1:50; A3 has no room for 380 mm.
+    const Vec2 lying = page_of("ispace size=9.5,6.5", 1200);
+    EXPECT_LE(lying.x, small * 400 * points);
+    EXPECT_LE(lying.y, small * 277 * points);
+    EXPECT_NEAR(lying.x - page_of("ispace size=9,6.5", 1200).x, 10 * points, 0.01);
+    for (const std::string room : {"ispace size=50,1", "ispace size=1,50", "ispace size=5,5",
+                                   "ispace size=0.01,0.01", "ispace size=9000,7000"}) {
+        const Vec2 page = page_of(room, 1200);
+        EXPECT_EQ(page, page_of(room, 300));
+        EXPECT_LE(std::max(page.x, page.y), 400 * points + 0.01) << room;
+        EXPECT_LE(std::min(page.x, page.y), 277 * points + 0.01) << room;
+    }
+}
+
 TEST(Map, KeepsTheWidthThatIsAskedForAtAnyAspect) {
     for (const std::string room : {"ispace size=50,1", "ispace size=1,50", "ispace size=5,5",
                                    "ispace size=0.01,0.01", "ispace size=9000,7000"}) {

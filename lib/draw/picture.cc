@@ -226,6 +226,13 @@ double roundStep(double least) {
     return 10 * power;
 }
 
+double usualScale(double least) {
+    for (double power = 1;; power *= 10)
+        for (const double digit : {1.0, 2.0, 2.5, 5.0})
+            if (const double scale = digit * power; scale >= least && scale == std::floor(scale))
+                return scale;
+}
+
 void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,
                   const std::string& more) {
     using namespace palette;

@@ -257,6 +257,12 @@ Box2 visibleBox(const Picture& picture, const DisplayList::Shape& shape);
 /// 1, 2 or 5 times a power of ten, at least `least`. \pre least > 0
 double roundStep(double least);
 
+/// What printers reach of an A3 sheet, in millimetres.
+constexpr double kPaperLong = 400, kPaperShort = 277;
+/// Denominator of the largest usual scale of plans (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, …) that
+/// is at least `least`.
+double usualScale(double least);
+
 /// A bar of round length in black and white pieces, at most `most` page units long, with its length
 /// and more text; `corner` is its lower left end on the page, `em` the size of text.
 void drawScaleBar(Picture& picture, Point2 corner, double most, double page_per_metre, double em,

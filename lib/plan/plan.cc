@@ -24,8 +24,8 @@ constexpr double kMinHeight = 5;
 /// Most height of a picture's plan, of its width.
 constexpr double kTall = 1.4;
 
-/// A3 across less some margin, and the text of a plan on paper, in millimetres.
-constexpr double kPaperLong = 400, kPaperShort = 277, kPaperText = 2.8;
+/// Text of a plan on paper, in millimetres.
+constexpr double kPaperText = 2.8;
 
 struct Page {
     double width = 0, height = 0;  ///< pixels or millimetres
@@ -62,19 +62,13 @@ Page layOutScreen(const Box2& box, const PlanOptions& options) {
     return page;
 }
 
-/// Denominator of the largest usual scale (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, …) at which the
-/// plan fits on the paper.
+/// Denominator of the largest usual scale at which the plan fits on the paper.
 double paperScale(const Box2& box) {
     const double inner_long = kPaperLong - (kLeft + kRight) * kPaperText;
     const double inner_short = kPaperShort - (kTop + kTitle + kBottom) * kPaperText;
     const double longer = std::max(box.width(), box.depth());
     const double shorter = std::min(box.width(), box.depth());
-    const double least = 1000 * std::max(longer / inner_long, shorter / inner_short);
-    double power = 1;
-    for (;; power *= 10)
-        for (const double digit : {1.0, 2.0, 2.5, 5.0})
-            if (const double scale = digit * power; scale >= least && scale == std::floor(scale))
-                return scale;
+    return usualScale(1000 * std::max(longer / inner_long, shorter / inner_short));
 }
 
 /// Metres between lines: 1, unless lines would lie too near each other, or none in sight.

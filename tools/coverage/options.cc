@@ -90,7 +90,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
     constexpr int kNarrowest = 200, kWidest = 10000;
-    line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of the map",
+    line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of a PNG or SVG",
                Enters::History);
     line.choice("--color", words.color, {"redundancy", "sensor"},
                 "colour the floor by how many sensors see it, or by which (default "
