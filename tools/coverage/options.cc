@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/options.h"
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "cli/common_options.h"
 
@@ -44,12 +42,13 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
     }
     if (o.common.output == "-")
         throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
-    const std::string suffix = std::filesystem::path(o.common.output).extension().string();
-    const bool is_yaml = suffix == ".yaml" || suffix == ".yml";
-    const std::string name = outputFormat(to, o.common.output, formatNames(), {{"yaml", "ros"}});
+    std::vector<SuffixOf> suffixes;
+    for (const CoverageFormat& format : coverageFormats())
+        suffixes.push_back({std::string(format.suffix), std::string(format.name)});
+    const std::string name = outputFormat(to, o.common.output, formatNames(), suffixes);
     const CoverageFormat& format = coverageFormat(name);
     o.format = &format;
-    if (format.beside_suffix != nullptr && !is_yaml)
+    if (format.beside_suffix != nullptr && suffixOf(o.common.output) != format.suffix)
         throw UsageError(
             "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml");
     if (format.square_cell > 0 && line.given("--grid"))
