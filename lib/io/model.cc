@@ -85,19 +85,19 @@ class ObjWriter {
 
     void add(const ModelNode& node) {
         out_.append("o ").append(node.id) += '\n';
-        const NodeFrame world_from_node(node);
-        for (const Mesh& mesh : node.meshes) addMesh(mesh, world_from_node);
+        const Frame3 frame = frameOf(node);
+        for (const Mesh& mesh : node.meshes) addMesh(mesh, frame);
     }
 
     [[nodiscard]] std::string take() { return std::move(out_); }
     [[nodiscard]] const std::set<Material>& materials() const { return materials_; }
 
   private:
-    void addMesh(const Mesh& mesh, const NodeFrame& world_from_node) {
+    void addMesh(const Mesh& mesh, const Frame3& frame) {
         std::vector<Point3> places;
         places.reserve(mesh.vertices.size());
         for (const Point3 vertex : mesh.vertices) {
-            places.push_back(world_from_node * vertex);
+            places.push_back(inWorld(frame, vertex));
             addVertex(places.back());
         }
         if (with_materials_) {
@@ -217,12 +217,12 @@ std::string writeStl(const Scene& scene) {
         for (const Mesh& mesh : node.meshes) most += mesh.triangles.size();
     out.reserve(out.size() + most * kFacet);
     for (const ModelNode& node : model) {
-        const NodeFrame world_from_node(node);
+        const Frame3 frame = frameOf(node);
         for (const Mesh& mesh : node.meshes)
             for (const auto& triangle : mesh.triangles) {
                 std::array<Point3, 3> corners;
                 for (std::size_t i = 0; i < 3; ++i)
-                    corners[i] = world_from_node * mesh.vertices[triangle[i]];
+                    corners[i] = inWorld(frame, mesh.vertices[triangle[i]]);
                 addFacet(out, corners);
             }
     }

@@ -28,26 +28,11 @@ struct ModelNode {
 /// The nodes point into the scene. `with_views`: sensors with their fields of view.
 std::vector<ModelNode> modelOf(const Scene& scene, bool with_views = false);
 
-/// From the frame of a node's meshes to the world's.
-class NodeFrame {
-  public:
-    explicit NodeFrame(const ModelNode& node) : placed_(node.pose.has_value()) {
-        if (!placed_) return;
-        origin_ = node.pose->position;
-        x_ = node.pose->beam(Angle());
-        y_ = node.pose->beam(Angle::degrees(90));
-        z_ = cross(x_, y_);
-    }
-
-    Point3 operator*(Point3 p) const {
-        return placed_ ? origin_ + p.x * x_ + p.y * y_ + p.z * z_ : p;
-    }
-
-  private:
-    bool placed_;
-    Point3 origin_;
-    Vec3 x_, y_, z_;
-};
+/// Frame of a node's meshes.
+inline Frame3 frameOf(const ModelNode& node) { return node.pose ? Frame3(*node.pose) : Frame3(); }
+inline Point3 inWorld(const Frame3& frame, Point3 p) {
+    return frame.origin + frame * (p - Point3());
+}
 
 /// Unit normal of the face, counter-clockwise seen from its tip; the null vector if the corners
 /// lie on a line as far as doubles tell.

@@ -169,12 +169,12 @@ void expectUnitNormals(const Soup& soup) {
 std::vector<Triangle> trianglesOf(const Scene& from) {
     std::vector<Triangle> triangles;
     for (const ModelNode& node : modelOf(from)) {
-        const NodeFrame world_from_node(node);
+        const Frame3 frame = frameOf(node);
         for (const Mesh& mesh : node.meshes)
             for (const auto& t : mesh.triangles) {
-                const Triangle corners{world_from_node * mesh.vertices[t[0]],
-                                       world_from_node * mesh.vertices[t[1]],
-                                       world_from_node * mesh.vertices[t[2]]};
+                const Triangle corners{inWorld(frame, mesh.vertices[t[0]]),
+                                       inWorld(frame, mesh.vertices[t[1]]),
+                                       inWorld(frame, mesh.vertices[t[2]])};
                 if (!(faceNormal(corners) == Vec3())) triangles.push_back(corners);
             }
     }
