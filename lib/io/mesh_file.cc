@@ -11,17 +11,11 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "io/import_records.h"
+#include "io/side_files.h"
 
 namespace ispace {
 
 namespace {
-
-std::string folderOf(const std::string& operand) {
-    return operand == "-" ? "" : std::filesystem::path(operand).parent_path().string();
-}
-
-/// The reason alone, without the file that the error names.
-std::string reasonOf(const std::system_error& error) { return error.code().message(); }
 
 /// Loads files, each once.
 class MeshLoader {
@@ -38,7 +32,7 @@ class MeshLoader {
   private:
     void load(Record& record) {
         const std::string& file = record.text("file");
-        const std::string path = (std::filesystem::path(folderOf(operand_)) / file).string();
+        const std::string path = sideFilePath(operand_, file);
         try {
             MeshOptions options{record.text("up"), record.text("side_files") == "anywhere"};
             std::shared_ptr<const TriangleMesh>& mesh =
@@ -52,7 +46,7 @@ class MeshLoader {
             checkDigest(record, *mesh);
             record.setMesh(mesh);
         } catch (const std::system_error& error) {
-            addFinding(record, path, " cannot be opened: " + reasonOf(error));
+            addFinding(record, path, " cannot be opened: " + error.code().message());
         } catch (const FormatError& error) {
             addFinding(record, path, ": " + error.diagnostics().front().message);
         }

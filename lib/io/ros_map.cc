@@ -20,6 +20,7 @@
 #include "geom/pose.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
+#include "io/side_files.h"
 #include "raster/picture.h"
 
 namespace ispace {
@@ -155,12 +156,6 @@ MapHeader readHeader(std::string_view yaml, const std::string& name) {
     }
 }
 
-std::string imagePath(const std::string& image, const std::string& map_name) {
-    const std::filesystem::path folder =
-        map_name == "-" ? std::filesystem::path() : std::filesystem::path(map_name).parent_path();
-    return (folder / image).string();
-}
-
 /// Why the picture cannot be read, or "". Devices and pipes are refused: they may never end.
 std::string reasonNotToRead(const std::string& path) {
     std::error_code error;
@@ -224,7 +219,7 @@ bool isRosMap(std::string_view bytes) {
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas) {
     const MapHeader header = readHeader(yaml, name);
-    const std::string path = imagePath(header.image, name);
+    const std::string path = sideFilePath(name, header.image);
     ImportRecords out(schemas, name, options);
     out.source(path);
     const CellMap map = readCells(header, path, name, out);

@@ -25,7 +25,8 @@ RegularFile openRegular(const std::string& path);
 std::optional<RegularFile> openSideFile(const std::string& path, const std::string& name,
                                         bool anywhere);
 
-/// The path that openSideFile() opens.
+/// The path that openSideFile() opens: `name` is relative to the folder of `path`, for "-" to the
+/// current one.
 std::string sideFilePath(const std::string& path, const std::string& name);
 
 }  // namespace ispace
