@@ -33,30 +33,25 @@ std::string coverageCsv(const Coverage& coverage) {
     return text;
 }
 
-namespace {
-
-constexpr char kFree = static_cast<char>(254), kUnknown = static_cast<char>(205), kOccupied = 0;
-
-}  // namespace
-
-CoverageRosMap coverageRosMap(const Coverage& coverage, double cell,
-                              const std::string& image_name) {
+CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name) {
+    constexpr char kFree = static_cast<char>(254), kUnknown = static_cast<char>(205), kOccupied = 0;
     const Target& target = coverage.target;
     const Grid& grid = target.grid;
     const CellSet covered = coveredCells(coverage);
-    CoverageRosMap map;
+    CoverageFiles map;
     JsonWriter name;  // JSON's strings are YAML's
     name.value(image_name);
-    map.yaml = "image: " + name.take() + "\nmode: trinary\nresolution: " + formatDouble(cell) +
-               "\norigin: [" + formatDouble(grid.limits.low.x) + ", " +
-               formatDouble(grid.limits.low.y) +
-               ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-    map.pgm = "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
-    map.pgm.reserve(map.pgm.size() + grid.size());
+    map.product = "image: " + name.take() + "\nmode: trinary\nresolution: " + formatDouble(cell) +
+                  "\norigin: [" + formatDouble(grid.limits.low.x) + ", " +
+                  formatDouble(grid.limits.low.y) +
+                  ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    map.beside =
+        "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
+    map.beside.reserve(map.beside.size() + grid.size());
     for (int row = grid.rows; row-- > 0;)
         for (int column = 0; column < grid.columns; ++column) {
             const std::size_t at = grid.cell(column, row);
-            map.pgm += !target.free.test(at) ? kOccupied : covered.test(at) ? kFree : kUnknown;
+            map.beside += !target.free.test(at) ? kOccupied : covered.test(at) ? kFree : kUnknown;
         }
     return map;
 }
@@ -151,32 +146,28 @@ constexpr CoverageFormat mapFormat() {
     return {.name = nameOf(kFormat), .picture = kFormat, .write = mapFiles<kFormat>};
 }
 
-CoverageFiles csvFiles(const CoverageProduct& product) {
-    return {coverageCsv(product.coverage), ""};
-}
-
-CoverageFiles geoJsonFiles(const CoverageProduct& product) {
-    return {coverageGeoJson(product.scene, product.coverage), ""};
-}
-
-CoverageFiles rosFiles(const CoverageProduct& product) {
-    CoverageRosMap map = coverageRosMap(product.coverage, product.cell, product.beside_name);
-    return {std::move(map.yaml), std::move(map.pgm)};
-}
-
 }  // namespace
 
 std::span<const CoverageFormat> coverageFormats() {
-    static constexpr CoverageFormat kFormats[] = {mapFormat<PictureFormat::Png>(),
-                                                  mapFormat<PictureFormat::Svg>(),
-                                                  mapFormat<PictureFormat::Pdf>(),
-                                                  {.name = "csv", .write = csvFiles},
-                                                  {.name = "geojson", .write = geoJsonFiles},
-                                                  {.name = "ros",
-                                                   .square_cell = 0.05,
-                                                   .suffix = "yaml",
-                                                   .beside_suffix = ".pgm",
-                                                   .write = rosFiles}};
+    static constexpr CoverageFormat kFormats[] = {
+        mapFormat<PictureFormat::Png>(),
+        mapFormat<PictureFormat::Svg>(),
+        mapFormat<PictureFormat::Pdf>(),
+        {.name = "csv",
+         .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageCsv(product.coverage), ""};
+         }},
+        {.name = "geojson",
+         .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageGeoJson(product.scene, product.coverage), ""};
+         }},
+        {.name = "ros",
+         .square_cell = 0.05,
+         .suffix = "yaml",
+         .beside_suffix = ".pgm",
+         .write = [](const CoverageProduct& product) {
+             return coverageRosMap(product.coverage, product.cell, product.beside_name);
+         }}};
     return kFormats;
 }
 

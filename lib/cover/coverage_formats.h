@@ -22,14 +22,15 @@ std::string coverageCsv(const Coverage& coverage);
 /// kChordError; where regions are not known exactly, cells are outlined instead.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
-/// A map as ROS' map_server reads it.
-struct CoverageRosMap {
-    std::string yaml, pgm;
+/// A product, and the file that stands beside it.
+struct CoverageFiles {
+    std::string product, beside;
 };
-/// The cells as such a map: 254 (free) where the indoor floor is seen, 205 (unknown) where it is
-/// not, 0 (occupied) where a cell is not on the free floor. \pre cells are squares of `cell` metres
-/// \param image_name how the YAML names the picture
-CoverageRosMap coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
+
+/// The cells as a map.yaml that ROS' map_server reads, and its picture: 254 (free) where the indoor
+/// floor is seen, 205 (unknown) where it is not, 0 (occupied) where a cell is not on the free
+/// floor. \pre cells are squares of `cell` metres \param image_name how the YAML names the picture
+CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
 
 /// What a product is made of.
 struct CoverageProduct {
@@ -39,9 +40,6 @@ struct CoverageProduct {
     MapOptions map = {};
     double cell = 0;               ///< edge of square cells where the format wants them
     std::string beside_name = {};  ///< by which the product names the file beside it
-};
-struct CoverageFiles {
-    std::string product, beside;
 };
 
 /// One format of products: a row that `coverage --to`, the choice by suffix, and the checks of

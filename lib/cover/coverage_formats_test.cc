@@ -61,13 +61,13 @@ TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Scene scene = sceneOf(kHalfSeen);
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, {.cells = CellSize{0.05}});
-    const CoverageRosMap map = coverageRosMap(coverage, 0.05, "plan.pgm");
-    EXPECT_EQ(map.yaml,
+    const CoverageFiles map = coverageRosMap(coverage, 0.05, "plan.pgm");
+    EXPECT_EQ(map.product,
               "image: \"plan.pgm\"\nmode: trinary\nresolution: 0.05\norigin: [-2, -2, 0]\n"
               "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     const std::string header = "P5\n80 80\n255\n";
-    ASSERT_EQ(map.pgm.substr(0, header.size()), header);
-    const std::string pixels = map.pgm.substr(header.size());
+    ASSERT_EQ(map.beside.substr(0, header.size()), header);
+    const std::string pixels = map.beside.substr(header.size());
     ASSERT_EQ(pixels.size(), 6400U);
     EXPECT_EQ(std::count(pixels.begin(), pixels.end(), static_cast<char>(254)), 3200);
     EXPECT_EQ(std::count(pixels.begin(), pixels.end(), static_cast<char>(0)), 400);
