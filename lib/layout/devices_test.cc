@@ -45,7 +45,7 @@ std::string keywordOf(const std::string& model) {
 TEST(Devices, ProjectsOwnCatalogueLoads) {
     const std::vector<std::string> models = testing::devices().models();
     // Files in the order of their names, devices in that of their files.
-    EXPECT_EQ(models.front(), "urg-04lx");
+    EXPECT_EQ(models.front(), "vc-c4r");
     EXPECT_EQ(testing::devices().models("robot"),
               (std::vector<std::string>{"pioneer-2dx", "pioneer-3dx"}));
     EXPECT_EQ(testing::devices().models("ultrasound"), std::vector<std::string>{"zps-3d"});
@@ -56,6 +56,9 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
         EXPECT_EQ(keywordOf(laser), "laser") << laser;
     for (const char* ranger : {"sr-3000", "kinect-v1", "kinect-v2", "d435", "vlp-16", "digiclops"})
         EXPECT_EQ(keywordOf(ranger), "ranger") << ranger;
+    for (const char* camera : {"vc-c4r", "dragonfly2", "pi-camera-3", "pi-camera-3-wide", "c920",
+                               "d435-color", "dome-2.8-1080p", "dome-2.8-4k"})
+        EXPECT_EQ(keywordOf(camera), "camera") << camera;
     EXPECT_TRUE(testing::devices().models("desk").empty());
     for (const std::string& model : models) {
         const Record* device = testing::devices().find(model);

@@ -127,30 +127,17 @@ class Resolver {
         }
     }
 
-    /// Of a sensor that is not simulated: as far as they are looked at.
-    void checkFigures(const Record& sensor) {
-        static_cast<void>(deviceOf(sensor, devices_));
-        Diagnostics findings;
-        double least = 0, greatest = 0;
-        applyRange(sensor, least, greatest, findings);
-        findings.throwIfAny();
-    }
-
     /// One that has its place, or waits for it.
     void addSensor(std::size_t i, const SensorKind& kind) {
         const Record& record = records_[i];
-        std::optional<SensorModel> model;
-        if (kind.read != nullptr)
-            model = kind.read(record, deviceOf(record, devices_));
-        else
-            checkFigures(record);
+        SensorModel model = kind.read(record, deviceOf(record, devices_));
         const auto place = placeOf(record);
         if (!place) {
-            if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(*model)});
+            if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(model)});
             return;
         }
         out_.placed.push_back({i, place->pose, out_.sensors.size(), place->mount});
-        if (model) out_.sensors.push_back({ids_[i], std::move(*model), place->pose, place->mount});
+        out_.sensors.push_back({ids_[i], std::move(model), place->pose, place->mount});
     }
 
     /// Of a sensor; nothing if it is still to be placed.

@@ -194,8 +194,8 @@ TEST(MakeScene, EverythingWithAPlaceIsPlaced) {
     EXPECT_EQ(placed[7].pose.position, (Point3{1, 1, 0}));
     EXPECT_EQ(placed[8].index, 1U);
     EXPECT_EQ(placed[9].pose.heading.degrees(), -90);
-    EXPECT_EQ(placed[10].index, 4U);
-    EXPECT_EQ(placed[10].pose, made.sensors[4].pose);
+    EXPECT_EQ(placed[10].index, 5U);
+    EXPECT_EQ(placed[10].pose, made.sensors[5].pose);
     EXPECT_EQ(placed[10].mount->robot, 1U);
     EXPECT_EQ(made.pending.size(), 1U) << "only lasers can be placed so far";
 }

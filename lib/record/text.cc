@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t";
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 std::string hexByte(unsigned char byte) {
     std::array<char, 8> text{};
@@ -136,8 +137,15 @@ Field LineLexer::field() {
 Piece LineLexer::plainValue(int column) {
     const std::size_t begin = next_;
     next_ = std::min(line_.find_first_of(" \t\"#", begin), line_.size());
-    const std::string_view value = line_.substr(begin, next_ - begin);
-    if (atEnd() || isBlank(line_[next_])) return {value, column};
+    const auto value = [&] { return line_.substr(begin, next_ - begin); };
+    if (atEnd() || isBlank(line_[next_])) return {value(), column};
+    // Inches, as in 1/2.8", end a value.
+    const bool is_inch = line_[next_] == '"' && next_ > begin && isDigit(line_[next_ - 1]) &&
+                         (next_ + 1 == line_.size() || isBlank(line_[next_ + 1]));
+    if (is_inch) {
+        ++next_;
+        return {value(), column};
+    }
     const char found = line_[next_];
     const int found_column = this->column();
     skipPiece();

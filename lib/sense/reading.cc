@@ -73,6 +73,9 @@ struct ReadingTaker::Data {
     // Receivers hear tags; alone they read nothing.
     void prepare(const Receiver& /*receiver*/, const ReadingJob& /*job*/) {}
     static Reading take(const Receiver& /*receiver*/, const ReadingJob& /*job*/) { return {}; }
+    // Cameras are measured, but take no pictures: sensorsOf() leaves them out.
+    void prepare(const Camera& /*camera*/, const ReadingJob& /*job*/) {}
+    static Reading take(const Camera& /*camera*/, const ReadingJob& /*job*/) { return {}; }
 };
 
 void ReadingTaker::Data::prepare(const Laser& laser, const ReadingJob& job) {

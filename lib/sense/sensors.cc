@@ -45,7 +45,7 @@ Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs) {
     checkGlobs(scene, globs);
     Sensors sensors;
     for (const Sensor& sensor : scene.sensors)
-        if (isSelected(sensor.id, globs))
+        if (kindOf(sensor.model).is_read && isSelected(sensor.id, globs))
             (sensor.is<Receiver>() ? sensors.receivers : sensors.read).push_back(sensor);
     // A choice of tags alone is not a choice of receivers.
     if (sensors.receivers.empty()) sensors.receivers = sensorsOf<Receiver>(scene);

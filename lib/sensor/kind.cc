@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-/// The table. The first ones are the alternatives of SensorModel, in its order.
+/// The table, in the order of the alternatives of SensorModel.
 constexpr std::array<const SensorKind*, 5> kKinds = {&kLaserKind, &kRangerKind, &kUltrasoundKind,
                                                      &kTagKind, &kCameraKind};
 /// The order in which manuals list their records.

@@ -29,7 +29,7 @@ struct BearingSpan {
 };
 
 /// One kind of sensor: everything the other folders ask about it. A new kind is a source with such
-/// a row, listed in sensorKinds(); a simulated one is also an alternative of SensorModel.
+/// a row, listed in sensorKinds(), and an alternative of SensorModel.
 struct SensorKind {
     std::string_view keyword;       ///< of its records
     std::string_view noun;          ///< what people call one
@@ -43,8 +43,7 @@ struct SensorKind {
     std::vector<Mesh> (*body)();
 
     /// The parameters of a record: its explicit keys, else the device's (if not null), else those
-    /// of a bare one. \throws FormatError with all findings. Null: records are checked and drawn
-    /// only
+    /// of a bare one. \throws FormatError with all findings
     SensorModel (*read)(const Record& record, const Record* device) = nullptr;
     DeviceSummary (*summary)(const SensorModel& model) = nullptr;
     /// Its field of view as a translucent open surface in its frame, two-sided, up to `reach`.
@@ -61,9 +60,6 @@ struct SensorKind {
     /// A place counts as covered if this many of the kind see it.
     std::size_t together = 1;
 };
-
-/// Cameras are read and drawn, but not simulated yet.
-extern const SensorKind kCameraKind;
 
 /// All kinds, in the order in which reports list them.
 std::span<const SensorKind* const> sensorKinds();

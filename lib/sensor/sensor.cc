@@ -31,6 +31,7 @@ bool looksAround(const SensorModel& model, const Pose3& mount) {
 
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor) {
     if (sensor.is<Ranger>()) return fieldOfView(sensor.as<Ranger>(), sensor.pose);
+    if (sensor.is<Camera>()) return fieldOfView(sensor.as<Camera>(), sensor.pose);
     if (sensor.is<Receiver>()) return fieldOfView(sensor.as<Receiver>(), sensor.pose);
     return std::nullopt;
 }

@@ -11,6 +11,7 @@
 
 #include "geom/pose.h"
 #include "record/record.h"
+#include "sensor/camera.h"
 #include "sensor/laser.h"
 #include "sensor/ranger.h"
 #include "sensor/ultrasound.h"
@@ -19,7 +20,7 @@ namespace ispace {
 
 /// Parameters of a sensor of any simulated kind. Code tells kinds apart here, in their own sources
 /// and where readings differ by nature, nowhere else.
-using SensorModel = std::variant<Laser, Ranger, Receiver, Tag>;
+using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera>;
 
 /// What carries a sensor that moves.
 struct Mount {

@@ -38,8 +38,6 @@ void warnOfDoubts(const CommonOptions& options, const Scene& scene) {
         warn(options, "coverage",
              "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
                  " receivers have to hear a tag, here are " + std::to_string(count));
-    constexpr std::string_view kUnmeasured[] = {"camera"};
-    warn(options, "coverage", leftOut(scene, kUnmeasured, "measured"));
 }
 
 /// Nobody asked for cells, and they are not as small as usual.

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sensor/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <string>
+#include <vector>
+
+#include "sensor/test_sensors.h"
+
+namespace ispace {
+
+namespace {
+
+Camera cameraFrom(const std::string& keys) {
+    return cameraOf(testing::sensorRecord("camera id=c " + keys));
+}
+
+std::string findingsOf(const std::string& keys) {
+    return testing::findings([&] { return cameraFrom(keys); });
+}
+
+/// Where OpenCV has a place of the camera's frame.
+cv::Point2d byOpenCv(const Camera& camera, Vec3 place) {
+    const std::vector<cv::Point3d> points = {{-place.y, -place.z, place.x}};
+    const cv::Matx33d matrix(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+    std::vector<cv::Point2d> pixels;
+    if (camera.lens == Lens::Fisheye) {
+        const cv::Vec4d k(camera.distortion[0], camera.distortion[1], camera.distortion[2],
+                          camera.distortion[3]);
+        cv::fisheye::projectPoints(points, pixels, cv::Vec3d(), cv::Vec3d(), matrix, k);
+    } else {
+        cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), matrix,
+                          std::vector<double>(camera.distortion.begin(), camera.distortion.end()),
+                          pixels);
+    }
+    return pixels.front();
+}
+
+}  // namespace
+
+TEST(Camera, ProjectsAsOpenCvDoes) {
+    const Camera cameras[] = {
+        cameraFrom("fov=60"),
+        cameraFrom("fx=500 fy=520 cx=300 cy=250"),
+        cameraFrom("fov=70 coefficients=-0.28,0.09,0.0012,-0.0007,-0.01"),
+        cameraFrom("fov=70 distortion=plumb_bob coefficients=0.1,0.02,0.001,0.002"),
+        cameraFrom("projection=fisheye fov=170"),
+        cameraFrom("projection=fisheye fov=150 coefficients=0.02,-0.01,0.003,-0.0005")};
+    for (const Camera& camera : cameras)
+        for (int row = 0; row < camera.rows; row += 37)
+            for (int column = 0; column < camera.columns; column += 41) {
+                const PixelPoint place{column + 0.25, row - 0.25};
+                const auto ray = camera.ray(place);
+                ASSERT_TRUE(ray) << column << ' ' << row;
+                EXPECT_NEAR(length(*ray), 1, 1e-12);
+                if (ray->x > 0.01) {  // OpenCV divides by it
+                    const cv::Point2d theirs = byOpenCv(camera, 3.0 * *ray);
+                    EXPECT_NEAR(theirs.x, place.column, 1e-8);
+                    EXPECT_NEAR(theirs.y, place.row, 1e-8);
+                }
+                const auto ours = camera.project(2.0 * *ray);
+                ASSERT_TRUE(ours);
+                EXPECT_NEAR(ours->column, place.column, 1e-8);
+                EXPECT_NEAR(ours->row, place.row, 1e-8);
+            }
+}
+
+TEST(Camera, MirrorsGoThereAndBack) {
+    for (const char* keys :
+         {"projection=omni mirror=1 fov=200 pixels=800,800 tilt=-90",
+          "projection=omni mirror=0.8 fov=210 pixels=800,600", "projection=omni mirror=0.1 fov=170",
+          "projection=omni fov=360 pixels=500,500"}) {
+        const Camera camera = cameraFrom(keys);
+        const double middle = camera.cx, radius = 0.49 * std::min(camera.columns, camera.rows);
+        for (int i = 0; i < 360; i += 7)
+            for (const double share : {0.01, 0.5, 0.99}) {
+                const double angle = i * 0.0174532925;
+                const PixelPoint place{middle + share * radius * std::cos(angle),
+                                       camera.cy + share * radius * std::sin(angle)};
+                const auto ray = camera.ray(place);
+                ASSERT_TRUE(ray) << keys;
+                const auto back = camera.project(*ray);
+                ASSERT_TRUE(back) << keys;
+                EXPECT_NEAR(back->column, place.column, 1e-7) << keys;
+                EXPECT_NEAR(back->row, place.row, 1e-7) << keys;
+            }
+        EXPECT_FALSE(camera.ray({-0.5, -0.5})) << "beyond the circle";
+    }
+    const Camera around = cameraFrom("projection=omni fov=360 pixels=500,500");
+    EXPECT_TRUE(around.looksAround({{}, {}, Angle::degrees(-90), {}}));
+    EXPECT_FALSE(around.looksAround({}));
+}
+
+TEST(Camera, OfTheUnifiedModelIsThatOfMei) {
+    const Camera camera = cameraFrom("projection=omni mirror=0.7 fov=180 pixels=600,600");
+    // On the sphere, then from the point `mirror` behind its centre.
+    const Vec3 way{0.5, 0.3, -0.2};
+    const double size = length(way), depth = way.x / size + 0.7;
+    const auto place = camera.project(way);
+    ASSERT_TRUE(place);
+    EXPECT_NEAR(place->column, camera.cx - camera.fx * way.y / size / depth, 1e-9);
+    EXPECT_NEAR(place->row, camera.cy - camera.fy * way.z / size / depth, 1e-9);
+}
+
+TEST(Camera, TakesItsFocalLengthFromWhatThereIs) {
+    const Camera bare = cameraFrom("");
+    EXPECT_NEAR(bare.fovX().degrees(), 45, 1e-9);
+    EXPECT_EQ(bare.fx, bare.fy);
+    EXPECT_NEAR(cameraFrom("fov=90,60").fovY().degrees(), 60, 1e-9);
+    const Camera sheet = cameraFrom("pixels=1920,1080 focal=2.8mm sensor=5.37,3.02mm");
+    EXPECT_NEAR(sheet.fx, 2.8 / 5.37 * 1920, 1e-9);
+    EXPECT_NEAR(sheet.fy, 2.8 / 3.02 * 1080, 1e-9);
+    // 18 mm an inch: 6.43 mm across.
+    const Camera format = cameraFrom("pixels=1920,1080 focal=2.8mm sensor=1/2.8\"");
+    EXPECT_NEAR(format.fx, 2.8 / (18 / 2.8 * 1920 / std::hypot(1920, 1080)) * 1920, 1e-9);
+    EXPECT_EQ(format.fx, format.fy);
+    EXPECT_EQ(cameraFrom("pixels=1920,1080 focal=2.8mm sensor=\"1/2.8\\\"\""), format);
+    EXPECT_EQ(cameraFrom("pixels=1920,1080 focal=2.8mm sensor=1/2.8in"), format);
+    const Camera calibrated = cameraFrom("fx=400 cx=310.5");
+    EXPECT_EQ(calibrated.fy, 400);
+    EXPECT_EQ(calibrated.cx, 310.5);
+    EXPECT_EQ(calibrated.cy, 239.5);
+}
+
+TEST(Camera, SaysWhatIsWrong) {
+    EXPECT_NE(findingsOf("fov=180").find("less than 180 degrees"), std::string::npos);
+    EXPECT_NE(findingsOf("focal=2.8mm").find("without the size of the image sensor"),
+              std::string::npos);
+    EXPECT_NE(findingsOf("sensor=1/3\"").find("add `focal`"), std::string::npos);
+    EXPECT_NE(findingsOf("focal=3mm sensor=big").find("wanted a format"), std::string::npos);
+    EXPECT_NE(findingsOf("focal=3mm sensor=1/0\"").find("wanted a format"), std::string::npos);
+    EXPECT_NE(findingsOf("pixels=0,480"), "");
+    EXPECT_NE(findingsOf("pixels=16384,16384").find("at most"), std::string::npos);
+    EXPECT_NE(findingsOf("fov=60 fx=500").find("twice"), std::string::npos);
+    EXPECT_NE(findingsOf("mirror=1").find("projection=omni"), std::string::npos);
+    EXPECT_NE(findingsOf("projection=pinhole distortion=fisheye"), "");
+    EXPECT_NE(findingsOf("projection=fisheye distortion=plumb_bob"), "");
+    // r - r^3 is greatest at 30 degrees.
+    EXPECT_NE(findingsOf("coefficients=-1 fov=80").find("this lens ends at 60"), std::string::npos);
+}
+
+TEST(Camera, OfAStrongLensHasNoRayBeyondItsTurningPoint) {
+    const Camera camera = cameraFrom("fx=300 coefficients=-0.4 pixels=1200,800");
+    EXPECT_FALSE(camera.ray({0, 0}));
+    EXPECT_TRUE(camera.ray({600, 400}));
+    const Angle beyond = camera.widest + Angle::degrees(1);
+    EXPECT_FALSE(camera.project({cos(beyond), sin(beyond), 0}));
+}
+
+}  // namespace ispace
