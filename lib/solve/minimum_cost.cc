@@ -16,6 +16,13 @@ namespace {
 constexpr int kQuickRounds = 8;  // of a bound
 constexpr int kFewStarts = 4;    // of swaps
 
+/// \pre it is chosen
+std::size_t positionOf(const Choice& choice, const CoverageState& state) {
+    const auto& chosen = state.chosen();
+    return static_cast<std::size_t>(std::find(chosen.begin(), chosen.end(), choice) -
+                                    chosen.begin());
+}
+
 /// One search for a minimum-cost cover.
 class MinimumCostSearch {
   public:
@@ -37,7 +44,6 @@ class MinimumCostSearch {
   private:
     [[nodiscard]] Problem within(double cost) const;
     [[nodiscard]] Solution reachGreedily();
-    [[nodiscard]] Solution placed(const Problem& cheaper);
     [[nodiscard]] Solution trimmed(const Solution& solution, std::uint64_t value) const;
     [[nodiscard]] Solution reduced(const Problem& cheaper, const Solution& solution) const;
     [[nodiscard]] MinimumCostCover unreached(const Solution& greedy);
@@ -95,18 +101,11 @@ Solution MinimumCostSearch::reachGreedily() {
     Solution solution;
     for (double limit = 4 * dearest;; limit *= 2) {
         const bool is_last = limit >= cost || progress_.stopped();
-        solution = placed(is_last ? problem_ : within(limit));
+        solution = placeFeasibly(is_last ? problem_ : within(limit), progress_);
         is_all_ = solution.value == most;
         if (solution.value >= wanted_) return trimmed(solution, wanted_);
         if (is_last || is_all_) return solution;
     }
-}
-
-/// Greedily; nothing where that has no way on.
-Solution MinimumCostSearch::placed(const Problem& cheaper) {
-    Solution solution = placeGreedily(cheaper, progress_);
-    if (!isFeasible(cheaper, solution.chosen)) solution = {{}, valueOf(cheaper, {})};
-    return solution;
 }
 
 /// The first sensors that reach this value, without those that turn out redundant.
@@ -126,9 +125,7 @@ Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t valu
     for (const Choice& choice : order) {
         // Connection depends on all of them.
         if (problem_.is_connected && progress_.stopped()) break;
-        const auto& now = state.chosen();
-        const auto position =
-            static_cast<std::size_t>(std::find(now.begin(), now.end(), choice) - now.begin());
+        const std::size_t position = positionOf(choice, state);
         state.removeAt(position);
         const bool is_enough = state.value() >= value &&
                                (!problem_.is_connected || isFeasible(problem_, state.chosen()));
@@ -142,14 +139,10 @@ Solution MinimumCostSearch::trimmed(const Solution& solution, std::uint64_t valu
 Solution MinimumCostSearch::reduced(const Problem& cheaper, const Solution& solution) const {
     CoverageState state(problem_, partial_weights_);
     for (const Choice& choice : solution.chosen) state.add(choice);
-    const auto position_of = [&state](const Choice& choice) {
-        const auto& now = state.chosen();
-        return static_cast<std::size_t>(std::find(now.begin(), now.end(), choice) - now.begin());
-    };
     using Loss = std::tuple<double, double, Choice>;  // of value, of parts; for what it costs
     const auto loss_of = [&](const Choice& choice) {
         const std::uint64_t value = state.value(), parts = state.partialValue();
-        const std::size_t position = position_of(choice);
+        const std::size_t position = positionOf(choice, state);
         state.removeAt(position);
         const double cost = problem_.kinds[choice.kind].cost;
         const Loss loss(static_cast<double>(value - state.value()) / cost,
@@ -172,7 +165,7 @@ Solution MinimumCostSearch::reduced(const Problem& cheaper, const Solution& solu
         if (!losses.empty() && losses.top() < now)
             losses.push(now);
         else
-            state.removeAt(position_of(choice));
+            state.removeAt(positionOf(choice, state));
     }
     if (!isFeasible(cheaper, state.chosen())) return {{}, valueOf(problem_, {})};
     return {state.chosen(), state.value()};
@@ -207,7 +200,7 @@ Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, 
     if (options_.optimizer != Optimizer::Greedy) solution = reduced(cheaper, best);
     // Of one kind greedy placement is what it was, but for fewer.
     if (cheaper.kinds.size() > 1 || cheaper.is_connected || solution.chosen.empty()) {
-        const Solution greedy = placed(cheaper);
+        const Solution greedy = placeFeasibly(cheaper, progress_);
         if (greedy.value > solution.value || solution.chosen.empty()) solution = greedy;
     }
     if (options_.optimizer == Optimizer::Greedy) return solution;

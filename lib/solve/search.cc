@@ -55,11 +55,16 @@ std::string_view nameOf(Optimizer optimizer) {
     return "exact";
 }
 
+Solution placeFeasibly(const Problem& problem, Progress& progress) {
+    Solution solution = placeGreedily(problem, progress);
+    if (!isFeasible(problem, solution.chosen)) solution = {{}, valueOf(problem, {})};
+    return solution;
+}
+
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
     SearchResult result;
     result.bound = problem.totalWeight();
-    result.best = placeGreedily(problem, progress);
-    if (!isFeasible(problem, result.best.chosen)) result.best = {{}, valueOf(problem, {})};
+    result.best = placeFeasibly(problem, progress);
     noteProgress(problem, result, progress);
     if (options.optimizer != Optimizer::Greedy && !progress.stopped()) {
         // Swaps may take long: if there is no time for more, this is the bound.

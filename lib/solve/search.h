@@ -26,6 +26,8 @@ namespace ispace {
 /// With is_connected each sensor after the first shares a cell with those before it, if any
 /// candidate does; no guarantee holds then.
 Solution placeGreedily(const Problem& problem, Progress& progress);
+/// The same, or nothing where greed ends in something that is not feasible.
+Solution placeFeasibly(const Problem& problem, Progress& progress);
 
 struct SwapOptions {
     int starts = 20;  ///< random starts, besides the greedy one
