@@ -62,7 +62,7 @@ namespace {
 
 /// Multiplicity that sensors at any places can add to all cells together.
 std::uint64_t maxParts(const Problem& problem, const Grid& grid,
-                       std::span<const SensorModel> devices, std::span<const int> most, int unit) {
+                       std::span<const SensorModel> devices, std::span<const int> most) {
     struct Offer {
         double parts, cost;
         int most;
@@ -70,9 +70,9 @@ std::uint64_t maxParts(const Problem& problem, const Grid& grid,
     std::vector<Offer> offers;
     offers.reserve(devices.size());
     for (std::size_t k = 0; k < devices.size(); ++k) {
-        const int share = isPartial(devices[k]) ? 1 : unit;
-        offers.push_back({share * static_cast<double>(maxCellsInView(devices[k], grid)),
-                          problem.kinds[k].cost, most[k]});
+        const Kind& kind = problem.kinds[k];
+        offers.push_back({kind.multiplicity * static_cast<double>(maxCellsInView(devices[k], grid)),
+                          kind.cost, most[k]});
     }
     std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
         return a.parts * b.cost > b.parts * a.cost;
@@ -89,9 +89,8 @@ std::uint64_t maxParts(const Problem& problem, const Grid& grid,
 }  // namespace
 
 std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
-                              std::span<const SensorModel> devices, std::span<const int> most,
-                              int unit) {
-    std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most, unit);
+                              std::span<const SensorModel> devices, std::span<const int> most) {
+    std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most);
     /// What a cell lacks to be covered.
     struct Missing {
         std::uint32_t weight;
@@ -100,7 +99,7 @@ std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
     std::vector<Missing> missing;
     int together = 0;  // what all of them give a cell
     for (std::size_t k = 0; k < devices.size(); ++k)
-        together += most[k] * (isPartial(devices[k]) ? 1 : unit);
+        together += most[k] * problem.kinds[k].multiplicity;
     for (std::size_t i = 0; i < problem.cells(); ++i) {
         const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];
         if (achieved >= problem.required)

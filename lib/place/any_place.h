@@ -29,10 +29,8 @@ std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid);
 /// Upper bound of the value of sensors at any places, on the grid of the problem's weights: what
 /// stands already covers, and the heaviest other cells, as many as these sensors can see together.
 /// `devices` are those of the problem's kinds, `most` the maximum number of each; with a budget
-/// those that see most per cost count, the last one in part. `unit`: multiplicity of sensors other
-/// than receivers.
+/// those that see most per cost count, the last one in part.
 std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
-                              std::span<const SensorModel> devices, std::span<const int> most,
-                              int unit);
+                              std::span<const SensorModel> devices, std::span<const int> most);
 
 }  // namespace ispace

@@ -188,7 +188,7 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
         const SensorModel devices[] = {small};
         const int most[] = {number};
         problem.kinds = {Kind{}};
-        return maxFromAnyPlace(problem, grid, devices, most, 1);
+        return maxFromAnyPlace(problem, grid, devices, most);
     };
     EXPECT_EQ(most_of(0), 10U) << "what is met already";
     EXPECT_EQ(most_of(1), 10 + 50 + (cells - 1));
@@ -226,11 +226,11 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     problem.kinds[1].cost = 2;
     const int most[] = {10, 10};
     problem.budget = 5;
-    const std::uint64_t bought = maxFromAnyPlace(problem, grid, devices, most, 1);
+    const std::uint64_t bought = maxFromAnyPlace(problem, grid, devices, most);
     EXPECT_GE(bought, 2 * many + few);
     EXPECT_LE(bought, 5 * many / 2 + 1);
     problem.budget.reset();
-    EXPECT_EQ(maxFromAnyPlace(problem, grid, devices, most, 1), 10 * (many + few));
+    EXPECT_EQ(maxFromAnyPlace(problem, grid, devices, most), 10 * (many + few));
 }
 
 }  // namespace

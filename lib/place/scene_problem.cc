@@ -32,6 +32,13 @@ CoverageOptions searching(const ArrangeOptions& options) {
     return {.cells = searchCells(options), .plane = options.plane, .exact = false};
 }
 
+CellSet countedCells(const Problem& problem) {
+    CellSet counted(problem.cells());
+    for (std::size_t i = 0; i < problem.cells(); ++i)
+        if (problem.weights[i] > 0) counted.set(i);
+    return counted;
+}
+
 /// Why nothing counts. \pre all cells weigh 0
 std::string nothingText(const Target& target, FloorWeights weights) {
     weights.weights.clear();
@@ -60,10 +67,8 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
     setMultiplicities(standing);
-    CandidateWeights weights{CellSet(target_.grid.size()), weightsLeft()};
-    for (std::size_t i = 0; i < problem_.cells(); ++i)
-        if (problem_.weights[i] > 0) weights.counted.set(i);
-    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_, std::move(weights),
+    pool_ = std::make_unique<CandidatePool>(scene.environment, worlds_, target_,
+                                            CandidateWeights{countedCells(problem_), weightsLeft()},
                                             options, progress);
     addKinds();
 }
@@ -170,9 +175,7 @@ std::uint64_t SceneProblem::valueOf(const Coverage& coverage) const {
 }
 
 bool SceneProblem::isConnected(const Coverage& coverage) const {
-    CellSet counted(problem_.cells());
-    for (std::size_t i = 0; i < problem_.cells(); ++i)
-        if (problem_.weights[i] > 0) counted.set(i);
+    const CellSet counted = countedCells(problem_);
     std::vector<CellSet> waiting;
     CellSet reached(problem_.cells());
     for (const SensorView& view : coverage.sensors) {
@@ -209,7 +212,7 @@ void SceneProblem::spreadIdle(std::vector<Choice>& chosen) const {
 }
 
 std::uint64_t SceneProblem::maxFromAnyPlace(const std::vector<int>& most) const {
-    return ispace::maxFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most, unit_);
+    return ispace::maxFromAnyPlace(problem_, target_.grid, devicesOf(kinds_), most);
 }
 
 namespace {

@@ -19,6 +19,7 @@
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 #include "place/wall_curves.h"
+#include "record/text.h"
 
 namespace ispace {
 
@@ -58,9 +59,8 @@ std::vector<Segment2> linesOf(const Slice& slice) {
 
 /// The boundary of the indoor region, whatever the height, and what stands at one.
 std::vector<Segment2> linesOf(const Regions& indoor, const Slice& slice) {
-    std::vector<Segment2> lines;
+    std::vector<Segment2> lines = linesOf(slice);
     indoor.forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
-    slice.forEachLine([&lines](const Segment2& line) { lines.push_back(line); });
     return lines;
 }
 
@@ -255,11 +255,8 @@ class SiteReader {
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings) {
     SiteReader reader(name, headings);
-    for (std::size_t begin = 0; begin < text.size() && !reader.full();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        reader.readLine(std::string_view(text).substr(begin, end - begin));
-        begin = end + 1;
-    }
+    LineReader lines(text);
+    while (const auto line = reader.full() ? std::nullopt : lines.next()) reader.readLine(*line);
     return reader.finish();
 }
 
