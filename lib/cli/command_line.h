@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "record/record.h"
@@ -98,6 +99,24 @@ class CommandLine {
     [[nodiscard]] std::function<void(const std::string&)> guarded(
         const std::string& names, std::function<void(const std::string&)> take) const;
     std::unique_ptr<Data> data_;
+};
+
+/// A tool's options with the command line they come from, kept for its history line, whose operands
+/// are known only once they are read.
+template <typename Options>
+class ToolCommand {
+  public:
+    [[nodiscard]] const Options& options() const { return options_; }
+    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
+        return line_.historyLine(operands);
+    }
+
+  protected:
+    ToolCommand(std::string tool, std::string synopsis, std::string summary)
+        : line_(std::move(tool), std::move(synopsis), std::move(summary)) {}
+
+    Options options_;
+    CommandLine line_;
 };
 
 }  // namespace ispace

@@ -96,9 +96,10 @@ std::pair<std::string, double> splitWeight(const std::string& text) {
 }
 
 ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
-    : line_("arrange", "[ENV] [LAYOUT]",
-            "Place sensors in a room: those of LAYOUT without a place, and those of --sensor. "
-            "Writes a layout (.3dm) and says how near it is to the best there can be.") {
+    : ToolCommand(
+          "arrange", "[ENV] [LAYOUT]",
+          "Place sensors in a room: those of LAYOUT without a place, and those of --sensor. "
+          "Writes a layout (.3dm) and says how near it is to the best there can be.") {
     line_.operands(options_.operands, 2);
     line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
                 "place COUNT sensors of a device or a bare kind (laser, ranger, ultrasound), e.g. "

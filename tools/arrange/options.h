@@ -31,16 +31,10 @@ struct ArrangeToolOptions {
     bool any_environment = false;
 };
 
-/// The command line of arrange, kept for its history line, whose operands are known only once
-/// they are read.
-class ArrangeCommand {
+class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
   public:
     /// Opens no file. \throws UsageError, TextRequested
     ArrangeCommand(int argc, const char* const* argv);
-    [[nodiscard]] const ArrangeToolOptions& options() const { return options_; }
-    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
-        return line_.historyLine(operands);
-    }
 
   private:
     void addPlaceOptions();
@@ -59,9 +53,7 @@ class ArrangeCommand {
         std::string effort, strategy, optimize, mount;
         CellWords cells;
     };
-    ArrangeToolOptions options_;
     Words words_;
-    CommandLine line_;
 };
 
 /// What `--weight ZONE=W` says. \throws UsageError

@@ -23,9 +23,10 @@ double numberWithin(const std::string& text, double lowest, double highest) {
 }  // namespace
 
 ScanCommand::ScanCommand(int argc, const char* const* argv)
-    : line_("scan", "[ENV] [LAYOUT]",
-            "Simulate what placed sensors read: lasers, 3-D rangers, ultrasonic receivers. Without "
-            "LAYOUT read it from stdin unless ENV holds placed sensors.") {
+    : ToolCommand(
+          "scan", "[ENV] [LAYOUT]",
+          "Simulate what placed sensors read: lasers, 3-D rangers, ultrasonic receivers. Without "
+          "LAYOUT read it from stdin unless ENV holds placed sensors.") {
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;

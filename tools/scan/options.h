@@ -31,24 +31,17 @@ struct ScanToolOptions {
     bool any_environment = false;
 };
 
-/// The command line of scan, kept for its history line.
-class ScanCommand {
+class ScanCommand : public ToolCommand<ScanToolOptions> {
   public:
     /// Opens no file. \throws UsageError, TextRequested
     ScanCommand(int argc, const char* const* argv);
-    [[nodiscard]] const ScanToolOptions& options() const { return options_; }
-    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
-        return line_.historyLine(operands);
-    }
 
   private:
     void declare();
     void check() const;
 
-    ScanToolOptions options_;
     std::optional<bool> noise_, color_;
     std::string to_, encoding_, coordinates_;
-    CommandLine line_;
 };
 
 }  // namespace ispace

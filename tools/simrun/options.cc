@@ -21,9 +21,10 @@ SimTime simTime(const std::string& text, SimTime least, SimTime most) {
 }  // namespace
 
 SimrunCommand::SimrunCommand(int argc, const char* const* argv)
-    : line_("simrun", "ENV [LAYOUT]",
-            "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
-            "output says where; TERM, INT and the request SHUTDOWN end the run.") {
+    : ToolCommand(
+          "simrun", "ENV [LAYOUT]",
+          "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
+          "output says where; TERM, INT and the request SHUTDOWN end the run.") {
     line_.operands(options_.operands, 2);
     declareRun();
     declareServer();

@@ -28,22 +28,14 @@ struct SimrunOptions {
     ServerLimits limits;
 };
 
-/// The command line of simrun, kept for its history line.
-class SimrunCommand {
+class SimrunCommand : public ToolCommand<SimrunOptions> {
   public:
     /// Opens no file. \throws UsageError, TextRequested
     SimrunCommand(int argc, const char* const* argv);
-    [[nodiscard]] const SimrunOptions& options() const { return options_; }
-    [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
-        return line_.historyLine(operands);
-    }
 
   private:
     void declareRun();
     void declareServer();
-
-    SimrunOptions options_;
-    CommandLine line_;
 };
 
 }  // namespace ispace
