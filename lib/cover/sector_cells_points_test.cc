@@ -146,6 +146,7 @@ struct Counts {
 void expectPoints(const Room& room, const Level& level, const Grid& grid, Point2 place,
                   double range, const std::vector<double>& limits, double unsure, Counts& counts) {
     std::vector<Angle> angles;
+    angles.reserve(limits.size());
     for (const double limit : limits) angles.push_back(Angle::degrees(limit));
     CellParts parts;
     cellsBySector(grid, level, place, range, angles, parts);
