@@ -10,6 +10,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "record/text.h"
 #include "sense/reading_text.h"
 
 namespace ispace {
@@ -355,18 +356,14 @@ std::string writeTrace(const TraceFile& trace) {
 TraceFile readTrace(const std::string& text, const std::string& name) {
     constexpr std::string_view kBlanks = " \t\r";
     TraceFile trace;
-    const std::string_view all = text;
     bool has_header = false;
-    int number = 0;
-    for (std::size_t begin = 0; begin < all.size();) {
-        const std::size_t end = std::min(all.find('\n', begin), all.size());
-        const std::string_view content = all.substr(begin, end - begin);
-        begin = end + 1;
-        ++number;
-        const std::size_t first = content.find_first_not_of(kBlanks);
+    LineReader lines(text);
+    while (const auto content = lines.next()) {
+        const std::size_t first = content->find_first_not_of(kBlanks);
         if (first == std::string_view::npos) continue;
-        if (!has_header && content[first] != '{') throw FormatError({name, number, 0, kWanted});
-        JsonLine line(content, name, number);
+        if (!has_header && (*content)[first] != '{')
+            throw FormatError({name, lines.number(), 0, kWanted});
+        JsonLine line(*content, name, lines.number());
         if (has_header)
             trace.poses.push_back(readTried(line));
         else
