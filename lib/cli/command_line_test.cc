@@ -26,6 +26,7 @@ struct Tool {
     std::optional<int> x;
     double height = 0.15;
     CellWords cells;
+    double density = 0;
     bool json = false;
     std::vector<std::string> edits;
 
@@ -36,6 +37,7 @@ struct Tool {
         line.count("-X", "N", x, 1, 100, "lines", Enters::History);
         line.meters("--height", height, 0, 10, "where", Enters::History);
         addCellOptions(line, cells, "that count");
+        addDensityOption(line, density);
         for (const char* edit : {"--move", "--rotate"})
             line.ordered(
                 edit, "ID:BY",
@@ -64,11 +66,12 @@ struct Tool {
 TEST(CommandLine, OptionsAndOperandsInAnyOrder) {
     Tool tool;
     tool.parse({"room.glb", "--sensor", "a:2", "-X", "7", "--sensor=b", "-", "--height", "50cm",
-                "-qo", "out.3dm", "--grid", "20,30"});
+                "-qo", "out.3dm", "--grid", "20,30", "--density", "observe"});
     EXPECT_EQ(tool.operands, (std::vector<std::string>{"room.glb", "-"}));
     EXPECT_EQ(tool.words, (std::vector<std::string>{"a:2", "b"}));
     EXPECT_EQ(tool.x, 7);
     EXPECT_EQ(tool.height, 0.5);
+    EXPECT_EQ(tool.density, 62.5);
     const auto cells = tool.cells.choice();
     ASSERT_TRUE(cells && std::holds_alternative<CellCount>(*cells));
     EXPECT_EQ(std::get<CellCount>(*cells).columns, 20);
@@ -121,6 +124,8 @@ TEST(CommandLine, HistoryNamesFilesWithoutTheirFolders) {
 
 TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
     EXPECT_NE(Tool().errorOf({"--stratgy", "grid"}).find("did you mean `--strategy`"),
+              std::string::npos);
+    EXPECT_NE(Tool().errorOf({"--density", "identity"}).find("did you mean `identify`"),
               std::string::npos);
     EXPECT_NE(Tool().errorOf({"--strategy", "gird"}).find("did you mean `grid`"),
               std::string::npos);

@@ -20,6 +20,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
+#include "sensor/camera.h"
 
 namespace ispace {
 
@@ -194,6 +195,24 @@ void addCellOptions(CommandLine& line, CellWords& words, const std::string& purp
                 "huge buildings)",
                 Enters::History);
     line.renamed("--reso", "give cells as --grid P,Q or --cell M");
+}
+
+void addDensityOption(CommandLine& line, double& pixels_per_metre) {
+    const auto read = [&pixels_per_metre](const std::string& text) {
+        const auto density = pixelDensityOf(text);
+        if (density) {
+            pixels_per_metre = *density;
+            return;
+        }
+        std::vector<std::string> names;
+        for (const PixelDensity& known : pixelDensities()) names.emplace_back(known.name);
+        throw UsageError(excerpt(text) + " is not a number of pixels a metre above 0, nor " +
+                         listOf(names) + didYouMean(text, names));
+    };
+    line.parsed("--density", "N|NAME", read,
+                "pixels a metre without which a camera sees nothing: a number, or monitor (12.5), "
+                "detect (25), observe (62.5), recognise (125) or identify (250) of EN 62676-4",
+                Enters::History);
 }
 
 void addAnyEnvironmentOption(CommandLine& line, bool& any_environment) {

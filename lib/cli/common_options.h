@@ -93,6 +93,9 @@ struct CellWords {
 /// help.
 void addCellOptions(CommandLine& line, CellWords& words, const std::string& purpose);
 
+/// `--density N|NAME`: pixels a metre that a camera needs; left alone without it.
+void addDensityOption(CommandLine& line, double& pixels_per_metre);
+
 /// `--any-environment`: continue if the digest in LAYOUT is not ENV's.
 void addAnyEnvironmentOption(CommandLine& line, bool& any_environment);
 

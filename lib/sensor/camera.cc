@@ -401,6 +401,35 @@ Camera cameraOf(const Record& record, const Record* device) {
     return parametersOf<Camera>(record, device);
 }
 
+std::span<const PixelDensity> pixelDensities() {
+    static constexpr std::array<PixelDensity, 5> kClasses = {{{"monitor", 12.5},
+                                                              {"detect", 25},
+                                                              {"observe", 62.5},
+                                                              {"recognise", 125},
+                                                              {"identify", 250}}};
+    return kClasses;
+}
+
+std::optional<double> pixelDensityOf(std::string_view text) {
+    if (text == "recognize") text = "recognise";
+    for (const PixelDensity& density : pixelDensities())
+        if (density.name == text) return density.pixels_per_metre;
+    const auto number = parseDouble(text);
+    return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
+}
+
+double rangeOf(const Camera& camera, double pixels_per_metre) {
+    // Pixels a radian in the middle, where all these lenses have fewest.
+    const double focal = std::min(camera.fx, camera.fy) / (1 + camera.mirror);
+    return focal / pixels_per_metre;
+}
+
+Camera withDensity(Camera camera, double pixels_per_metre) {
+    if (pixels_per_metre > 0)
+        camera.max_range = std::min(camera.max_range, rangeOf(camera, pixels_per_metre));
+    return camera;
+}
+
 FieldOfView fieldOfView(const Camera& camera, const Pose3& pose) {
     return FieldOfView::pyramid(pose, 0.5 * camera.fovX(), 0.5 * camera.fovY(), camera.max_range,
                                 true);

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "geom/pose.h"
 #include "record/record.h"
@@ -93,6 +95,23 @@ std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int ro
 /// view. \throws FormatError with all findings
 Camera cameraOf(const Record& record, const Record* device = nullptr);
 Camera withParameters(Camera base, const Record& record);
+
+/// Pixels a metre that a task needs on a person (EN 62676-4).
+struct PixelDensity {
+    std::string_view name;
+    double pixels_per_metre = 0;
+};
+/// The classes of the standard, the coarsest first.
+std::span<const PixelDensity> pixelDensities();
+/// Of a number or of a class, in either spelling of `recognise`; nothing for other text. \see
+/// pixelDensities
+std::optional<double> pixelDensityOf(std::string_view text);
+
+/// How far it sees with this many pixels a metre, as `max_range` counts: the focal length in pixels
+/// over the density. \pre pixels_per_metre > 0
+double rangeOf(const Camera& camera, double pixels_per_metre);
+/// A camera that sees no farther than that; 0 pixels a metre change nothing.
+Camera withDensity(Camera camera, double pixels_per_metre);
 
 /// What it sees at a pose if nothing is in the way.
 FieldOfView fieldOfView(const Camera& camera, const Pose3& pose);

@@ -125,6 +125,26 @@ TEST(Camera, TakesItsFocalLengthFromWhatThereIs) {
     EXPECT_EQ(calibrated.cy, 239.5);
 }
 
+TEST(Camera, SeesAsFarAsThereArePixelsAMetre) {
+    EXPECT_EQ(pixelDensityOf("recognise"), 125);
+    EXPECT_EQ(pixelDensityOf("recognize"), 125);
+    EXPECT_EQ(pixelDensityOf("40.5"), 40.5);
+    for (const char* wrong : {"", "0", "-3", "inf", "nan", "identity", "25px"})
+        EXPECT_EQ(pixelDensityOf(wrong), std::nullopt) << wrong;
+    Camera camera;
+    camera.fx = camera.fy = 500;
+    EXPECT_EQ(withDensity(camera, 0).max_range, Camera::kFarthestSeen);
+    EXPECT_EQ(withDensity(camera, 125).max_range, 4);
+    EXPECT_EQ(withDensity(camera, 1).max_range, Camera::kFarthestSeen);
+    // A pixel at the end of that range is a 125th of a metre wide there.
+    const auto a = camera.project({4, 0, 0}), b = camera.project({4, 1, 0});
+    EXPECT_NEAR(std::fabs(a->column - b->column), 125, 1e-9);
+    // Off the axis a mirror's pixels are denser.
+    camera.lens = Lens::Mirror;
+    camera.mirror = 1;
+    EXPECT_EQ(withDensity(camera, 125).max_range, 2);
+}
+
 TEST(Camera, SaysWhatIsWrong) {
     EXPECT_NE(findingsOf("fov=180").find("less than 180 degrees"), std::string::npos);
     EXPECT_NE(findingsOf("focal=2.8mm").find("without the size of the image sensor"),
