@@ -39,6 +39,7 @@ TriangleSet::TriangleSet(const TriangleSoup& soup)
     planes_.reserve(count);
     margins_.reserve(count);
     round_of_.reserve(count);
+    sources_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         const auto& [first, second, third] = soup.triangles[i];
         const Point3 a = soup.vertices[first], b = soup.vertices[second], c = soup.vertices[third];
@@ -53,6 +54,7 @@ TriangleSet::TriangleSet(const TriangleSoup& soup)
         planes_.push_back({normal, normal.x * a.x + normal.y * a.y + normal.z * a.z});
         margins_.push_back(round == TriangleSoup::kFlat ? 2.5 * tolerance_ / thin : kInfinity);
         round_of_.push_back(round);
+        sources_.push_back(static_cast<std::uint32_t>(i));
     }
 }
 

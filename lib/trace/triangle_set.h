@@ -77,6 +77,8 @@ class TriangleSet {
     [[nodiscard]] const std::array<Point3, 3>& corners(std::size_t triangle) const {
         return corners_[triangle];
     }
+    /// Which of the soup's triangles it is.
+    [[nodiscard]] std::size_t source(std::size_t triangle) const { return sources_[triangle]; }
     [[nodiscard]] std::span<const Plane> planes() const { return planes_; }
     /// Upper bound of Embree's error, in metres: 2^-21 of the scene's diagonal.
     [[nodiscard]] double tolerance() const { return tolerance_; }
@@ -105,7 +107,7 @@ class TriangleSet {
     std::vector<Plane> planes_;
     std::vector<double> margins_;
     std::vector<RoundBody> rounds_;
-    std::vector<std::uint32_t> round_of_;
+    std::vector<std::uint32_t> round_of_, sources_;
     double tolerance_ = 0;
 };
 

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "env/body.h"
+#include "layout/bodies.h"
+#include "render/render.h"
+#include "render/scene_data.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kMaterials = static_cast<std::size_t>(Material::View) + 1;
+
+std::uint32_t paintOf(Material material) { return static_cast<std::uint32_t>(material); }
+
+std::vector<Paint> paintsOfMaterials() {
+    std::vector<Paint> paints;
+    for (std::size_t i = 0; i < kMaterials; ++i) {
+        const auto material = static_cast<Material>(i);
+        const Look& look = lookOf(material);
+        Paint paint;
+        for (std::size_t k = 0; k < 3; ++k) paint.color[k] = static_cast<float>(look.color[k]);
+        paint.opacity = static_cast<float>(look.opacity);
+        paint.is_lit = material != Material::View;
+        paint.is_ceiling = material == Material::Ceiling;
+        paint.is_floor = material == Material::Floor;
+        paints.push_back(paint);
+    }
+    return paints;
+}
+
+/// The plates of a pattern on the floor as one covering: they come row by row.
+Covering coveringOf(const std::vector<Plate>& plates, std::uint32_t label, Vec3 shift) {
+    const Polygon& first = plates.front().outline;
+    const Point2 far = plates.back().outline[2];
+    const Vec2 step = first[1] - first[0], side = first[3] - first[0];
+    const Vec2 whole = far - first[0];
+    Covering covering;
+    covering.label = label;
+    covering.corner = first[0] + Vec2{shift.x, shift.y};
+    const double columns = std::round(dot(whole, step) / dot(step, step));
+    const double rows = std::round(dot(whole, side) / dot(side, side));
+    covering.columns = static_cast<std::size_t>(columns);
+    // From the far corner, so that the extent is exact.
+    covering.along = (dot(whole, step) / dot(step, step)) * step;
+    covering.across = (dot(whole, side) / dot(side, side)) * side;
+    for (const Plate& plate : plates) covering.paints.push_back(paintOf(plate.material));
+    covering.paints.resize(covering.columns * static_cast<std::size_t>(rows),
+                           covering.paints.back());
+    return covering;
+}
+
+/// A mesh that just holds a round prism.
+Mesh meshAround(Prism round) {
+    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
+    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
+    Body body;
+    body.prisms.push_back(std::move(round));
+    return std::move(meshesOf(body, Surfaces::Solid).front());
+}
+
+/// Puts what stands still together.
+class StillBuilder {
+  public:
+    StillBuilder(const Scene& scene, const RenderSceneOptions& options)
+        : scene_(scene), options_(options) {
+        still_.device = makeEmbreeDevice();
+        still_.packet_width = nativeWidthOf(still_.device);
+        still_.paints = paintsOfMaterials();
+        const Box2 plan = scene.environment.limits();
+        if (!plan.empty()) still_.shift = {-plan.center().x, -plan.center().y, 0};
+        for (std::size_t i = 0; i < scene.ids.size(); ++i)
+            labels_.emplace(scene.ids[i], static_cast<std::uint32_t>(i + 1));
+        for (const auto& [record, color] : options.tints)
+            tints_.emplace(record + 1, addPaint({.color = color}));
+    }
+
+    StillSurfaces build() {
+        for (const Element& element : scene_.environment.elements()) addElement(element);
+        solid_.add(floorMesh(scene_.environment.indoor()), {0, paintOf(Material::Floor)},
+                   still_.shift);
+        for (const PaintedMesh& paint : options_.paint)
+            clear_.add(paint.mesh, {0, addPaint({paint.color, paint.opacity, paint.is_lit})},
+                       still_.shift);
+        still_.solid.emplace(still_.device.get(), solid_, unsigned(SurfaceKind::Solid));
+        still_.clear.emplace(still_.device.get(), clear_, unsigned(SurfaceKind::Clear));
+        addFigures();
+        return std::move(still_);
+    }
+
+  private:
+    std::uint32_t addPaint(Paint paint) {
+        still_.paints.push_back(paint);
+        return static_cast<std::uint32_t>(still_.paints.size() - 1);
+    }
+    [[nodiscard]] std::uint32_t paintFor(std::size_t label, Material material) const {
+        const auto tint = tints_.find(label);
+        return tint == tints_.end() ? paintOf(material) : tint->second;
+    }
+
+    void addElement(const Element& element) {
+        const auto known = labels_.find(element.id);
+        const std::uint32_t label = known == labels_.end() ? 0 : known->second;
+        const auto add = [&](FinishedSoup& soup, const Mesh& mesh) {
+            soup.add(mesh, {label, paintFor(label, mesh.material)}, still_.shift);
+        };
+        const auto addPart = [&](FinishedSoup& soup, const Body& part) {
+            for (const Mesh& mesh : meshesOf(part, Surfaces::Solid)) add(soup, mesh);
+        };
+        std::vector<Plate> pattern;
+        for (const Prism& prism : element.body.prisms) {
+            if (prism.curve) {
+                add(solid_, meshAround(prism));
+                makeRound(prism);
+            } else {
+                addPart(solid_, {.prisms = {prism}, .sheets = {}, .plates = {}, .meshes = {}});
+            }
+        }
+        for (const Sheet& sheet : element.body.sheets)
+            addPart(sheet.clear ? clear_ : solid_,
+                    {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
+        for (const Plate& plate : element.body.plates) {
+            const bool is_ceiling = plate.material == Material::Ceiling;
+            still_.has_ceiling |= is_ceiling;
+            if (plate.visual_only)
+                pattern.push_back(plate);
+            else if (!is_ceiling || options_.ceilings)
+                addPart(solid_, {.prisms = {}, .sheets = {}, .plates = {plate}, .meshes = {}});
+        }
+        for (const Mesh& mesh : element.body.meshes) add(solid_, mesh);
+        if (pattern.empty()) return;
+        Covering covering = coveringOf(pattern, label, still_.shift);
+        if (const auto tint = tints_.find(label); tint != tints_.end())
+            std::fill(covering.paints.begin(), covering.paints.end(), tint->second);
+        still_.coverings.push_back(std::move(covering));
+    }
+
+    /// The triangles added last stand for a round body.
+    void makeRound(const Prism& prism) {
+        RoundBody round{*prism.curve, prism.bottom, prism.top};
+        round.curve.center = round.curve.center + Vec2{still_.shift.x, still_.shift.y};
+        TriangleSoup& soup = solid_.triangles;
+        const auto index = static_cast<std::uint32_t>(soup.rounds.size());
+        soup.rounds.push_back(round);
+        // As many as a prism of this footprint has.
+        const std::size_t count = 4 * prism.footprint.size() - 4;
+        std::fill(soup.round_of.end() - static_cast<std::ptrdiff_t>(count), soup.round_of.end(),
+                  index);
+    }
+
+    [[nodiscard]] bool isShown(const Placed& placed) const {
+        const std::string& keyword = scene_.records[placed.record].keyword();
+        return options_.devices || keyword == "robot" || keyword == "human";
+    }
+
+    void addFigures() {
+        for (const Placed& placed : scene_.placed) {
+            StillSurfaces::Figure figure;
+            figure.finish.label = static_cast<std::uint32_t>(placed.record + 1);
+            if (isShown(placed)) figure.body = bodyOf(scene_, placed);
+            const auto& views = options_.views;
+            if (std::find(views.begin(), views.end(), placed.record) != views.end())
+                figure.view = viewOf(scene_, placed);
+            const auto tint = tints_.find(placed.record + 1);
+            if (tint != tints_.end()) figure.paint = tint->second;
+            still_.figures.push_back(std::move(figure));
+        }
+    }
+
+    const Scene& scene_;
+    const RenderSceneOptions& options_;
+    std::unordered_map<std::string, std::uint32_t> labels_;
+    std::unordered_map<std::size_t, std::uint32_t> tints_;  // by label
+    FinishedSoup solid_, clear_;
+    StillSurfaces still_;
+};
+
+Mesh placedAt(const Mesh& mesh, const Pose3& pose) {
+    const Frame3 frame(pose);
+    Mesh out = mesh;
+    for (Point3& p : out.vertices) p = frame.origin + frame * Vec3{p.x, p.y, p.z};
+    return out;
+}
+
+FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses) {
+    FinishedSoup soup;
+    for (std::size_t i = 0; i < still.figures.size(); ++i) {
+        const auto& [body, view, finish, paint] = still.figures[i];
+        for (const Mesh& mesh : body)
+            soup.add(placedAt(mesh, poses[i]),
+                     {finish.label, paint.value_or(paintOf(mesh.material))}, still.shift);
+    }
+    return soup;
+}
+
+FinishedSoup viewsAt(const StillSurfaces& still, std::span<const Pose3> poses) {
+    FinishedSoup soup;
+    for (std::size_t i = 0; i < still.figures.size(); ++i)
+        if (const auto& view = still.figures[i].view)
+            soup.add(placedAt(*view, poses[i]), {0, paintOf(Material::View)}, still.shift);
+    return soup;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> Covering::paintAt(Point2 place) const {
+    const Vec2 way = place - corner;
+    const double u = dot(way, along) / dot(along, along);
+    const double v = dot(way, across) / dot(across, across);
+    if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return std::nullopt;
+    const std::size_t rows = paints.size() / columns;
+    const auto column =
+        std::min(static_cast<std::size_t>(u * static_cast<double>(columns)), columns - 1);
+    const auto row = std::min(static_cast<std::size_t>(v * static_cast<double>(rows)), rows - 1);
+    return paints[row * columns + column];
+}
+
+RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses)
+    : still(std::move(surfaces)),
+      bodies(still->device.get(), bodiesAt(*still, poses), unsigned(SurfaceKind::Body)),
+      views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
+
+RenderScene::RenderScene(const Scene& scene, const RenderSceneOptions& options) {
+    auto still = std::make_shared<const StillSurfaces>(StillBuilder(scene, options).build());
+    std::vector<Pose3> poses;
+    for (const Placed& placed : scene.placed) poses.push_back(placed.pose);
+    data_ = std::make_shared<const Data>(std::move(still), poses);
+}
+
+RenderScene RenderScene::at(std::span<const Pose3> poses) const {
+    return RenderScene(std::make_shared<const Data>(data_->still, poses));
+}
+
+std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor) {
+    std::vector<std::size_t> own;
+    for (const Placed& placed : scene.placed) {
+        const std::string& keyword = scene.records[placed.record].keyword();
+        const bool carries =
+            sensor.mount && keyword == "robot" && placed.index == sensor.mount->robot;
+        if (carries || scene.ids[placed.record] == sensor.id) own.push_back(placed.record);
+    }
+    return own;
+}
+
+}  // namespace ispace

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "env/mesh.h"
+#include "render/render.h"
+#include "trace/triangle_set.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace ispace {
+
+/// What a triangle belongs to, and how it looks.
+struct Finish {
+    static constexpr std::uint32_t kNoFace = ~0U;
+
+    std::uint32_t label = 0;       ///< index of its record, plus 1
+    std::uint32_t paint = 0;       ///< of RenderScene::Data
+    std::uint32_t face = kNoFace;  ///< the textured one it is a part of
+};
+
+/// Triangles with their finish, in coordinates relative to the middle of the plan.
+struct FinishedSoup {
+    TriangleSoup triangles;
+    std::vector<Finish> finishes;
+
+    void add(const Mesh& mesh, Finish finish, Vec3 shift);
+};
+
+struct EmbreeRelease {
+    void operator()(RTCDeviceTy* device) const;
+    void operator()(RTCSceneTy* scene) const;
+};
+using EmbreeDevice = std::unique_ptr<RTCDeviceTy, EmbreeRelease>;
+/// Nothing but the program decides how Embree works. \throws std::runtime_error if it fails
+EmbreeDevice makeEmbreeDevice();
+/// Rays that the processor traces together.
+std::size_t nativeWidthOf(const EmbreeDevice& device);
+
+/// Triangles ready to be traced. Hits of it have this geometry id.
+class SurfaceSet {
+  public:
+    /// \throws std::runtime_error if Embree fails, std::bad_alloc if it has no memory
+    SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned geometry);
+
+    [[nodiscard]] bool empty() const { return triangles_.size() == 0; }
+    [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
+    [[nodiscard]] const Finish& finish(std::size_t triangle) const { return finishes_[triangle]; }
+    [[nodiscard]] RTCSceneTy* scene() const { return scene_.get(); }
+
+  private:
+    TriangleSet triangles_;
+    std::vector<Finish> finishes_;  // of the set's triangles
+    std::unique_ptr<RTCSceneTy, EmbreeRelease> scene_;
+};
+
+}  // namespace ispace
