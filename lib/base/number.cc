@@ -98,7 +98,7 @@ std::string formatFixed(double value, int decimals) {
     return text;
 }
 
-double tidy(double value, int digits) {
+double roundSignificant(double value, int digits) {
     if (!std::isfinite(value)) return value;
     std::array<char, kBuffer> buffer;
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,

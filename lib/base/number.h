@@ -38,7 +38,7 @@ std::string formatFixed(double value, int decimals);
 /// Rounds a computed value to so many significant digits, for reports. Sums of areas and shares
 /// carry relative rounding errors of some 1e-15, which would show as meaningless digits:
 /// 16.819200000000002 becomes 16.8192. Monotonic; infinities and NaN stay as they are.
-double tidy(double value, int digits = 12);
+double roundSignificant(double value, int digits = 12);
 
 /// A size of memory as people read it, in powers of 1024: "812 bytes", "19.5 MB", "8 GB".
 std::string formatBytes(std::size_t bytes);

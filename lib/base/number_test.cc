@@ -162,26 +162,26 @@ TEST(ParseShare, WantsAFractionOrAPerCentSign) {
         EXPECT_FALSE(parseShare(bad)) << bad;
 }
 
-TEST(Tidy, LeavesOutDigitsThatRoundingMade) {
-    EXPECT_EQ(tidy(16.819200000000002), 16.8192);
-    EXPECT_EQ(tidy(3.2399999999999998), 3.24);
-    EXPECT_EQ(tidy(0.1 + 0.2), 0.3);
-    EXPECT_EQ(tidy(-1e-7 / 3), -3.33333333333e-8);
-    EXPECT_EQ(tidy(0), 0);
-    EXPECT_EQ(tidy(0.5695, 3), 0.57);
-    EXPECT_EQ(tidy(1234.5, 1), 1000);
-    EXPECT_EQ(tidy(123456789012.0), 123456789012.0);
-    EXPECT_EQ(tidy(1.0 / 3), 0.333333333333);
-    EXPECT_EQ(tidy(std::numeric_limits<double>::max()), 1.79769313486e308);
-    EXPECT_TRUE(std::isnan(tidy(std::nan(""))));
-    EXPECT_TRUE(std::isinf(tidy(std::numeric_limits<double>::infinity())));
+TEST(RoundSignificant, DropsDigitsThatRoundingMade) {
+    EXPECT_EQ(roundSignificant(16.819200000000002), 16.8192);
+    EXPECT_EQ(roundSignificant(3.2399999999999998), 3.24);
+    EXPECT_EQ(roundSignificant(0.1 + 0.2), 0.3);
+    EXPECT_EQ(roundSignificant(-1e-7 / 3), -3.33333333333e-8);
+    EXPECT_EQ(roundSignificant(0), 0);
+    EXPECT_EQ(roundSignificant(0.5695, 3), 0.57);
+    EXPECT_EQ(roundSignificant(1234.5, 1), 1000);
+    EXPECT_EQ(roundSignificant(123456789012.0), 123456789012.0);
+    EXPECT_EQ(roundSignificant(1.0 / 3), 0.333333333333);
+    EXPECT_EQ(roundSignificant(std::numeric_limits<double>::max()), 1.79769313486e308);
+    EXPECT_TRUE(std::isnan(roundSignificant(std::nan(""))));
+    EXPECT_TRUE(std::isinf(roundSignificant(std::numeric_limits<double>::infinity())));
 }
 
-TEST(Tidy, KeepsWhatIsTidyAndTheOrderOfFigures) {
+TEST(RoundSignificant, KeepsShortNumbersAndTheirOrder) {
     double before = 0;
     for (int k = 0; k <= 9409; ++k) {
-        const double share = tidy(k / 9409.0);
-        EXPECT_EQ(tidy(share), share) << k;
+        const double share = roundSignificant(k / 9409.0);
+        EXPECT_EQ(roundSignificant(share), share) << k;
         EXPECT_NEAR(share, k / 9409.0, 1e-12);
         EXPECT_TRUE(share >= before) << k;
         before = share;

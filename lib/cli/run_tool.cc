@@ -128,7 +128,7 @@ constexpr std::string_view kNoMemory = ": error: not enough memory for this inpu
 /// The first part of `text` that is fit for one line.
 std::string_view firstLine(std::string_view text) { return text.substr(0, text.find('\n')); }
 
-/// True where no piece of memory worth mentioning is to be had.
+/// True where hardly any memory can be allocated.
 bool isMemoryOut() {
     constexpr std::size_t kSome = std::size_t{1} << 20U;
     void* const some = std::malloc(kSome);

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-/// How a cell is judged to be seen by a laser.
+/// When a cell counts as seen by a laser.
 enum class CellRule {
     Region,  ///< its centre lies in what the laser sees, as exactly as doubles are
     Beams,   ///< in the polygon through the ends of its beams (thesis, section 4.5.2)
@@ -25,7 +25,7 @@ enum class CellRule {
 
 struct CoverageOptions {
     CellChoice cells = RoomCells();
-    double height = kScanHeight;  ///< at which free floor is judged
+    double height = kScanHeight;  ///< at which the floor is free or not
     double plane = 0;             ///< height of what rangers and ultrasound cover
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< closed forms beside the cells

@@ -22,9 +22,9 @@ std::string coverageCsv(const Coverage& coverage) {
         text += ',';
         text += std::to_string(cell / columns);
         text += ',';
-        appendDouble(text, tidy(center.x));
+        appendDouble(text, roundSignificant(center.x));
         text += ',';
-        appendDouble(text, tidy(center.y));
+        appendDouble(text, roundSignificant(center.y));
         text += target.indoor.test(cell) ? ",1" : ",0";
         text += target.free.test(cell) ? ",1," : ",0,";
         text += std::to_string(times[cell]);
@@ -59,7 +59,8 @@ CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::s
 namespace {
 
 /// The most sensors that see one place.
-std::uint32_t mostSeeing(const Coverage& coverage, const std::vector<std::uint32_t>& cell_times) {
+std::uint32_t maxMultiplicity(const Coverage& coverage,
+                              const std::vector<std::uint32_t>& cell_times) {
     if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
     std::int32_t most = 0;
     for (const Overlay::Edge& edge : coverage.overlay->edges())
@@ -96,7 +97,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     const Metric& share = coverage.report.coverage;
     out.json().key("coverage");
     if (const auto known = share.exact ? share.exact : share.grid)
-        out.json().value(tidy(*known));
+        out.json().value(roundSignificant(*known));
     else
         out.json().null();
     out.beginFeatures();
@@ -105,19 +106,19 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     out.begin("free", "free", "region");
     out.endAsArea(scene.environment.freeFloor(coverage.target.height));
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const std::uint32_t most = mostSeeing(coverage, times);
+    const std::uint32_t most = maxMultiplicity(coverage, times);
     for (std::uint32_t k = 1; k <= most; ++k) {
         const std::vector<Region> pieces = seenBy(coverage, k, times);
         if (pieces.empty()) continue;
         out.begin("seen-" + std::to_string(k), "seen", "region")
             .key("sensors")
             .value(std::size_t{k});
-        out.json().key("area").value(tidy(totalArea(pieces)));
+        out.json().key("area").value(roundSignificant(totalArea(pieces)));
         out.endAsArea(pieces);
     }
     for (const SensorView& view : coverage.sensors) {
         out.begin(view.id, view.kind->keyword, "placement");
-        out.json().key("heading").value(tidy(view.pose.heading.degrees()));
+        out.json().key("heading").value(roundSignificant(view.pose.heading.degrees()));
         out.endAsPoint(view.pose.position.onFloor());
         out.begin(view.id, "view", "region");
         out.endAsArea(viewOf(view, coverage.target.grid));
@@ -126,7 +127,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         const UnseenSpot& spot = coverage.report.unseen[i];
         out.begin("unseen-" + std::to_string(i + 1), "unseen", "spot")
             .key("area")
-            .value(tidy(spot.area));
+            .value(roundSignificant(spot.area));
         out.endAsPoint(spot.place);
     }
     return out.finish();

@@ -29,7 +29,7 @@ TEST(CoveragePlaces, SensorOnAWallSeesBothSidesOfIt) {
     }
 }
 
-// The fan's first and last beams run along the face, where ends of sight begin by rounding.
+// The scan's first and last beams run along the face, where ends of sight begin by rounding.
 TEST(CoveragePlaces, SensorOnAFaceSeesTheHalfBeforeIt) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> at(-2, 2), size(0.2, 1.5), share(-0.5, 0.5);

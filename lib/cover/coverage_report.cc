@@ -15,13 +15,13 @@ namespace {
 void write(JsonWriter& json, const char* key, const std::optional<double>& metric) {
     json.key(key);
     if (metric)
-        json.value(tidy(*metric));
+        json.value(roundSignificant(*metric));
     else
         json.null();
 }
 
 void write(JsonWriter& json, const char* key, std::vector<double> metrics) {
-    for (double& metric : metrics) metric = tidy(metric);
+    for (double& metric : metrics) metric = roundSignificant(metric);
     json.key(key).value(metrics);
 }
 

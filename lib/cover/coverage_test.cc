@@ -163,8 +163,8 @@ TEST(Coverage, NoIndoorCellIsNoShareAtAll) {
 
 TEST(MakeTarget, RefusesGridsOfNoOrTooManyCells) {
     const Scene scene = sceneOf("ispace size=6,4");
-    for (const auto& [columns, rows] : std::vector<std::pair<int, int>>{
-             {0, 5}, {5, 0}, {-1, -1}, {kMostCells, 2}, {2, kMostCells}})
+    for (const auto& [columns, rows] :
+         std::vector<std::pair<int, int>>{{0, 5}, {5, 0}, {-1, -1}, {kMaxCells, 2}, {2, kMaxCells}})
         EXPECT_THROW(makeTarget(scene.environment, CellCount{columns, rows}, 0.15), UsageError)
             << columns << ' ' << rows;
 }

@@ -27,8 +27,8 @@ struct Page {
     bool is_to_scale = false;                  ///< a usual one
     PageView view;
     Box2 plan;
-    Point2 scale_corner;    ///< lower left end of the scale bar
-    double scale_most = 0;  ///< its greatest length
+    Point2 scale_corner;       ///< lower left end of the scale bar
+    double max_scale_bar = 0;  ///< its greatest length
     LegendLayout legend;
     Point2 legend_corner;
     double legend_width = 0;
@@ -36,8 +36,8 @@ struct Page {
 
 /// The plan within a box of the page: as large as fits, in the middle of the width.
 void fitPlan(Page& page, const Box2& limits, double left, double top, double width,
-             double most_height) {
-    double scale = std::min(width / limits.width(), most_height / limits.depth());
+             double max_height) {
+    double scale = std::min(width / limits.width(), max_height / limits.depth());
     if (page.is_to_scale) {
         constexpr double kFull = 1000 * kPointsPerMillimetre;
         scale = kFull / usualScale(kFull / scale);
@@ -48,19 +48,19 @@ void fitPlan(Page& page, const Box2& limits, double left, double top, double wid
     const double y = top + std::max(0.0, (5 * page.em - plan_height) / 2);
     page.plan = {{x, y}, {x + plan_width, y + plan_height}};
     page.view = {scale, {limits.low.x, limits.high.y}, {x, y}};
-    page.scale_most = std::max(6 * page.em, 0.25 * plan_width);
+    page.max_scale_bar = std::max(6 * page.em, 0.25 * plan_width);
     page.scale_corner = {x, std::max(y + plan_height, top + 5 * page.em) + 2 * page.em};
-    if (x + page.scale_most + 6 * page.em > left + width) page.scale_corner.x = left;
+    if (x + page.max_scale_bar + 6 * page.em > left + width) page.scale_corner.x = left;
 }
 
-/// \param most_height of a page to scale; 0: the plan may be 1.4 times as high as the page is wide
-Page layOut(const MapPicture& map, double width, double most_height) {
+/// \param max_height of a page to scale; 0: the plan may be 1.4 times as high as the page is wide
+Page layOut(const MapPicture& map, double width, double max_height) {
     // Widths of the legend, in sizes of text.
     constexpr double kPanel = 18, kNarrowPanel = 17, kGap = 2;
     Page page;
     page.width = width;
     page.em = map.em;
-    page.is_to_scale = most_height > 0;
+    page.is_to_scale = max_height > 0;
     const double em = page.em;
     page.margin = std::max(1.4 * em, page.width / 40);
     double top = page.margin;
@@ -74,7 +74,7 @@ Page layOut(const MapPicture& map, double width, double most_height) {
     // Leaves `below` units to the legend.
     const auto plan_height = [&](double below) {
         if (!page.is_to_scale) return 1.4 * page.width;
-        return std::max(5 * em, most_height - page.margin - top - 3.5 * em - below);
+        return std::max(5 * em, max_height - page.margin - top - 3.5 * em - below);
     };
     const std::vector<LegendBlock> blocks = legendBlocks(map);
     const double panel = kPanel * em, gap = kGap * em;
@@ -189,7 +189,7 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
         on_paper
             ? "  ·  1:" + formatDouble(std::round(1000 * kPointsPerMillimetre / page.view.scale))
             : "";
-    drawScaleBar(picture, page.scale_corner, page.scale_most, page.view.scale, page.em, scale);
+    drawScaleBar(picture, page.scale_corner, page.max_scale_bar, page.view.scale, page.em, scale);
     picture.pop();
     picture.pushLayer("legend");
     drawLegend(picture, page.legend, page.legend_corner, page.legend_width, page.em);

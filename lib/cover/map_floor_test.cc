@@ -24,7 +24,7 @@ std::string comparisonOf(const std::string& now, const std::string& before, bool
     return drawCoverageMap(scene, coverage, {PictureFormat::Png, width, ""}, &other);
 }
 
-// Fans of a quarter turn from the middle to the walls.
+// Sectors of a quarter turn from the middle to the walls.
 const std::string kRight = "laser id=right at=0,0 heading=0 fov=90 range=20\n";
 const std::string kUp = "laser id=up at=0,0 heading=90 fov=90 range=20\n";
 const std::string kUpRight = "laser id=upright at=0,0 heading=45 fov=90 range=20\n";
@@ -98,7 +98,7 @@ TEST(MapFloor, HolesOfRoomsWithinRoomsAreHatched) {
 }
 
 TEST(MapFloor, ExactOutlinesHaveNoSteps) {
-    // The left side of the fan runs at 60 degrees; cells are 8 cm wide.
+    // The left side of the sector runs at 60 degrees; cells are 8 cm wide.
     const PlanPixels pixels(
         mapOf("ispace size=8,8\nlaser at=0,0 heading=30 fov=60 range=20\n", {.width = 2400}), 8);
     const Vec2 along = unitVector(Angle::degrees(60)), left = perpendicular(along);

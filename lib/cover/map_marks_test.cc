@@ -142,10 +142,10 @@ TEST(MapMarks, ZonesAreNamedWhereThereIsRoom) {
 }
 
 TEST(MapViews, BeamsAreThinnedWhereTheyEndTooNearEachOther) {
-    // 0.05 degrees are 0.7 px at the wall: the picture shows lines, not a solid fan.
-    const std::string fan = "ispace size=8,8\nlaser at=0,-3.9 heading=90 fov=60 range=20 step=";
+    // 0.05 degrees are 0.7 px at the wall: the picture shows lines, not a solid sector.
+    const std::string laser = "ispace size=8,8\nlaser at=0,-3.9 heading=90 fov=60 range=20 step=";
     for (const std::string step : {"0.05", "1"}) {
-        const PlanPixels pixels(mapOf(fan + step + "\n", {.fans = FanStyle::Beams}), 8);
+        const PlanPixels pixels(mapOf(laser + step + "\n", {.fans = FanStyle::Beams}), 8);
         const std::uint32_t floor = pixelOf(sequentialColor(1, 1));
         int lines = 0, clear = 0, all = 0;
         bool was_line = false;

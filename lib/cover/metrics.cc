@@ -246,7 +246,7 @@ void addSensors(Coverage& coverage, const Areas& areas) {
 /// What is lost without one receiver: what enough of them hear with it alone, and nothing else
 /// sees. Left out for more receivers than there are marks.
 void addReceivers(Coverage& coverage) {
-    constexpr std::size_t kMost = 62;
+    constexpr std::size_t kMax = 62;
     std::vector<const SensorView*> receivers;
     std::vector<SensorMetrics*> metrics;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
@@ -254,7 +254,7 @@ void addReceivers(Coverage& coverage) {
         receivers.push_back(&coverage.sensors[i]);
         metrics.push_back(&coverage.report.sensors[i]);
     }
-    if (receivers.empty() || receivers.size() > kMost) return;
+    if (receivers.empty() || receivers.size() > kMax) return;
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + receivers.size());
     for (std::size_t i = 0; i < coverage.sets.size(); ++i)

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-/// The region that at least kLeastReceivers of these hear; nothing if it is not known.
+/// The region that at least kMinReceivers of these hear; nothing if it is not known.
 std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers);
 /// A zone of the environment.
 struct Zone {

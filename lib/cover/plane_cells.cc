@@ -55,7 +55,7 @@ class RowLook {
         findTargets(row);
         if (targets_.empty()) return;
         seen_.resize(targets_.size());
-        mesh_.look(reach_.origin, targets_, seen_);
+        mesh_.query(reach_.origin, targets_, seen_);
         for (std::size_t i = 0; i < targets_.size(); ++i) {
             if (seen_[i] == 0 && targets_[i] != reach_.origin) continue;
             for (std::uint64_t bits = held_[i]; bits != 0; bits &= bits - 1)

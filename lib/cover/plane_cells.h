@@ -13,7 +13,7 @@ namespace ispace {
 
 /// The cells that a sensor which does not scan a level slice sees of the plane at `height`, tested
 /// one by one: the centre is in view, its edges included, and in range, and a ray of float32 (see
-/// RayWorld::look) meets nothing of the mesh on its way there. A mesh of Solid surfaces for
+/// RayWorld::query) meets nothing of the mesh on its way there. A mesh of Solid surfaces for
 /// receivers, of Opaque ones for all others.
 ///
 /// These are the centres in ShadowCaster::regionSeen(), but for those within 0.3 mm of its

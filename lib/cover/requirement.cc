@@ -20,7 +20,8 @@ double shareOfText(std::string_view text) {
 /// With all digits where two do not show that a share is below another.
 std::string percent(double share, double required) {
     const std::string text = formatFixed(100 * share, 2);
-    return text == formatFixed(100 * required, 2) ? formatPercent(tidy(share)) : text + "%";
+    return text == formatFixed(100 * required, 2) ? formatPercent(roundSignificant(share))
+                                                  : text + "%";
 }
 
 /// What a requirement is about.
@@ -74,7 +75,7 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
                      didYouMean(requirement.zone, known));
 }
 
-Verdict judge(const Requirement& requirement, const CoverageReport& report) {
+Verdict checkRequirement(const Requirement& requirement, const CoverageReport& report) {
     constexpr double kExactError = 1e-7;
     const auto [what, metric, area] = subjectOf(requirement, report);
     if (!metric.exact && !metric.grid)

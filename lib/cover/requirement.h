@@ -35,6 +35,6 @@ struct Verdict {
 /// The exact metric decides where it is known, else that by cells; a share of which neither is
 /// known is not met. An exact one may be short by what rounding takes, 1e-7.
 /// \pre mustHaveZone()
-Verdict judge(const Requirement& requirement, const CoverageReport& report);
+Verdict checkRequirement(const Requirement& requirement, const CoverageReport& report);
 
 }  // namespace ispace

@@ -38,14 +38,14 @@ CoverageReport sampleReport() {
 }
 
 Verdict verdict(const char* text, const CoverageReport& report = sampleReport()) {
-    return judge(parseRequirement(text), report);
+    return checkRequirement(parseRequirement(text), report);
 }
 std::string missing(const char* text) {
-    const Verdict judged = verdict(text);
-    return judged.is_met ? "" : judged.text;
+    const Verdict found = verdict(text);
+    return found.is_met ? "" : found.text;
 }
 
-TEST(Judge, SaysWhatIsMissing) {
+TEST(CheckRequirement, SaysWhatIsMissing) {
     EXPECT_EQ(missing("50%"), "");
     EXPECT_EQ(missing("60%"),
               "coverage is 50.00% (by cells), below the required 60%: 2.00 m2 are missing; the "
@@ -61,13 +61,13 @@ TEST(Judge, SaysWhatIsMissing) {
               "the room");
 }
 
-TEST(Judge, ShowsDifferencesBelowTheSecondDecimal) {
+TEST(CheckRequirement, ShowsDifferencesBelowTheSecondDecimal) {
     CoverageReport report = sampleReport();
     report.coverage.grid = 0.949999;
     EXPECT_EQ(verdict("95%", report).text.substr(0, 20), "coverage is 94.9999%");
 }
 
-TEST(Judge, ExactMetricsDecideWhereTheyAreKnown) {
+TEST(CheckRequirement, ExactMetricsDecideWhereTheyAreKnown) {
     CoverageReport report = sampleReport();
     report.coverage = {.grid = 0.1515, .exact = 0.1416};
     EXPECT_FALSE(verdict("15%", report).is_met);
@@ -87,7 +87,7 @@ TEST(Judge, ExactMetricsDecideWhereTheyAreKnown) {
               "coverage of zone door is not known: n");
 }
 
-TEST(Judge, WhatIsSeenWholeIsWhole) {
+TEST(CheckRequirement, WhatIsSeenWholeIsWhole) {
     // Of an askew room exact areas are some 1e-9 off.
     const Scene scene = sceneOf(
         "fence path=0,0;7.1,2.3;4.9,8.2;-2.2,5.9 closed=yes\nlaser at=2.3,4.1 range=20 fov=360\n");

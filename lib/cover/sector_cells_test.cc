@@ -62,7 +62,7 @@ CellSet cellsOfSector(const CellParts& parts, const std::vector<Angle>& limits, 
 }
 
 /// Parts are disjoint lists of ascending runs that do not touch.
-void expectTidy(const CellParts& parts, std::size_t limits, std::size_t cells) {
+void expectSound(const CellParts& parts, std::size_t limits, std::size_t cells) {
     ASSERT_EQ(parts.size(), limits + 1);
     ASSERT_EQ(parts.first.front(), 0U);
     ASSERT_EQ(parts.first.back(), parts.runs.size());
@@ -90,7 +90,7 @@ struct Case {
 void expectSame(const Case& c, CellParts& parts) {
     const std::vector<Angle> limits = limitsOf(c.laser, c.headings);
     cellsBySector(c.grid, *c.sight.levelAt(kScanHeight), c.place, c.laser.max_range, limits, parts);
-    expectTidy(parts, limits.size(), c.grid.size());
+    expectSound(parts, limits.size(), c.grid.size());
     for (const double heading : c.headings) {
         const Sensor sensor{"l", c.laser, poseAt({c.place.x, c.place.y, kScanHeight}, heading, 0)};
         const CellSet expected = c.sight.cellsOf(c.grid, sensor);
@@ -245,12 +245,12 @@ TEST(CellsBySector, OneLimitAndNone) {
     const Point2 place = grid.center(grid.cell(3, 3));
     CellParts parts;
     cellsBySector(grid, *sight.levelAt(kScanHeight), place, 30, {}, parts);
-    ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 0, grid.size()));
+    ASSERT_NO_FATAL_FAILURE(expectSound(parts, 0, grid.size()));
     EXPECT_EQ(parts.runs, (std::vector<CellRun>{{0, 96}}));  // rows go on
     for (const double degrees : {0.0, 45.0, 90.0, -160.0, 180.0, -1.0, 1e-9}) {
         const Angle limit = Angle::degrees(degrees);
         cellsBySector(grid, *sight.levelAt(kScanHeight), place, 30, {&limit, 1}, parts);
-        ASSERT_NO_FATAL_FAILURE(expectTidy(parts, 1, grid.size()));
+        ASSERT_NO_FATAL_FAILURE(expectSound(parts, 1, grid.size()));
         EXPECT_EQ(cellsOf(parts, 0, 2, grid.size()).count(), grid.size());
         EXPECT_EQ(cellsOf(parts, 1, 2, grid.size()).count(), 1U);  // the centre
     }

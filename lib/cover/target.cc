@@ -57,11 +57,11 @@ double roomCell(const Box2& limits, int most) {
 }
 
 Grid gridOf(const Box2& limits, const CellCount& cells) {
-    if (cells.columns < 1 || cells.rows < 1 || cells.columns > kMostCells / cells.rows)
+    if (cells.columns < 1 || cells.rows < 1 || cells.columns > kMaxCells / cells.rows)
         throw UsageError("a grid of " + std::to_string(cells.columns) + " x " +
                          std::to_string(cells.rows) +
                          " cells cannot be made, wanted at least 1 each way and at most " +
-                         std::to_string(kMostCells) + " in all");
+                         std::to_string(kMaxCells) + " in all");
     return {limits, cells.columns, cells.rows};
 }
 
@@ -69,9 +69,9 @@ Grid gridOf(const Box2& limits, const CellCount& cells) {
 Grid gridOf(const Box2& limits, const CellSize& cells) {
     const double columns = cellsAlong(limits.width(), cells.edge);
     const double rows = cellsAlong(limits.depth(), cells.edge);
-    if (!(columns * rows <= kMostCells))
+    if (!(columns * rows <= kMaxCells))
         throw UsageError("cells of " + formatDouble(cells.edge) + " m make more than " +
-                         std::to_string(kMostCells) + " over the limits: use larger ones");
+                         std::to_string(kMaxCells) + " over the limits: use larger ones");
     const Box2 box{limits.low,
                    {limits.low.x + columns * cells.edge, limits.low.y + rows * cells.edge}};
     return {box, static_cast<int>(columns), static_cast<int>(rows)};

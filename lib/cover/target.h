@@ -33,19 +33,19 @@ using CellChoice = std::variant<RoomCells, CellCount, CellSize>;
 /// The edge of RoomCells that are not too many, metres.
 constexpr double kRoomCell = 0.1;
 
-/// \throws UsageError for less than one column or row, or more than kMostCells in all
+/// \throws UsageError for less than one column or row, or more than kMaxCells in all
 Grid gridOver(const Box2& limits, const CellChoice& cells);
 
 /// What is to be covered, in cells.
 struct Target {
     Grid grid;
-    double height = kScanHeight;  ///< at which free floor is judged
+    double height = kScanHeight;  ///< at which the floor is free or not
     CellSet indoor;               ///< centre strictly inside the indoor region
     CellSet free;                 ///< indoor and not in a solid at `height`
 };
 
 /// Most cells of a grid.
-constexpr int kMostCells = 10'000'000;
+constexpr int kMaxCells = 10'000'000;
 
 /// \throws UsageError as gridOver
 Target makeTarget(const Environment& environment, const CellChoice& cells, double height);

@@ -344,8 +344,8 @@ std::string writeTrace(const TraceFile& trace) {
         JsonWriter json;
         json.beginObject().key("sensor").value(tried.sensor);
         addPose(json, tried.pose);
-        json.key("value").value(tidy(tried.value));
-        if (tried.slice_area) json.key("slice_area").value(tidy(*tried.slice_area));
+        json.key("value").value(roundSignificant(tried.value));
+        if (tried.slice_area) json.key("slice_area").value(roundSignificant(*tried.slice_area));
         if (tried.is_chosen) json.key("chosen").value(true);
         json.endObject();
         text.append(json.text()).push_back('\n');

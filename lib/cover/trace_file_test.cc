@@ -44,14 +44,15 @@ TEST(TraceFile, ReadsWhatItWrites) {
     TraceFile trace;
     trace.history = {"one", "two \"quoted\" \\ ünï\t"};
     for (int i = 0; i < 200; ++i)
-        trace.poses.push_back({i % 2 == 0 ? "l\"1\\" : "日本",
-                               {{any(random), any(random), any(random)},
-                                Angle::degrees(any(random)),
-                                Angle::degrees(any(random)),
-                                Angle::degrees(any(random))},
-                               tidy(std::abs(any(random)) / 100),
-                               i % 7 == 0,
-                               i % 3 == 0 ? std::optional(tidy(any(random))) : std::nullopt});
+        trace.poses.push_back(
+            {i % 2 == 0 ? "l\"1\\" : "日本",
+             {{any(random), any(random), any(random)},
+              Angle::degrees(any(random)),
+              Angle::degrees(any(random)),
+              Angle::degrees(any(random))},
+             roundSignificant(std::abs(any(random)) / 100),
+             i % 7 == 0,
+             i % 3 == 0 ? std::optional(roundSignificant(any(random))) : std::nullopt});
     const TraceFile again = readTrace(writeTrace(trace), "t");
     EXPECT_EQ(again.history, trace.history);
     ASSERT_EQ(again.poses.size(), trace.poses.size());

@@ -22,7 +22,7 @@ namespace {
 constexpr double kCovering = 0.001;
 /// Edge of the squares of a checkered covering, and the most of them along a side.
 constexpr double kSquare = 0.5;
-constexpr int kMostSquares = 64;
+constexpr int kMaxSquares = 64;
 
 Body upright(Polygon footprint, const Standing& thing, Material material) {
     Body body;
@@ -65,7 +65,7 @@ Body floorBody(const Record& record) {
     const Pose2 world_from_floor{{at[0], at[1]}, record.angle("heading")};
     const auto squares = [&](double extent) {
         if (record.text("kind") != "checker") return 1;
-        return static_cast<int>(std::clamp(std::round(extent / kSquare), 2.0, 1.0 * kMostSquares));
+        return static_cast<int>(std::clamp(std::round(extent / kSquare), 2.0, 1.0 * kMaxSquares));
     };
     const int columns = squares(length), rows = squares(width);
     // Written so that neighbours share the very same corners.

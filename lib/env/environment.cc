@@ -58,7 +58,7 @@ void forEachStanding(std::span<const Element> elements, double bottom, double to
 /// What the shapes of things may have in corners: so many, and more for each record that is written
 /// than for those that a repetition makes. A few lines can make round and checkered things without
 /// end; a plan that somebody wrote stays far below.
-constexpr std::size_t kMostCorners = 1'000'000, kMostCornersWritten = 1000, kMostCornersMade = 10;
+constexpr std::size_t kMaxCorners = 1'000'000, kMaxCornersWritten = 1000, kMaxCornersMade = 10;
 
 std::size_t cornersOf(const Body& body) {
     std::size_t corners = 0;
@@ -148,10 +148,10 @@ class Builder {
         }
         elements_.push_back({record, id, bodyBesideWalls(record)});
         corners_ += cornersOf(elements_.back().body);
-        most_corners_ += record.isMade() ? kMostCornersMade : kMostCornersWritten;
-        if (corners_ > most_corners_)
+        max_corners_ += record.isMade() ? kMaxCornersMade : kMaxCornersWritten;
+        if (corners_ > max_corners_)
             throw FormatError(record.finding(
-                "the shapes up to here have more than " + std::to_string(most_corners_) +
+                "the shapes up to here have more than " + std::to_string(max_corners_) +
                 " corners: fewer round or checkered things are wanted, or smaller ones"));
         Diagnostics findings;
         checkShape(record, elements_.back().body, findings);
@@ -189,7 +189,7 @@ class Builder {
 
     Diagnostics findings_;
     std::vector<Element> elements_;
-    std::size_t corners_ = 0, most_corners_ = kMostCorners;  // without walls and meshes
+    std::size_t corners_ = 0, max_corners_ = kMaxCorners;  // without walls and meshes
     WallPlan plan_;
     bool walls_whole_ = true;   // every record has all its lines
     bool walls_simple_ = true;  // none crosses itself

@@ -14,8 +14,7 @@
 
 namespace ispace {
 
-/// Height at which free floor is judged if nobody says otherwise: the scanning height of a sensor
-/// that stands on the floor.
+/// Default height of the free floor: that at which a sensor standing on the floor scans.
 constexpr double kScanHeight = 0.15;
 
 /// One record of the environment with its shape.

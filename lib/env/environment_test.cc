@@ -150,7 +150,7 @@ TEST(Environment, InsideMustBeInside) {
     EXPECT_NE(findings(room + "inside at=2,0\n").find("(2.0, 0.0) lies on a wall"),
               std::string::npos);
     EXPECT_EQ(findings(room + "inside at=1,1\ninside at=1,0\ninside at=1,1\n"), "");
-    // Each point is judged by itself.
+    // Each point is checked by itself.
     EXPECT_EQ(findings(room + "inside at=1,1\ninside at=2,0\ninside at=7,8.5\n"),
               "room.env:4:11: error: inside point (2.0, 0.0) lies on a wall; move it off\n"
               "room.env:5:11: error: inside point (7.0, 8.5) lies outside of everything enclosed; "

@@ -36,12 +36,13 @@ std::string infoJson(const EnvironmentInfo& info) {
     beginReport(json, "ispace-info/1", "envc");
     json.key("digest").value(info.digest);
     json.key("limits").beginArray();
-    for (const double limit : {b.low.x, b.low.y, b.high.x, b.high.y}) json.value(tidy(limit));
+    for (const double limit : {b.low.x, b.low.y, b.high.x, b.high.y})
+        json.value(roundSignificant(limit));
     json.endArray();
-    json.key("indoor_area").value(tidy(info.indoor_area));
-    json.key("free_area").value(tidy(info.free_area));
-    json.key("height").value(tidy(info.height));
-    json.key("perimeter").value(tidy(info.perimeter));
+    json.key("indoor_area").value(roundSignificant(info.indoor_area));
+    json.key("free_area").value(roundSignificant(info.free_area));
+    json.key("height").value(roundSignificant(info.height));
+    json.key("perimeter").value(roundSignificant(info.perimeter));
     json.key("counts").beginObject();
     for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
     json.endObject();

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-/// The figures of an environment, for people and for `envc --info --json`.
+/// Measures of an environment, for people and for `envc --info --json`.
 struct EnvironmentInfo {
     std::string digest;
     Box2 limits;

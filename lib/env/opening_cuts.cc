@@ -14,9 +14,9 @@ namespace ispace {
 namespace {
 
 /// Walls upon each other that one opening may go through.
-constexpr std::size_t kMostWalls = 64;
+constexpr std::size_t kMaxWalls = 64;
 /// Overlaps that are looked for: more than are shown.
-constexpr std::size_t kMostOverlaps = 100;
+constexpr std::size_t kMaxOverlaps = 100;
 
 /// A line with its lower end as origin, so that lines on the same place count in the same
 /// direction.
@@ -52,7 +52,7 @@ class CutFinder {
   public:
     explicit CutFinder(const WallPlan& plan) : plan_(plan), tree_(plan.lines) {}
 
-    /// All cuts of one opening; more than kMostWalls of them are not looked for.
+    /// All cuts of one opening; more than kMaxWalls of them are not looked for.
     void find(std::span<const Opening> openings, std::size_t number, std::vector<Cut>& cuts) {
         const Opening& opening = openings[number];
         const auto [a, b] = jambs(opening);
@@ -64,7 +64,7 @@ class CutFinder {
         const std::size_t first = cuts.size();
         for (const std::size_t line : near_) {
             addCut(line, number, {a, b}, line == opening.line ? 2 * kFarthestFace : half, cuts);
-            if (cuts.size() - first > kMostWalls) break;
+            if (cuts.size() - first > kMaxWalls) break;
         }
     }
 
@@ -221,10 +221,10 @@ class Cutter {
         for (std::size_t i = 0; i < openings_.size(); ++i) {
             const std::size_t before = cuts.size();
             finder.find(openings_, i, cuts);
-            if (cuts.size() - before <= kMostWalls) continue;
+            if (cuts.size() - before <= kMaxWalls) continue;
             cuts.resize(before);
             findings_.add(elementOf(i).record.finding(
-                nameOf(elementOf(i)) + " goes through more than " + std::to_string(kMostWalls) +
+                nameOf(elementOf(i)) + " goes through more than " + std::to_string(kMaxWalls) +
                 " walls upon each other; leave out the doubles"));
         }
         std::sort(cuts.begin(), cuts.end(), [](const Cut& c, const Cut& d) {
@@ -242,7 +242,7 @@ class Cutter {
                 return other->line != cut.line || other->to <= cut.from + kWeldDistance;
             });
             for (const Cut* other : open) {
-                if (pairs.size() < kMostOverlaps && overlapUpright(*other, cut))
+                if (pairs.size() < kMaxOverlaps && overlapUpright(*other, cut))
                     pairs.emplace_back(std::max(other->opening, cut.opening),
                                        std::min(other->opening, cut.opening), &cut);
             }

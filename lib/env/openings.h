@@ -53,8 +53,8 @@ struct CutWalls {
 
 /// Cuts the openings into all walls that they go through: those on the same line, and those beside
 /// it as far as `depth` reaches or as walls overlap, a metre at most; between walls that stand
-/// apart sheets line the opening. Findings: openings that overlap in one wall, and heaps of walls
-/// upon each other. O((n + m) log n). \pre welded is the weld of the plan's lines
+/// apart sheets line the opening. Findings: openings that overlap in one wall, and too many
+/// walls upon each other. O((n + m) log n). \pre welded is the weld of the plan's lines
 CutWalls cutOpenings(std::span<const Element> elements, const WallPlan& plan,
                      const WeldedLines& welded, std::span<const Opening> openings,
                      Diagnostics& findings);

@@ -113,7 +113,7 @@ TEST(Scenes, LRoomIsSeenBestFromOutside) {
     EXPECT_GT(inside, 12);
     EXPECT_LT(inside, 16.5);
     EXPECT_GT(outside, 20);
-    // The figure of the scene's comment.
+    // The area in the scene's comment.
     EXPECT_NEAR(bestArea(env, {1.01, 4}), 3 * std::sqrt(7.0) + 16 * std::asin(0.75), 0.3);
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kMitreLimit = 4;
 /// Heights at one point that are told apart; with more of them mitres are as high as both of
 /// their neighbours, whatever stands between them.
-constexpr std::size_t kMostLevels = 32;
+constexpr std::size_t kMaxLevels = 32;
 /// With more ends at one point, the point is simply a corner of all boxes.
 constexpr std::size_t kFewEnds = 16;
 
@@ -100,7 +100,7 @@ class Corner {
         }
         std::sort(levels.begin(), levels.end());
         levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-        if (levels.size() > kMostLevels) levels = {levels.front(), levels.back()};
+        if (levels.size() > kMaxLevels) levels = {levels.front(), levels.back()};
         // What stands between two neighbouring levels makes its own corner; where the next one up
         // makes the same, it is one mitre.
         const std::size_t first = joints_.size();

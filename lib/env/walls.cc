@@ -214,8 +214,8 @@ std::optional<Point2> selfCrossing(const Polygon& polygon) {
 namespace {
 
 /// Of one element as many times `most` crossings are looked at before they are put in order: one
-/// that runs through heaps of others is told well enough by them.
-constexpr std::size_t kHeap = 16;
+/// that runs through many others is described well enough by them.
+constexpr std::size_t kPerElement = 16;
 
 struct Meeting {
     Point2 place;
@@ -288,7 +288,8 @@ class CrossingFinder {
         std::size_t sorted = 0;  // crossings of elements before the one of this line
         for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
             if (i > 0 && plan_.owner[i] != plan_.owner[i - 1]) sortFrom(sorted, found);
-            if (found.size() >= most && (found.size() == sorted || found.size() / kHeap >= most))
+            if (found.size() >= most &&
+                (found.size() == sorted || found.size() / kPerElement >= most))
                 break;
             later.clear();
             tree.search(plan_.lines[i], kWeldDistance, [&](std::size_t k) {
@@ -310,7 +311,7 @@ class CrossingFinder {
         return is_room(i) && is_room(k);
     }
 
-    /// False for lines of one element, and for the walls of heaps of equal rooms.
+    /// False for lines of one element, and for the walls of equal rooms, however many.
     [[nodiscard]] bool mayCross(std::size_t i, std::size_t k) const {
         return plan_.owner[i] != plan_.owner[k] &&
                !(plan_.lines[i] == plan_.lines[k] && areRooms(i, k));

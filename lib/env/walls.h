@@ -71,7 +71,7 @@ struct WallCrossing {
 
 /// Pairs of wall lines of different elements that cross beyond their ends, or lie on each other
 /// for more than the weld distance; in the order of the elements, the first `most` (of
-/// an element that runs through heaps of others, any of its own). Walls that share an end or end on
+/// an element that crosses very many others, any of its own). Walls that share an end or end on
 /// one another do not count, nor do rooms (`ispace`) side by side that share a wall. Takes as long
 /// as weld.
 std::vector<WallCrossing> wallCrossings(std::span<const Element> elements, std::size_t most = 1000);

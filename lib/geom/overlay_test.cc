@@ -225,7 +225,7 @@ TEST(Overlay, wallsPartRegions) {
     ASSERT_EQ(island[0].holes.size(), 1U);
     EXPECT_EQ(signedArea(island[0].holes[0]), -4);
     EXPECT_EQ(island[1].outline, test::box(1, 1, 3, 3));
-    // They change no figure, wherever they are.
+    // They change no area, wherever they are.
     walls.push_back({{-1e9, -7}, {1e9, 8}});
     walls.push_back({{100, 100}, {200, 100}});
     walls.push_back({{1, 1}, {1, 1}});

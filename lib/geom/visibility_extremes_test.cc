@@ -196,7 +196,7 @@ TEST(SectorOf, SectorAndTheRestAreTheWholeOnAGrid) {
 }
 
 TEST(SectorOf, SidesAlongALineOfSight) {
-    // The fan begins in the direction of the wall's end, which rounds to either side of it.
+    // The sector begins in the direction of the wall's end, which rounds to either side of it.
     const std::vector<Segment2> wall = {{{-1, 3}, {0, 1}}};
     const VisibleRegion seen = VisibilityMap(wall).query({-2, 2}, 3);
     double before = 0;

@@ -262,7 +262,7 @@ class DxfImporter {
         MissingBlocks missing;
         LayerSorter sorter(drawing_.hidden_layers, options);
         const LayerSorter::Sorted shapes = sorter.sort(
-            Expander(drawing_, name_, options.most_points, missing, sorter).expand(unit.metres));
+            Expander(drawing_, name_, options.max_points, missing, sorter).expand(unit.metres));
         sorter.note(out);
         if (!drawing_.left_out.empty())
             out.note("entities left out: " + listText(drawing_.left_out));

@@ -187,7 +187,7 @@ TEST(Dxf, BlocksInBlocksEnd) {
             .find("too many lines"),
         std::string::npos);
     ImportOptions few;
-    few.most_points = 7;
+    few.max_points = 7;
     const std::string two = drawing(rectangle("W", 0, 0, 4, 3) + rectangle("V", 0, 0, 4, 3), "", 6);
     EXPECT_EQ(
         errorOf(two, few),
@@ -355,7 +355,7 @@ TEST(Dxf, SurvivesDamage) {
     ImportOptions options;
     options.door_layers = {"D*"};
     options.window_layers = {"G"};
-    options.most_points = 3000;
+    options.max_points = 3000;
     const std::string dxf =
         drawing(rectangle("W", 0, 0, 4, 3) + line("D1", 1, 0, 2, 0) + line("G", 1, 3, 2, 3) +
                     arc("D1", 4, 1, 1, 90, 180) +

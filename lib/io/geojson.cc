@@ -63,8 +63,11 @@ void addElement(FeatureWriter& out, const Element& element, const ElementLines& 
     const Extent extent = extentOf(element.body);
     const bool has_body = extent.bottom <= extent.top;
     if (has_body) {
-        json.key("bottom").value(tidy(extent.bottom)).key("top").value(tidy(extent.top));
-        json.key("height").value(tidy(extent.top - extent.bottom));
+        json.key("bottom")
+            .value(roundSignificant(extent.bottom))
+            .key("top")
+            .value(roundSignificant(extent.top));
+        json.key("height").value(roundSignificant(extent.top - extent.bottom));
     }
     if (!lines.chains.empty()) json.key("thickness").value(lines.thickness);
     if (has_body)
@@ -111,14 +114,14 @@ void addFree(FeatureWriter& out, const Environment& environment, double height) 
             .key("z")
             .value(height)
             .key("area")
-            .value(tidy(piece.area()));
+            .value(roundSignificant(piece.area()));
         out.endAsArea({piece});
     }
 }
 
 void addRoom(FeatureWriter& out, const Scene& scene) {
     const Regions& indoor = scene.environment.indoor();
-    out.begin("indoor", "indoor", "region").key("area").value(tidy(indoor.area()));
+    out.begin("indoor", "indoor", "region").key("area").value(roundSignificant(indoor.area()));
     out.endAsArea(indoor.parts);
     addFree(out, scene.environment, kScanHeight);
     const std::vector<Element>& elements = scene.environment.elements();

@@ -47,7 +47,7 @@ struct ImportOptions {
     std::vector<std::string> door_layers;    ///< globs; default none
     std::vector<std::string> window_layers;  ///< globs; default none
     bool points = false;                     ///< points of an ARIA map become obstacles
-    std::size_t most_points = 2'000'000;     ///< drawings that come to more are refused
+    std::size_t max_points = 2'000'000;      ///< drawings that come to more are refused
     bool load_meshes = true;                 ///< false: `mesh` records keep their file unread
 };
 

@@ -76,7 +76,7 @@ class SvgReader {
         if (svgName(root) != "svg") fail(lineOf(root), "no `svg` at the root");
         listElements(root);
         total_ = kFreePoints + kPointsPerElement * count_;
-        budget_ = std::min(options_.most_points, total_);
+        budget_ = std::min(options_.max_points, total_);
         at(root, [&] {
             page_frame_ = pageOf(root);
             addChildren(root, page_frame_, svgStyle(root, {}, sheet_), 0);
@@ -218,9 +218,8 @@ class SvgReader {
     }
 
     void spend(std::size_t points) {
-        if (points > budget_ && options_.most_points <= total_)
-            throw SvgError("the drawing comes to more than " +
-                           std::to_string(options_.most_points) +
+        if (points > budget_ && options_.max_points <= total_)
+            throw SvgError("the drawing comes to more than " + std::to_string(options_.max_points) +
                            " points; leave layers out, for example with --wall-layer 'walls*'");
         if (points > budget_)
             throw SvgError("what is used again makes too many lines of the drawing");

@@ -285,7 +285,7 @@ TEST(Svg, SurvivesDamage) {
         [](const std::string& bytes) {
             ImportOptions options;
             options.units = "m";
-            options.most_points = 2000;
+            options.max_points = 2000;
             read(bytes, options);
         });
 }

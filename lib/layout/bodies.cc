@@ -103,10 +103,9 @@ std::vector<Polygon> legs(double height) {
 std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
     const std::string& keyword = scene.records[placed.record].keyword();
     if (const SensorKind* kind = sensorKind(keyword)) return kind->body();
-    const auto* figure =
-        std::find_if(std::begin(kBodies), std::end(kBodies),
-                     [&](const BodyRow& known) { return known.keyword == keyword; });
-    return figure == std::end(kBodies) ? Meshes() : figure->make(scene, placed);
+    const auto* row = std::find_if(std::begin(kBodies), std::end(kBodies),
+                                   [&](const BodyRow& known) { return known.keyword == keyword; });
+    return row == std::end(kBodies) ? Meshes() : row->make(scene, placed);
 }
 
 std::optional<Mesh> viewOf(const Scene& scene, const Placed& placed) {

@@ -26,7 +26,7 @@ double sixVolumes(const Mesh& mesh) {
     return sum;
 }
 
-/// Each edge has a triangle on both sides; where the parts of the figure are, they face outwards.
+/// Each edge has a triangle on both sides; triangles face outwards wherever its parts are.
 void expectSolid(const Mesh& mesh, const std::string& what) {
     EXPECT_FALSE(mesh.triangles.empty()) << what;
     EXPECT_TRUE(isWatertight(mesh)) << what;
@@ -38,9 +38,9 @@ struct Box3 {
     Point3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
 };
 
-Box3 boundsOf(const std::vector<Mesh>& figure) {
+Box3 boundsOf(const std::vector<Mesh>& body) {
     Box3 box;
-    for (const Mesh& mesh : figure)
+    for (const Mesh& mesh : body)
         for (const Point3& p : mesh.vertices) {
             box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y),
                        std::min(box.low.z, p.z)};
@@ -50,24 +50,24 @@ Box3 boundsOf(const std::vector<Mesh>& figure) {
     return box;
 }
 
-std::vector<Mesh> figure(const std::string& line) {
+std::vector<Mesh> bodyOfLine(const std::string& line) {
     const Scene made = scene("ispace size=8,6\n" + line + "\n");
     return bodyOf(made, made.placed.at(0));
 }
 
-TEST(Figures, AreClosedAndFaceOutwards) {
+TEST(BodyOf, AreClosedAndFaceOutwards) {
     for (const char* line :
          {"laser at=1,1", "ranger at=1,1", "camera at=1,1 tilt=-30",
           "ultrasound at=1,1,2.4 tilt=-90", "tag at=0,0,0.3", "mat", "mat size=2,0.5", "gate",
           "gate width=0.01 height=0.01", "robot", "robot size=0.6,0.4,0.3",
           "robot model=pioneer-2dx", "human", "human height=1.2"}) {
-        const auto meshes = figure(line);
+        const auto meshes = bodyOfLine(line);
         ASSERT_FALSE(meshes.empty()) << line;
         for (const Mesh& mesh : meshes) expectSolid(mesh, line);
     }
 }
 
-TEST(Figures, RobotIsWhatSensorsSeeWithANose) {
+TEST(BodyOf, RobotIsWhatSensorsSeeWithANose) {
     RobotModel box;
     box.length = 0.6;
     box.width = 0.4;
@@ -77,14 +77,14 @@ TEST(Figures, RobotIsWhatSensorsSeeWithANose) {
     expectSolid(robotMesh(box), "box");
     expectSolid(robotMesh(RobotModel()), "cylinder");
     EXPECT_EQ(robotMesh(box).material, Material::Robot);
-    const Box3 extent = boundsOf(figure("robot size=0.6,0.4,0.3 center=0.1"));
+    const Box3 extent = boundsOf(bodyOfLine("robot size=0.6,0.4,0.3 center=0.1"));
     EXPECT_NEAR(extent.low.x, -0.2, 1e-12);
     EXPECT_NEAR(extent.high.x, 0.4 + nose, 1e-12);
     EXPECT_NEAR(extent.high.z, 0.3, 1e-12);
     EXPECT_EQ(extent.low.z, 0);
 }
 
-TEST(Figures, EachRobotHasItsOwnModel) {
+TEST(BodyOf, EachRobotHasItsOwnModel) {
     const Scene made =
         scene("ispace size=8,6\n", "robot at=1,1 height=0.5\nlaser on=robot1\nrobot height=0.9\n");
     ASSERT_EQ(made.placed.size(), 3U);
@@ -92,12 +92,12 @@ TEST(Figures, EachRobotHasItsOwnModel) {
     EXPECT_EQ(boundsOf(bodyOf(made, made.placed[2])).high.z, 0.9);
 }
 
-TEST(Figures, SensorsShowWhereTheyFace) {
+TEST(BodyOf, SensorsShowWhereTheyFace) {
     expectSolid(noseBox(), "laser");
     EXPECT_EQ(noseBox().material, Material::Sensor);
     for (const char* line : {"ranger at=0,0", "camera at=0,0", "ultrasound at=0,0"}) {
         // The front is at the optical centre, and smaller than what lies behind.
-        const auto meshes = figure(line);
+        const auto meshes = bodyOfLine(line);
         const Box3 all = boundsOf(meshes), front = boundsOf({meshes.back()});
         EXPECT_EQ(all.high.x, 0) << line;
         EXPECT_EQ(front.high.x, 0) << line;
@@ -105,17 +105,17 @@ TEST(Figures, SensorsShowWhereTheyFace) {
         EXPECT_LT(front.high.z, all.high.z) << line;
         EXPECT_NE(meshes.front().material, meshes.back().material) << line;
     }
-    const Box3 ball = boundsOf(figure("tag at=0,0"));
+    const Box3 ball = boundsOf(bodyOfLine("tag at=0,0"));
     EXPECT_DOUBLE_EQ(ball.high.z, 0.025);
     EXPECT_DOUBLE_EQ(ball.low.z, -0.025);
 }
 
-TEST(Figures, MatAndGateHaveTheirMeasures) {
-    const Box3 mat = boundsOf(figure("mat size=2,0.5"));
+TEST(BodyOf, MatAndGateHaveTheirMeasures) {
+    const Box3 mat = boundsOf(bodyOfLine("mat size=2,0.5"));
     EXPECT_EQ(mat.low, (Point3{-1, -0.25, 0}));
     EXPECT_EQ(mat.high.onFloor(), (Point2{1, 0.25}));
     EXPECT_LT(mat.high.z, 0.02);
-    const auto gate = figure("gate width=1.5 height=0.4");
+    const auto gate = bodyOfLine("gate width=1.5 height=0.4");
     for (const Mesh& mesh : gate)
         for (const Point3& p : mesh.vertices) {
             EXPECT_GE(std::abs(p.y), 0.75) << "free between the posts";
@@ -126,7 +126,7 @@ TEST(Figures, MatAndGateHaveTheirMeasures) {
     EXPECT_NEAR((heads.low.z + heads.high.z) / 2, 0.4, 1e-12);
 }
 
-TEST(Figures, HumanIsAsHighAsWritten) {
+TEST(BodyOf, HumanIsAsHighAsWritten) {
     for (const double height : {0.5, 1.2, 1.7, 2.1}) {
         const Box3 box = boundsOf(humanBodyOf(height));
         EXPECT_EQ(box.low.z, 0);
@@ -136,11 +136,11 @@ TEST(Figures, HumanIsAsHighAsWritten) {
         EXPECT_LT(box.high.x, humanRadius(height));
         for (const Mesh& mesh : humanBodyOf(height)) expectSolid(mesh, "human");
     }
-    EXPECT_EQ(boundsOf(figure("human height=1.2")).high.z, boundsOf(humanBodyOf(1.2)).high.z);
+    EXPECT_EQ(boundsOf(bodyOfLine("human height=1.2")).high.z, boundsOf(humanBodyOf(1.2)).high.z);
     EXPECT_NEAR(2 * humanRadius(1.7), 0.51, 1e-9);
 }
 
-TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
+TEST(BodyOf, LegsAreTwoCirclesAtScanningHeight) {
     const auto circles = legCircles(1.7);
     ASSERT_EQ(circles.size(), 2U);
     // Right and left, apart from each other, inside the person's circle.
@@ -150,7 +150,7 @@ TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
         EXPECT_NEAR(signedArea(circle), std::numbers::pi * 0.0595 * 0.0595, 2e-5);
         for (const Point2 p : circle) EXPECT_LT(distance(p, {}), humanRadius(1.7));
     }
-    // The figure has them there, too.
+    // The body has them there, too.
     Body body;
     body.meshes = humanBodyOf(1.7);
     Slice slice;
@@ -162,7 +162,7 @@ TEST(Figures, LegsAreTwoCirclesAtScanningHeight) {
     EXPECT_TRUE(legCircles(0.2).empty()) << "a doll's legs end below";
 }
 
-TEST(Figures, NothingForWhatHasNone) {
+TEST(BodyOf, NothingForWhatHasNone) {
     const Scene made = scene("ispace size=8,6\n");
     Placed wrong;
     EXPECT_TRUE(bodyOf(made, wrong).empty());

@@ -38,7 +38,7 @@ TEST(CheckScene, EndsThatAreMeantToHang) {
               "")
         << "corners are no ends";
     EXPECT_EQ(check("wall id=v from=9,0 to=9,2\nwall id=w from=9,2.1 to=9,4\n"), "")
-        << "outside, where no figure looks";
+        << "outside, where nothing is measured";
     EXPECT_EQ(check("wall id=v from=2,0 to=2,6\nwall id=w from=5,0 to=5,5.9\ninside at=1,1\n"), "")
         << "in another room";
     EXPECT_NE(check("wall id=v from=2,0 to=2,6\nwall id=w from=5,0 to=5,5.9\n"
@@ -47,7 +47,7 @@ TEST(CheckScene, EndsThatAreMeantToHang) {
         << "in the second room";
 }
 
-TEST(CheckScene, FiguresThatAreWrongAreErrorsWhatIsBorneIsAWarning) {
+TEST(CheckScene, ErrorsStopWarningsDoNot) {
     const auto severities = [](const Scene& made) {
         std::string all;
         try {

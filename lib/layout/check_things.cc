@@ -143,7 +143,7 @@ std::optional<ThingCheck::Shared> ThingCheck::shared(std::size_t a, std::size_t 
 
 std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::size_t b) const {
     // Those that overlap tell how far to go for things that are built of very many parts.
-    constexpr std::size_t kMostPairs = 400;
+    constexpr std::size_t kMaxPairs = 400;
     const auto parts_a = context_->parts.of(a);
     const bool is_wall = !context_->isObject(b);
     std::vector<PartPair> overlapping, beside;
@@ -151,10 +151,10 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
     PartPair deepest_pair;
     const auto look = [&](const Part& first, const Part& second) {
         if (!sharedHeights(first, second).isShared()) return;
-        if (beside.size() < kMostPairs) beside.push_back({&first, &second});
+        if (beside.size() < kMaxPairs) beside.push_back({&first, &second});
         const auto overlap = overlapOf(first.footprint, second.footprint);
         if (!overlap) return;
-        if (overlapping.size() < kMostPairs) overlapping.push_back({&first, &second});
+        if (overlapping.size() < kMaxPairs) overlapping.push_back({&first, &second});
         if (deepest && deepest->depth >= overlap->depth) return;
         deepest = overlap;
         deepest_pair = {&first, &second};
@@ -165,7 +165,7 @@ std::optional<ThingCheck::Shared> ThingCheck::sharedParts(std::size_t a, std::si
         });
     }
     if (!deepest) return std::nullopt;
-    const bool few = !is_wall && parts_a.size() * context_->parts.of(b).size() <= kMostPairs;
+    const bool few = !is_wall && parts_a.size() * context_->parts.of(b).size() <= kMaxPairs;
     return Shared{deepest->place, wayApart(few ? beside : overlapping, deepest_pair)};
 }
 

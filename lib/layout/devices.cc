@@ -24,8 +24,8 @@ const Schemas& schemasOfDevices() {
     return schemas;
 }
 
-/// Figures must fit each other.
-void checkFigures(const Record& device, Diagnostics& findings) {
+/// Parameters must fit each other.
+void checkParameters(const Record& device, Diagnostics& findings) {
     try {
         if (const SensorKind* kind = sensorKind(device.keyword()))
             static_cast<void>(kind->read(device, &device));
@@ -75,7 +75,7 @@ DeviceCatalogue loadDevices(const std::string& folder) {
                     findings.add(record.finding("model", "model `" + model + "` stands twice"));
                     continue;
                 }
-                checkFigures(record, findings);
+                checkParameters(record, findings);
                 records.push_back(std::move(record));
             }
         } catch (const FormatError& error) {

@@ -12,7 +12,7 @@
 namespace ispace {
 
 /// The models of share/devices: text files in the language of `.3dm`, one record a device, with
-/// its figures, their `source` and `confidence`.
+/// its parameters, their `source` and `confidence`.
 class DeviceCatalogue {
   public:
     DeviceCatalogue() = default;

@@ -69,7 +69,7 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
     EXPECT_EQ(testing::devices().find("nothing"), nullptr);
 }
 
-TEST(Devices, FiguresThatWereMisreadOnce) {
+TEST(Devices, ParametersThatWereMisreadOnce) {
     const auto laser = [](const std::string& model) {
         const Record record = readRecord("laser model=" + model, "line", sceneSchemas());
         return laserOf(record, deviceOf(record, testing::devices()));
@@ -95,7 +95,7 @@ TEST_F(DeviceFolder, EmptyFolderIsAnEmptyCatalogue) {
     EXPECT_TRUE(loadDevices(folder_).models().empty());
 }
 
-TEST_F(DeviceFolder, DoubledModelsAndBadFiguresAreReportedTogether) {
+TEST_F(DeviceFolder, DoubledModelsAndBadParametersAreReportedTogether) {
     write("a.3dm", "laser model=one" + kTail + "laser model=one" + kTail);
     write("b.3dm", "laser model=two range=3,2" + kTail);
     write("c.3dm", "laser model=one" + kTail);

@@ -255,7 +255,7 @@ const Slice& MeshCuts::at(double height) {
 }
 
 std::vector<double> MeshCuts::heightsIn(const HeightRange& heights) const {
-    constexpr int kLevels = 32, kMost = 5;
+    constexpr int kLevels = 32, kMax = 5;
     std::vector<double> levels;
     for (int i = 0; i < kLevels; ++i) {
         const double height =
@@ -264,7 +264,7 @@ std::vector<double> MeshCuts::heightsIn(const HeightRange& heights) const {
     }
     if (levels.empty()) return {heights.bottom + (heights.top - heights.bottom) / 2};
     std::vector<double> some;
-    const std::size_t count = std::min<std::size_t>(levels.size(), kMost);
+    const std::size_t count = std::min<std::size_t>(levels.size(), kMax);
     for (std::size_t i = 0; i < count; ++i)
         some.push_back(levels[i * (levels.size() - 1) / std::max<std::size_t>(count - 1, 1)]);
     return some;

@@ -36,12 +36,12 @@ struct PlacedRobot {
     Place place;  ///< of its record, for messages
 };
 
-/// Figures of a `robot` record: its explicit keys, else its model's, else the bare robot's.
+/// Parameters of a `robot` record: its explicit keys, else its model's, else the bare robot's.
 /// \throws FormatError with all findings: an unknown model, a model of another kind, a speed above
 ///         its maximum
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
 
-/// `base` with the figures written in a record put in place of its own; the model stays. A written
+/// `base` with the parameters written in a record in place of its own; the model stays. A written
 /// max_speed below the speed of `base` lowers that; the same holds for the turn.
 /// \throws FormatError as robotOf
 RobotModel withParameters(RobotModel base, const Record& record);

@@ -30,7 +30,7 @@ TEST(RobotOf, BareRobotIsACylinderOfThirtyCentimetres) {
     EXPECT_LE(bare.rotspeed, bare.max_rotspeed);
 }
 
-TEST(RobotOf, ModelGivesTheFiguresAndExplicitKeysWin) {
+TEST(RobotOf, ModelGivesTheParametersAndExplicitKeysWin) {
     const RobotModel pioneer = robot("model=pioneer-2dx");
     EXPECT_EQ(pioneer.model, "pioneer-2dx");
     EXPECT_EQ(pioneer.radius, 0.25);
@@ -84,7 +84,7 @@ TEST(RobotOf, SpeedsFitTheirMaximum) {
     EXPECT_EQ(robot("max_speed=3").speed, 0.5);
 }
 
-TEST(RobotOf, FiguresHaveBounds) {
+TEST(RobotOf, ParametersHaveBounds) {
     for (const char* keys : {"radius=0",   "radius=-1",
                              "radius=101", "size=0,1",
                              "size=1",     "size=1,1,0",

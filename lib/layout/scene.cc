@@ -229,13 +229,13 @@ std::optional<EnvironmentReference> environmentReference(const Document& layout)
 
 std::string leftOutText(std::string_view name, std::string_view done,
                         const std::vector<std::string>& ids) {
-    constexpr std::size_t kMost = 3;
+    constexpr std::size_t kMax = 3;
     std::string text = "`";
     text.append(name).append("` is not ").append(done).append(" yet, left out: ");
-    for (std::size_t i = 0; i < std::min(kMost, ids.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMax, ids.size()); ++i)
         text.append(i == 0 ? "" : ", ").append(ids[i]);
-    if (ids.size() > kMost)
-        text.append(" and ").append(std::to_string(ids.size() - kMost)).append(" more");
+    if (ids.size() > kMax)
+        text.append(" and ").append(std::to_string(ids.size() - kMax)).append(" more");
     return text;
 }
 

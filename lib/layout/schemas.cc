@@ -18,9 +18,9 @@ namespace {
 /// second).
 constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
 
-/// Figures that a model gives too; none has a default, as its absence means "as the model". Speeds
-/// are lengths and angles a second, with the suffixes of those.
-void addRobotFigures(std::vector<KeySpec>& keys) {
+/// Parameters that a model gives too; none has a default, as its absence means "as the model".
+/// Speeds are lengths and angles a second, with the suffixes of those.
+void addRobotParameters(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("radius", Unit::Length,
                                "of the circle about the centre of rotation that hits things",
                                kLargest));
@@ -96,7 +96,7 @@ Schema robotSchema() {
     schema.keys.push_back(modelKey());
     schema.keys.push_back(floorAtKey("centre of rotation x,y at the start"));
     schema.keys.push_back(headingKey("where it faces at the start, from +x"));
-    addRobotFigures(schema.keys);
+    addRobotParameters(schema.keys);
     addCourse(schema.keys);
     return schema;
 }
@@ -224,7 +224,7 @@ std::vector<Schema> layoutSchemas() {
 
 std::vector<Schema> deviceSchemas() {
     std::vector<Schema> schemas = sensorDeviceSchemas();
-    schemas.push_back(deviceSchema("robot", "a robot one can buy", addRobotFigures));
+    schemas.push_back(deviceSchema("robot", "a robot one can buy", addRobotParameters));
     return schemas;
 }
 

@@ -11,7 +11,8 @@ namespace ispace {
 /// The keywords of what is placed, and environment and result.
 std::vector<Schema> layoutSchemas();
 
-/// The keywords of device files: the figures of a laser, ranger, ultrasound, tag or robot record,
+/// The keywords of device files: the parameters of a laser, ranger, ultrasound, tag or robot
+/// record,
 /// with model, source and confidence required, and without a place.
 std::vector<Schema> deviceSchemas();
 

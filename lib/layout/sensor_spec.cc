@@ -14,7 +14,7 @@ namespace {
 
 using Kinds = std::span<const std::string_view>;
 
-constexpr std::int64_t kMostSensors = 10000;
+constexpr std::int64_t kMaxSensors = 10000;
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> pieces(1);
@@ -89,9 +89,9 @@ SensorSpec readSensorSpec(const std::string& text, Kinds kinds, const Schemas& s
     std::optional<int> count;
     if (const auto colon = text.rfind(':'); colon != std::string::npos) {
         const auto number = parseInteger(text.substr(colon + 1));
-        if (!number || *number < 1 || *number > kMostSensors)
+        if (!number || *number < 1 || *number > kMaxSensors)
             throw UsageError("`" + text.substr(colon + 1) + "` is no count from 1 to " +
-                             std::to_string(kMostSensors));
+                             std::to_string(kMaxSensors));
         count = static_cast<int>(*number);
         body.resize(colon);
     }

@@ -33,12 +33,12 @@ Extent extentOf(const Mesh& mesh) {
     return e;
 }
 
-TEST(Views, OfALaserIsItsFan) {
-    const auto fan = view("laser at=1,1 range=0.5,4 fov=90");
-    ASSERT_TRUE(fan);
-    EXPECT_EQ(fan->material, Material::View);
-    EXPECT_TRUE(fan->open);
-    const Extent e = extentOf(*fan);
+TEST(Views, OfALaserIsItsSector) {
+    const auto sector = view("laser at=1,1 range=0.5,4 fov=90");
+    ASSERT_TRUE(sector);
+    EXPECT_EQ(sector->material, Material::View);
+    EXPECT_TRUE(sector->open);
+    const Extent e = extentOf(*sector);
     EXPECT_NEAR(e.nearest, 0.5, 1e-12);
     EXPECT_NEAR(e.farthest, 4, 1e-12);
     EXPECT_EQ(e.low.z, 0);

@@ -17,9 +17,9 @@ namespace {
 Scene hall() { return roomScene("#env 1\nispace size=20,20\n"); }
 
 Receiver receiver(double range) {
-    Receiver figures;
-    figures.max_range = range;
-    return figures;
+    Receiver receiver;
+    receiver.max_range = range;
+    return receiver;
 }
 
 std::size_t cellsSeenFrom(Point2 place, double heading, const Laser& laser, const Grid& grid) {
@@ -46,7 +46,7 @@ TEST(MostCellsInView, HoldsAnywhereAndIsNearWhereNothingHides) {
             EXPECT_LE(seen, most) << fov;
             best = std::max(best, seen);
         }
-        const double edge = fov / 180 * 3.15 * 4 + 8;  // of the fan, in metres; a cell is 0.2 m
+        const double edge = fov / 180 * 3.15 * 4 + 8;  // of the sector, in metres; a cell is 0.2 m
         EXPECT_GE(static_cast<double>(best), static_cast<double>(most) - edge / 0.2 - 10) << fov;
     }
 }
@@ -87,18 +87,18 @@ class PoseSource {
 
 /// Cells of the hall that a device sees from random poses, over or in the plane: never more than
 /// most. Returns the largest share of that.
-template <typename Placed, typename Figures>
-double fullestView(const Figures& figures, double most_height, unsigned seed) {
+template <typename Placed, typename Model>
+double fullestView(const Model& model, double max_height, unsigned seed) {
     static const Scene kHall = hall();
     static Worlds worlds(kHall.environment);
     static const Sight sight(kHall.environment, kPlane, &worlds);
     const Grid grid{kHall.environment.limits(), 80, 90};
-    const auto most = static_cast<double>(maxCellsInView(figures, grid));
+    const auto most = static_cast<double>(maxCellsInView(model, grid));
     PoseSource poses(seed);
     double fullest = 0;
     for (int i = 0; i < 300; ++i) {
-        const double above = i % 6 == 0 ? 0 : poses.between(0, most_height);
-        const Placed placed{"s", figures, poses.pose(kPlane + above)};
+        const double above = i % 6 == 0 ? 0 : poses.between(0, max_height);
+        const Placed placed{"s", model, poses.pose(kPlane + above)};
         sight.prepare(placed);
         const auto seen = static_cast<double>(sight.cellsOf(grid, placed).count());
         EXPECT_LE(seen, most) << seed << ": " << i;

@@ -124,7 +124,7 @@ TEST(ArrangeGoals, WhatTooFewSensorsCannotDoHasNoBoundAboveNothing) {
     EXPECT_EQ(deaf.bound, 0);
 }
 
-TEST(ArrangeGoals, ABudgetBuysWhatIsWorthMost) {
+TEST(ArrangeGoals, ABudgetBuysTheGreatestValue) {
     const Scene scene = roomScene();
     ArrangeOptions options = coarse(Optimizer::Exact);
     options.budget = 5;
@@ -160,8 +160,8 @@ TEST(ArrangeGoals, RefiningDoesNotLose) {
     EXPECT_GT(after.refined_after, after.refined_before);
     // Both bounds are kept.
     const Record result = layoutDocument(partsOf(scene), nullptr, groups, after).records.back();
-    EXPECT_EQ(result.number("candidates_bound"), tidy(after.candidate_bound));
-    EXPECT_EQ(result.number("bound"), tidy(after.bound));
+    EXPECT_EQ(result.number("candidates_bound"), roundSignificant(after.candidate_bound));
+    EXPECT_EQ(result.number("bound"), roundSignificant(after.bound));
     EXPECT_GE(after.bound, after.value.value_or(after.coverage));
     EXPECT_GE(after.coverage, before.coverage);
     EXPECT_EQ(after.candidate_bound, before.bound);
@@ -321,10 +321,10 @@ TEST(SceneProblem, TheTreeGetsTheMemoryThatCandidatesLeave) {
     ArrangeOptions options = coarse(Optimizer::Exact);
     SilentProgress silent;
     const SceneProblem usual(scene, groups, options, silent);
-    EXPECT_EQ(usual.searchOptions().most_bytes, kMaxTreeBytes);
-    options.most_bytes = usual.bytes() + 1000;
+    EXPECT_EQ(usual.searchOptions().max_bytes, kMaxTreeBytes);
+    options.max_bytes = usual.bytes() + 1000;
     const SceneProblem narrow(scene, groups, options, silent);
-    EXPECT_EQ(narrow.searchOptions().most_bytes, 1000U);
+    EXPECT_EQ(narrow.searchOptions().max_bytes, 1000U);
     EXPECT_EQ(arranged(scene, groups, options).candidate_value,
               arranged(scene, groups, coarse(Optimizer::Exact)).candidate_value);
 }
@@ -342,7 +342,7 @@ TEST(SceneProblem, SharesAndValuesLeadBackAndForth) {
     }
 }
 
-TEST(SceneProblem, ChosenCandidatesBecomeSensorsWorthTheSame) {
+TEST(SceneProblem, ChosenCandidatesBecomeSensorsOfTheSameValue) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:2", "laser,range=2,fov=90"});
     const ArrangeOptions options = coarse();

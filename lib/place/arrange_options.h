@@ -73,9 +73,9 @@ struct ArrangeOptions {
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
-    double plane = 0;                                ///< height of what rangers and receivers cover
-    std::optional<CellChoice> cells;                 ///< while searching, see searchCells()
-    std::size_t most_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
+    double plane = 0;                               ///< height of what rangers and receivers cover
+    std::optional<CellChoice> cells;                ///< while searching, see searchCells()
+    std::size_t max_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
     std::uint64_t seed = 0;
 };
 

@@ -235,12 +235,12 @@ namespace {
 
 Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     Record result(*sceneSchemas().find("result"));
-    result.set("coverage", Value(tidy(arrangement.coverage)));
-    result.set("area", Value(tidy(arrangement.area)));
-    if (arrangement.value) result.set("value", Value(tidy(*arrangement.value)));
-    result.set("bound", Value(tidy(arrangement.bound)));
+    result.set("coverage", Value(roundSignificant(arrangement.coverage)));
+    result.set("area", Value(roundSignificant(arrangement.area)));
+    if (arrangement.value) result.set("value", Value(roundSignificant(*arrangement.value)));
+    result.set("bound", Value(roundSignificant(arrangement.bound)));
     if (arrangement.is_refined)
-        result.set("candidates_bound", Value(tidy(arrangement.candidate_bound)));
+        result.set("candidates_bound", Value(roundSignificant(arrangement.candidate_bound)));
     result.set("strategy", Value(parts.strategy));
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));

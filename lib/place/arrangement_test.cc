@@ -245,7 +245,7 @@ TEST(Arrangement, WhatCannotBeIsSaid) {
     options.budget = 0;
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}, true), options), UnmetError);
     options = coarse();
-    options.most_bytes = 1000;
+    options.max_bytes = 1000;
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
     options = coarse();
     options.weights.targets = {readZone("rect:100,100,101,101", scene.environment)};

@@ -157,7 +157,7 @@ struct CandidatePool::Data {
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
                 const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
-                if (!addCandidates(set, views, level.sites, options.most_bytes - bytes, progress,
+                if (!addCandidates(set, views, level.sites, options.max_bytes - bytes, progress,
                                    share))
                     is_complete = false;
             }
@@ -176,7 +176,7 @@ struct CandidatePool::Data {
     template <typename Draw>
     Drawn randomLevels(int count, bool needs_one, Draw draw) {
         constexpr std::uint64_t kTries = 1000;  // a place
-        const std::uint64_t most_tries = kTries * static_cast<std::uint64_t>(count);
+        const std::uint64_t max_tries = kTries * static_cast<std::uint64_t>(count);
         Drawn drawn;
         std::uint64_t k = 0;
         progress.begin("drawing places", std::int64_t{count} * std::ssize(heights()));
@@ -184,7 +184,7 @@ struct CandidatePool::Data {
             const SiteValidity& validity = validityAt(height);
             std::vector<Point2> places;
             for (std::uint64_t tries = 0;
-                 tries < most_tries && places.size() < static_cast<std::size_t>(count); ++tries) {
+                 tries < max_tries && places.size() < static_cast<std::size_t>(count); ++tries) {
                 const bool must_go_on = needs_one && drawn.places == 0 && k < kTries;
                 if (progress.stopped() && !must_go_on) {
                     drawn.is_complete = false;

@@ -278,7 +278,7 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
 }
 
 // Fig. 4.8: without the Insider Judge the sensor would stand outside, facing the walls.
-TEST(CandidatePool, InsiderJudgeKeepsTheSensorInTheRoom) {
+TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     const Scene scene = roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
     const Environment& room = scene.environment;
     std::vector<Site> everywhere;

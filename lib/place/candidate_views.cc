@@ -158,9 +158,9 @@ class Scanner {
           ahead_(sites, std::max(least_, sites.size() / kStretch)),
           shelf_(ahead_.size()) {}
 
-    bool run(std::size_t most_bytes) {
-        lookAhead(most_bytes / kShelfPart);
-        return addAll(most_bytes);
+    bool run(std::size_t max_bytes) {
+        lookAhead(max_bytes / kShelfPart);
+        return addAll(max_bytes);
     }
 
   private:
@@ -178,10 +178,10 @@ class Scanner {
 
     /// Puts what is seen from sites all over the list on the shelf, until progress says stop or the
     /// shelf is full; but from least_ sites always.
-    void lookAhead(std::size_t most_shelved) {
+    void lookAhead(std::size_t max_shelved) {
         for (std::size_t k = 0; k < ahead_.size();) {
             const std::size_t must = least_ - std::min(k, least_);
-            const bool is_stopped = progress_.stopped() || shelf_.bytes() > most_shelved;
+            const bool is_stopped = progress_.stopped() || shelf_.bytes() > max_shelved;
             const std::size_t end =
                 k + std::min({at_once_, ahead_.size() - k, is_stopped ? must : at_once_});
             if (k == end) return;
@@ -195,7 +195,7 @@ class Scanner {
 
     /// Adds all sites; once progress says stop, only those of the rest that are on the shelf.
     /// True if that were all.
-    bool addAll(std::size_t most_bytes) {
+    bool addAll(std::size_t max_bytes) {
         std::size_t slot = 0, added = 0;
         for (std::size_t site = 0; site < sites_.size();) {
             const bool is_stopped = progress_.stopped();
@@ -211,15 +211,15 @@ class Scanner {
                 if (is_done_[i] == 0) continue;
                 add(i);
                 ++added;
-                if (set_.bytes() > most_bytes) throw UsageError(tooLarge(most_bytes));
+                if (set_.bytes() > max_bytes) throw UsageError(tooLarge(max_bytes));
             }
             shelf_.dropBefore(slot);
         }
         return added == sites_.size();
     }
 
-    static std::string tooLarge(std::size_t most_bytes) {
-        return "the candidates take more than " + formatBytes(most_bytes) +
+    static std::string tooLarge(std::size_t max_bytes) {
+        return "the candidates take more than " + formatBytes(max_bytes) +
                ": use fewer places, headings or cells, or --max-memory";
     }
 
@@ -317,10 +317,10 @@ class Scanner {
 }  // namespace
 
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t most_bytes, Progress& progress, std::size_t least) {
+                   std::size_t max_bytes, Progress& progress, std::size_t least) {
     assert(set.cells() == views.data().grid.size());
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
-    const bool is_complete = Scanner(set, views, sites, least, progress).run(most_bytes);
+    const bool is_complete = Scanner(set, views, sites, least, progress).run(max_bytes);
     progress.end();
     return is_complete;
 }

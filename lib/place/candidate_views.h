@@ -79,8 +79,8 @@ constexpr std::size_t kMinPlaces = 64;
 /// at a time, so that memory stays close to that of the set; the result does not depend on the
 /// number of threads. A sample spread over the list comes first. False if progress said stop: then
 /// the set has the sites done so far, in order, at least `least` of them (or all), spread over the
-/// list. \throws UsageError once set.bytes() is more than most_bytes
+/// list. \throws UsageError once set.bytes() is more than max_bytes
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t most_bytes, Progress& progress, std::size_t least = kMinPlaces);
+                   std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces);
 
 }  // namespace ispace

@@ -171,8 +171,8 @@ TEST(CandidateViews, OddHeadings) {
             << fov;
 }
 
-/// A fan of just this width.
-Laser fanOf(double range, double first, double span) {
+/// A sector of just this width.
+Laser laserOfSpan(double range, double first, double span) {
     Laser laser = laserWith(range, first, 1);
     laser.step = Angle::degrees(span);
     return laser;
@@ -209,7 +209,7 @@ TEST(CandidateViews, HeadingsTooNearToBeTold) {
                     Angle::degrees(about - first + apart * static_cast<double>(random() % 40)));
         }
         ASSERT_NO_FATAL_FAILURE(expectSame(
-            scene, {fanOf(4, first, fov), poseAt({0, 0, kScanHeight}, 0, 0)}, sites, false))
+            scene, {laserOfSpan(4, first, fov), poseAt({0, 0, kScanHeight}, 0, 0)}, sites, false))
             << trial;
     }
 }
@@ -221,8 +221,8 @@ TEST(CandidateViews, SevenFansThatMeetBetweenCells) {
     std::vector<Site> sites = {{{0.1, 0.1}, {}}};
     for (int k = 0; k < 7; ++k) sites[0].headings.push_back(Angle::degrees(360.0 / 7 * k));
     ASSERT_NO_FATAL_FAILURE(expectSame(
-        scene, {fanOf(3, -102.8571429 / 2, 102.8571429), poseAt({0, 0, kScanHeight}, 0, 0)}, sites,
-        false));
+        scene, {laserOfSpan(3, -102.8571429 / 2, 102.8571429), poseAt({0, 0, kScanHeight}, 0, 0)},
+        sites, false));
 }
 
 TEST(CandidateViews, FansThatRoundingsTear) {
@@ -235,10 +235,10 @@ TEST(CandidateViews, FansThatRoundingsTear) {
     for (Site& site : sites)
         for (const double heading : {171.89986331761804, 0.0, 90.0, -171.8})
             site.headings.push_back(Angle::degrees(heading));
-    ASSERT_NO_FATAL_FAILURE(expectSame(
-        scene,
-        {fanOf(9, -101.20355280257412, 109.30368948395606), poseAt({0, 0, kScanHeight}, 0, 0)},
-        sites, false));
+    ASSERT_NO_FATAL_FAILURE(expectSame(scene,
+                                       {laserOfSpan(9, -101.20355280257412, 109.30368948395606),
+                                        poseAt({0, 0, kScanHeight}, 0, 0)},
+                                       sites, false));
 }
 
 TEST(CandidateViews, ManyHeadingsOfAReceiver) {

@@ -39,13 +39,13 @@ struct Axis {
 };
 
 /// Whole sensors, from none on unless that would leave half of the picture empty.
-Axis sensorAxis(const std::vector<CurvePoint>& points, double most_ticks) {
+Axis sensorAxis(const std::vector<CurvePoint>& points, double max_ticks) {
     Axis axis;
     if (points.empty()) return axis;
     const double first = points.front().sensors, last = points.back().sensors;
     axis.first = 2 * first > last && points.size() > 1 ? first : std::min(0.0, first);
     axis.last = points.size() == 1 ? last + 1 : std::max(last, axis.first + 1);
-    axis.step = roundStep(std::max(1.0, (axis.last - axis.first) / most_ticks));
+    axis.step = roundStep(std::max(1.0, (axis.last - axis.first) / max_ticks));
     return axis;
 }
 
@@ -165,9 +165,9 @@ std::string curveCsv(const std::vector<CurvePoint>& points) {
     for (const CurvePoint& point : points) {
         text += std::to_string(point.sensors);
         text += ',';
-        appendDouble(text, tidy(point.value));
+        appendDouble(text, roundSignificant(point.value));
         text += ',';
-        appendDouble(text, tidy(point.bound));
+        appendDouble(text, roundSignificant(point.bound));
         text += '\n';
     }
     return text;

@@ -56,29 +56,29 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
 }
 
 /// The indoor floor that counts, parted by its weight; what weighs nothing is left out.
-std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& worth) {
+std::vector<Floor> floorsOf(const Environment& environment, const FloorWeights& floor) {
     std::vector<Floor> floors;
-    if (worth.isUniform()) {
+    if (floor.isUniform()) {
         floors.push_back({1, curvesWithArcs(environment.indoor()), {}});
     } else {
         constexpr std::uint64_t kIndoor = 1;
         constexpr std::size_t kFirstWeight = 1;
         std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoor)};
-        layers.reserve(1 + worth.targets.size() + worth.weights.size());
-        for (const NamedZone& zone : worth.targets)
+        layers.reserve(1 + floor.targets.size() + floor.weights.size());
+        for (const NamedZone& zone : floor.targets)
             layers.push_back({.curves = {curveOf(zone.outline)}});
         std::set<double> weights = {1};
-        for (std::size_t i = 0; i < worth.weights.size(); ++i) {
-            layers.push_back(markLayer({curveOf(worth.weights[i].first.outline)},
+        for (std::size_t i = 0; i < floor.weights.size(); ++i) {
+            layers.push_back(markLayer({curveOf(floor.weights[i].first.outline)},
                                        std::uint64_t{1} << (kFirstWeight + i)));
-            weights.insert(worth.weights[i].second);
+            weights.insert(floor.weights[i].second);
         }
         const auto weight_of = [&](const LayerLabel& label) {
             if ((label.marks & kIndoor) == 0) return 0.0;
-            if (label.count == 0 && !worth.targets.empty()) return 0.0;
-            for (std::size_t i = worth.weights.size(); i > 0; --i)
+            if (label.count == 0 && !floor.targets.empty()) return 0.0;
+            for (std::size_t i = floor.weights.size(); i > 0; --i)
                 if ((label.marks >> (kFirstWeight + i - 1) & 1U) != 0)
-                    return worth.weights[i - 1].second;
+                    return floor.weights[i - 1].second;
             return 1.0;
         };
         const Overlay overlay(layers);

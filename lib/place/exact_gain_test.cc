@@ -60,9 +60,9 @@ TEST(ExactGain, IsWhatCoverageMeasures) {
     const std::vector<Movable> movables = threeLasers();
     const CoverageReport report = reportOf(scene, movables);
     for (const int demand : {1, 2, 3}) {
-        const ExactGain worth(scene, movables, {}, {.multiplicity = demand});
-        EXPECT_NEAR(worth.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
-        EXPECT_NEAR(worth.total(), 48, 1e-9);
+        const ExactGain gain(scene, movables, {}, {.multiplicity = demand});
+        EXPECT_NEAR(gain.value(), seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
+        EXPECT_NEAR(gain.total(), 48, 1e-9);
     }
     EXPECT_GT(seenByAtLeast(report, 3), 0.5);
 }
@@ -82,39 +82,39 @@ TEST(ExactGain, TargetsAndWeightsOfWhichTheLastDecides) {
     const Scene scene = sceneOf("ispace size=8,8\n");
     const std::vector<Movable> whole = {at("a", laserOfRange(20, 360), 0, 0, 0),
                                         at("b", laserOfRange(20, 360), 1, 0, 180)};
-    FloorWeights worth;
-    worth.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
+    FloorWeights floor;
+    floor.weights = {{box(-1, -1, 1, 1), 3}, {box(0, 0, 2, 2), 5}, {box(3, 3, 9, 9), 0}};
     // 64 of which 4 weigh 5, 3 weigh 3, 1 nothing.
-    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).total(), 56 + 20 + 9, 1e-5);
-    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 56 + 20 + 9, 1e-5);
-    worth.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1
-    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 3 + 9 + 5, 1e-5);
-    worth.weights.clear();
-    EXPECT_NEAR(ExactGain(scene, whole, worth, {}).value(), 7, 1e-5);
-    worth.targets = {box(7, 7, 8, 8)};  // outside
-    EXPECT_EQ(ExactGain(scene, whole, worth, {}).value(), 0);
-    EXPECT_EQ(ExactGain(scene, whole, worth, {}).total(), 0);
+    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).total(), 56 + 20 + 9, 1e-5);
+    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 56 + 20 + 9, 1e-5);
+    floor.targets = {box(-2, -2, 0, 0), box(-1, -1, 1, 1)};  // 4 + 4 - 1
+    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 3 + 9 + 5, 1e-5);
+    floor.weights.clear();
+    EXPECT_NEAR(ExactGain(scene, whole, floor, {}).value(), 7, 1e-5);
+    floor.targets = {box(7, 7, 8, 8)};  // outside
+    EXPECT_EQ(ExactGain(scene, whole, floor, {}).value(), 0);
+    EXPECT_EQ(ExactGain(scene, whole, floor, {}).total(), 0);
 }
 
 TEST(ExactGain, SixtyWeightsAndNoMore) {
     const Scene scene = sceneOf("ispace size=80,8\n");
     const std::vector<Movable> one = {at("a", laserOfRange(100, 360), 0, 0, 0),
                                       at("b", laserOfRange(100, 360), 1, 0, 180)};
-    FloorWeights worth;
+    FloorWeights floor;
     double wanted = 640;
     for (int i = 0; i < 60; ++i) {
-        worth.weights.emplace_back(box(-39 + i, -1, -38 + i, 1), 2 + i);
+        floor.weights.emplace_back(box(-39 + i, -1, -38 + i, 1), 2 + i);
         wanted += 2 * (1 + i);
     }
-    EXPECT_NEAR(ExactGain(scene, one, worth, {}).value(), wanted, 1e-3);
-    worth.weights.emplace_back(box(-39, -1, -38, 1), 2);
-    EXPECT_THROW(ExactGain(scene, one, worth, {}), UsageError);
+    EXPECT_NEAR(ExactGain(scene, one, floor, {}).value(), wanted, 1e-3);
+    floor.weights.emplace_back(box(-39, -1, -38, 1), 2);
+    EXPECT_THROW(ExactGain(scene, one, floor, {}), UsageError);
 }
 
 TEST(ExactGain, GainsAreDifferencesOfValues) {
     const Scene scene = sceneOf(std::string(kRoom) + "laser at=3.5,-2.5 heading=120 range=2\n");
-    FloorWeights worth;
-    worth.weights = {{box(-2, -2, 3, 1), 4}, {box(0, 0, 4, 3), 0.5}};
+    FloorWeights floor;
+    floor.weights = {{box(-2, -2, 3, 1), 4}, {box(0, 0, 4, 3), 0.5}};
     std::mt19937 random(7);
     std::uniform_real_distribution<double> x(-3.9, 3.9), y(-2.9, 2.9), h(-180, 180);
     for (const int demand : {1, 2}) {
@@ -123,7 +123,7 @@ TEST(ExactGain, GainsAreDifferencesOfValues) {
             const auto which = static_cast<std::size_t>(i) % 3;
             std::vector<double> values, gains;
             std::vector<Pose3> poses;
-            ExactGain moving(scene, movables, worth, {.multiplicity = demand});
+            ExactGain moving(scene, movables, floor, {.multiplicity = demand});
             for (int k = 0; k < 2; ++k) {
                 Movable& own = movables[which];
                 own.pose.position.x = x(random);
@@ -131,7 +131,7 @@ TEST(ExactGain, GainsAreDifferencesOfValues) {
                 own.pose.heading = Angle::degrees(h(random));
                 poses.push_back(own.pose);
                 values.push_back(
-                    ExactGain(scene, movables, worth, {.multiplicity = demand}).value());
+                    ExactGain(scene, movables, floor, {.multiplicity = demand}).value());
             }
             moving.take(which);
             gains = moving.gains(poses);
@@ -156,17 +156,17 @@ TEST(ExactGain, FourReceiversAreOneSensor) {
     for (const int demand : {1, 2})
         EXPECT_NEAR(ExactGain(scene, movables, {}, {.multiplicity = demand}).value(),
                     seenByAtLeast(report, static_cast<std::size_t>(demand)), 1e-5);
-    ExactGain worth(scene, movables, {}, {});
-    const double before = worth.value();
+    ExactGain gain(scene, movables, {}, {});
+    const double before = gain.value();
     Pose3 moved = movables[1].pose;
     moved.position.y = 0.3;
-    worth.take(1);
-    const std::vector<double> gains = worth.gains(std::vector<Pose3>{movables[1].pose, moved});
-    worth.put(moved);
-    EXPECT_NEAR(worth.value() - before, gains[1] - gains[0], 1e-5);
+    gain.take(1);
+    const std::vector<double> gains = gain.gains(std::vector<Pose3>{movables[1].pose, moved});
+    gain.put(moved);
+    EXPECT_NEAR(gain.value() - before, gains[1] - gains[0], 1e-5);
     EXPECT_GT(std::abs(gains[1] - gains[0]), 0.1);
-    EXPECT_FALSE(worth.turns(0));
-    EXPECT_TRUE(worth.turns(5));
+    EXPECT_FALSE(gain.turns(0));
+    EXPECT_TRUE(gain.turns(5));
 }
 
 TEST(ExactGain, RangersAndTiltedLasersCoverThePlane) {
@@ -185,7 +185,7 @@ TEST(ExactGain, UnknownRegionsAreRefused) {
     sweeping.sweep_span = Angle::degrees(30);
     const std::vector<Movable> movables = {at("n", sweeping, 0, 0, 0, 1, -20)};
     try {
-        const ExactGain worth(sceneOf(kRoom), movables, {}, {});
+        const ExactGain gain(sceneOf(kRoom), movables, {}, {});
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(), "n cannot be refined: its exact region is not known");
@@ -203,9 +203,9 @@ TEST(ExactGain, WholeTurnsDoNotTurn) {
                                            at("c", laserOfRange(4, 359), 0, 0, 0),
                                            at("r", head, 1, 1, 0, 1),
                                            at("p", Ranger(), 1, 1, 0, 2, -90)};
-    const ExactGain worth(sceneOf(kRoom), movables, {}, {});
+    const ExactGain gain(sceneOf(kRoom), movables, {}, {});
     const std::vector<bool> turns = {false, true, true, false, false, true};
-    for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(worth.turns(i), turns[i]) << i;
+    for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(gain.turns(i), turns[i]) << i;
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(IdleSensors, WhoAddsSomethingIsNotNamed) {
     EXPECT_TRUE(all.idle.empty());
 }
 
-TEST(IdleSensors, WhatIsLeftIsWorthAsMuch) {
+TEST(IdleSensors, TheRestHasTheSameValue) {
     std::size_t found = 0;
     for (unsigned seed = 0; seed < 60; ++seed) {
         RandomProblemOptions options;

@@ -30,10 +30,10 @@ Pose3 poseAt(double x, double y, double heading = 0) {
 }
 
 Refined refined(const Scene& scene, const std::vector<Movable>& movables,
-                const FloorWeights& worth = {}, const RefineOptions& options = {},
+                const FloorWeights& floor = {}, const RefineOptions& options = {},
                 const std::function<bool(const std::vector<Pose3>&)>& accept = {}) {
     SilentProgress progress;
-    return refine(scene, movables, worth, options, accept, progress);
+    return refine(scene, movables, floor, options, accept, progress);
 }
 
 NamedZone box(double x, double y, double to_x, double to_y) {
@@ -167,16 +167,16 @@ TEST(Refine, InvalidPlacesAreNeverTaken) {
     EXPECT_GT(std::abs(result.poses[0].position.y), -1.51);
 }
 
-TEST(Refine, GoesWhereItIsWorthMore) {
+TEST(Refine, GoesWhereWeightsAreHigher) {
     const Scene scene = sceneOf("ispace size=12,6\n");
     const std::vector<Movable> one = {{"a", laserOfRange(1, 360), poseAt(0.5, 0), nullptr}};
-    FloorWeights worth;
-    worth.weights = {{box(1, -2, 5, 2), 3}};
-    const Refined weighted = refined(scene, one, worth);
+    FloorWeights floor;
+    floor.weights = {{box(1, -2, 5, 2), 3}};
+    const Refined weighted = refined(scene, one, floor);
     EXPECT_NEAR(weighted.after, 3 * std::numbers::pi, 1e-4);
-    worth = {};
-    worth.targets = {box(-5, -2, 0, 2)};
-    const Refined targeted = refined(scene, one, worth);
+    floor = {};
+    floor.targets = {box(-5, -2, 0, 2)};
+    const Refined targeted = refined(scene, one, floor);
     EXPECT_NEAR(targeted.after, std::numbers::pi, 1e-4);
     EXPECT_LE(targeted.poses[0].position.x, -0.99);
 }

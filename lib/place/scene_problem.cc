@@ -132,8 +132,8 @@ std::size_t SceneProblem::bytes() const {
 
 SearchOptions SceneProblem::searchOptions() const {
     SearchOptions searching = options_.search;
-    const std::size_t taken = std::min(bytes(), options_.most_bytes);
-    searching.most_bytes = std::min(searching.most_bytes, options_.most_bytes - taken);
+    const std::size_t taken = std::min(bytes(), options_.max_bytes);
+    searching.max_bytes = std::min(searching.max_bytes, options_.max_bytes - taken);
     return searching;
 }
 

@@ -86,8 +86,9 @@ Grid gridOf(Point2 low, double size, int columns, int rows) {
 
 std::string cellsText(const Grid& grid) {
     constexpr int kDigits = 3;
-    const std::string x = formatDouble(tidy(grid.limits.width() / grid.columns, kDigits));
-    const std::string y = formatDouble(tidy(grid.limits.depth() / grid.rows, kDigits));
+    const std::string x =
+        formatDouble(roundSignificant(grid.limits.width() / grid.columns, kDigits));
+    const std::string y = formatDouble(roundSignificant(grid.limits.depth() / grid.rows, kDigits));
     return std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells of " + x +
            " m" + (x == y ? "" : " x " + y + " m");
 }

@@ -40,7 +40,7 @@ Value placeValue(const Record& record, const KeySpec& key) {
 
 /// The number of at most nine decimals that a sum is meant to be, if there is one.
 /// \param size of the terms it is the sum of, together
-double tidy(double number, double size) {
+double roundSignificant(double number, double size) {
     // Rounding errors of a few moves across a plan of a kilometre, a picometre, and of larger
     // numbers than that.
     constexpr double kGrid = 1e9, kRounding = 0x1p-50, kPlan = 1000;
@@ -97,12 +97,13 @@ struct Motion {
 }  // namespace
 
 double decimalSum(double a, double b, double c) {
-    return tidy(a + b + c + 0.0, std::abs(a) + std::abs(b) + std::abs(c));  // + 0: no minus zero
+    return roundSignificant(a + b + c + 0.0,
+                            std::abs(a) + std::abs(b) + std::abs(c));  // + 0: no minus zero
 }
 
 double turnedHeading(double degrees, Angle turn) {
     const double after = wrapped(Angle::degrees(degrees) + turn).degrees();
-    return tidy(after, std::abs(degrees) + std::abs(turn.degrees()));
+    return roundSignificant(after, std::abs(degrees) + std::abs(turn.degrees()));
 }
 
 void placeIn(Record& record, const Pose2& parent_from_record, double dz) {

@@ -68,8 +68,8 @@ std::size_t heapSizeOf(const Value& value) {
 }
 
 void YamlValues::grant(std::size_t bytes) {
-    most_nodes_ += bytes;
-    most_bytes_ += 2 * bytes;  // the escape \L is two bytes for three
+    max_nodes_ += bytes;
+    max_bytes_ += 2 * bytes;  // the escape \L is two bytes for three
 }
 
 void YamlValues::spend(std::size_t nodes, std::size_t bytes, Spot at) {
@@ -79,8 +79,8 @@ void YamlValues::spend(std::size_t nodes, std::size_t bytes, Spot at) {
         collector_->finding(at, [&] { return "aliases expand to more than " + what; });
         collector_->findings().throwIfAny();
     };
-    if (nodes_ > most_nodes_) refuse(std::to_string(kMaxNodes) + " nodes");
-    if (bytes_ > most_bytes_)
+    if (nodes_ > max_nodes_) refuse(std::to_string(kMaxNodes) + " nodes");
+    if (bytes_ > max_bytes_)
         refuse(std::to_string(kMaxBytes / 1'000'000) + " MB, together with defaults");
 }
 

@@ -163,7 +163,7 @@ class YamlValues {
     std::optional<TupleList> readTupleList(const KeySpec& key, const YamlNode& node);
 
     RecordCollector* collector_;
-    std::size_t most_nodes_ = kMaxNodes, most_bytes_ = kMaxBytes;
+    std::size_t max_nodes_ = kMaxNodes, max_bytes_ = kMaxBytes;
     std::size_t nodes_ = 0, bytes_ = 0;
 };
 

@@ -47,9 +47,9 @@ void addPosition(JsonWriter& json, const Burst& burst) {
     json.beginArray();
     if (burst.fix) {
         const Point3& p = burst.fix->position;
-        json.value(tidy(p.x)).value(tidy(p.y)).value(tidy(p.z));
+        json.value(roundSignificant(p.x)).value(roundSignificant(p.y)).value(roundSignificant(p.z));
     } else {
-        json.value(tidy(burst.simple->x)).value(tidy(burst.simple->y));
+        json.value(roundSignificant(burst.simple->x)).value(roundSignificant(burst.simple->y));
     }
     json.endArray();
 }
@@ -119,14 +119,14 @@ void appendLines(std::string& out, const Sensor& tag, const Burst& burst,
     json.key("heard").beginArray();
     for (const TimeOfFlight& flight : burst.heard) {
         json.beginObject().key("receiver").value(receivers[flight.receiver].id);
-        json.key("time_of_flight").value(tidy(flight.time));
-        json.key("range").value(tidy(flight.distance));
+        json.key("time_of_flight").value(roundSignificant(flight.time));
+        json.key("range").value(roundSignificant(flight.distance));
         json.endObject();
     }
     json.endArray();
     addPosition(json, burst);
     const auto metric = [&burst](double Fix::*part) {
-        return burst.fix ? std::optional(tidy((*burst.fix).*part)) : std::nullopt;
+        return burst.fix ? std::optional(roundSignificant((*burst.fix).*part)) : std::nullopt;
     };
     json.key("residual").value(metric(&Fix::residual));
     json.key("pdop").value(metric(&Fix::pdop));

@@ -260,7 +260,7 @@ TEST(CarmenLog, FieldsInOrder) {
               "0 0 0 0 0 0.25 sim 0.25\n");
 }
 
-/// What a reader makes of the line: where a beam points, if the fan begins at start_angle, and if
+/// What a reader makes of the line: where a beam points, if the scan begins at start_angle, and if
 /// it is taken for one about the laser's heading.
 struct Beam {
     double by_start, by_fov;

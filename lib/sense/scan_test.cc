@@ -138,8 +138,8 @@ struct Box {
                " size=" + formatDouble(length) + ',' + formatDouble(width) + ',' +
                formatDouble(height) + (ceiling ? " ceiling=yes\n" : "\n");
     }
-    /// Infinite if it leaves through a missing ceiling; `doubt` if that is a close decision.
-    [[nodiscard]] double range(Point3 local, Vec3 direction, bool& doubt) const {
+    /// Infinite if it leaves through a missing ceiling; `is_close` if rounding decides.
+    [[nodiscard]] double range(Point3 local, Vec3 direction, bool& is_close) const {
         const auto wall = [](double from, double way, double half) {
             return way == 0 ? kInfinity : ((way > 0 ? half : -half) - from) / way;
         };
@@ -147,7 +147,7 @@ struct Box {
             std::min(wall(local.x, direction.x, length / 2), wall(local.y, direction.y, width / 2));
         const double end = ((direction.z > 0 ? height : 0.0) - local.z) / direction.z;
         const bool up = direction.z > 0;
-        doubt = up && !ceiling && std::fabs(local.z + sides * direction.z - height) < 1e-4;
+        is_close = up && !ceiling && std::fabs(local.z + sides * direction.z - height) < 1e-4;
         if (direction.z == 0) return sides;
         if (up && !ceiling && end < sides) return kInfinity;
         return std::min(sides, end);
@@ -208,10 +208,10 @@ TEST_F(Rooms, RectangularAtAnyPoseWithinAMillimetre) {
         const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
             const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.as<Laser>().bearing(k)));
-            bool doubt = false;
-            const double exact = box.range(local, direction, doubt);
+            bool is_close = false;
+            const double exact = box.range(local, direction, is_close);
             const double found = scan.ranges[static_cast<std::size_t>(k)];
-            if (doubt) continue;
+            if (is_close) continue;
             if (std::isinf(exact)) {
                 EXPECT_TRUE(std::isinf(found)) << box.record() << k;
                 ++left;
@@ -235,10 +235,10 @@ TEST_F(Rooms, FarFromTheOriginWithinAMillimetre) {
         const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
             const Vec3 direction = box.toLocal(sensor.pose.beam(sensor.as<Laser>().bearing(k)));
-            bool doubt = false;
-            const double exact = box.range(local, direction, doubt);
+            bool is_close = false;
+            const double exact = box.range(local, direction, is_close);
             const double found = scan.ranges[static_cast<std::size_t>(k)];
-            if (doubt || std::isinf(exact)) continue;
+            if (is_close || std::isinf(exact)) continue;
             EXPECT_NEAR(found, exact, 1e-3);
         }
     }
@@ -283,8 +283,8 @@ TEST_F(Rooms, AroundCylinders) {
         const Scan scan = testing::scan(scene, sensor);
         for (int k = 0; k < sensor.as<Laser>().beams; ++k) {
             const Vec3 direction = pose.beam(sensor.as<Laser>().bearing(k));
-            bool doubt = false;
-            const double walls = box.range(local, direction, doubt);
+            bool is_close = false;
+            const double walls = box.range(local, direction, is_close);
             const double exact = cylinderRange(local, direction, radius, height);
             const double outer =
                 cylinderRange(local, direction, radius + kMargin, height + kMargin);

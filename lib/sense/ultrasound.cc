@@ -49,7 +49,7 @@ bool isInSight(const RayWorld& environment, const MovingBodies& bodies, const Se
     const Point3 to = tag.pose.position;
     if (from == to) return true;
     std::uint8_t seen = 0;
-    environment.look(from, std::span(&to, 1), std::span(&seen, 1));
+    environment.query(from, std::span(&to, 1), std::span(&seen, 1));
     return seen != 0 && !isBodyBetween(bodies, from, to, carrierOf(receiver), carrierOf(tag));
 }
 

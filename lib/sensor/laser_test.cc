@@ -172,7 +172,7 @@ TEST(Laser, ASweepOfHeadingsMayLookAroundToo) {
     EXPECT_FALSE(laser("fov=360 sweep=tilt").seesAround());
 }
 
-TEST(LaserOf, ModelGivesTheFiguresAndExplicitKeysWin) {
+TEST(LaserOf, ModelGivesTheParametersAndExplicitKeysWin) {
     const Laser urg = laser("model=urg-04lx");
     EXPECT_EQ(urg.model, "urg-04lx");
     EXPECT_EQ(urg.min_range, 0.06);

@@ -51,7 +51,7 @@ TEST(RangerOf, OneFieldOfViewGivesSquarePixels) {
     EXPECT_NEAR(ranger("model=sr-3000").fy(), 200, 0.1);
 }
 
-TEST(RangerOf, FiguresThatDoNotFit) {
+TEST(RangerOf, ParametersThatDoNotFit) {
     EXPECT_NE(rangerFindings("range=5,4").find("least range 5 m is above"), std::string::npos);
     EXPECT_NE(rangerFindings("fov=180").find("a pinhole sees less than 180"), std::string::npos);
     EXPECT_EQ(rangerFindings("fov=180 projection=spherical"), "");

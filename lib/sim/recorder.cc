@@ -216,7 +216,7 @@ struct Recorder::Data {
     // As of the last record, for what the destructor writes.
     SimTime time{}, step_length{};
     std::int64_t steps = 0;
-    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     bool flushed_all = false;  // nothing was recorded since the last flush
     std::exception_ptr ended;  // what ended the record early
 
@@ -284,11 +284,11 @@ void Recorder::Data::writeLines() {
     timing.pending.append(",").append(std::to_string(steps)).append("\n");
     timing.flush();
     flushed_all = true;
-    if (const std::uint64_t bytes = robots.size() + scans.size(); bytes > most_bytes)
+    if (const std::uint64_t bytes = robots.size() + scans.size(); bytes > max_bytes)
         throw FormatError({folder, 0, 0,
                            "the record has " + std::to_string(bytes) +
                                " bytes at t=" + formatSimTime(time) + ", wanted at most " +
-                               std::to_string(most_bytes) + " (--record-limit)"});
+                               std::to_string(max_bytes) + " (--record-limit)"});
 }
 
 /// A file cannot be written: the record ends with the last step that is whole in all.
@@ -357,7 +357,7 @@ void Recorder::record(const World& world) {
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
 }
 
-void Recorder::limit(std::uint64_t bytes) { data_->most_bytes = bytes; }
+void Recorder::limit(std::uint64_t bytes) { data_->max_bytes = bytes; }
 
 int Recorder::lock() const { return data_->lock.descriptor(); }
 

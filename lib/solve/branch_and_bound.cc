@@ -74,12 +74,12 @@ std::vector<BranchNode> OpenNodes::take(std::size_t most) {
     std::vector<BranchNode> batch;
     batch.reserve(most);
     std::size_t bytes = 0;
-    const bool is_full = bytes_ > most_bytes_;
+    const bool is_full = bytes_ > max_bytes_;
     while (batch.size() < most && !nodes_.empty()) {
         Key key = nodes_.begin()->first;
         if (is_full) key = {std::prev(by_age_.end())->second, std::prev(by_age_.end())->first};
         bytes += nodes_.at(key).problem->bytes();
-        if (!batch.empty() && bytes > most_bytes_ / kBatchPart) break;
+        if (!batch.empty() && bytes > max_bytes_ / kBatchPart) break;
         batch.push_back(remove(key));
     }
     return batch;
@@ -163,13 +163,13 @@ std::vector<std::uint64_t> gainsOf(const Root& root, std::size_t kind) {
 class Tree {
   public:
     Tree(const Problem& problem, const Bound& bound, SearchResult known, double gap,
-         std::uint64_t enough, std::size_t most_bytes)
+         std::uint64_t enough, std::size_t max_bytes)
         : problem_(problem),
           relaxed_(problem),
           result_(std::move(known)),
           gap_(gap),
           enough_(enough),
-          open_(most_bytes) {
+          open_(max_bytes) {
         result_.bound = std::min(result_.bound, bound.value);
         if (relaxed_.most(result_.bound) > cut())
             addRoots(rootOf(problem, bound, goodBound(result_.best.value, gap_)));
@@ -271,13 +271,13 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress, std::uint64_t enough,
-                            std::size_t most_bytes) {
+                            std::size_t max_bytes) {
     if (progress.stopped()) {
         known.is_complete = false;
         return known;
     }
     if (!CountChoice(problem).isListed()) return known;
-    return Tree(problem, bound, std::move(known), gap, enough, most_bytes).search(progress);
+    return Tree(problem, bound, std::move(known), gap, enough, max_bytes).search(progress);
 }
 
 }  // namespace ispace

@@ -18,8 +18,8 @@ namespace ispace {
 /// memory is short: depth first leaves few open. Memory that nodes share counts once.
 class OpenNodes {
   public:
-    /// \param most_bytes memory limit, approximate
-    explicit OpenNodes(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+    /// \param max_bytes memory limit, approximate
+    explicit OpenNodes(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
     [[nodiscard]] bool empty() const { return nodes_.empty(); }
     /// The highest, fine. \pre not empty
@@ -42,7 +42,7 @@ class OpenNodes {
     void hold(const void* shared, std::size_t bytes);
     void release(const void* shared);
 
-    std::size_t most_bytes_, bytes_ = 0;
+    std::size_t max_bytes_, bytes_ = 0;
     std::uint64_t next_ = 0;
     std::map<Key, BranchNode> nodes_;
     std::map<std::uint64_t, std::uint64_t> by_age_;  // to the first of the key
@@ -57,7 +57,7 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 /// Branch and bound over the surviving candidates: improves `known` until its value and bound are
 /// within `gap`, its value reaches `enough`, or progress says stop. Each node has its own
 /// Lagrangian bound, warm-started from its parent's multipliers, and rules out more candidates.
-/// Best first, or depth first while open nodes take more than `most_bytes`. Deterministic unless
+/// Best first, or depth first while open nodes take more than `max_bytes`. Deterministic unless
 /// stopped.
 ///
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
@@ -65,6 +65,6 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),
-                            std::size_t most_bytes = kMaxTreeBytes);
+                            std::size_t max_bytes = kMaxTreeBytes);
 
 }  // namespace ispace

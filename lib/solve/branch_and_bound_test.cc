@@ -80,14 +80,14 @@ TEST(OpenNodes, WhatIsSharedCountsOnce) {
 
 /// From nothing known, with a bound that has hardly begun, so that the tree has work to do.
 SearchResult searchTree(const Problem& problem, double gap, Progress& progress,
-                        std::size_t most_bytes = kMaxTreeBytes) {
+                        std::size_t max_bytes = kMaxTreeBytes) {
     SearchResult known;
     known.best = {{}, valueOf(problem, {})};
     const Bound bound =
         lagrangianBound(problem, {}, {.cut = known.best.value, .rounds = 1}, progress);
     known.bound = bound.value;
     return branchAndBound(problem, bound, known, gap, progress,
-                          std::numeric_limits<std::uint64_t>::max(), most_bytes);
+                          std::numeric_limits<std::uint64_t>::max(), max_bytes);
 }
 
 TEST(BranchAndBound, EqualsBruteForce) {
@@ -186,8 +186,8 @@ TEST(BranchAndBound, LittleMemoryIsEnough) {
     }
     const RandomProblem random = largerProblem(5);
     const SearchResult much = searchTree(random.problem, 0, progress);
-    for (const std::size_t most_bytes : {1U, 30'000U}) {
-        const SearchResult little = searchTree(random.problem, 0, progress, most_bytes);
+    for (const std::size_t max_bytes : {1U, 30'000U}) {
+        const SearchResult little = searchTree(random.problem, 0, progress, max_bytes);
         EXPECT_EQ(little.best.value, much.best.value);
         EXPECT_EQ(little.bound, much.bound);
     }
@@ -196,12 +196,12 @@ TEST(BranchAndBound, LittleMemoryIsEnough) {
 TEST(BranchAndBound, IsTheSameForAnyNumberOfThreads) {
     const RandomProblem random = largerProblem(11);
     SilentProgress progress;
-    for (const std::size_t most_bytes : {kMaxTreeBytes, std::size_t{20'000}})
+    for (const std::size_t max_bytes : {kMaxTreeBytes, std::size_t{20'000}})
         for (const double gap : {0.0, 0.02}) {
             const auto searched = [&](std::size_t threads) {
                 const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                                   threads);
-                return searchTree(random.problem, gap, progress, most_bytes);
+                return searchTree(random.problem, gap, progress, max_bytes);
             };
             const SearchResult one = searched(1), two = searched(2);
             EXPECT_EQ(one.best.chosen, two.best.chosen);

@@ -170,7 +170,7 @@ TEST(GreedySearch, MeetsDemandsRatherThanPartsOfThem) {
     problem.kinds = {{&candidates, 3, 1, 1}, {&others, 3, 2, 1}};
     problem.budget = 2;
     EXPECT_EQ(placeGreedily(problem, progress).chosen, same_place);
-    // What follows may be dearer and meet more: a first step towards that is worth something.
+    // What follows may be dearer and meet more: a first step towards that has a value.
     CandidateSet few(cells);
     few.addSite(set_of(0, 4));
     problem.required = 5;

@@ -202,8 +202,8 @@ std::vector<std::vector<std::uint32_t>> RootRelaxation::survivors() const {
 
 namespace {
 
-constexpr int kTrials = 20;        // between two evaluations of all candidates
-constexpr int kRoundsToJudge = 4;  // by what these gain
+constexpr int kTrials = 20;     // between two evaluations of all candidates
+constexpr int kRoundsBack = 4;  // by what these gain
 
 bool isGood(const Bound& bound, const LagrangeLimits& limits) {
     return static_cast<double>(bound.value - std::min(bound.value, limits.cut)) <=
@@ -243,8 +243,8 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
         if (isGood(bound, limits) || round == limits.rounds) break;
         // Slower than this it leads nowhere.
         const std::size_t done = leasts.size();
-        if (done > kRoundsToJudge && leasts.back() < cells.most(problem.totalWeight()) &&
-            (leasts[done - 1 - kRoundsToJudge] - leasts.back()) * 20 < leasts.back() - cut)
+        if (done > kRoundsBack && leasts.back() < cells.most(problem.totalWeight()) &&
+            (leasts[done - 1 - kRoundsBack] - leasts.back()) * 20 < leasts.back() - cut)
             break;
         root.widen(working);
         for (int trial = 0; trial < kTrials; ++trial) {

@@ -73,10 +73,10 @@ LocalSearch::LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::ui
       enough_(enough),
       progress_(progress),
       is_by_cost_(basis.problem.budget && haveCostsThatDiffer(basis.problem)),
-      most_slots_(slotsFor(basis)) {}
+      max_slots_(slotsFor(basis)) {}
 
 LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
-    const std::size_t index = std::min(position, most_slots_ - 1);
+    const std::size_t index = std::min(position, max_slots_ - 1);
     while (slots_.size() <= index) {
         if (!slots_.empty()) {
             // What is known of the sensors before holds in part for the next one, too.

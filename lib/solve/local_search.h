@@ -89,7 +89,7 @@ class LocalSearch {
     std::uint64_t enough_;
     const Progress& progress_;
     bool is_by_cost_ = false;  // there is a budget, and costs differ
-    std::size_t most_slots_;
+    std::size_t max_slots_;
     CandidateFinder finder_;
     std::vector<Slot> slots_;                        // by position, the last for all beyond
     std::vector<std::uint32_t> gains_, more_gains_;  // of the search under way

@@ -225,7 +225,7 @@ Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution&
     SearchResult known;
     known.best = {{}, wanted_ - 1};
     known.bound = bound.value;
-    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_, options_.most_bytes);
+    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_, options_.max_bytes);
     is_proven = known.bound < wanted_;
     return known.best.value >= wanted_ ? known.best : Solution();
 }

@@ -11,7 +11,7 @@
 namespace ispace {
 namespace {
 
-/// The least cost of what is worth so much; infinite if nothing is.
+/// The minimum cost of a set of that value; infinite if there is none.
 double leastCost(const Problem& problem, std::uint64_t wanted) {
     double least = std::numeric_limits<double>::infinity();
     std::vector<Choice> chosen;

@@ -79,7 +79,7 @@ TEST(WriteMps, HasTheNumbersOfASmallProblem) {
     Problem problem = smallProblem(set);
     problem.budget = 4.5;
     const Model model = modelOf(problem, {"laser"});
-    // Cell 1 is met, cell 3 is worth nothing, nobody sees cell 4.
+    // Cell 1 is met, cell 3 has no weight, nobody sees cell 4.
     EXPECT_EQ(model.rows, (std::vector<std::string>{"minus_value", "cell_0", "cell_2", "most_laser",
                                                     "budget"}));
     EXPECT_EQ(model.whole, (std::vector<std::string>{"x_laser_0", "x_laser_1"}));

@@ -258,17 +258,17 @@ TEST(WholeUnits, SumsStayBelowTheLimit) {
 }
 
 /// The scale of before, which results of ordinary weights were made with.
-Units unitsOfSixDecimals(const std::vector<double>& worth) {
-    const double sum = std::accumulate(worth.begin(), worth.end(), 0.0);
+Units unitsOfSixDecimals(const std::vector<double>& weights) {
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     double scale = 1;
     const auto is_whole = [&](double w) {
         return std::abs(w * scale - std::round(w * scale)) < 1e-9 * scale;
     };
-    while (scale < 1e6 && !std::all_of(worth.begin(), worth.end(), is_whole) &&
+    while (scale < 1e6 && !std::all_of(weights.begin(), weights.end(), is_whole) &&
            sum * scale * 10 < 4e9)
         scale *= 10;
     Units units;
-    for (const double w : worth)
+    for (const double w : weights)
         units.push_back(static_cast<std::uint32_t>(std::llround(w * scale)));
     return units;
 }
@@ -281,10 +281,10 @@ TEST(WholeUnits, OrdinaryWeightsHaveSixDecimals) {
     for (const std::size_t size : {1, 2, 3, 100, 10000, 40000})
         for (int i = 0; i < 30; ++i) {
             const double some[] = {ordinary[pick(random)], ordinary[pick(random)], 1};
-            std::vector<double> worth;
-            worth.reserve(size);
-            for (std::size_t k = 0; k < size; ++k) worth.push_back(some[random() % 3]);
-            ASSERT_EQ(integerWeights(worth), unitsOfSixDecimals(worth)) << size << ' ' << i;
+            std::vector<double> weights;
+            weights.reserve(size);
+            for (std::size_t k = 0; k < size; ++k) weights.push_back(some[random() % 3]);
+            ASSERT_EQ(integerWeights(weights), unitsOfSixDecimals(weights)) << size << ' ' << i;
         }
 }
 

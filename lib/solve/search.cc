@@ -86,7 +86,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
             result.best.value < result.bound)
             result = branchAndBound(problem, bound, std::move(result), options.gap, progress,
-                                    std::numeric_limits<std::uint64_t>::max(), options.most_bytes);
+                                    std::numeric_limits<std::uint64_t>::max(), options.max_bytes);
     }
     if (result.bound == problem.totalWeight() && progress.stopped()) {
         SilentProgress silent;  // there shall be some bound

@@ -64,7 +64,7 @@ struct SearchOptions {
     Optimizer optimizer = Optimizer::Swap;
     double gap = 0;  ///< relative gap (bound - value) / bound at which the search ends
     SwapOptions swap = SwapOptions();
-    std::size_t most_bytes = kMaxTreeBytes;
+    std::size_t max_bytes = kMaxTreeBytes;
 };
 
 /// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a

@@ -8,7 +8,7 @@ namespace ispace {
 namespace {
 
 /// Degrees added to each side of a body as a sensor sees it. The arc sine of a body that is almost
-/// touched is worth half the digits of a double, about 1e-6 degrees.
+/// touched keeps half the digits of a double, about 1e-6 degrees.
 constexpr double kAngularSlack = 1e-5;
 
 /// The smallest range of pixels about some places, for one axis.

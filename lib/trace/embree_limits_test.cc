@@ -204,7 +204,7 @@ void castFromAfar(const TriangleSoup& soup, double size, double far, std::mt1993
             const double reach = std::isinf(exact) ? 2 * far : exact + more * size;
             targets.push_back(origin + (reach + kTouching) * direction);
         }
-        scene.look(origin, targets, seen);
+        scene.query(origin, targets, seen);
         for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(seen[i] == 1, is_free[i]) << i;
     }
     EXPECT_GT(met, 100);

@@ -319,8 +319,8 @@ void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,
                       });
 }
 
-void EmbreeScene::look(Point3 origin, std::span<const Point3> targets,
-                       std::span<std::uint8_t> seen) const {
+void EmbreeScene::query(Point3 origin, std::span<const Point3> targets,
+                        std::span<std::uint8_t> seen) const {
     if (set_.size() == 0) return std::fill(seen.begin(), seen.end(), std::uint8_t{1});
     const IgnoredSurfaces ignored(scene_.get(), set_, ray_epsilon_, origin);
     Caster caster(*this, ignored, origin, 0);

@@ -49,7 +49,7 @@ class EmbreeScene {
     /// The same in multiples of a picture's rays, row by row, in square tiles.
     void cast(Point3 origin, const RayGrid& grid, double most, const Results& results) const;
     /// seen[i] = 1 if nothing stands between origin and target i, the last `ray_epsilon` left out.
-    void look(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
+    void query(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 
   private:
     struct Caster;

@@ -241,7 +241,7 @@ TEST(EmbreeScene, SightEndsWhereItIsTold) {
     targets.reserve(20);
     for (int i = 0; i < 20; ++i) targets.push_back({0.2, 0.1 * i + 0.05, 0.1});
     std::vector<std::uint8_t> seen(20, 7);
-    scene.look({0.2, 0, 0.1}, targets, seen);
+    scene.query({0.2, 0, 0.1}, targets, seen);
     for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(seen[i], targets[i].y < 1 ? 1 : 0);
 }
 

@@ -188,7 +188,7 @@ TEST(FloorGrid, EmptyOneFindsNothing) {
     grid.forEachNear(Box2(), fail);
 }
 
-/// A sensor with its fan.
+/// A sensor with its beams.
 struct Sensor {
     Pose3 pose;
     Angle first, step = Angle::degrees(1);
@@ -259,8 +259,8 @@ TEST(MovingBodies, HeightsRangesAndOwners) {
     EXPECT_EQ(Sensor().read(MovingBodies())[0], kNoReturn);
 }
 
-TEST(MovingBodies, FansOfAnyTurn) {
-    // One thin body straight behind, between the ends of a fan or on its seam.
+TEST(MovingBodies, SectorsOfAnyTurn) {
+    // One thin body straight behind, between the ends of a sector or on its seam.
     const MovingBodies bodies({cylinder(-3, 0, 0.01)});
     for (const double heading : {0.0, 90.0, 180.0, -720.0, 1e6}) {
         Sensor sensor{{{0, 0, 0.1}, degrees(heading), {}, {}}, {}, degrees(0.5), 1, 10};

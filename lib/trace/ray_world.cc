@@ -161,13 +161,13 @@ void RayWorld::cast(Point3 origin, const RayGrid& grid, double most, std::span<f
     data_->mesh->cast(data_->local(origin), grid, most, {multiples, cosines});
 }
 
-void RayWorld::look(Point3 origin, std::span<const Point3> targets,
-                    std::span<std::uint8_t> seen) const {
+void RayWorld::query(Point3 origin, std::span<const Point3> targets,
+                     std::span<std::uint8_t> seen) const {
     assert(seen.size() == targets.size() && data_->mesh);
     std::vector<Point3> local;
     local.reserve(targets.size());
     for (const Point3& target : targets) local.push_back(data_->local(target));
-    data_->mesh->look(data_->local(origin), local, seen);
+    data_->mesh->query(data_->local(origin), local, seen);
 }
 
 }  // namespace ispace

@@ -59,7 +59,7 @@ class RayWorld {
     /// Sets seen[i] to 1 if nothing stands between origin and target i, apart from the last
     /// kRayEpsilon metres. Fastest if targets that are near each other follow each other.
     /// \pre not of a slice; seen.size() == targets.size()
-    void look(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
+    void query(Point3 origin, std::span<const Point3> targets, std::span<std::uint8_t> seen) const;
 
   private:
     struct Data;

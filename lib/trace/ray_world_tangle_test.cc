@@ -102,7 +102,7 @@ TEST(RayWorld, GazesAgreeWithExactPredicatesAtEveryWidth) {
         for (int k = 0; k < 301; ++k) targets.push_back({place(random), place(random), 0.15});
         for (const EmbreeScene& world : worlds) {
             std::vector<std::uint8_t> seen(targets.size(), 7);
-            world.look({origin.x, origin.y, 0.15}, targets, seen);
+            world.query({origin.x, origin.y, 0.15}, targets, seen);
             for (std::size_t k = 0; k < targets.size(); ++k) {
                 const bool free = std::none_of(lines.begin(), lines.end(), [&](const Segment2& s) {
                     return intersects(s, {origin, targets[k].onFloor()});
@@ -120,7 +120,7 @@ TEST(RayWorld, SightIsSymmetric) {
     const auto sees = [&](Point2 from, Point2 to) {
         std::uint8_t seen = 7;
         const Point3 target{to.x, to.y, 0.15};
-        world.look({from.x, from.y, 0.15}, {&target, 1}, {&seen, 1});
+        world.query({from.x, from.y, 0.15}, {&target, 1}, {&seen, 1});
         return seen;
     };
     for (int i = 0; i < 5000; ++i) {
@@ -150,7 +150,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
     threads.reserve(found.size());
     for (std::size_t i = 0; i < found.size(); ++i)
         threads.emplace_back([&, i] {
-            mesh.look({5, 5, 0.15}, targets, seen[i]);
+            mesh.query({5, 5, 0.15}, targets, seen[i]);
             world.cast({5, 5, 0.15}, directions, 20, found[i]);
         });
     for (std::thread& thread : threads) thread.join();

@@ -72,7 +72,7 @@ class World {
         const Point2 origin = turn * from, target = turn * to;
         std::uint8_t seen = 7;
         const Point3 at{target.x, target.y, 0};
-        mesh_.look({origin.x, origin.y, 0}, {&at, 1}, {&seen, 1});
+        mesh_.query({origin.x, origin.y, 0}, {&at, 1}, {&seen, 1});
         EXPECT_LE(seen, 1);
         return seen == 1;
     }

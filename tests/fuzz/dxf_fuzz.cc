@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         options.door_layers = {"D*"};
         options.window_layers = {"*WIN*"};
         // Small drawings do not make more, but for blocks in blocks: those cost time, not care.
-        options.most_points = 2000;
+        options.max_points = 2000;
         const Document document = readDxf(bytes, "plan.dxf", options, sceneSchemas());
         fuzz::checkText(document);
         fuzz::tryScene(document, bytes);

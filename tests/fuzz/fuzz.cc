@@ -18,7 +18,7 @@ namespace ispace::fuzz {
 namespace {
 
 /// Scenes of more records or numbers are left out, and all but one in this many of the others.
-constexpr std::size_t kMostRecords = 12, kMostNumbers = 200, kEvery = 16;
+constexpr std::size_t kMaxRecords = 12, kMaxNumbers = 200, kEvery = 16;
 
 /// The largest number of a value that is one, or a tuple of them (pixels), else 0.
 double largest(const Value& value) {
@@ -35,16 +35,16 @@ std::size_t numbersOf(const Record& record) {
         const Value* const value = record.find(key.name);
         if (const auto* list = std::get_if<TupleList>(value)) count += list->size();
         // Counts and sizes up to a hundred: ten thousand boxes show nothing that fifty do not.
-        if (key.whole && largest(*value) > 100) count += kMostNumbers + 1;
+        if (key.whole && largest(*value) > 100) count += kMaxNumbers + 1;
     }
     return count;
 }
 
 bool isSmall(const Document& document) {
-    if (document.records.size() > kMostRecords) return false;
+    if (document.records.size() > kMaxRecords) return false;
     std::size_t numbers = 0;
     for (const Record& record : document.records) numbers += numbersOf(record);
-    return numbers <= kMostNumbers;
+    return numbers <= kMaxNumbers;
 }
 
 /// FNV-1a

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ImportOptions options;
         options.units = "m";
         options.door_layers = {"D*"};
-        options.most_points = 2000;
+        options.max_points = 2000;
         const Document document = readSvg(bytes, "plan.svg", options, sceneSchemas());
         fuzz::checkText(document);
         fuzz::tryScene(document, bytes);

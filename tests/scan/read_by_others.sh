@@ -101,7 +101,7 @@ if command -v pcl_convert_pcd_ascii_binary >/dev/null && command -v pcl_ply2pcd 
 fi
 
 if command -v carmen2rawlog >/dev/null && command -v rawlog-edit >/dev/null; then
-    # The fan of this laser is not symmetric: it begins at -119.53 and ends at 119.88 degrees.
+    # The field of view of this laser is not symmetric: it begins at -119.53 and ends at 119.88 degrees.
     cat >robot.3dm <<'END'
 #3dm 1
 robot id=p1 model=pioneer-2dx at=0.5,0.4 heading=-150

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy
 # libraries stay out of headers, and below lib/cli nothing prints, exits or reads the environment.
-# Before it judges ROOT it shows on a made-up tree that it can fail.
+# Before it checks ROOT it shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 

@@ -248,7 +248,7 @@ void ArrangeCommand::addSearchOptions() {
                Enters::History);
     line_.parsed(
         "--max-memory", "SIZE",
-        [&how](const std::string& text) { how.most_bytes = byteCount(text); },
+        [&how](const std::string& text) { how.max_bytes = byteCount(text); },
         "limit for candidates and the tree of exact, e.g. 2G (default 8G)", Enters::Nothing);
 }
 

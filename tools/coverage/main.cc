@@ -31,7 +31,7 @@ struct Measured {
 };
 
 /// Of what a user may not have meant, and of what is left out.
-void warnOfDoubts(const CommonOptions& options, const Scene& scene) {
+void warnOfSensors(const CommonOptions& options, const Scene& scene) {
     warn(options, "coverage", sensorWarnings(scene, sensorsOf(scene, {}), {}, true));
     if (const std::size_t count = sensorsOf<Receiver>(scene).size();
         count > 0 && count < kMinReceivers)
@@ -42,7 +42,7 @@ void warnOfDoubts(const CommonOptions& options, const Scene& scene) {
 
 /// Nobody asked for cells, and they are not as small as usual.
 void tellOfLargeCells(const CoverageToolOptions& options, const Grid& grid) {
-    const double edge = tidy(grid.limits.width() / grid.columns);
+    const double edge = roundSignificant(grid.limits.width() / grid.columns);
     if (options.common.quiet || !std::holds_alternative<RoomCells>(options.measure.cells) ||
         edge <= kRoomCell)
         return;
@@ -99,7 +99,7 @@ void writeProduct(const CoverageToolOptions& options, const Scene& scene,
 void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
     std::string missing;
     for (const Requirement& requirement : options.requirements) {
-        const auto [is_met, text] = judge(requirement, report);
+        const auto [is_met, text] = checkRequirement(requirement, report);
         if (is_met)
             talk(options.common, "coverage", text);
         else
@@ -130,7 +130,7 @@ void coverage(CoverageToolOptions options) {
     if (!options.report.empty()) mustBeWritable(options.report);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
-    warnOfDoubts(options.common, input.scene);
+    warnOfSensors(options.common, input.scene);
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
     tellOfLargeCells(options, report.grid);

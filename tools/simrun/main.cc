@@ -75,10 +75,10 @@ void checkRecord(const SimrunOptions& options, const World& world) {
     const double steps =
         static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
     const double lines = std::ceil(steps) * static_cast<double>(world.robots().size());
-    if (lines * kShortestLine <= static_cast<double>(options.most_recorded)) return;
+    if (lines * kShortestLine <= static_cast<double>(options.max_recorded)) return;
     throw UsageError("--record: " + formatDouble(lines) + " lines of robots.csv until t=" +
                      formatSimTime(*options.until) + " are more than --record-limit, which is " +
-                     byteCountText(options.most_recorded) + "; is --until in seconds?");
+                     byteCountText(options.max_recorded) + "; is --until in seconds?");
 }
 
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
@@ -130,7 +130,7 @@ void simrun(const SimrunCommand& command) {
     std::optional<LineGuard> guard;
     if (!options.record.empty()) {
         recorder.emplace(options.record, world, history, options.common.seed);
-        recorder->limit(options.most_recorded);
+        recorder->limit(options.max_recorded);
         guard.emplace(recordedLines(options.record), recorder->lock());
         simulation.recordWith(*recorder);
     }

@@ -58,7 +58,7 @@ void SimrunCommand::declareRun() {
                "write robots.csv, scans.jsonl, info.csv and timing.csv there", Enters::Nothing);
     line_.parsed(
         "--record-limit", "SIZE",
-        [&o](const std::string& text) { o.most_recorded = byteCount(text); },
+        [&o](const std::string& text) { o.max_recorded = byteCount(text); },
         "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
 }
 

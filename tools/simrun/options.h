@@ -19,10 +19,10 @@ struct SimrunOptions {
     Clock clock;
     SimTime step = std::chrono::milliseconds(5);
     std::optional<SimTime> until;
-    std::string script;                                      ///< "" without; "-" is stdin
-    std::string record;                                      ///< folder; "" without
-    std::uint64_t most_recorded = std::uint64_t{16} << 30U;  ///< bytes
-    std::string port_file;                                   ///< "" without
+    std::string script;                                     ///< "" without; "-" is stdin
+    std::string record;                                     ///< folder; "" without
+    std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
+    std::string port_file;                                  ///< "" without
     Endpoint listen;
     std::optional<bool> shutdown;
     ServerLimits limits;
