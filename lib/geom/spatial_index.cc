@@ -7,6 +7,17 @@
 
 namespace ispace {
 
+std::uint64_t mortonCode(std::uint32_t x, std::uint32_t y) {
+    const auto spread = [](std::uint64_t bits) {  // to every second place
+        bits = (bits | bits << 16U) & 0x0000FFFF0000FFFFU;
+        bits = (bits | bits << 8U) & 0x00FF00FF00FF00FFU;
+        bits = (bits | bits << 4U) & 0x0F0F0F0F0F0F0F0FU;
+        bits = (bits | bits << 2U) & 0x3333333333333333U;
+        return (bits | bits << 1U) & 0x5555555555555555U;
+    };
+    return spread(x) | spread(y) << 1U;
+}
+
 SegmentGrid::SegmentGrid(std::span<const Segment2> segments, double margin) : margin_(margin) {
     double total = 0;
     for (const auto& [a, b] : segments) {

@@ -13,6 +13,10 @@
 
 namespace ispace {
 
+/// Position of a cell along a Morton curve, on which neighbours are mostly close: the bits of x and
+/// y in turn, those of x first.
+std::uint64_t mortonCode(std::uint32_t x, std::uint32_t y);
+
 /// Finds the segments near a point: square cells over their bounding box, about as many as there
 /// are segments, each listing the segments that come within `margin` of it.
 class SegmentGrid {

@@ -19,6 +19,15 @@ std::vector<std::size_t> found(const BoxTree& tree, const Box2& window) {
     return out;
 }
 
+TEST(MortonCode, TakesBitsInTurn) {
+    EXPECT_EQ(mortonCode(0, 0), 0U);
+    EXPECT_EQ(mortonCode(1, 0), 1U);
+    EXPECT_EQ(mortonCode(0, 1), 2U);
+    EXPECT_EQ(mortonCode(0b1011, 0b0110), 0b01101101U);
+    EXPECT_EQ(mortonCode(0xffffffff, 0), 0x5555555555555555U);
+    EXPECT_EQ(mortonCode(0xffffffff, 0xffffffff), 0xffffffffffffffffU);
+}
+
 TEST(BoxTree, OfNothing) {
     EXPECT_TRUE(found(BoxTree(), {{0, 0}, {1, 1}}).empty());
     EXPECT_TRUE(found(BoxTree(std::span<const Box2>()), {{0, 0}, {1, 1}}).empty());

@@ -73,15 +73,6 @@ Delaunay triangulate(const std::vector<Segment2>& lines, const Box2& box) {
     return net;
 }
 
-/// Bits of x spread out to every second place.
-std::uint64_t spread(std::uint64_t x) {
-    x = (x | x << 16) & 0x0000FFFF0000FFFF;
-    x = (x | x << 8) & 0x00FF00FF00FF00FF;
-    x = (x | x << 4) & 0x0F0F0F0F0F0F0F0F;
-    x = (x | x << 2) & 0x3333333333333333;
-    return (x | x << 1) & 0x5555555555555555;
-}
-
 /// Triangles along a curve that fills the plane (Morton), so that neighbours lie near each other in
 /// memory; numbered in that order.
 std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2& box) {
@@ -89,14 +80,13 @@ std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2
     order.reserve(net.number_of_faces());
     const auto step = [](double offset, double extent) {
         const double share = offset / extent;  // of the extent, within [0, 1]
-        return spread(share > 0 ? static_cast<std::uint64_t>(std::min(share, 1.0) * 0x7FFFFFFF)
-                                : 0);
+        return share > 0 ? static_cast<std::uint32_t>(std::min(share, 1.0) * 0x7FFFFFFF) : 0U;
     };
     for (auto f = net.finite_faces_begin(); f != net.finite_faces_end(); ++f) {
         const Vec2 a = pointOf(f->vertex(0)) - box.low, b = pointOf(f->vertex(1)) - box.low;
         const Vec2 c = pointOf(f->vertex(2)) - box.low;
-        order.push_back({step((a.x + b.x + c.x) / 3, box.width()) |
-                             step((a.y + b.y + c.y) / 3, box.depth()) << 1,
+        order.push_back({mortonCode(step((a.x + b.x + c.x) / 3, box.width()),
+                                    step((a.y + b.y + c.y) / 3, box.depth())),
                          f});
     }
     std::stable_sort(order.begin(), order.end(),

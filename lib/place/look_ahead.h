@@ -11,25 +11,18 @@
 
 #include "base/cell_set.h"
 #include "geom/point.h"
+#include "geom/spatial_index.h"
 #include "place/sites.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 
-/// Spreads the 16 low bits to every second bit.
-inline std::uint32_t spreadOut(std::uint32_t x) {
-    x = (x | x << 8U) & 0x00ff00ffU;
-    x = (x | x << 4U) & 0x0f0f0f0fU;
-    x = (x | x << 2U) & 0x33333333U;
-    return (x | x << 1U) & 0x55555555U;
-}
-
-/// Position of a place along a Morton curve through the box, on which neighbours are mostly close.
-inline std::uint32_t alongCurve(Point2 place, const Box2& box) {
+/// Position of a place along a Morton curve through the box; 32 bits.
+inline std::uint64_t alongCurve(Point2 place, const Box2& box) {
     const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
     const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
     const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
-    return spreadOut(x & 0xffffU) | spreadOut(y & 0xffffU) << 1U;
+    return mortonCode(x & 0xffffU, y & 0xffffU);
 }
 
 /// A sample of the sites, in an order whose every prefix is spread over the plan, however the sites
@@ -43,7 +36,7 @@ class Spread {
         std::vector<std::uint64_t> curve;  // the place on it above, the site below
         curve.reserve(sites.size());
         for (std::size_t i = 0; i < sites.size(); ++i)
-            curve.push_back(std::uint64_t{alongCurve(sites[i].place, box)} << 32U | i);
+            curve.push_back(alongCurve(sites[i].place, box) << 32U | i);
         std::sort(curve.begin(), curve.end());
         // The middle of each stretch of the curve, in the order of their numbers with bits
         // reversed.
