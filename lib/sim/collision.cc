@@ -57,11 +57,10 @@ double distance(const Segment2& s, const Segment2& t) {
 
 Obstacles::Obstacles(const Slice& band)
     : solids_(band.solids),
+      index_(solids_),
       lines_(linesOf(band)),
       solid_owners_(band.solid_owners),
       grid_(lines_, 0) {
-    boxes_.reserve(solids_.size());
-    for (const Polygon& solid : solids_) boxes_.push_back(bounds(solid));
     // In the order of Slice::forEachLine.
     line_owners_ = band.sheet_owners;
     for (std::size_t i = 0; i < solids_.size(); ++i)
@@ -88,13 +87,8 @@ std::optional<std::size_t> Obstacles::overlap(Point2 center, double radius) cons
     const auto owner = find(center, allowed,
                             [&](const Segment2& line) { return distance(center, line) < allowed; });
     if (owner) return owner;
-    for (std::size_t i = 0; i < solids_.size(); ++i) {
-        const auto& [low, high] = boxes_[i];
-        const bool in_box =
-            low.x <= center.x && center.x <= high.x && low.y <= center.y && center.y <= high.y;
-        if (in_box && locate(solids_[i], center) != Side::Outside) return solid_owners_[i];
-    }
-    return std::nullopt;
+    const auto solid = index_.holder(center);
+    return solid ? std::optional(solid_owners_[*solid]) : std::nullopt;
 }
 
 double Obstacles::nearest(Point2 p, double farthest) const {

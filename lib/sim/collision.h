@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "env/point_location.h"
 #include "env/slice.h"
 #include "geom/spatial_index.h"
 #include "layout/robot.h"
@@ -40,6 +41,7 @@ class Obstacles {
   public:
     /// \pre the band's pieces have owners
     explicit Obstacles(const Slice& band);
+    Obstacles(Obstacles&&) = default;  // the solids stay where they are
 
     /// An element of Environment::elements() whose line a circle overlaps, or whose solid contains
     /// it.
@@ -57,7 +59,7 @@ class Obstacles {
     [[nodiscard]] std::optional<std::size_t> find(Point2 p, double reach, Test test) const;
 
     std::vector<Polygon> solids_;
-    std::vector<Box2> boxes_;  // of the solids
+    PolygonIndex index_;  // of them
     std::vector<Segment2> lines_;
     std::vector<std::size_t> solid_owners_, line_owners_;
     SegmentGrid grid_;
