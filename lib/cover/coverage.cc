@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "cover/metrics.h"
 #include "cover/sight.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
@@ -255,14 +256,14 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     report.height = options.height;
     report.plane = options.plane;
     report.indoor_area = environment.indoor().area();
-    const std::vector<Region> free_floor = environment.freeFloor(options.height);
-    report.free_area = totalArea(free_floor);
+    const auto level = environment.level(options.height);
+    report.free_area = totalArea(level->freeFloor());
     report.sensors.reserve(coverage.sensors.size());
     for (const SensorView& view : coverage.sensors)
         report.sensors.push_back(metricsOf(scene, view));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
-    if (options.exact) tryExactMetrics(coverage, environment, free_floor, zones);
+    if (options.exact) tryExactMetrics(coverage, environment, level->freeFloor(), zones);
     addCellMetrics(coverage, zones);
     return coverage;
 }

@@ -6,6 +6,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "draw/feature_writer.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "raster/contour.h"
 
@@ -104,7 +105,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     out.begin("indoor", "indoor", "region");
     out.endAsArea(scene.environment.indoor().parts);
     out.begin("free", "free", "region");
-    out.endAsArea(scene.environment.freeFloor(coverage.target.height));
+    out.endAsArea(scene.environment.level(coverage.target.height)->freeFloor());
     const std::vector<std::uint32_t> times = timesSeen(coverage);
     const std::uint32_t most = maxMultiplicity(coverage, times);
     for (std::uint32_t k = 1; k <= most; ++k) {

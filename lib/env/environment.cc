@@ -261,10 +261,6 @@ Slice Environment::band(double bottom, double top) const {
     return band;
 }
 
-std::vector<Region> Environment::freeFloor(double height) const {
-    return level(height)->freeFloor();
-}
-
 /// The levels last asked for, the latest at the end, and those that somebody else still holds.
 struct Environment::Levels {
     /// A slice takes some 100 bytes a line, and 300 more once somebody looks about in it; free

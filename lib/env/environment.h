@@ -68,8 +68,6 @@ class Environment {
     /// What stands anywhere between the two heights, ends included, clear glass too.
     /// \pre bottom <= top
     [[nodiscard]] Slice band(double bottom, double top) const;
-    /// Indoor less the solids at this height; a level keeps it.
-    [[nodiscard]] std::vector<Region> freeFloor(double height) const;
 
   private:
     friend class Level;

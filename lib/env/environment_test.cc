@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "env/level.h"
 #include "env/test_scene.h"
 #include "geom/predicates.h"
 #include "record/yaml.h"
@@ -27,7 +28,7 @@ TEST(Environment, RoomByOneRecord) {
     EXPECT_EQ(env.wallLines().size(), 4U);
     // The origin lies on the lower wall, so a point of the room stands in for it.
     EXPECT_EQ(env.indoor().locate(env.inside()), Side::Inside);
-    EXPECT_EQ(env.freeFloor(kScanHeight).size(), 1U);
+    EXPECT_EQ(env.level(kScanHeight)->freeFloor().size(), 1U);
 }
 
 TEST(Environment, RoomKeepsItsCeiling) {
@@ -270,7 +271,7 @@ TEST(Environment, ABandOfNoHeightIsTheSlice) {
 TEST(Environment, FreeFloorAroundRoundThingsIsExact) {
     const std::string room = "ispace at=0,0 size=8,6\n";
     const auto free = [&](const std::string& things) {
-        return totalArea(environment(room + things).freeFloor(kScanHeight));
+        return totalArea(environment(room + things).level(kScanHeight)->freeFloor());
     };
     const double pi = std::numbers::pi;
     for (const double r : {0.05, 0.1, 0.3, 0.5, 1.0}) {
@@ -298,7 +299,7 @@ TEST(Environment, FreeFloorAroundRoundThingsIsExact) {
 TEST(Environment, FreeFloorIsExact) {
     const std::string room = "ispace at=0,0 size=8,6\n";
     const auto free = [&](const std::string& things, double height = kScanHeight) {
-        return totalArea(environment(room + things).freeFloor(height));
+        return totalArea(environment(room + things).level(height)->freeFloor());
     };
     EXPECT_DOUBLE_EQ(free("cube at=1,1 size=1\n"), 47);
     EXPECT_DOUBLE_EQ(free("cube at=1,1 size=1\ncube at=1.5,1 size=1\n"), 46.5);
@@ -311,7 +312,7 @@ TEST(Environment, FreeFloorIsExact) {
     EXPECT_DOUBLE_EQ(free("cube size=20\n"), 0);
     EXPECT_NEAR(free("cube size=1 heading=30\n"), 47, 1e-9);
     // A wall of boxes cuts the room in two.
-    const auto pieces = environment(room + "cube size=1,6\n").freeFloor(kScanHeight);
+    const auto pieces = environment(room + "cube size=1,6\n").level(kScanHeight)->freeFloor();
     EXPECT_EQ(pieces.size(), 2U);
 }
 
@@ -319,7 +320,7 @@ TEST(Environment, ThickWallsTakeTheirHalfOfTheFloor) {
     const Environment env =
         environment("fence path=-4,-3;4,-3;4,3;-4,3 closed=yes thickness=0.2\n");
     EXPECT_DOUBLE_EQ(env.indoor().area(), 48);
-    EXPECT_NEAR(totalArea(env.freeFloor(1)), 7.8 * 5.8, 1e-9);
+    EXPECT_NEAR(totalArea(env.level(1)->freeFloor()), 7.8 * 5.8, 1e-9);
     EXPECT_EQ(env.limits(), (Box2{{-4, -3}, {4, 3}}));
 }
 

@@ -7,6 +7,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "base/program.h"
+#include "env/level.h"
 #include "env/mesh.h"
 #include "env/walls.h"
 #include "geom/boolean.h"
@@ -19,7 +20,7 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
     info.digest = digest;
     info.limits = environment.limits();
     info.indoor_area = environment.indoor().area();
-    info.free_area = totalArea(environment.freeFloor(kScanHeight));
+    info.free_area = totalArea(environment.level(kScanHeight)->freeFloor());
     info.height = environment.height();
     info.perimeter = environment.indoor().boundaryLength();
     for (const Record& record : records) ++info.counts[record.keyword()];

@@ -8,6 +8,7 @@
 
 #include "base/number.h"
 #include "env/info.h"
+#include "env/level.h"
 #include "env/test_scene.h"
 
 namespace ispace {
@@ -152,7 +153,7 @@ TEST(Openings, ThickWallHasALeafAboutItsMidLine) {
     EXPECT_EQ(sheetOf(env, "w").line.a.y, 3) << "glass on the mid-line";
     // Jambs: the ends of the boxes, with the corner of leaf and pane.
     for (const double height : {1.0, 2.3}) {
-        const double free = totalArea(env.freeFloor(height));
+        const double free = totalArea(env.level(height)->freeFloor());
         const double doorway = 0.9 * (0.1 - 0.02), window = 1.2 * 0.1;
         EXPECT_NEAR(free, 7.8 * 5.8 + (height < 2 ? doorway + window : 0), 1e-9);
     }

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "env/body.h"
+#include "env/level.h"
 #include "env/slice.h"
 #include "env/test_mesh.h"
 #include "env/test_scene.h"
@@ -101,7 +102,7 @@ TEST(BandOfMeshes, PartOfTheEnvironment) {
     EXPECT_EQ(slice.sheets.size(), 5U);
     ASSERT_EQ(slice.solids.size(), 1U);
     EXPECT_TRUE(slice.blocked({-1, 1}));
-    EXPECT_NEAR(totalArea(room.freeFloor(kScanHeight)), 48 - 4, 1e-9);
+    EXPECT_NEAR(totalArea(room.level(kScanHeight)->freeFloor()), 48 - 4, 1e-9);
     EXPECT_TRUE(room.slice(0.05).solids.empty());
     const Slice band = room.band(0, 0.3);
     EXPECT_FALSE(band.solids.empty());

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/number.h"
+#include "env/level.h"
 #include "env/test_plans.h"
 #include "env/test_scene.h"
 #include "geom/pose.h"
@@ -127,7 +128,7 @@ TEST(WallBodies, ClosedThickFenceHasNoNotches) {
         "thickness=0.2\n");
     EXPECT_NEAR(env.indoor().area(), 18, 1e-9);
     // Inner faces: 5.8 x 3.8 less the 3 x 2 notch, whose corner is a full mitre.
-    const double free = totalArea(env.freeFloor(1));
+    const double free = totalArea(env.level(1)->freeFloor());
     EXPECT_NEAR(free, 5.8 * 3.8 - 3 * 2, 1e-9);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/importers.h"
 
+#include "env/level.h"
 #include "io/test_import.h"
 
 namespace ispace {
@@ -81,7 +82,7 @@ TEST(AriaMap, PointsOnRequest) {
         << text;
     EXPECT_NE(notesOf(document).find("5 points became 2 cubes; left out: 1 at lines, 1 outside\n"),
               std::string::npos);
-    EXPECT_GT(environmentOf(document).freeFloor(0.15).size(), 0U);
+    EXPECT_GT(environmentOf(document).level(0.15)->freeFloor().size(), 0U);
 }
 
 TEST(AriaMap, OpenMapsAreClosedAndSaySo) {

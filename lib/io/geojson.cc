@@ -109,7 +109,8 @@ void addPlaced(FeatureWriter& out, const Scene& scene, const Placed& placed) {
 }
 
 void addFree(FeatureWriter& out, const Environment& environment, double height) {
-    for (const Region& piece : environment.freeFloor(height)) {
+    const auto level = environment.level(height);
+    for (const Region& piece : level->freeFloor()) {
         out.begin("free", "free", "region")
             .key("z")
             .value(height)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "layout/test_layout.h"
 #include "plan/elements.h"
@@ -75,7 +76,7 @@ TEST(GeoJson, RoomAndFreeFloor) {
     double free = 0;
     for (const Json& feature : features)
         if (feature["properties"]["keyword"] == "free") free += areaOf(feature["geometry"]);
-    EXPECT_NEAR(free, totalArea(room.environment.freeFloor(kScanHeight)), 1e-9);
+    EXPECT_NEAR(free, totalArea(room.environment.level(kScanHeight)->freeFloor()), 1e-9);
 }
 
 TEST(GeoJson, ElementsInOrder) {

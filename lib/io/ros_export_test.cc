@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "geom/predicates.h"
 #include "io/importers.h"
@@ -167,7 +168,7 @@ using Lines = std::vector<Segment2>;
 /// What bounds the floor: edges of the free pieces, and walls without thickness that stand in them.
 Lines boundaryOf(const Environment& room) {
     Lines lines;
-    const std::vector<Region> pieces = room.freeFloor(kHeight);
+    const std::vector<Region> pieces = room.level(kHeight)->freeFloor();
     for (const Region& piece : pieces)
         piece.forEachEdge([&](const Segment2& edge) { lines.push_back(edge); });
     for (const Segment2& sheet : room.slice(kHeight).sheets) {
@@ -233,7 +234,8 @@ TEST_F(RosRoundTrip, RoomsOnTheGridComeBackExactly) {
     const Environment again = reread(room, 0.05);
     EXPECT_LT(offsets(room.environment, again, 0.05).map_to_room, 1e-4);
     EXPECT_LT(offsets(room.environment, again, 0.05).room_to_map, 1e-4);
-    EXPECT_NEAR(again.indoor().area(), totalArea(room.environment.freeFloor(kHeight)), 1e-6);
+    EXPECT_NEAR(again.indoor().area(), totalArea(room.environment.level(kHeight)->freeFloor()),
+                1e-6);
 }
 
 /// A room with a notch, at any angle; half of them have a slanted side, some have thick walls.

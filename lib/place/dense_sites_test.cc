@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "env/level.h"
 #include "geom/predicates.h"
 #include "place/sites.h"
 #include "place/test_arrange.h"
@@ -41,10 +42,10 @@ TEST(LatticePlaces, BeginHalfAStepInside) {
 
 TEST(PlacesAlong, OfASquareRoom) {
     const Environment room = roomOf("ispace size=4,3\n");
-    const auto places = placesAlong(room.freeFloor(kScanHeight), 0.5, 0.02);
+    const auto places = placesAlong(room.level(kScanHeight)->freeFloor(), 0.5, 0.02);
     ASSERT_EQ(places.size(), 28U);
     for (const Point2 p : places)
-        EXPECT_NEAR(nearestWall(room.freeFloor(kScanHeight), p), 0.02, 1e-12);
+        EXPECT_NEAR(nearestWall(room.level(kScanHeight)->freeFloor(), p), 0.02, 1e-12);
     const auto near = [&places](Point2 wanted) {
         return std::any_of(places.begin(), places.end(),
                            [wanted](Point2 p) { return distance(p, wanted) < 1e-9; });
@@ -56,13 +57,13 @@ TEST(PlacesAlong, OfASquareRoom) {
 TEST(PlacesAlong, AStepLongerThanTheRoomGivesOneForEachWall) {
     const Environment room = roomOf("ispace size=4,3\n");
     // The walls are shorter than a step: they share places.
-    EXPECT_EQ(placesAlong(room.freeFloor(kScanHeight), 4, 0.02).size(), 2U + 1U + 1U);
-    EXPECT_EQ(placesAlong(room.freeFloor(kScanHeight), 100, 0.02).size(), 1U);
+    EXPECT_EQ(placesAlong(room.level(kScanHeight)->freeFloor(), 4, 0.02).size(), 2U + 1U + 1U);
+    EXPECT_EQ(placesAlong(room.level(kScanHeight)->freeFloor(), 100, 0.02).size(), 1U);
 }
 
 TEST(PlacesAlong, RoundThingsDoNotGetOneForEachChord) {
     const Environment room = roomOf("ispace size=8,8\ncylinder at=1,1 size=1\n");
-    const auto floor = room.freeFloor(kScanHeight);
+    const auto floor = room.level(kScanHeight)->freeFloor();
     const auto places = placesAlong(floor, 0.25, 0.02);
     EXPECT_EQ(places.size(), 128U + 13U);  // pi / 0.25 = 12.6
     const auto last = std::vector<Point2>(places.end() - 13, places.end());
@@ -76,7 +77,7 @@ TEST(PlacesAlong, LieOnTheFreeSideInRoomsWithHoles) {
     const Environment room = roomOf(
         "ispace size=8,8\nfence path=-2,-2;-1,-2;-1,-1 closed=yes\ncube at=2,2 heading=20 size=1\n"
         "desk at=-2,2\ninside at=0,0\n");
-    const auto floor = room.freeFloor(kScanHeight);
+    const auto floor = room.level(kScanHeight)->freeFloor();
     const auto places = placesAlong(floor, 0.3, 0.02);
     EXPECT_GT(places.size(), 100U);
     for (const Point2 p : places) {
@@ -88,7 +89,7 @@ TEST(PlacesAlong, LieOnTheFreeSideInRoomsWithHoles) {
 TEST(PlacesAlong, KnowOfSheets) {
     const Environment room = roomOf(
         "ispace size=8,6\nwall id=w from=0,-3 to=0,3\ndoor wall=w offset=2 size=1 open=yes\n");
-    const auto floor = room.freeFloor(kScanHeight);
+    const auto floor = room.level(kScanHeight)->freeFloor();
     const auto sheets = room.slice(kScanHeight).sheets;
     EXPECT_EQ(placesAlong(floor, 0.5, 0.02).size(), 56U);
     const auto places = placesAlong(floor, 0.5, 0.02, sheets);
@@ -109,7 +110,7 @@ TEST(PlacesAlong, RefuseTooMany) {
 
 TEST(MedialPlaces, OfARectangleRunAlongItsMiddle) {
     const Environment room = roomOf("ispace size=8,2\n");
-    const auto places = medialPlaces(room.freeFloor(kScanHeight), 0.5);
+    const auto places = medialPlaces(room.level(kScanHeight)->freeFloor(), 0.5);
     EXPECT_GT(places.size(), 14U);
     EXPECT_LT(places.size(), 40U);
     int middle = 0;
@@ -124,7 +125,7 @@ TEST(MedialPlaces, OfARectangleRunAlongItsMiddle) {
 
 TEST(MedialPlaces, RunAroundHoles) {
     const Environment room = roomOf("ispace size=6,6\ncube at=0,0 size=2,2,1\n");
-    const auto floor = room.freeFloor(kScanHeight);
+    const auto floor = room.level(kScanHeight)->freeFloor();
     const auto places = medialPlaces(floor, 0.4);
     EXPECT_GT(places.size(), 30U);
     for (const Point2 p : places) EXPECT_TRUE(isInside(floor, p));

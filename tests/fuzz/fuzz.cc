@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "env/level.h"
 #include "env/slice.h"
 #include "io/glb.h"
 #include "layout/scene.h"
@@ -81,7 +82,7 @@ void tryScene(const Document& document, std::string_view bytes) {
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     const Environment& room = scene.environment;
     require(room.indoor().area() > 0, "an indoor region without area");
-    (void)room.freeFloor(kScanHeight);
+    (void)room.level(kScanHeight)->freeFloor();
     (void)room.band(0, room.height());
     const Document compiled = readGlb(writeGlb(scene, document), "scene.glb", sceneSchemas());
     require(compiled.records == document.records, "other records in the compiled file");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "env/level.h"
 #include "geom/boolean.h"
 #include "plan_scene.h"
 
@@ -45,7 +46,7 @@ TEST(RandomPlan, CompilesToOneRegionOfAboutTheArea) {
         EXPECT_GE(plan.indoor().parts.at(0).holes.size(),
                   static_cast<std::size_t>(counts["fence"] - 1));
         holes += plan.indoor().parts.at(0).holes.size();
-        EXPECT_LT(totalArea(plan.freeFloor(kScanHeight)), plan.indoor().area());
+        EXPECT_LT(totalArea(plan.level(kScanHeight)->freeFloor()), plan.indoor().area());
     }
     EXPECT_GT(holes, 60U);
 }
@@ -62,7 +63,7 @@ TEST(RandomPlan, ThingsStandClearOfEachOther) {
                     solids.push_back(prism.curve ? outlineOf(*prism.curve) : prism.footprint);
             sum += totalArea(unite(solids));
         }
-        const double free_area = totalArea(plan.freeFloor(kHeight));
+        const double free_area = totalArea(plan.level(kHeight)->freeFloor());
         EXPECT_NEAR(plan.indoor().area() - free_area, sum, 1e-6) << seed;
     }
 }

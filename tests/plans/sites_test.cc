@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "env/level.h"
 #include "geom/predicates.h"
 #include "plan_scene.h"
 #include "random_plan.h"
@@ -28,7 +29,7 @@ PlanOptions optionsOf(std::uint64_t seed) {
 
 /// All places there are for a plan.
 std::vector<Site> allSites(const Environment& plan) {
-    const std::vector<Region> floor = plan.freeFloor(kScanHeight);
+    const std::vector<Region> floor = plan.level(kScanHeight)->freeFloor();
     std::vector<Site> sites = wallSites(plan, kScanHeight, 0.05, 7);
     const auto add = [&sites](const std::vector<Point2>& places) {
         for (const Point2 place : places) sites.push_back({place, {Angle()}});
@@ -71,7 +72,7 @@ TEST(Sites, AlongWallsAreFreeButNearCorners) {
     for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
         const Environment plan = environmentOf(randomPlan(optionsOf(seed)));
         const SiteValidity validity(plan, {});
-        const std::vector<Region> floor = plan.freeFloor(kScanHeight);
+        const std::vector<Region> floor = plan.level(kScanHeight)->freeFloor();
         const std::vector<Segment2> sheets = plan.slice(kScanHeight).sheets;
         const std::vector<Point2> places = placesAlong(floor, 0.25, 0.02, sheets);
         const auto valid = std::count_if(places.begin(), places.end(),
@@ -124,7 +125,7 @@ TEST(Sites, MoveWithThePlan) {
     for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
         const std::string text = randomPlan(optionsOf(seed));
         const Environment plan = environmentOf(text);
-        std::vector<Region> floor = plan.freeFloor(kScanHeight), moved;
+        std::vector<Region> floor = plan.level(kScanHeight)->freeFloor(), moved;
         moved.reserve(floor.size());
         std::vector<Segment2> sheets = plan.slice(kScanHeight).sheets, moved_sheets;
         for (const Segment2& sheet : sheets) moved_sheets.push_back({sheet.a + way, sheet.b + way});
