@@ -82,7 +82,7 @@ constexpr std::size_t kBlock = 4096;
 /// Requests of one client, and time for them, before it is the next one's turn.
 constexpr int kRequestsInTurn = 64;
 constexpr auto kTurn = std::chrono::microseconds(200);
-/// How long a connection that was told of its end may take to close, what it still sends unread.
+/// How long a connection may take to close after its last message; what it sends is not read.
 constexpr auto kLinger = std::chrono::seconds(1);
 
 bool wouldBlock(const std::error_code& error) {
@@ -109,7 +109,7 @@ void ClientConnection::makeWay(WallTime since) {
     refuse("ERR 408 no role taken in time: ROBOT id, LASER id or WORLD comes first\n");
 }
 
-/// Reads what has come: while the world took its time, nobody looked.
+/// Reads what arrived while the world took its step.
 void ClientConnection::catchUp() {
     if (mayAnswer() && !lines_.ready() && !eof_) receive();
 }
@@ -221,7 +221,7 @@ void ClientConnection::receive() {
 }
 
 /// Sends what there is; then closes. With unread input that would reset the
-/// connection, and the other side might lose what it was told last.
+/// connection, and the other side might lose the last message.
 void ClientConnection::linger() {
     if (!std::exchange(ending_, true)) closeAfter(limits_.patience);
     if (writing_ || std::exchange(discarding_, true)) return;

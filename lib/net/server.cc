@@ -34,7 +34,7 @@ using std::chrono::steady_clock;
 constexpr auto kTurn = std::chrono::milliseconds(2);
 /// What the system may hold for a client: much of it would be scans that are no longer new.
 constexpr int kSendBuffer = 1 << 16;
-/// Connections beyond those that are served, which are told of their end.
+/// Connections beyond those served that get a last message.
 constexpr std::size_t kMaxLingering = 64;
 /// A peer that is gone without a word: asked after a minute of silence, given up after another.
 constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;

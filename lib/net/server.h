@@ -22,7 +22,7 @@ struct Endpoint {
 Endpoint parseEndpoint(const std::string& text);
 
 /// How often something may be asked for: `rate` a second in the long run, `burst` at once.
-struct RationLimits {
+struct RateLimit {
     double rate = 0;
     double burst = 0;
 };
@@ -43,9 +43,9 @@ struct ServerLimits {
     std::chrono::nanoseconds roleless = std::chrono::seconds(60);
     std::chrono::nanoseconds roleless_grace = std::chrono::seconds(1);
     /// PAUSE, and RESUME while running: for one client, and for all together.
-    RationLimits pauses = {100, 100}, all_pauses = {200, 200};
+    RateLimit pauses = {100, 100}, all_pauses = {200, 200};
     /// What each client still may ask for once all together have used up theirs.
-    RationLimits spare_pauses = {1, 1};
+    RateLimit spare_pauses = {1, 1};
     bool shutdown = true;  ///< clients may end the run
 };
 

@@ -164,45 +164,45 @@ TEST(Server, WhatStalledReadersHoldIsBoundedInSum) {
 
 using std::chrono::milliseconds;
 
-int taken(Ration& ration, WallTime now) {
+int taken(TokenBucket& bucket, WallTime now) {
     int count = 0;
-    for (; ration.has(now); ++count) ration.take();
+    for (; bucket.has(now); ++count) bucket.take();
     return count;
 }
 
-TEST(Ration, GivesABurstAndThenItsRate) {
+TEST(TokenBucket, GivesABurstAndThenItsRate) {
     const WallTime start{std::chrono::hours(1)};
-    Ration ration({.rate = 10, .burst = 5});
-    EXPECT_EQ(taken(ration, start), 5);
-    EXPECT_EQ(taken(ration, start + milliseconds(99)), 0);
-    EXPECT_EQ(taken(ration, start + milliseconds(101)), 1);
-    EXPECT_EQ(taken(ration, start + milliseconds(302)), 2);
-    EXPECT_EQ(taken(ration, start + std::chrono::hours(1)), 5);
+    TokenBucket bucket({.rate = 10, .burst = 5});
+    EXPECT_EQ(taken(bucket, start), 5);
+    EXPECT_EQ(taken(bucket, start + milliseconds(99)), 0);
+    EXPECT_EQ(taken(bucket, start + milliseconds(101)), 1);
+    EXPECT_EQ(taken(bucket, start + milliseconds(302)), 2);
+    EXPECT_EQ(taken(bucket, start + std::chrono::hours(1)), 5);
 }
 
-TEST(Ration, MayBeginEmpty) {
+TEST(TokenBucket, MayBeginEmpty) {
     const WallTime start{std::chrono::hours(1)};
-    Ration ration({.rate = 1, .burst = 1}, start);
-    EXPECT_EQ(taken(ration, start), 0);
-    EXPECT_EQ(taken(ration, start + milliseconds(999)), 0);
-    EXPECT_EQ(taken(ration, start + milliseconds(1001)), 1);
+    TokenBucket bucket({.rate = 1, .burst = 1}, start);
+    EXPECT_EQ(taken(bucket, start), 0);
+    EXPECT_EQ(taken(bucket, start + milliseconds(999)), 0);
+    EXPECT_EQ(taken(bucket, start + milliseconds(1001)), 1);
 }
 
-TEST(Ration, CountsWhatComesInSmallPieces) {
+TEST(TokenBucket, CountsWhatComesInSmallPieces) {
     const WallTime start{std::chrono::hours(1)};
-    Ration ration({.rate = 10, .burst = 5});
+    TokenBucket bucket({.rate = 10, .burst = 5});
     int count = 0;
-    for (int ms = 0; ms <= 2000; ++ms) count += taken(ration, start + milliseconds(ms));
+    for (int ms = 0; ms <= 2000; ++ms) count += taken(bucket, start + milliseconds(ms));
     EXPECT_GE(count, 24);
     EXPECT_LE(count, 25);
 }
 
-TEST(Ration, SurvivesAClockThatDoesNotMove) {
+TEST(TokenBucket, SurvivesAClockThatDoesNotMove) {
     const WallTime start{std::chrono::hours(1)};
-    Ration ration({.rate = 1, .burst = 2});
-    EXPECT_EQ(taken(ration, start), 2);
-    EXPECT_EQ(taken(ration, start), 0);
-    EXPECT_EQ(taken(ration, start - milliseconds(5000)), 0);
+    TokenBucket bucket({.rate = 1, .burst = 2});
+    EXPECT_EQ(taken(bucket, start), 2);
+    EXPECT_EQ(taken(bucket, start), 0);
+    EXPECT_EQ(taken(bucket, start - milliseconds(5000)), 0);
 }
 
 }  // namespace

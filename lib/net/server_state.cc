@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-bool Ration::has(WallTime now) {
+bool TokenBucket::has(WallTime now) {
     if (now > filled_) {
         const double seconds = std::chrono::duration<double>(now - filled_).count();
         left_ = std::min(limits_.burst, left_ + limits_.rate * seconds);

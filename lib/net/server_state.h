@@ -35,20 +35,20 @@ inline std::string joined(const std::vector<std::string>& words, std::string_vie
     return out;
 }
 
-/// A token bucket: what is left of something that may be asked for only so often.
-class Ration {
+/// What is left of something that may be asked for only so often.
+class TokenBucket {
   public:
     /// Full. \pre rate > 0, burst >= 1
-    explicit Ration(const RationLimits& limits) : limits_(limits), left_(limits.burst) {}
+    explicit TokenBucket(const RateLimit& limits) : limits_(limits), left_(limits.burst) {}
     /// Empty at that time.
-    Ration(const RationLimits& limits, WallTime now) : limits_(limits), filled_(now) {}
+    TokenBucket(const RateLimit& limits, WallTime now) : limits_(limits), filled_(now) {}
     /// True if one can be taken now.
     bool has(WallTime now);
     /// \pre has(now)
     void take() { left_ -= 1; }
 
   private:
-    RationLimits limits_;
+    RateLimit limits_;
     double left_ = 0;
     WallTime filled_{};  // when left_ was right
 };
@@ -95,7 +95,7 @@ class ServerState {
 
     [[nodiscard]] StepQueue& steps() { return steps_; }
     /// Of all clients together.
-    [[nodiscard]] Ration& pauses() { return pauses_; }
+    [[nodiscard]] TokenBucket& pauses() { return pauses_; }
 
     /// The newest scan of a laser as scanText writes it; all readers share one string.
     std::shared_ptr<const std::string> scan(std::size_t laser, bool stream, bool binary);
@@ -114,7 +114,7 @@ class ServerState {
     ServerLimits limits_;
     StepQueue steps_;
     std::vector<bool> held_;
-    Ration pauses_;
+    TokenBucket pauses_;
     std::vector<std::array<Text, 4>> texts_;  // of each laser, by stream and binary
     std::size_t kept_ = 0;                    // bytes in texts_
     // Bytes of all texts that somebody has; it outlives them.

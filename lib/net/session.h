@@ -100,7 +100,7 @@ class Session {
     bool binary_ = false;
     std::shared_ptr<const std::string> scan_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
-    Ration pauses_, spare_pauses_;
+    TokenBucket pauses_, spare_pauses_;
     bool first_ = true;  // nothing was asked yet
     bool closing_ = false;
 };

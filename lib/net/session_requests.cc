@@ -163,9 +163,9 @@ void Session::poses(Words /*words*/) {
 /// no time between cost the world nothing else.
 bool Session::mayAskFor(std::string_view verb) {
     const auto now = std::chrono::steady_clock::now();
-    Ration& all = state_->pauses();
+    TokenBucket& all = state_->pauses();
     if (pauses_.has(now)) {
-        Ration* const from = all.has(now) ? &all : &spare_pauses_;
+        TokenBucket* const from = all.has(now) ? &all : &spare_pauses_;
         if (from->has(now)) {
             from->take();
             pauses_.take();

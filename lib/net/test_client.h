@@ -55,7 +55,7 @@ class Client {
         EXPECT_EQ(ask(role).substr(0, 3), "OK ");
         return *this;
     }
-    /// Closes so that the other side is told at once that nobody is here.
+    /// Resets the connection, so that the other side sees its end at once.
     void reset() {
         const linger at_once{1, 0};
         ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
