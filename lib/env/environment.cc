@@ -261,9 +261,9 @@ Slice Environment::band(double bottom, double top) const {
     return band;
 }
 
-/// The levels last asked for, the latest at the end, and those that somebody else still holds.
+/// The levels last asked for, the latest at the end, and those that others still hold.
 struct Environment::Levels {
-    /// A slice takes some 100 bytes a line, and 300 more once somebody looks about in it; free
+    /// A slice takes some 100 bytes a line, and 300 more once it is asked for visibility; free
     /// floor and indexes are of the same order.
     static constexpr std::ptrdiff_t kMaxKept = 64;
     static constexpr std::size_t kMaxLines = 500'000;
@@ -272,7 +272,7 @@ struct Environment::Levels {
     std::vector<std::shared_ptr<const Level>> kept;
     std::vector<std::weak_ptr<const Level>> let_go;
 
-    /// One of this height that is held by somebody, or a new one.
+    /// The one of this height that somebody holds, or a new one.
     std::shared_ptr<const Level> find(double height, const std::shared_ptr<const Data>& data) {
         std::erase_if(let_go, [](const auto& level) { return level.expired(); });
         for (const auto& held : let_go)

@@ -15,7 +15,7 @@ namespace {
 /// A mitre reaches at most this many half thicknesses beyond its corner, as drawing programs have
 /// it; sharper corners are cut off straight.
 constexpr double kMitreLimit = 4;
-/// Heights at one point that are told apart; with more of them mitres are as high as both of
+/// Heights at one point that are treated apart; with more of them mitres are as high as both of
 /// their neighbours, whatever stands between them.
 constexpr std::size_t kMaxLevels = 32;
 /// With more ends at one point, the point is simply a corner of all boxes.

@@ -213,8 +213,8 @@ std::optional<Point2> selfCrossing(const Polygon& polygon) {
 
 namespace {
 
-/// Of one element as many times `most` crossings are looked at before they are put in order: one
-/// that runs through many others is described well enough by them.
+/// Crossings of one element found before they are sorted, as a multiple of `most`: for one that
+/// runs through very many others these are enough.
 constexpr std::size_t kPerElement = 16;
 
 struct Meeting {

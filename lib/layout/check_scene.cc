@@ -19,7 +19,7 @@ namespace ispace {
 
 namespace {
 
-/// So far beyond the door its two sides are looked at, in metres.
+/// Metres beyond a door at which its two sides are tested.
 constexpr double kBeside = 0.01;
 
 WallPlan planOf(const std::vector<Element>& elements, Diagnostics& ignored) {

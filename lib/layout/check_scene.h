@@ -19,7 +19,7 @@ namespace ispace {
 ///   solids.
 /// - Walls that cross, and ends of walls that hang in the room less than 0.2 m before another.
 ///
-/// What is placed and cannot work as it stands is an error; what the environment bears though it is
+/// What is placed and cannot work where it stands is an error; what the environment allows but is
 /// probably not meant is a warning.
 ///
 /// O(n log n) for n things that stand beside each other.

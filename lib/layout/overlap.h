@@ -86,7 +86,7 @@ class Parts {
     BoxTree tree_;
 };
 
-/// The meshes of one element, cut where somebody asks.
+/// The meshes of one element, cut at any height.
 class MeshCuts {
   public:
     explicit MeshCuts(const Body& body);

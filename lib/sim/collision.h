@@ -121,8 +121,8 @@ class Traffic {
 using ObstacleSets = std::map<double, Obstacles>;
 ObstacleSets obstaclesOf(const Scene& scene);
 
-/// \throws FormatError with all findings if a robot stands in something, in another robot or in
-///         somebody
+/// \throws FormatError with all findings if a robot stands in something, in another robot or in a
+///         person
 void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles);
 
 }  // namespace ispace

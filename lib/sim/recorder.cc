@@ -38,8 +38,8 @@ std::string_view wholeLines(std::string_view text) {
     return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
 }
 
-/// An empty file for writing. What an earlier run left is not written over but removed: it may
-/// have another name elsewhere. A link is not followed to a file, which nobody named.
+/// An empty file for writing. What an earlier run left is removed, not overwritten: it may have
+/// another name elsewhere. Links are not followed.
 int openAnew(const std::string& name) {
     struct stat info {
     }, behind{};

@@ -72,7 +72,7 @@ class World {
 
     /// Sensors take their first reading at time 0. The scene must outlive the world.
     /// \throws FormatError with all findings if a robot stands in something, in another robot or in
-    ///         somebody
+    ///         a person
     /// \pre kShortestStep <= step <= kLongestStep
     World(const Scene& scene, SimTime step);
     ~World();

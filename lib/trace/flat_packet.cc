@@ -141,7 +141,7 @@ class Walk {
     Cone cone_;
     double least_;  ///< inverse range of the ray that sees farthest
     FlatStack stack_;
-    /// Whether a line may be in contact with an origin, once somebody wanted to know.
+    /// Whether a line may touch an origin; found when first asked for.
     enum class Contact : std::uint8_t { Unknown, None, Some } touching_ = Contact::Unknown;
 };
 

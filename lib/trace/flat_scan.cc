@@ -16,7 +16,7 @@ namespace {
 constexpr int kWidth = FlatTree::kWidth;
 constexpr int kBlock = FlatScan::kBlock;
 constexpr double kTurn = 2 * std::numbers::pi;
-/// Beams within this angle of a line's ends are looked at, in radians: more than kFlatEdgeAngle and
+/// Beams within this angle of a line's ends are tested, in radians: more than kFlatEdgeAngle and
 /// what angleOf() and the directions err.
 constexpr double kSlack = 2.5e-5;
 
