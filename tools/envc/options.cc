@@ -21,9 +21,9 @@ std::vector<std::string> formatNames(bool of_slices) {
 }
 
 double heightFrom(const std::string& text) {
-    constexpr double kMost = 1000;
+    constexpr double kMax = 1000;
     return std::get<double>(parseValue(
-        {.name = "height", .unit = Unit::Length, .help = "", .lower = -kMost, .upper = kMost},
+        {.name = "height", .unit = Unit::Length, .help = "", .lower = -kMax, .upper = kMax},
         text));
 }
 
