@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,6 +43,9 @@ struct RenderSceneOptions {
     };
     std::vector<Tint> tints = {};
     std::vector<PaintedMesh> paint = {};
+    /// Parts of elements that are left out, by their footprint (two points: of a sheet): walls
+    /// between a viewer outside and the room.
+    std::function<bool(const Element&, std::span<const Point2> footprint)> leaves_out = {};
 };
 
 /// What lights a scene.

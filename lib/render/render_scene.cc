@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <unordered_map>
@@ -113,7 +114,11 @@ class StillBuilder {
             for (const Mesh& mesh : meshesOf(part, Surfaces::Solid)) add(soup, mesh);
         };
         std::vector<Plate> pattern;
+        const auto isLeftOut = [&](std::span<const Point2> footprint) {
+            return options_.leaves_out && options_.leaves_out(element, footprint);
+        };
         for (const Prism& prism : element.body.prisms) {
+            if (isLeftOut(prism.footprint)) continue;
             if (prism.curve) {
                 add(solid_, meshAround(prism));
                 makeRound(prism);
@@ -121,9 +126,11 @@ class StillBuilder {
                 addPart(solid_, {.prisms = {prism}, .sheets = {}, .plates = {}, .meshes = {}});
             }
         }
-        for (const Sheet& sheet : element.body.sheets)
+        for (const Sheet& sheet : element.body.sheets) {
+            if (isLeftOut(std::array{sheet.line.a, sheet.line.b})) continue;
             addPart(sheet.clear ? clear_ : solid_,
                     {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
+        }
         for (const Plate& plate : element.body.plates) {
             const bool is_ceiling = plate.material == Material::Ceiling;
             still_.has_ceiling |= is_ceiling;
