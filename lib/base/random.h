@@ -12,7 +12,13 @@
 namespace ispace {
 
 /// What random numbers are for; different purposes have independent sequences.
-enum class Purpose : std::uint32_t { Range = 1, Ultrasound = 2, Placement = 3, Candidates = 4 };
+enum class Purpose : std::uint32_t {
+    Range = 1,
+    Ultrasound = 2,
+    Placement = 3,
+    Candidates = 4,
+    Light = 5
+};
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.
 std::uint64_t hashOf(std::string_view id);

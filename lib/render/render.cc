@@ -9,55 +9,153 @@
 #include <cmath>
 #include <limits>
 
+#include "base/random.h"
+#include "render/light_tracer.h"
+#include "render/shading.h"
 #include "render/sight_tracer.h"
 
 namespace ispace {
 
 namespace {
 
-Rgb operator+(const Rgb& a, const Rgb& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Rgb operator*(float s, const Rgb& a) { return {s * a[0], s * a[1], s * a[2]}; }
+/// The light on what a pixel's centre shows.
+struct PixelLight {
+    std::array<float, 3> place{}, normal{};
+    Rgb light{};
+    float depth = -1;  ///< below 0: there is nothing
 
-/// Renders tiles of a picture; one for each thread.
-class TileRenderer {
+    /// True if a surface there goes on at another place: that then has the same light.
+    [[nodiscard]] bool reaches(const std::array<float, 3>& to,
+                               const std::array<float, 3>& facing) const {
+        if (depth < 0) return false;
+        float cosine = 0, height = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            cosine += normal[k] * facing[k];
+            height += normal[k] * (to[k] - place[k]);
+        }
+        return cosine > 0.9F && std::fabs(height) < 0.003F + 0.002F * depth;
+    }
+};
+
+std::array<float, 3> floats(Point3 p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+std::array<float, 3> floats(Vec3 v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// All that the threads of one picture share.
+struct Job {
+    const RenderScene::Data& scene;
+    const Viewpoint& viewpoint;
+    const RenderOptions& options;
+    Illumination light;
+    std::optional<EvenSightLines> even;
+    std::vector<bool> hidden;
+    Shading shading;
+    Rendering& out;
+    std::vector<PixelLight> raw, smooth;
+
+    Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
+        Rendering& picture);
+    [[nodiscard]] std::size_t pixel(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
+               static_cast<std::size_t>(column);
+    }
+    /// Samples of light that each pixel gathers.
+    [[nodiscard]] int lightSamples() const { return std::max(1, options.samples / 4); }
+};
+
+Illumination chosen(Illumination wanted, const StillSurfaces& still) {
+    if (wanted != Illumination::Auto) return wanted;
+    return still.has_ceiling ? Illumination::Lamps : Illumination::Sky;
+}
+
+Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
+         Rendering& picture)
+    : scene(data),
+      viewpoint(from),
+      options(wanted),
+      light(chosen(wanted.light, *data.still)),
+      even(from.evenSightLines()),
+      shading(data, light, wanted),
+      out(picture) {
+    for (const std::size_t record : options.hidden) {
+        hidden.resize(std::max(hidden.size(), record + 2));
+        hidden[record + 1] = true;
+    }
+    out.columns = viewpoint.columns();
+    out.rows = viewpoint.rows();
+    const std::size_t pixels =
+        static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
+    out.radiance.resize(pixels);
+    raw.resize(pixels);
+    smooth.resize(pixels);
+    if (options.labels) out.labels.resize(pixels);
+    if (options.depths) out.depths.resize(pixels, std::numeric_limits<float>::infinity());
+}
+
+/// Works on one tile after another; one for each thread.
+class TileWorker {
   public:
-    TileRenderer(const RenderScene::Data& scene, const Viewpoint& viewpoint,
-                 const RenderOptions& options, const std::vector<bool>& hidden, Rendering& out)
-        : scene_(scene),
-          viewpoint_(viewpoint),
-          options_(options),
-          even_(viewpoint.evenSightLines()),
-          tracer_(scene, hidden, options.min_depth),
-          out_(out) {}
+    explicit TileWorker(Job& job)
+        : job_(job),
+          tracer_(job.scene, job.hidden, job.options.min_depth),
+          clear_(job.scene, job.options.min_depth),
+          lights_(job.scene, job.light, job.lightSamples()) {}
 
-    void render(int column, int row) {
-        aim(column, row, 0, 0);
+    /// Finds what the centres of the tile's pixels show, and the light there.
+    void gatherLight(int column, int row) {
+        aim(column, row, {});
         tracer_.trace(tile_);
-        writeMeasures(column, row);
-        const float share = 1 / static_cast<float>(options_.samples);
-        const int side = std::max(1, static_cast<int>(std::sqrt(options_.samples)));
-        for (int sample = 0; sample < options_.samples; ++sample) {
-            const double x = (sample % side + 0.5) / side - 0.5;
-            const int rows = (options_.samples + side - 1) / side;
-            const double y = (sample / side + 0.5) / rows - 0.5;
-            aim(column, row, x, y);
+        places_.is_wanted.fill(false);
+        forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
+            measure(lane, pixel);
+            if (!job_.shading.meetsSurface(tile_, lane)) return;
+            const SurfacePoint point = job_.shading.surface(tile_, lane);
+            places_.set(lane, point.place, point.normal, point.lift);
+            const double depth = length(point.place - tile_.origin(lane));
+            job_.raw[pixel] = {
+                floats(point.place), floats(point.normal), {}, static_cast<float>(depth)};
+        });
+        drawNumbers(column, row);
+        lights_.gather(places_, draws_);
+        forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
+            job_.raw[pixel].light = places_.light[lane];
+        });
+    }
+
+    /// The samples of the tile's pixels.
+    void color(int column, int row) {
+        const int samples = job_.options.samples;
+        const int across = std::max(1, static_cast<int>(std::sqrt(samples)));
+        const int down = (samples + across - 1) / across;
+        const float share = 1 / static_cast<float>(samples);
+        for (int sample = 0; sample < samples; ++sample) {
+            const PixelPoint at{(sample % across + 0.5) / across - 0.5,
+                                (sample / across + 0.5) / down - 0.5};
+            aim(column, row, at);
             tracer_.trace(tile_);
+            const auto* layers = clear_.isIdle() ? nullptr : &clear_.trace(tile_);
             forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-                out_.radiance[pixel] = out_.radiance[pixel] + share * radiance(lane);
+                Rgb light{1, 1, 1};
+                Rgb color = colorOf(lane, pixel, at, light);
+                if (layers != nullptr) veil((*layers)[lane], light, color);
+                for (std::size_t k = 0; k < 3; ++k) job_.out.radiance[pixel][k] += share * color[k];
             });
         }
     }
 
   private:
-    void aim(int column, int row, double x, double y) {
-        const int last_column = out_.columns - 1, last_row = out_.rows - 1;
+    void aim(int column, int row, PixelPoint at) {
+        const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
         for (int i = 0; i < kTile * kTile; ++i) {
             const auto lane = static_cast<std::size_t>(i);
-            const PixelPoint place{std::min(column + i % kTile, last_column) + x,
-                                   std::min(row + i / kTile, last_row) + y};
-            const auto line = even_ ? even_->at(place) : viewpoint_.sightLine(place);
+            const PixelPoint place{std::min(column + i % kTile, last_column) + at.column,
+                                   std::min(row + i / kTile, last_row) + at.row};
+            const auto line = job_.even ? job_.even->at(place) : job_.viewpoint.sightLine(place);
             tile_.is_black[lane] = !line;
-            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), scene_.still->shift);
+            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), job_.scene.still->shift);
         }
     }
 
@@ -65,48 +163,129 @@ class TileRenderer {
     void forEachPixel(int column, int row, Visit visit) const {
         for (int i = 0; i < kTile * kTile; ++i) {
             const int x = column + i % kTile, y = row + i / kTile;
-            if (x >= out_.columns || y >= out_.rows) continue;
-            visit(static_cast<std::size_t>(i),
-                  static_cast<std::size_t>(y) * static_cast<std::size_t>(out_.columns) +
-                      static_cast<std::size_t>(x));
+            if (x < job_.out.columns && y < job_.out.rows)
+                visit(static_cast<std::size_t>(i), job_.pixel(x, y));
         }
     }
 
-    void writeMeasures(int column, int row) {
-        forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-            if (!out_.depths.empty())
-                out_.depths[pixel] = tile_.meets(lane) ? static_cast<float>(tile_.depth[lane])
-                                                       : std::numeric_limits<float>::infinity();
-            if (!out_.labels.empty() && tile_.meets(lane)) {
-                const Finish& finish = scene_.set(tile_.kind[lane]).finish(tile_.triangle[lane]);
-                out_.labels[pixel] = static_cast<std::uint16_t>(std::min(finish.label, 65535U));
-            }
-        });
+    void measure(std::size_t lane, std::size_t pixel) {
+        if (!tile_.meets(lane)) return;
+        if (!job_.out.depths.empty())
+            job_.out.depths[pixel] = static_cast<float>(tile_.depth[lane]);
+        if (job_.out.labels.empty()) return;
+        const Finish& finish = job_.scene.set(tile_.kind[lane]).finish(tile_.triangle[lane]);
+        job_.out.labels[pixel] = static_cast<std::uint16_t>(
+            std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
     }
 
-    [[nodiscard]] Rgb radiance(std::size_t lane) const {
-        if (tile_.is_black[lane]) return {};
-        if (!tile_.meets(lane)) return options_.background.value_or(Rgb{0.6F, 0.75F, 0.95F});
-        const SurfaceSet& set = scene_.set(tile_.kind[lane]);
-        const Finish& finish = set.finish(tile_.triangle[lane]);
-        std::uint32_t paint = finish.paint;
-        const Vec3 normal = set.triangles().planes()[tile_.triangle[lane]].normal;
-        if (scene_.still->paints[paint].is_floor && finish.label == 0)
-            for (const Covering& covering : scene_.still->coverings)
-                paint = covering.paintAt(tile_.place(lane).onFloor()).value_or(paint);
-        const Vec3 d = tile_.direction(lane);
-        const double facing = std::fabs(dot(normal, d)) / length(d);
-        return static_cast<float>(0.4 + 0.6 * facing) * scene_.still->paints[paint].color;
+    /// By the pixel alone, whatever the threads.
+    void drawNumbers(int column, int row) {
+        const std::size_t each = kLightDraws * static_cast<std::size_t>(lights_.samples());
+        draws_.resize(each * kLanes);
+        for (int k = 0; k < kTile; ++k) {
+            const RandomKey key{.seed = job_.options.seed,
+                                .purpose = Purpose::Light,
+                                .sensor = 0,
+                                .frame = static_cast<std::uint64_t>(row + k)};
+            const auto first = static_cast<std::uint32_t>(each * static_cast<std::size_t>(column));
+            const std::size_t begin = each * static_cast<std::size_t>(k * kTile);
+            draw(key, first,
+                 {.normal = {},
+                  .other = {},
+                  .uniform = std::span(draws_).subspan(begin, each * std::size_t{kTile})});
+        }
     }
 
-    const RenderScene::Data& scene_;
-    const Viewpoint& viewpoint_;
-    const RenderOptions& options_;
-    std::optional<EvenSightLines> even_;
+    Rgb colorOf(std::size_t lane, std::size_t pixel, PixelPoint at, Rgb& light) {
+        if (!job_.shading.meetsSurface(tile_, lane)) return job_.shading.background(tile_, lane);
+        const SurfacePoint point = job_.shading.surface(tile_, lane);
+        light = lightAt(point, pixel, at);
+        return job_.shading.lit(point, light);
+    }
+
+    /// The light on a surface: that of the pixel or of one beside it, if it shows the same.
+    Rgb lightAt(const SurfacePoint& point, std::size_t pixel, PixelPoint at) {
+        const auto place = floats(point.place), normal = floats(point.normal);
+        const auto columns = static_cast<std::size_t>(job_.out.columns);
+        const std::size_t column = pixel % columns, row = pixel / columns;
+        const int x = at.column < 0 ? -1 : 1, y = at.row < 0 ? -1 : 1;
+        const int order[9][2] = {{0, 0},  {x, 0},  {0, y},  {x, y},  {-x, 0},
+                                 {0, -y}, {x, -y}, {-x, y}, {-x, -y}};
+        for (const auto& [dx, dy] : order) {
+            const int i = static_cast<int>(column) + dx, j = static_cast<int>(row) + dy;
+            if (i < 0 || j < 0 || i >= job_.out.columns || j >= job_.out.rows) continue;
+            const PixelLight& beside = job_.smooth[job_.pixel(i, j)];
+            if (beside.reaches(place, normal)) return beside.light;
+        }
+        return lightAlone(point, column, row);
+    }
+
+    /// The light on what no centre of a pixel shows: sixteen samples of their own.
+    Rgb lightAlone(const SurfacePoint& point, std::size_t column, std::size_t row) {
+        const int x = static_cast<int>(column) / kTile * kTile,
+                  y = static_cast<int>(row) / kTile * kTile;
+        if (x != drawn_column_ || y != drawn_row_) drawNumbers(x, y);
+        drawn_column_ = x;
+        drawn_row_ = y;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            places_.set(lane, point.place, point.normal, point.lift);
+        lights_.gather(places_, draws_);
+        Rgb mean{};
+        for (const Rgb& light : places_.light)
+            for (std::size_t k = 0; k < 3; ++k) mean[k] += light[k] / kLanes;
+        return mean;
+    }
+
+    static void veil(const std::vector<ClearLayer>& layers, const Rgb& light, Rgb& color) {
+        for (std::size_t i = layers.size(); i-- > 0;)
+            for (std::size_t k = 0; k < 3; ++k)
+                color[k] = color[k] * layers[i].passes[k] +
+                           layers[i].light[k] * (layers[i].is_lit ? light[k] : 1);
+    }
+
+    Job& job_;
     SightTracer tracer_;
+    ClearTracer clear_;
+    LightTracer lights_;
     SightTile tile_;
-    Rendering& out_;
+    LitPlaces places_;
+    std::vector<float> draws_;
+    int drawn_column_ = -1, drawn_row_ = -1;
 };
+
+/// The mean light about a pixel: five by five, the outermost for half, so that each stratum of a
+/// tile counts the same (Keller and Heidrich, Interleaved Sampling, 2001).
+Rgb meanLight(const Job& job, int column, int row) {
+    constexpr int kReach = 2;
+    const PixelLight& middle = job.raw[job.pixel(column, row)];
+    Rgb sum{};
+    float whole = 0;
+    for (int y = std::max(0, row - kReach); y <= std::min(job.out.rows - 1, row + kReach); ++y)
+        for (int x = std::max(0, column - kReach);
+             x <= std::min(job.out.columns - 1, column + kReach); ++x) {
+            const PixelLight& other = job.raw[job.pixel(x, y)];
+            if (!middle.reaches(other.place, other.normal) || other.depth < 0) continue;
+            const float weight = (std::abs(x - column) == kReach ? 0.5F : 1.0F) *
+                                 (std::abs(y - row) == kReach ? 0.5F : 1.0F);
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * other.light[k];
+            whole += weight;
+        }
+    for (float& value : sum) value /= std::max(whole, 0.25F);
+    return sum;
+}
+
+/// Calls work(worker, column, row) for each tile.
+template <typename Work>
+void forEachTile(Job& job, Work work) {
+    const int tile_rows = (job.out.rows + kTile - 1) / kTile;
+    tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 2),
+                      [&](const tbb::blocked_range<int>& rows) {
+                          TileWorker worker(job);
+                          for (int row = rows.begin(); row != rows.end(); ++row)
+                              for (int column = 0; column < job.out.columns; column += kTile)
+                                  work(worker, column, row * kTile);
+                      });
+}
 
 }  // namespace
 
@@ -114,26 +293,17 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
                  const RenderOptions& options) {
     assert(options.samples > 0);
     Rendering out;
-    out.columns = viewpoint.columns();
-    out.rows = viewpoint.rows();
-    const std::size_t pixels =
-        static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
-    out.radiance.resize(pixels);
-    if (options.labels) out.labels.resize(pixels);
-    if (options.depths) out.depths.resize(pixels);
-    std::vector<bool> hidden;
-    for (const std::size_t record : options.hidden) {
-        hidden.resize(std::max(hidden.size(), record + 2));
-        hidden[record + 1] = true;
-    }
-    const int tile_rows = (out.rows + kTile - 1) / kTile;
-    tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 4),
-                      [&](const tbb::blocked_range<int>& rows) {
-                          TileRenderer tiles(scene.data(), viewpoint, options, hidden, out);
-                          for (int row = rows.begin(); row != rows.end(); ++row)
-                              for (int column = 0; column < out.columns; column += kTile)
-                                  tiles.render(column, row * kTile);
-                      });
+    Job job(scene.data(), viewpoint, options, out);
+    forEachTile(job,
+                [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
+    tbb::parallel_for(0, out.rows, [&job](int row) {
+        for (int column = 0; column < job.out.columns; ++column) {
+            PixelLight& light = job.smooth[job.pixel(column, row)];
+            light = job.raw[job.pixel(column, row)];
+            if (light.depth >= 0) light.light = meanLight(job, column, row);
+        }
+    });
+    forEachTile(job, [](TileWorker& worker, int column, int row) { worker.color(column, row); });
     return out;
 }
 

@@ -74,7 +74,10 @@ class StillBuilder {
         still_.packet_width = nativeWidthOf(still_.device);
         still_.paints = paintsOfMaterials();
         const Box2 plan = scene.environment.limits();
-        if (!plan.empty()) still_.shift = {-plan.center().x, -plan.center().y, 0};
+        if (!plan.empty()) {
+            still_.shift = {-plan.center().x, -plan.center().y, 0};
+            still_.extent = std::max({1.0, plan.width(), plan.depth()});
+        }
         for (std::size_t i = 0; i < scene.ids.size(); ++i)
             labels_.emplace(scene.ids[i], static_cast<std::uint32_t>(i + 1));
         for (const auto& [record, color] : options.tints)
@@ -86,10 +89,12 @@ class StillBuilder {
         solid_.add(floorMesh(scene_.environment.indoor()), {0, paintOf(Material::Floor)},
                    still_.shift);
         for (const PaintedMesh& paint : options_.paint)
-            clear_.add(paint.mesh, {0, addPaint({paint.color, paint.opacity, paint.is_lit})},
+            paint_.add(paint.mesh, {0, addPaint({paint.color, paint.opacity, paint.is_lit})},
                        still_.shift);
         still_.solid.emplace(still_.device.get(), solid_, unsigned(SurfaceKind::Solid));
-        still_.clear.emplace(still_.device.get(), clear_, unsigned(SurfaceKind::Clear));
+        still_.glass.emplace(still_.device.get(), glass_, unsigned(SurfaceKind::Glass));
+        still_.paint.emplace(still_.device.get(), paint_, unsigned(SurfaceKind::Paint));
+        still_.lamps = Lamps(scene_.environment, still_.shift);
         addFigures();
         return std::move(still_);
     }
@@ -128,7 +133,7 @@ class StillBuilder {
         }
         for (const Sheet& sheet : element.body.sheets) {
             if (isLeftOut(std::array{sheet.line.a, sheet.line.b})) continue;
-            addPart(sheet.clear ? clear_ : solid_,
+            addPart(sheet.clear ? glass_ : solid_,
                     {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
         }
         for (const Plate& plate : element.body.plates) {
@@ -183,7 +188,7 @@ class StillBuilder {
     const RenderSceneOptions& options_;
     std::unordered_map<std::string, std::uint32_t> labels_;
     std::unordered_map<std::size_t, std::uint32_t> tints_;  // by label
-    FinishedSoup solid_, clear_;
+    FinishedSoup solid_, glass_, paint_;
     StillSurfaces still_;
 };
 
@@ -231,6 +236,14 @@ RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span
     : still(std::move(surfaces)),
       bodies(still->device.get(), bodiesAt(*still, poses), unsigned(SurfaceKind::Body)),
       views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
+
+Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
+    if (!still->paints[finish.paint].is_floor || finish.label != 0) return finish;
+    for (std::size_t i = still->coverings.size(); i-- > 0;)
+        if (const auto paint = still->coverings[i].paintAt(place.onFloor()))
+            return {still->coverings[i].label, *paint, Finish::kNoFace};
+    return finish;
+}
 
 RenderScene::RenderScene(const Scene& scene, const RenderSceneOptions& options) {
     auto still = std::make_shared<const StillSurfaces>(StillBuilder(scene, options).build());

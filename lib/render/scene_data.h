@@ -7,6 +7,7 @@
 
 #include "geom/pose.h"
 #include "layout/scene.h"
+#include "render/lights.h"
 #include "render/render.h"
 #include "render/surface_set.h"
 
@@ -47,28 +48,35 @@ struct StillSurfaces {
     std::vector<Paint> paints;        ///< those of Material first, in its order
     std::vector<Covering> coverings;  ///< later ones lie on earlier ones
     std::optional<SurfaceSet> solid;  ///< what stops light
-    std::optional<SurfaceSet> clear;  ///< glass, and paint
+    std::optional<SurfaceSet> glass;  ///< clear one, which light passes
+    std::optional<SurfaceSet> paint;  ///< see PaintedMesh
+    Lamps lamps;
     std::vector<Figure> figures;
+    double extent = 1;  ///< of the plan, metres
     bool has_ceiling = false;
     std::size_t packet_width = 4;  ///< rays that the processor traces together
 };
 
 /// Geometry ids of hits.
-enum class SurfaceKind : unsigned { Solid, Body, Clear, View };
+enum class SurfaceKind : unsigned { Solid, Body, Glass, Paint, View };
 
 struct RenderScene::Data {
     std::shared_ptr<const StillSurfaces> still;
     SurfaceSet bodies, views;
 
     Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses);
+    /// The finish of a triangle at a place: coverings lie on the floor.
+    [[nodiscard]] Finish finishAt(const Finish& finish, Point3 place) const;
     [[nodiscard]] const SurfaceSet& set(SurfaceKind kind) const {
         switch (kind) {
             case SurfaceKind::Solid:
                 return *still->solid;
             case SurfaceKind::Body:
                 return bodies;
-            case SurfaceKind::Clear:
-                return *still->clear;
+            case SurfaceKind::Glass:
+                return *still->glass;
+            case SurfaceKind::Paint:
+                return *still->paint;
             case SurfaceKind::View:
                 break;
         }

@@ -42,6 +42,10 @@ struct EmbreeQuery {
         kCall(valid, scene, rays, &arguments);
     }
     void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, &arguments); }
+    void makeIncoherent() {
+        arguments.flags = static_cast<RTCRayQueryFlags>(arguments.flags &
+                                                        ~RTC_RAY_QUERY_FLAG_COHERENT);
+    }
 };
 #else
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
@@ -58,6 +62,7 @@ struct EmbreeQuery {
         kCall(valid, scene, &context, rays);
     }
     void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, &context, ray); }
+    void makeIncoherent() { context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT; }
 };
 #endif
 
@@ -68,10 +73,10 @@ constexpr double kFarthest = 1e30;
 constexpr std::size_t kLanes = 16;
 
 /// Traces the lanes of a packet in parts as wide as Rays; trace(valid, rays) does one.
-template <typename Rays, std::size_t kWidth, typename Trace>
-void traceParts(const int* valid, RTCRayHit16& packet, Trace trace) {
+template <typename Rays, std::size_t kWidth, typename Packet, typename Trace>
+void traceParts(const int* valid, Packet& packet, Trace trace) {
     // All fields are arrays of four bytes a lane.
-    constexpr std::size_t kFields = sizeof(RTCRayHit16) / (4 * kLanes);
+    constexpr std::size_t kFields = sizeof(Packet) / (4 * kLanes);
     static_assert(sizeof(Rays) >= 4 * kFields * kWidth);
     auto* const wide = reinterpret_cast<std::uint32_t*>(&packet);
     Rays rays{};
@@ -105,6 +110,23 @@ inline void tracePacket(EmbreeQuery& query, RTCScene scene, std::size_t width, c
         default:
             return traceParts<RTCRayHit, 1>(
                 valid, packet, [&](const int*, RTCRayHit* ray) { query.trace(scene, ray); });
+    }
+}
+
+/// Sets tfar of the rays that meet anything to -infinity; parts and lanes as above.
+inline void traceShadows(EmbreeQuery& query, RTCScene scene, std::size_t width, const int* valid,
+                         RTCRay16& packet) {
+    switch (width) {
+        case 16:
+            return query.trace<rtcOccluded16>(valid, scene, &packet);
+        case 8:
+            return traceParts<RTCRay8, 8>(valid, packet, [&](const int* lanes, RTCRay8* rays) {
+                query.trace<rtcOccluded8>(lanes, scene, rays);
+            });
+        default:
+            return traceParts<RTCRay4, 4>(valid, packet, [&](const int* lanes, RTCRay4* rays) {
+                query.trace<rtcOccluded4>(lanes, scene, rays);
+            });
     }
 }
 

@@ -96,6 +96,10 @@ class TriangleSet {
     [[nodiscard]] bool isRound(std::size_t triangle) const {
         return round_of_[triangle] != TriangleSoup::kFlat;
     }
+    /// The round body that the triangle stands for; null if it stands for itself.
+    [[nodiscard]] const RoundBody* roundOf(std::size_t triangle) const {
+        return isRound(triangle) ? &rounds_[round_of_[triangle]] : nullptr;
+    }
     /// From p to the closed triangle.
     [[nodiscard]] double distance(std::size_t triangle, Point3 p) const;
 
