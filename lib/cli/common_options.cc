@@ -211,7 +211,8 @@ void addDensityOption(CommandLine& line, double& pixels_per_metre) {
     };
     line.parsed("--density", "N|NAME", read,
                 "pixels a metre without which a camera sees nothing: a number, or monitor (12.5), "
-                "detect (25), observe (62.5), recognise (125) or identify (250) of EN 62676-4",
+                "detect (25), observe (62.5), recognise (125), identify (250) or inspect (1000) of "
+                "EN 62676-4",
                 Enters::History);
 }
 

@@ -116,7 +116,11 @@ class Viewer {
     }
 
     void look(SensorView& view) const {
-        const Sensor& sensor = sensorOf(view);
+        Sensor sensor = sensorOf(view);
+        if (auto* camera = std::get_if<Camera>(&sensor.model)) {
+            *camera = withDensity(*camera, options_.density);
+            view.max_range = camera->max_range;
+        }
         const Laser* laser = std::get_if<Laser>(&sensor.model);
         if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
         // Beams are those of one scan: of a sweep they outline nothing.
@@ -255,6 +259,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     report.grid = grid;
     report.height = options.height;
     report.plane = options.plane;
+    report.density = options.density;
     report.indoor_area = environment.indoor().area();
     const auto level = environment.level(options.height);
     report.free_area = totalArea(level->freeFloor());

@@ -26,7 +26,8 @@ enum class CellRule {
 struct CoverageOptions {
     CellChoice cells = RoomCells();
     double height = kScanHeight;  ///< at which the floor is free or not
-    double plane = 0;             ///< height of what rangers and ultrasound cover
+    double plane = 0;             ///< height of what rangers, cameras and ultrasound cover
+    double density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all in view
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< closed forms beside the cells
 };
@@ -75,6 +76,7 @@ struct CoverageReport {
     Box2 limits;  ///< of the room; square cells may reach beyond
     Grid grid;
     double height = 0, plane = 0;
+    double density = 0;                     ///< as asked for; 0: none
     double indoor_area = 0, free_area = 0;  ///< exact, m2
     std::vector<SensorMetrics> sensors;     ///< by kind
     Metric total_effective_area;            ///< eq. (4.6), m2; all cells, indoor or not
@@ -136,8 +138,8 @@ struct Coverage {
     std::optional<Overlay> overlay;
 };
 
-/// Measures all placed lasers, rangers and ultrasonic receivers of a scene. Deterministic for any
-/// number of threads. \throws UsageError as makeTarget
+/// Measures all placed lasers, rangers, cameras and ultrasonic receivers of a scene. Deterministic
+/// for any number of threads. \throws UsageError as makeTarget
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options);
 
 /// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room

@@ -93,6 +93,7 @@ std::string coverageJson(const CoverageReport& report) {
     json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
     json.key("height").value(report.height);
     json.key("plane").value(report.plane);
+    if (report.density > 0) write(json, "density", report.density);
     write(json, "indoor_area", report.indoor_area);
     write(json, "free_area", report.free_area);
     writeList(json, "sensors", report.sensors);
@@ -288,13 +289,16 @@ std::string coverageText(const CoverageReport& report) {
          {"indoor area", area(report.indoor_area)},
          {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
         "l");
+    if (report.density > 0)
+        text +=
+            "cameras cover where they have " + formatDouble(report.density) + " pixels a metre\n";
     text += "\n" + metricTable(report);
     if (!report.exact_missing.empty())
         text += "no exact figures of all together: " + printable(report.exact_missing) + "\n";
     if (report.comparison) text += comparisonText(report);
     text += "\n";
     if (report.sensors.empty())
-        text += "no laser, ranger or ultrasonic receiver is placed\n";
+        text += "no laser, ranger, camera or ultrasonic receiver is placed\n";
     else
         text += sensorTable(report.sensors) + "\n" + piecesText(report);
     return text;

@@ -126,8 +126,9 @@ TEST(CoverageText, ManySensorsShareARow) {
 TEST(CoverageText, SaysSoWhereNoSensorIsPlaced) {
     CoverageReport report = sampleReport();
     report.sensors.clear();
-    EXPECT_NE(coverageText(report).find("\nno laser, ranger or ultrasonic receiver is placed\n"),
-              std::string::npos);
+    EXPECT_NE(
+        coverageText(report).find("\nno laser, ranger, camera or ultrasonic receiver is placed\n"),
+        std::string::npos);
 }
 
 }  // namespace

@@ -174,10 +174,11 @@ void Footprint::addPolygon(const FieldOfView& view, double drop) {
     Polygon polygon = square(reach);
     const auto keep = [&](Vec3 local) { polygon = halfOf(polygon, frame * local, drop); };
     if (view.shape == FieldOfView::Shape::Pyramid) {
-        for (const double side : {1.0, -1.0}) {
-            keep({view.across, side, 0});
-            keep({view.upright, 0, side});
-        }
+        const Tangents& sides = view.sides;
+        keep({sides.right, 1, 0});
+        keep({sides.down, 0, 1});
+        keep({sides.left, -1, 0});
+        keep({sides.up, 0, -1});
     } else if (view.shape == FieldOfView::Shape::Window && view.half_x <= right_angle) {
         const auto [c, s] = cosSin(view.half_x);
         for (const double side : {1.0, -1.0}) keep({s, side * c, 0});
@@ -193,6 +194,15 @@ void Footprint::addPolygon(const FieldOfView& view, double drop) {
         return;
     }
     mark({curveOf(polygon)});
+}
+
+void Footprint::addPicture(const FieldOfView& view, double drop) {
+    auto curves = pictureOnPlane(view, drop, reach);
+    if (!curves) return;
+    if (curves->empty())
+        box = {};
+    else
+        mark(*std::move(curves));
 }
 
 /// What bearings leave out behind the sensor that span more than a half turn.
@@ -214,6 +224,7 @@ Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out
     addPolygon(view, drop);
     if (!view.is_by_depth && !disc_is_left_out) mark({circleOf(reach)});
     const Frame3& frame = view.frame;
+    if (view.shape == FieldOfView::Shape::Picture) addPicture(view, drop);
     if (view.shape == FieldOfView::Shape::Cone) {
         if (view.half_x < right_angle)
             addCone(frame.forward, view.half_x, drop, true);

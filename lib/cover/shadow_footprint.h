@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geom/overlay.h"
@@ -24,6 +26,12 @@ Curve circleOf(double radius);
 /// The part of a convex polygon where dot(normal, p) + offset >= 0.
 Polygon halfOf(const Polygon& polygon, Vec2 normal, double offset);
 
+/// What a camera's picture shows of a level plane, `drop` over the foot, within `reach` of the
+/// foot; farther away the curves close somehow. Its border is traced as it is bent, within
+/// kConicError. No value: all of the plane is in view; no curves: nothing. (picture_footprint.cc)
+std::optional<std::vector<Curve>> pictureOnPlane(const FieldOfView& view, double drop,
+                                                 double reach);
+
 /// What of a level plane is in view if nothing stands between, as layers: a place is in view if
 /// it has all `marks` and no counted layer holds it. Places count from the foot, where the sensor
 /// is right above or below.
@@ -44,6 +52,7 @@ struct Footprint {
   private:
     void addCone(Vec3 axis, Angle half, double drop, bool is_in_view);
     void addPolygon(const FieldOfView& view, double drop);
+    void addPicture(const FieldOfView& view, double drop);
     void addWedgeBehind(const FieldOfView& view, double drop);
 };
 

@@ -36,7 +36,9 @@ Extent extentOf(const FieldOfView& view) {
     const Extent disc = discOf(view.farthest());
     if (view.shape != FieldOfView::Shape::Pyramid) return disc;
     // For sensors that measure distances this bounds the depth too.
-    const double depth = view.max_range, x = view.across, y = view.upright;
+    const double depth = view.max_range;
+    const double x = std::max(std::fabs(view.sides.left), std::fabs(view.sides.right));
+    const double y = std::max(std::fabs(view.sides.up), std::fabs(view.sides.down));
     const double area = depth * depth * std::hypot(4 * x * y, x, y);
     const double diameter = depth * std::max(2 * std::hypot(x, y), std::hypot(1, x, y));
     return {disc.reach, std::min(disc.area, area), std::min(disc.outline, kPi * diameter)};

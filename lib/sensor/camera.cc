@@ -182,6 +182,20 @@ Angle angleBetween(const Camera& camera, PixelPoint a, PixelPoint b) {
 Angle Camera::fovX() const { return angleBetween(*this, {-0.5, cy}, {columns - 0.5, cy}); }
 Angle Camera::fovY() const { return angleBetween(*this, {cx, -0.5}, {cx, rows - 0.5}); }
 
+Angle Camera::widestInPicture() const {
+    // The farthest is a corner, but for what the tangential terms of distortion bend.
+    constexpr double kSlack = 1.01;
+    double most = 0;
+    for (const double column : {-0.5, columns - 0.5})
+        for (const double row : {-0.5, rows - 0.5}) {
+            const auto corner = ray({column, row});
+            if (!corner) return widest;
+            most = std::max(most, std::hypot(corner->y, corner->z) / corner->x);
+            if (!(corner->x > 0)) return widest;
+        }
+    return std::min(widest, Angle::radians(std::atan(kSlack * most)));
+}
+
 bool Camera::looksAround(const Pose3& mount) const {
     if (lens == Lens::Pinhole || fx != fy) return false;
     const double radius = fx * radiusOf(*this, widest.radians()) * (1 - 1e-9);
@@ -402,11 +416,12 @@ Camera cameraOf(const Record& record, const Record* device) {
 }
 
 std::span<const PixelDensity> pixelDensities() {
-    static constexpr std::array<PixelDensity, 5> kClasses = {{{"monitor", 12.5},
+    static constexpr std::array<PixelDensity, 6> kClasses = {{{"monitor", 12.5},
                                                               {"detect", 25},
                                                               {"observe", 62.5},
                                                               {"recognise", 125},
-                                                              {"identify", 250}}};
+                                                              {"identify", 250},
+                                                              {"inspect", 1000}}};
     return kClasses;
 }
 
@@ -431,8 +446,11 @@ Camera withDensity(Camera camera, double pixels_per_metre) {
 }
 
 FieldOfView fieldOfView(const Camera& camera, const Pose3& pose) {
-    return FieldOfView::pyramid(pose, 0.5 * camera.fovX(), 0.5 * camera.fovY(), camera.max_range,
-                                true);
+    if (!camera.isStraight()) return FieldOfView::picture(pose, camera);
+    const double left = (camera.cx + 0.5) / camera.fx, up = (camera.cy + 0.5) / camera.fy;
+    return FieldOfView::pyramid(
+        pose, {left, camera.columns / camera.fx - left, up, camera.rows / camera.fy - up},
+        camera.max_range, true);
 }
 
 namespace {

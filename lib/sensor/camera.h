@@ -75,6 +75,8 @@ struct Camera {
     /// Fields of view: between the rays of the middles of opposite edges.
     [[nodiscard]] Angle fovX() const;
     [[nodiscard]] Angle fovY() const;
+    /// No direction in the picture is farther from the axis.
+    [[nodiscard]] Angle widestInPicture() const;
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }

@@ -29,8 +29,9 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
                 Enters::History);
     line.meters("--height", measure.height, 0, 1000, "height of the free floor", Enters::History);
     line.meters("--plane", measure.plane, 0, 1000,
-                "height of the plane that rangers and ultrasound cover, 0 is the floor",
+                "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
                 Enters::History);
+    addDensityOption(line, measure.density);
 }
 
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
