@@ -25,9 +25,9 @@ violations() {
         layer("sensor", "env"); layer("layout", "sensor"); layer("plan", "layout")
         layer("io", "plan"); layer("trace", "layout"); layer("render", "trace")
         layer("sense", "render")
-        layer("cover", "sense plan")
+        layer("cover", "sense plan"); layer("view", "cover")
         layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
-        layer("cli", "place net io")
+        layer("cli", "place view net io")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \

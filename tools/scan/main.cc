@@ -13,6 +13,7 @@
 #include "layout/scene.h"
 #include "scan/options.h"
 #include "scan/readings.h"
+#include "scan/views.h"
 #include "sense/sensors.h"
 #include "sense/warnings.h"
 
@@ -104,6 +105,7 @@ void scan(const ScanCommand& command) {
     const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
     limitThreads(options.common.threads);
+    if (!options.view.views.empty()) return takeViews(command);
     const SceneInput input = readScene(requestOf(options));
     warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;

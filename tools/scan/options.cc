@@ -30,7 +30,10 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
-    o.format = outputFormat(to_, o.common.output, readingFormats(), {{"log", "carmen"}});
+    checkViewOptions(line_, o.view);
+    o.format = o.view.views.empty()
+                   ? outputFormat(to_, o.common.output, readingFormats(), {{"log", "carmen"}})
+                   : outputFormat(to_, o.common.output, {"png"});
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
@@ -75,13 +78,17 @@ void ScanCommand::declare() {
     line_.switchFlag("--color", "--no-color", color_,
                      "depth png: also NAME-color.png for people (default)",
                      "depth png: no such picture", Enters::History);
-    line_.count("--size", "N", o.map_pixels, 200, 8000, "obstacle map png: pixels per side",
-                Enters::History);
+    line_.parsed(
+        "--size", "W[,H]", [&o](const std::string& text) { o.picture_size = pictureSize(text); },
+        "pixels of a view (default 1280,960; H follows from W), or of each side of an obstacle map "
+        "(default 800)",
+        Enters::History);
     constexpr double kColdest = -100, kHottest = 100;
     line_.parsed(
         "--temperature", "C",
         [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
         "air temperature for ultrasound, Celsius (default 20)", Enters::History);
+    addViewOptions(line_, o.view);
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
     addAnyEnvironmentOption(line_, o.any_environment);
@@ -90,8 +97,16 @@ void ScanCommand::declare() {
                      "%s (sensor) (default: stdout)");
 }
 
-void ScanCommand::check() const {
-    const ScanToolOptions& o = options_;
+void ScanCommand::check() {
+    ScanToolOptions& o = options_;
+    if (!o.view.views.empty()) return checkViews();
+    if (o.picture_size) {
+        constexpr int kLeast = 200, kMost = 8000;
+        o.map_pixels = o.picture_size->columns;
+        if (o.picture_size->rows != 0 || o.map_pixels < kLeast || o.map_pixels > kMost)
+            throw UsageError("--size: an obstacle map is a square of " + std::to_string(kLeast) +
+                             " to " + std::to_string(kMost) + " pixels a side");
+    }
     if (o.list_models && !o.operands.empty())
         throw UsageError("--list-models reads no operands, and there is " + o.operands.front());
     if (o.poses.empty()) {
@@ -104,6 +119,15 @@ void ScanCommand::check() const {
         if (!o.model.empty() && !o.select.empty())
             throw UsageError("--select and --model both say which sensor takes the poses");
     }
+}
+
+void ScanCommand::checkViews() const {
+    const ScanToolOptions& o = options_;
+    for (const char* name : {"--select", "--poses", "--model", "--motion", "--noise"})
+        if (line_.given(name))
+            throw UsageError(std::string(name) + " is about readings, and --view takes none");
+    if (o.frames && o.view.run.empty())
+        throw UsageError("--frames with --view are those of a run: give --run DIR");
 }
 
 }  // namespace ispace

@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "scan/views.h"
 #include "sense/point_cloud.h"
 
 namespace ispace {
@@ -26,6 +27,8 @@ struct ScanToolOptions {
     double depth_per_metre = 1000;
     bool color = true;
     int map_pixels = 800;
+    std::optional<PictureSize> picture_size;
+    ViewToolOptions view;
     double celsius = 20;
     bool list_models = false;
     bool any_environment = false;
@@ -38,7 +41,8 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
 
   private:
     void declare();
-    void check() const;
+    void check();
+    void checkViews() const;
 
     std::optional<bool> noise_, color_;
     std::string to_, encoding_, coordinates_;

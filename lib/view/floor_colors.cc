@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "cover/sight.h"
+#include "sensor/kind.h"
+#include "view/sight_marks.h"
+
+namespace ispace {
+
+namespace {
+
+/// Cells of a set as rectangles, row by row.
+std::vector<Polygon> rectanglesOf(const CellSet& cells, const Grid& grid) {
+    const double width = grid.limits.width() / grid.columns;
+    const double depth = grid.limits.depth() / grid.rows;
+    std::vector<Polygon> out;
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            const int first = column;
+            while (column < grid.columns && cells.test(grid.cell(column, row))) ++column;
+            if (column == first) continue;
+            const Point2 low = grid.limits.low + Vec2{first * width, row * depth};
+            const Point2 high = grid.limits.low + Vec2{column * width, (row + 1) * depth};
+            out.push_back({low, {high.x, low.y}, high, {low.x, high.y}});
+        }
+    return out;
+}
+
+}  // namespace
+
+FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits()) {
+    constexpr double kMostPixels = 4000, kFinest = 100;
+    scale_ = std::min(kFinest, kMostPixels / std::max(limits_.width(), limits_.depth()));
+    Picture floor(std::max(1.0, std::ceil(scale_ * limits_.width())),
+                  std::max(1.0, std::ceil(scale_ * limits_.depth())));
+    floor.pushView({scale_, {limits_.low.x, limits_.high.y}, {0, 0}});
+    Worlds worlds(scene.environment);
+    const Sight sight(scene.environment, 0, &worlds);
+    constexpr int kCells = 400;
+    const double cell = std::max(limits_.width(), limits_.depth()) / kCells;
+    const Grid grid{limits_, std::max(1, static_cast<int>(limits_.width() / cell)),
+                    std::max(1, static_cast<int>(limits_.depth() / cell))};
+    constexpr double kShade = 0.45;
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+        const Sensor& sensor = scene.sensors[i];
+        if (!kindOf(sensor.model).perceives) continue;
+        std::vector<Polygon> seen;
+        if (const auto region = sight.regionOf(sensor)) {
+            for (const Curve& curve : *region) seen.push_back(chords(curve, 0.5 / scale_));
+        } else {
+            sight.prepare(sensor);
+            seen = rectanglesOf(sight.cellsOf(grid, sensor), grid);
+        }
+        floor.area(seen, {sensorColor(i).faded(kShade)});
+    }
+    floor.pop();
+    image_ = decodePng(floor.write(PictureFormat::Png));
+}
+
+Rgb FloorColors::at(Point2 place) const {
+    const auto x = static_cast<int>(std::floor(scale_ * (place.x - limits_.low.x)));
+    const auto y = static_cast<int>(std::floor(scale_ * (limits_.high.y - place.y)));
+    if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return {1, 1, 1};
+    return linearOf(Color::rgb(image_.at(x, y)));
+}
+
+}  // namespace ispace

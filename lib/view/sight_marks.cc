@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/sight_marks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "sense/scan.h"
+#include "sense/sensors.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+namespace {
+
+/// Rays along the rim of a view cube: all edges of a picture alike.
+constexpr int kRimRays = 96;
+constexpr int kMostBeams = 120;
+
+/// The farthest of the directions from `inside` to `rim` that is in view, where `inside` is.
+template <typename IsSeen>
+double edgeOf(const IsSeen& isSeen, double inside, double rim) {
+    constexpr int kHalvings = 30;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = (inside + rim) / 2;
+        (isSeen(middle) ? inside : rim) = middle;
+    }
+    return inside;
+}
+
+/// Along the edges of the picture, or of what the lens shows of it.
+std::vector<Vec3> rimOf(const Camera& camera) {
+    std::vector<Vec3> rim;
+    constexpr int kPerEdge = kRimRays / 4;
+    const double right = camera.columns - 0.5, bottom = camera.rows - 0.5;
+    const std::array<PixelPoint, 5> corners = {
+        {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}, {-0.5, -0.5}}};
+    for (std::size_t edge = 0; edge < 4; ++edge)
+        for (int i = 0; i < kPerEdge; ++i) {
+            const double share = 1.0 * i / kPerEdge;
+            const PixelPoint a = corners[edge], b = corners[edge + 1];
+            const PixelPoint end{a.column + share * (b.column - a.column),
+                                 a.row + share * (b.row - a.row)};
+            const auto ray = [&](double way) {
+                return camera.ray({camera.cx + way * (end.column - camera.cx),
+                                   camera.cy + way * (end.row - camera.cy)});
+            };
+            const double way =
+                ray(1) ? 1 : edgeOf([&](double w) { return ray(w).has_value(); }, 0, 1);
+            rim.push_back(ray(way).value_or(Vec3{1, 0, 0}));
+        }
+    return rim;
+}
+
+std::vector<Vec3> rimOf(const FieldOfView& view) {
+    std::vector<Vec3> rim;
+    for (int i = 0; i < kRimRays; ++i) {
+        // Corners of pictures of any shape are met where the rays are many.
+        const double turn = 2 * std::numbers::pi * i / kRimRays;
+        const auto ray = [turn](double angle) {
+            return Vec3{std::cos(angle), std::sin(angle) * std::cos(turn),
+                        std::sin(angle) * std::sin(turn)};
+        };
+        constexpr double kBehind = 0.999 * std::numbers::pi;
+        rim.push_back(ray(edgeOf([&](double a) { return view.points(ray(a)); }, 0, kBehind)));
+    }
+    return rim;
+}
+
+/// Rays through all that stands, and stops light.
+class Sightlines {
+  public:
+    explicit Sightlines(const Scene& scene)
+        : scene_(scene), worlds_(scene.environment), bodies_(bodiesOf(scene)) {
+        worlds_.prepareMesh();
+        const Box2& plan = scene.environment.limits();
+        reach_ = std::hypot(plan.width(), plan.depth());
+    }
+
+    /// Where rays from a sensor end, by their directions in its frame.
+    [[nodiscard]] std::vector<Point3> ends(const Sensor& sensor, const std::vector<Vec3>& rays,
+                                           double farthest, bool by_depth) const {
+        const Frame3 frame(sensor.pose);
+        Directions directions;
+        directions.resize(rays.size());
+        for (std::size_t i = 0; i < rays.size(); ++i) directions.set(i, frame * rays[i]);
+        std::vector<float> ranges(rays.size());
+        worlds_.mesh().cast(frame.origin, directions, reach_, ranges);
+        bodies_.shorten(frame.origin, directions, reach_, carrierOf(sensor), ranges);
+        std::vector<Point3> ends;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const double most = by_depth ? farthest / std::max(rays[i].x, 1e-3) : farthest;
+            double range = std::min({static_cast<double>(ranges[i]), most, reach_});
+            // Rooms need no ceiling, but nobody looks at what is above the walls.
+            const double rise = directions[i].z * range;
+            const double room = std::max(scene_.environment.height() - frame.origin.z, 0.0);
+            if (rise > room) range *= room / rise;
+            ends.push_back(frame.origin + range * directions[i]);
+        }
+        return ends;
+    }
+
+    [[nodiscard]] std::vector<float> ranges(const Sensor& laser) {
+        worlds_.prepare(laser.pose);
+        LaserCaster caster(worlds_, bodies_, laser, false, {});
+        Scan scan;
+        scan.pose = laser.pose;
+        caster.cast(scan);
+        return std::move(scan.ranges);
+    }
+
+  private:
+    const Scene& scene_;
+    Worlds worlds_;
+    MovingBodies bodies_;
+    double reach_ = 0;
+};
+
+/// A pyramid on any base.
+Mesh coneOf(Point3 apex, const std::vector<Point3>& base) {
+    Mesh mesh;
+    mesh.material = Material::View;
+    mesh.open = true;
+    mesh.vertices = base;
+    mesh.vertices.push_back(apex);
+    const auto count = static_cast<std::uint32_t>(base.size());
+    for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.push_back({i, (i + 1) % count, count});
+    return mesh;
+}
+
+void addCube(SightMarks& marks, const Sightlines& sightlines, const Sensor& sensor, Color color) {
+    const std::optional<FieldOfView> view = fieldOfView(sensor);
+    if (!view) return;
+    const bool is_camera = sensor.is<Camera>();
+    const std::vector<Vec3> rim = is_camera ? rimOf(sensor.as<Camera>()) : rimOf(*view);
+    std::vector<Point3> ends = sightlines.ends(sensor, rim, view->max_range, view->is_by_depth);
+    const Point3 apex = sensor.pose.position;
+    marks.paint.push_back({coneOf(apex, ends), linearOf(color), 0.13F, false});
+    if (is_camera)
+        for (std::size_t i = 0; i < ends.size(); i += kRimRays / 4)
+            marks.lines.push_back({{apex, ends[i]}, color.faded(0.9), 1.3});
+    ends.push_back(ends.front());
+    marks.lines.push_back({std::move(ends), color.faded(0.9), 1.3});
+}
+
+void addBeams(SightMarks& marks, Sightlines& sightlines, const Sensor& sensor, Color color) {
+    const auto& laser = sensor.as<Laser>();
+    const std::vector<float> ranges = sightlines.ranges(sensor);
+    const int step = 1 + (laser.beams - 1) / kMostBeams;
+    for (int i = 0; i < laser.beams; i += step) {
+        const auto k = static_cast<std::size_t>(i);
+        const double range = std::min(static_cast<double>(ranges[k]), laser.max_range);
+        const Point3 end = sensor.pose.position + range * sensor.pose.beam(laser.bearing(i));
+        marks.lines.push_back({{sensor.pose.position, end}, color.faded(0.6), 0.8});
+    }
+}
+
+}  // namespace
+
+Color sensorColor(std::size_t index) {
+    // Without black, which is a wall's.
+    constexpr std::array<std::size_t, 6> kOrder = {3, 0, 1, 2, 4, 6};
+    return seriesColor(kOrder[index % kOrder.size()]);
+}
+
+Rgb linearOf(const Color& color) {
+    const auto linear = [](double x) {
+        return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+    };
+    return {linear(color.red), linear(color.green), linear(color.blue)};
+}
+
+SightMarks sightMarks(const Scene& scene, bool beams) {
+    SightMarks marks;
+    Sightlines sightlines(scene);
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+        const Sensor& sensor = scene.sensors[i];
+        if (!sensor.is<Laser>())
+            addCube(marks, sightlines, sensor, sensorColor(i));
+        else if (beams && sensor.as<Laser>().sweep == SweepAxis::None)
+            addBeams(marks, sightlines, sensor, sensorColor(i));
+    }
+    return marks;
+}
+
+}  // namespace ispace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "draw/color.h"
+#include "draw/picture.h"
+#include "layout/scene.h"
+#include "render/render.h"
+
+namespace ispace {
+
+/// The colour of a sensor, by its index in Scene::sensors, in all that is drawn of it.
+Color sensorColor(std::size_t index);
+/// For what is rendered: linear.
+Rgb linearOf(const Color& color);
+
+/// What sensors look at, as drawn in space.
+struct SightMarks {
+    struct Line {
+        std::vector<Point3> places;
+        Color color;
+        double width = 1;  ///< thousandths of the picture's longer side
+    };
+    std::vector<PaintedMesh> paint;
+    std::vector<Line> lines;
+};
+
+/// View cubes of all sensors with an axis, up to what stops them (thesis, fig. 3.15), and with
+/// `beams` those of lasers, thinned where they would run together.
+SightMarks sightMarks(const Scene& scene, bool beams);
+
+/// What sensors cover, as colours on the floor.
+class FloorColors {
+  public:
+    /// The sensors' regions at their own height (lasers) or on the floor.
+    explicit FloorColors(const Scene& scene);
+    /// By which the floor's colour is multiplied there; white where nothing is covered.
+    [[nodiscard]] Rgb at(Point2 place) const;
+
+  private:
+    Box2 limits_;
+    double scale_ = 1;  // pixels a metre
+    Image image_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "draw/picture.h"
+#include "layout/scene.h"
+#include "view/eye.h"
+
+namespace ispace {
+
+/// What is drawn of what sensors see.
+enum class ShownSight {
+    None,
+    Beams,  ///< beams of lasers, and view cubes of all sensors with an axis
+    Area,   ///< the floor that each sensor covers in its colour, and view cubes
+};
+
+struct ViewOptions {
+    ShownSight show = ShownSight::None;
+    std::vector<std::string> highlight = {};  ///< ids of records that stand out
+    bool labels = true;                       ///< ids beside sensors and robots, dots for cameras
+    int samples = 4;                          ///< of each pixel, see RenderOptions
+    /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
+    std::vector<Point3> viewers = {};
+};
+
+/// A picture of a scene for people. The same pixels for any number of threads.
+/// \throws UsageError for unknown ids, FormatError for a texture that cannot be read
+Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
+                  const ViewOptions& options);
+
+/// What the user may not have meant, a phrase: the viewer is outside the room, or inside something
+/// solid; "" if all is well.
+std::string standpointWarning(const ViewSpec& spec, const Scene& scene);
+
+/// The scene with a robot elsewhere, and with it what it carries. \pre it has that robot
+void moveRobot(Scene& scene, std::size_t robot, const Pose2& pose);
+
+}  // namespace ispace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "layout/test_layout.h"
+#include "view/run_record.h"
+
+namespace ispace {
+namespace {
+
+using testing::scene;
+
+Scene room() {
+    return scene("ispace size=6,4 height=2.5\ncube id=crate at=2,0.5 size=0.6\n",
+                 "robot id=r1 at=-1,-1 heading=90\nlaser id=l1 on=r1 at=0.1,0,0.3\n"
+                 "camera id=c1 at=-2.8,1.8,2.2 heading=-35 tilt=-25\n");
+}
+
+constexpr PictureSize kSmall{160, 120};
+
+TEST(Eye, FindsWhatItsLinesOfSightMeet) {
+    const Scene scene = room();
+    for (const char* text : {"bird", "first-person:-2,0,20,-10", "omni:0.5,-1,1.2", "orbit",
+                             "orbit:30,20,9", "central:1,1", "robot:r1", "camera:c1"}) {
+        const Standpoint standpoint = standpointOf(parseView(text), scene, kSmall);
+        for (const PixelPoint pixel : {PixelPoint{3, 5}, {80.25, 60.5}, {140, 110}}) {
+            const auto line = standpoint.eye->viewpoint().sightLine(pixel);
+            ASSERT_TRUE(line) << text;
+            const auto found = standpoint.eye->find(line->origin + 2.5 * line->direction);
+            ASSERT_TRUE(found) << text;
+            EXPECT_NEAR(found->pixel.column, pixel.column, 1e-6) << text;
+            EXPECT_NEAR(found->pixel.row, pixel.row, 1e-6) << text;
+            EXPECT_NEAR(found->depth, 2.5, 1e-9) << text;
+        }
+    }
+}
+
+TEST(Eye, OrbitFillsThePictureWithTheRoom) {
+    const Scene scene = room();
+    for (const char* text : {"orbit", "orbit:10,15", "orbit:170,89"}) {
+        const Standpoint standpoint = standpointOf(parseView(text), scene, kSmall);
+        EXPECT_TRUE(standpoint.looks_in);
+        Box2 seen;
+        for (const double x : {-3, 3})
+            for (const double y : {-2, 2})
+                for (const double z : {0.0, 2.5}) {
+                    const auto found = standpoint.eye->find({x, y, z});
+                    ASSERT_TRUE(found) << text;
+                    seen.add({found->pixel.column, found->pixel.row});
+                }
+        EXPECT_GE(seen.low.x, 0);
+        EXPECT_GE(seen.low.y, 0);
+        EXPECT_LE(seen.high.x, kSmall.columns);
+        EXPECT_LE(seen.high.y, kSmall.rows);
+        EXPECT_GT(std::max(seen.width() / kSmall.columns, seen.depth() / kSmall.rows), 0.88);
+    }
+}
+
+TEST(Eye, SizesFollowTheView) {
+    const Scene scene = room();
+    const auto size = [&](const char* text, std::optional<PictureSize> wanted) {
+        return sizeOf(parseView(text), scene, wanted);
+    };
+    EXPECT_EQ(size("orbit", {}), (PictureSize{1280, 960}));
+    EXPECT_EQ(size("orbit", PictureSize{400, 0}), (PictureSize{400, 300}));
+    EXPECT_EQ(size("orbit", PictureSize{400, 100}), (PictureSize{400, 100}));
+    EXPECT_EQ(size("omni:0,0", PictureSize{400, 0}), (PictureSize{400, 200}));
+    EXPECT_EQ(size("camera:c1", {}), (PictureSize{640, 480}));
+    EXPECT_EQ(size("camera:c1", PictureSize{400, 100}), (PictureSize{133, 100}));
+}
+
+TEST(View, WallsInBetweenAreLeftOut) {
+    const Scene scene = room();
+    // From the right, where the wall hides the crate from who stands so low.
+    ViewOptions options;
+    options.highlight = {"crate"};
+    const Image picture = viewPicture(scene, parseView("orbit:0,5"), kSmall, options);
+    constexpr std::uint32_t kOutline = 0xFF7A00;
+    EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), kOutline), 20);
+}
+
+TEST(View, IsTheSameForAnyNumberOfThreads) {
+    const Scene scene = room();
+    ViewOptions options;
+    options.show = ShownSight::Area;
+    std::vector<Image> pictures;
+    for (const std::size_t threads : {1, 2}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        pictures.push_back(viewPicture(scene, parseView("orbit"), kSmall, options));
+    }
+    EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+}
+
+TEST(View, CoveredFloorHasTheSensorsColour) {
+    const Scene scene = room();
+    ViewOptions options;
+    options.labels = false;
+    const ViewSpec spec = parseView("bird");
+    const Image plain = viewPicture(scene, spec, kSmall, options);
+    options.show = ShownSight::Area;
+    const Image painted = viewPicture(scene, spec, kSmall, options);
+    const Standpoint standpoint = standpointOf(spec, scene, kSmall);
+    const auto at = [&](const Image& image, Point3 place) {
+        const PixelPoint pixel = standpoint.eye->find(place)->pixel;
+        return image.at(static_cast<int>(std::lround(pixel.column)),
+                        static_cast<int>(std::lround(pixel.row)));
+    };
+    const Point3 seen{0, 0, 0};
+    EXPECT_NE(at(plain, seen), at(painted, seen));
+    EXPECT_EQ(at(plain, {-2.9, -1.9, 0}), at(painted, {-2.9, -1.9, 0}));
+}
+
+TEST(View, NamesWhatItDoesNotKnow) {
+    const Scene scene = room();
+    const auto errorOf = [&](const std::string& text, const ViewOptions& options = {}) {
+        try {
+            viewPicture(scene, parseView(text), kSmall, options);
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(errorOf("robot:r2"), "no robot has the id `r2`, did you mean `r1`?");
+    EXPECT_EQ(errorOf("camera:l1"), "`l1` is no camera");
+    EXPECT_EQ(errorOf("central:crat"), "nothing has the id `crat`, did you mean `crate`?");
+    ViewOptions options;
+    options.highlight = {"crtae"};
+    EXPECT_EQ(errorOf("bird", options), "nothing has the id `crtae`, did you mean `crate`?");
+}
+
+TEST(View, WarnsOfViewersInTheWrongPlace) {
+    const Scene scene = room();
+    const auto warning = [&](const char* text) {
+        return standpointWarning(parseView(text), scene);
+    };
+    EXPECT_EQ(warning("first-person:0,0,0"), "");
+    EXPECT_EQ(warning("omni:9,0"), "omni: the viewer stands outside the room");
+    EXPECT_EQ(warning("omni:2,0.5,0.3"), "omni: the viewer stands inside something solid");
+}
+
+TEST(RunRecord, PutsRobotsWhereTheyWere) {
+    const RunRecord run(
+        "# history\nt,id,x,y,heading_deg,speed\n0,r1,0,0,0,0\n1,r1,1,0.5,90,0\n2,r1,2,1,180,0\n",
+        "robots.csv");
+    EXPECT_EQ(run.begin(), 0);
+    EXPECT_EQ(run.end(), 2);
+    Scene moved = room();
+    run.apply(moved, 1.5);
+    EXPECT_EQ(moved.robots[0].pose, (Pose2{{1, 0.5}, Angle::degrees(90)}));
+    // The laser rides along.
+    EXPECT_NEAR(moved.sensors[0].pose.position.x, 1, 1e-12);
+    EXPECT_NEAR(moved.sensors[0].pose.position.y, 0.6, 1e-12);
+}
+
+TEST(RunRecord, RefusesOtherFiles) {
+    const auto errorOf = [](const char* bytes) {
+        try {
+            RunRecord(bytes, "robots.csv");
+        } catch (const FormatError& error) {
+            return error.diagnostics().front().text();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(errorOf("a,b\n"),
+              "robots.csv:1: error: no record of a run: wanted the columns t,id,x,y,heading_deg,…, "
+              "as `simrun --record` writes");
+    EXPECT_EQ(errorOf("t,id,x,y,heading_deg\n0,r1,0,0,x\n"),
+              "robots.csv:2: error: not a pose: `0,r1,0,0,x`");
+    EXPECT_EQ(errorOf("t,id,x,y,heading_deg\n"), "robots.csv: error: holds no pose of a robot");
+    Scene scene = room();
+    EXPECT_THROW(RunRecord("t,id,x,y,heading_deg\n0,r9,0,0,0\n", "robots.csv").apply(scene, 0),
+                 FormatError);
+}
+
+}  // namespace
+}  // namespace ispace

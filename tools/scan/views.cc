@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/views.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "cli/command_line.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "scan/options.h"
+#include "view/run_record.h"
+
+namespace ispace {
+
+namespace {
+
+/// Views that are the same kind get numbers, so that each has a name for its file.
+void nameApart(std::vector<ViewSpec>& views) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const auto same = [&](const ViewSpec& view) { return view.name == views[i].name; };
+        const auto before =
+            std::count_if(views.begin(), views.begin() + static_cast<long>(i), same);
+        if (before > 0) views[i].name += "-" + std::to_string(before + 1);
+    }
+}
+
+/// The red points of a plan.
+std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& scene) {
+    std::vector<Point3> viewers;
+    for (const ViewSpec& view : views) {
+        const bool is_within = view.mode == ViewMode::FirstPerson || view.mode == ViewMode::Omni ||
+                               view.mode == ViewMode::Robot;
+        if (!is_within) continue;
+        if (const auto place = standpointOf(view, scene, {}).place) viewers.push_back(*place);
+    }
+    return viewers;
+}
+
+/// Where pictures go: one file, or a set of them.
+class PictureFiles {
+  public:
+    PictureFiles(const ScanToolOptions& options, int frames)
+        : output_(options.common.output), set_(OutputSet::of(output_)) {
+        std::vector<std::string> names;
+        for (const ViewSpec& view : options.view.views) names.push_back(view.name);
+        const std::size_t count = names.size() * static_cast<std::size_t>(frames);
+        if (set_) {
+            if (options.common.dependencies.wanted)
+                throw UsageError("-MD writes a rule for one product, and a set is many files");
+            set_->prepare(names, frames > 1, {".png"});
+        } else if (count > 1) {
+            throw UsageError(std::to_string(count) +
+                             " pictures: name a folder (-o DIR/) or a pattern (-o '%s" +
+                             (frames > 1 ? "-%04d" : "") + ".png'), where %s is the view's name" +
+                             (frames > 1 ? " and %d the frame's number" : ""));
+        } else {
+            refuseTerminal(output_, "png");
+        }
+    }
+
+    void write(const ViewSpec& view, int frame, const Image& image) const {
+        OutputFile file(set_ ? set_->fileOf(view.name, frame, ".png") : output_);
+        file.write(encodePng(image));
+        file.commit();
+    }
+
+  private:
+    std::string output_;
+    std::optional<OutputSet> set_;
+};
+
+}  // namespace
+
+void addViewOptions(CommandLine& line, ViewToolOptions& options) {
+    std::string forms;
+    for (const std::string& form : viewForms()) forms += (forms.empty() ? "" : ", ") + form;
+    line.ordered(
+        "--view", "SPEC",
+        [&options](const std::string& text) { options.views.push_back(parseView(text)); },
+        "draw a picture of the room instead of readings (repeatable): " + forms);
+    line.parsed(
+        "--show", "beams|area|none",
+        [&options](const std::string& text) { options.drawing.show = shownSight(text); },
+        "views: beams of lasers and view cubes of cameras, or the floor that each sensor covers "
+        "(default none)",
+        Enters::History);
+    line.texts("--highlight", "ID", options.drawing.highlight,
+               "views: make the record with this id stand out (repeatable)", Enters::History);
+    line.switchFlag("--labels", "--no-labels", options.labels,
+                    "views: ids of sensors and robots, red dots for cameras (default)",
+                    "views: no ids and dots", Enters::History);
+    line.file("--run", "DIR", options.run,
+              "views: robots as `simrun --record` has recorded them there, in --frames pictures "
+              "from beginning to end (default 1, the end)",
+              Enters::BaseName);
+}
+
+ShownSight shownSight(const std::string& text) {
+    if (text == "beams") return ShownSight::Beams;
+    if (text == "area") return ShownSight::Area;
+    if (text == "none") return ShownSight::None;
+    throw UsageError("`" + text + "` is none of beams|area|none");
+}
+
+void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
+    options.drawing.labels = options.labels.value_or(true);
+    nameApart(options.views);
+    if (!options.views.empty()) return;
+    for (const char* name : {"--show", "--highlight", "--labels", "--no-labels", "--run"})
+        if (line.given(name)) throw UsageError(std::string(name) + " is for pictures: give --view");
+}
+
+PictureSize pictureSize(const std::string& text) {
+    constexpr std::int64_t kLeast = 16, kMost = 16384;
+    const auto side = [&](const std::string& word) {
+        const std::optional<std::int64_t> pixels = parseInteger(word);
+        if (!pixels || *pixels < kLeast || *pixels > kMost)
+            throw UsageError("`" + text + "`: wanted W or W,H, each from " +
+                             std::to_string(kLeast) + " to " + std::to_string(kMost) + " pixels");
+        return static_cast<int>(*pixels);
+    };
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) return {side(text), 0};
+    return {side(text.substr(0, comma)), side(text.substr(comma + 1))};
+}
+
+void takeViews(const ScanCommand& command) {
+    const ScanToolOptions& options = command.options();
+    const SceneInput input = readScene({options.operands, options.any_environment, false, {}});
+    warn(options.common, "scan", input.environment.warnings);
+    Scene scene = input.scene;
+    std::vector<std::string> files = filesOf(input);
+    std::optional<RunRecord> run;
+    if (!options.view.run.empty()) {
+        const std::string file = (std::filesystem::path(options.view.run) / "robots.csv").string();
+        run.emplace(readAll(file), file);
+        files.push_back(file);
+    }
+    const int frames = options.frames.value_or(1);
+    const std::vector<ViewSpec>& views = options.view.views;
+    for (const ViewSpec& view : views)
+        if (const std::string phrase = standpointWarning(view, scene); !phrase.empty())
+            warn(options.common, "scan", phrase);
+    const PictureFiles pictures(options, frames);
+    const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
+    const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
+    progress->begin("pictures", count);
+    for (int frame = 0; frame < frames; ++frame) {
+        // One picture is of the end.
+        const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
+        if (run) run->apply(scene, run->begin() + share * (run->end() - run->begin()));
+        ViewOptions drawing = options.view.drawing;
+        drawing.viewers = viewersOf(views, scene);
+        for (const ViewSpec& view : views) {
+            const PictureSize size = sizeOf(view, scene, options.picture_size);
+            pictures.write(view, frame, viewPicture(scene, view, size, drawing));
+            progress->advance(1);
+        }
+    }
+    progress->end();
+    writeDependencies(options.common, files);
+    talk(options.common, "scan",
+         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
+}
+
+}  // namespace ispace
