@@ -44,10 +44,10 @@ struct Vec3f {
 
 /// Two unit vectors at right angles to a unit vector and to each other (Duff et al., Building an
 /// Orthonormal Basis, Revisited, 2017).
-struct Tangents {
+struct TangentFrame {
     Vec3f a, b;
 
-    explicit Tangents(const Vec3f& n) {
+    explicit TangentFrame(const Vec3f& n) {
         const float sign = std::copysign(1.0F, n.z), c = -1 / (sign + n.z), d = n.x * n.y * c;
         a = {1 + sign * n.x * n.x * c, sign * d, -sign * n.x};
         b = {d, sign + n.y * n.y * c, -n.y};
@@ -144,7 +144,7 @@ void LightTracer::towardsLamps(const LitPlaces& places, std::span<const float> d
 void LightTracer::towardsSun(const LitPlaces& places, std::span<const float> draws, int sample) {
     const Vec3 sun = Sky::sun();
     const Vec3f to{static_cast<float>(sun.x), static_cast<float>(sun.y), static_cast<float>(sun.z)};
-    const Tangents across(to);
+    const TangentFrame across(to);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         aimShadow(lane, places, 0, 0, 1, -1);
         strength_[lane] = {};
@@ -189,7 +189,7 @@ void LightTracer::addBounced(LitPlaces& places, std::span<const float> draws, in
                                                         static_cast<std::size_t>(sample))];
         const Stratum at(cellOf(kOrderC, lane, sample), draw[3], draw[4]);
         const Vec3f n{places.normal_x[lane], places.normal_y[lane], places.normal_z[lane]};
-        const Tangents across(n);
+        const TangentFrame across(n);
         const float radius = std::sqrt(at.u), turn = 2 * std::numbers::pi_v<float> * at.v;
         const float a = radius * std::cos(turn), b = radius * std::sin(turn);
         const float c = std::sqrt(std::max(0.0F, 1 - at.u));
