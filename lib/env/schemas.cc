@@ -118,6 +118,15 @@ KeySpec pathKey(std::string help) {
     return key;
 }
 
+/// `where`: how the picture lies on the body.
+KeySpec textureKey(const std::string& where) {
+    return {.name = "texture",
+            .type = KeyType::Text,
+            .help = "picture " + where +
+                    ", edge to edge: PNG, JPEG and others, relative to the folder of this file",
+            .role = Role::File};
+}
+
 Schema schema(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
     keys.insert(keys.begin(), idKey());
     return {std::move(keyword), type, std::move(help), std::move(keys)};
@@ -149,7 +158,9 @@ void addFloors(std::vector<Schema>& out) {
     out.push_back(schema(
         "floor", RecordType::Floor, "a covering of a part of the floor",
         {floorAtKey(), headingKey(), sizeKey("length,width of the covering", 2, 2, {8, 8}),
-         kindKey("one colour, or squares in two", {"plain", "checker"}), std::move(friction)}));
+         kindKey("one colour, or squares in two", {"plain", "checker"}), std::move(friction),
+         textureKey("that covers it once, its lower edge along the length, its top to the left of "
+                    "the heading")}));
 }
 
 void addWalls(std::vector<Schema>& out) {
@@ -161,12 +172,15 @@ void addWalls(std::vector<Schema>& out) {
                {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"),
                 atKey(), headingKey(), std::move(wall_size), heightKey(kWallHeight),
                 thicknessKey("thickness where size gives none"),
-                kindKey("what it is made of", {"plain", "brick", "wood", "concrete"})}));
+                kindKey("what it is made of", {"plain", "brick", "wood", "concrete"}),
+                textureKey("that covers each of its two faces once, upright, from neither side "
+                           "mirrored")}));
     out.push_back(schema(
         "fence", RecordType::Wall, "walls along a path, as drawn in the fast construct mode",
         {pathKey("corners of the mid-line, two or more"), pointKey("from", "one end"),
          pointKey("to", "the other end"), flagKey("closed", "join the last point to the first"),
-         heightKey(kWallHeight, "height"), thicknessKey("thickness")}));
+         heightKey(kWallHeight, "height"), thicknessKey("thickness"),
+         textureKey("that covers both faces of each of its walls once, upright")}));
 }
 
 KeySpec countKey(std::string name, std::string help, double standard, double most) {
@@ -294,15 +308,20 @@ void addThings(std::vector<Schema>& out) {
            kindKey("on four legs, or on panels down to the floor", {"legs", "closed"})});
     other("chair", "a chair; its back is behind, against the heading",
           {sizeKey(box, 2, 3, {0.45, 0.45}), heightKey(0.85)});
-    other("barrier", "a thin upright board", {sizeKey(box, 2, 3, {1.2, 0.05}), heightKey(1)});
+    other("barrier", "a thin upright board",
+          {sizeKey(box, 2, 3, {1.2, 0.05}), heightKey(1),
+           textureKey("that covers each of its two long sides once, upright")});
     other("boxes", "boxes upon each other",
           {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), heightKey(0.9),
            countKey("count", "how many", 3, 100)});
     other("screen", "a projection screen on two feet; its length lies along the heading",
-          {sizeKey(box, 2, 3, {1.8, 0.5}), heightKey(2)});
+          {sizeKey(box, 2, 3, {1.8, 0.5}), heightKey(2),
+           textureKey("that covers each side of its board once, upright")});
     other("cube", "a box",
           {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
-           heightKey("height where size gives none; without it the length")});
+           heightKey("height where size gives none; without it the length"),
+           textureKey("that covers each of its four sides once, upright, and its top, with the "
+                      "picture's right towards the heading")});
     other("cylinder", "an upright cylinder, elliptic where length and width differ",
           {sizeKey(round, 1, 3, {0.3, 0.3}), heightKey(0.5)});
 }

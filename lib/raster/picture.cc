@@ -224,7 +224,10 @@ std::string foreignPicture(std::string_view bytes) {
     return format == nullptr ? "" : format->name;
 }
 
-GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
+namespace {
+
+/// Blue first.
+DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, std::int64_t most) {
     const auto fail = [&name](const std::string& message) {
         throw FormatError(Diagnostic{displayName(name), 0, 0, message});
     };
@@ -236,9 +239,8 @@ GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
         fail("bad " + kind + " picture: its header says no size; is the file whole?");
     const auto [width, height] = *size;
     const std::string extent = std::to_string(width) + " x " + std::to_string(height) + " pixels";
-    if (width > kMaxDecodedPixels || height > kMaxDecodedPixels ||
-        width * height > kMaxDecodedPixels)
-        fail(extent + ", wanted at most " + std::to_string(kMaxDecodedPixels));
+    if (width > most || height > most || width * height > most)
+        fail(extent + ", wanted at most " + std::to_string(most));
     if (kind == "JPEG" && !isWholeJpeg(bytes)) fail("truncated JPEG picture");
     DecodedPicture decoded;
     decoder(kind, name)(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), decoded);
@@ -246,7 +248,13 @@ GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
     if (decoded.width != width || decoded.height != height)
         fail("bad " + kind + " picture: its header says " + extent + ", it holds " +
              std::to_string(decoded.width) + " x " + std::to_string(decoded.height));
-    return pictureOf(decoded);
+    return decoded;
+}
+
+}  // namespace
+
+GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
+    return pictureOf(decodeForeign(bytes, name, kMaxDecodedPixels));
 }
 
 bool isPicture(std::string_view bytes) {
@@ -263,6 +271,44 @@ GreyPicture parsePicture(std::string_view bytes, const std::string& name) {
             Diagnostic{displayName(name), 0, 0,
                        "a GIF picture: convert it, for example with `convert FILE map.png`"});
     return parsePgm(bytes, name);
+}
+
+namespace {
+
+ColorPicture coloured(const DecodedPicture& decoded, bool blue_first) {
+    ColorPicture picture{decoded.width, decoded.height, {}};
+    const auto channels = static_cast<std::size_t>(decoded.channels);
+    const std::vector<std::uint8_t>& samples = decoded.samples;
+    picture.rgba.reserve(samples.size() / channels * 4);
+    for (std::size_t i = 0; i + channels <= samples.size(); i += channels) {
+        const std::size_t green = channels == 1 ? i : i + 1, last = channels == 1 ? i : i + 2;
+        const std::uint8_t pixel[] = {samples[blue_first ? last : i], samples[green],
+                                      samples[blue_first ? i : last],
+                                      channels == 4 ? samples[i + 3] : std::uint8_t{255}};
+        picture.rgba.insert(picture.rgba.end(), std::begin(pixel), std::end(pixel));
+    }
+    return picture;
+}
+
+ColorPicture coloured(const GreyPicture& grey) {
+    ColorPicture picture{grey.width, grey.height, {}};
+    picture.rgba.reserve(grey.samples.size() * 4);
+    for (const std::uint16_t sample : grey.samples) {
+        const auto value = static_cast<std::uint8_t>(std::lround(255.0 * sample / grey.max_value));
+        const std::uint8_t pixel[] = {value, value, value, 255};
+        picture.rgba.insert(picture.rgba.end(), std::begin(pixel), std::end(pixel));
+    }
+    return picture;
+}
+
+}  // namespace
+
+ColorPicture parseColorPicture(std::string_view bytes, const std::string& name) {
+    if (isPng(bytes)) return coloured(decodePng(bytes, name, kMaxColorPixels), false);
+    if (!foreignPicture(bytes).empty())
+        return coloured(decodeForeign(bytes, name, kMaxColorPixels), true);
+    if (!isPicture(bytes)) throw FormatError(Diagnostic{displayName(name), 0, 0, "not a picture"});
+    return coloured(parsePgm(bytes, name));
 }
 
 Cell classify(int sample, int max_value, const OccupancyRule& rule) {

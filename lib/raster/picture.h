@@ -29,6 +29,18 @@ bool isPicture(std::string_view bytes);
 /// \throws FormatError
 GreyPicture parsePicture(std::string_view bytes, const std::string& name);
 
+/// A coloured picture, row 0 on top: red, green, blue and opacity of each pixel.
+struct ColorPicture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// Larger coloured pictures are refused before they are decoded.
+constexpr std::int64_t kMaxColorPixels = 40'000'000;
+
+/// Reads the same formats with their colours. \throws FormatError
+ColorPicture parseColorPicture(std::string_view bytes, const std::string& name);
+
 /// Pictures with more pixels are refused before anything is allocated.
 constexpr std::int64_t kMaxPgmPixels = 400'000'000;
 
@@ -42,6 +54,11 @@ GreyPicture parsePgm(std::string_view bytes, const std::string& name);
 constexpr std::int64_t kMaxPngPixels = 100'000'000;
 
 bool isPng(std::string_view bytes);
+
+struct DecodedPicture;
+/// The samples of a PNG picture, red first. \throws FormatError
+DecodedPicture decodePng(std::string_view bytes, const std::string& name,
+                         std::int64_t most = kMaxPngPixels);
 
 /// Reads a PNG picture of any kind; colours with 16 bits are rounded to eight. Colour space
 /// information (gAMA, iCCP, …) is ignored: maps store values, not colours.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "raster/module/decoded_picture.h"
 #include "raster/picture.h"
 
 namespace ispace {
@@ -62,12 +63,12 @@ Chunks plainChunks(std::string_view bytes, const std::string& name) {
 }
 
 /// Throws if the picture is too large, or so large that the file cannot hold it.
-void checkSize(const Chunks& chunks, const std::string& name) {
+void checkSize(const Chunks& chunks, const std::string& name, std::int64_t most) {
     const std::string_view header = chunks.header;
     const std::int64_t width = bigEndian(header), height = bigEndian(header.substr(4));
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
-    if (width > kMaxPngPixels || height > kMaxPngPixels || width * height > kMaxPngPixels)
-        fail(name, size + ", wanted at most " + std::to_string(kMaxPngPixels));
+    if (width > most || height > most || width * height > most)
+        fail(name, size + ", wanted at most " + std::to_string(most));
     constexpr std::array<std::int64_t, 7> kChannels{1, 1, 3, 1, 2, 1, 4};  // by colour type
     const auto color = static_cast<std::size_t>(static_cast<unsigned char>(header[9]));
     const std::int64_t channels = color < kChannels.size() ? kChannels[color] : 1;
@@ -96,10 +97,10 @@ class PngImage {
 
 bool isPng(std::string_view bytes) { return bytes.starts_with(kSignature); }
 
-GreyPicture parsePng(std::string_view bytes, const std::string& name) {
+DecodedPicture decodePng(std::string_view bytes, const std::string& name, std::int64_t most) {
     if (!isPng(bytes)) fail(name, "not a PNG picture");
     const Chunks chunks = plainChunks(bytes, name);
-    checkSize(chunks, name);
+    checkSize(chunks, name, most);
 
     PngImage image;
     const auto bad = [&] { fail(name, "bad PNG picture: " + printable(image->message)); };
@@ -110,20 +111,29 @@ GreyPicture parsePng(std::string_view bytes, const std::string& name) {
     image->format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
     // Without it libpng takes 16-bit samples as linear light and bends them.
     image->flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
-    const std::size_t channels = has_alpha ? 4 : 3;
-    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(*image.get()));
-    if (png_image_finish_read(image.get(), nullptr, pixels.data(), 0, nullptr) == 0) bad();
-
-    GreyPicture picture;
+    DecodedPicture picture;
+    picture.channels = has_alpha ? 4 : 3;
+    picture.samples.resize(PNG_IMAGE_SIZE(*image.get()));
+    if (png_image_finish_read(image.get(), nullptr, picture.samples.data(), 0, nullptr) == 0) bad();
     picture.width = static_cast<int>(image->width);
     picture.height = static_cast<int>(image->height);
+    return picture;
+}
+
+GreyPicture parsePng(std::string_view bytes, const std::string& name) {
+    const DecodedPicture decoded = decodePng(bytes, name);
+    const std::vector<std::uint8_t>& pixels = decoded.samples;
+    const auto channels = static_cast<std::size_t>(decoded.channels);
+    GreyPicture picture;
+    picture.width = decoded.width;
+    picture.height = decoded.height;
     picture.max_value = 3 * 255;
     picture.samples.reserve(pixels.size() / channels);
-    if (has_alpha) picture.opacity.reserve(pixels.size() / channels);
+    if (channels == 4) picture.opacity.reserve(pixels.size() / channels);
     for (std::size_t i = 0; i < pixels.size(); i += channels) {
         picture.samples.push_back(
             static_cast<std::uint16_t>(pixels[i] + pixels[i + 1] + pixels[i + 2]));
-        if (has_alpha) picture.opacity.push_back(pixels[i + 3]);
+        if (channels == 4) picture.opacity.push_back(pixels[i + 3]);
     }
     return picture;
 }

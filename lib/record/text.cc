@@ -327,6 +327,17 @@ class Sha256 {
     SHA256_CTX context_{};
 };
 
+/// Pictures do not change what is measured: they are left out, and with them names that depend on
+/// the folder.
+Record withoutPicture(Record record) {
+    record.erase("texture");
+    return record;
+}
+
+bool hasPicture(const Record& record) {
+    return record.schema().find("texture") != nullptr && record.has("texture");
+}
+
 /// A record of a loaded file with the digest of its content in place of the file's name and of
 /// where files that it names may be.
 /// \pre it is loaded
@@ -361,10 +372,12 @@ std::string environmentDigest(std::span<const Record> records) {
     std::string text;
     for (const Record& record : records) {
         if (!record.schema().isEnvironment()) continue;
-        if (record.mesh() == nullptr)
-            appendRecord(text, record);
-        else
+        if (record.mesh() != nullptr)
             appendRecord(text, byContent(record));
+        else if (hasPicture(record))
+            appendRecord(text, withoutPicture(record));
+        else
+            appendRecord(text, record);
         text += '\n';
         if (text.size() < kBlock) continue;
         digest.add(text);

@@ -105,6 +105,9 @@ class RenderScene {
 Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
                  const RenderOptions& options = {});
 
+/// The files of the textures that a scene names, each once: what a picture depends on.
+std::vector<std::string> textureFiles(const Scene& scene);
+
 /// Records of the sensor and of the robot that carries it, see RenderOptions::hidden.
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor);
 

@@ -86,6 +86,7 @@ class StillBuilder {
 
     StillSurfaces build() {
         for (const Element& element : scene_.environment.elements()) addElement(element);
+        findings_.throwIfAny();
         solid_.add(floorMesh(scene_.environment.indoor()), {0, paintOf(Material::Floor)},
                    still_.shift);
         for (const PaintedMesh& paint : options_.paint)
@@ -109,11 +110,44 @@ class StillBuilder {
         return tint == tints_.end() ? paintOf(material) : tint->second;
     }
 
+    /// First and one past the last.
+    struct FaceRange {
+        std::size_t begin, end;
+    };
+
+    FaceRange addFaces(const Element& element) {
+        const FaceRange none{still_.faces.size(), still_.faces.size()};
+        const Record& record = element.record;
+        if (!hasTexture(record)) return none;
+        const std::uint32_t texture = reader_.read(record, still_.textures, findings_);
+        for (TexturedFace& face : texturedFaces(element)) {
+            face.corner = face.corner + still_.shift;
+            face.texture = texture;
+            still_.faces.push_back(face);
+        }
+        return {none.begin, still_.faces.size()};
+    }
+
+    void assignFaces(FinishedSoup& soup, std::size_t first, const FaceRange& faces) const {
+        for (std::size_t i = first; i < soup.finishes.size() && faces.begin < faces.end; ++i) {
+            const auto& [a, b, c] = soup.triangles.triangles[i];
+            const std::vector<Point3>& corners = soup.triangles.vertices;
+            for (std::size_t face = faces.begin; face < faces.end; ++face)
+                if (still_.faces[face].holds(corners[a], corners[b], corners[c])) {
+                    soup.finishes[i].face = static_cast<std::uint32_t>(face);
+                    break;
+                }
+        }
+    }
+
     void addElement(const Element& element) {
         const auto known = labels_.find(element.id);
         const std::uint32_t label = known == labels_.end() ? 0 : known->second;
+        const FaceRange faces = addFaces(element);
         const auto add = [&](FinishedSoup& soup, const Mesh& mesh) {
+            const std::size_t first = soup.finishes.size();
             soup.add(mesh, {label, paintFor(label, mesh.material)}, still_.shift);
+            assignFaces(soup, first, faces);
         };
         const auto addPart = [&](FinishedSoup& soup, const Body& part) {
             for (const Mesh& mesh : meshesOf(part, Surfaces::Solid)) add(soup, mesh);
@@ -149,6 +183,7 @@ class StillBuilder {
         Covering covering = coveringOf(pattern, label, still_.shift);
         if (const auto tint = tints_.find(label); tint != tints_.end())
             std::fill(covering.paints.begin(), covering.paints.end(), tint->second);
+        if (faces.begin < faces.end) covering.face = static_cast<std::uint32_t>(faces.begin);
         still_.coverings.push_back(std::move(covering));
     }
 
@@ -188,6 +223,8 @@ class StillBuilder {
     const RenderSceneOptions& options_;
     std::unordered_map<std::string, std::uint32_t> labels_;
     std::unordered_map<std::size_t, std::uint32_t> tints_;  // by label
+    TextureReader reader_;
+    Diagnostics findings_;
     FinishedSoup solid_, glass_, paint_;
     StillSurfaces still_;
 };
@@ -241,7 +278,7 @@ Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
     if (!still->paints[finish.paint].is_floor || finish.label != 0) return finish;
     for (std::size_t i = still->coverings.size(); i-- > 0;)
         if (const auto paint = still->coverings[i].paintAt(place.onFloor()))
-            return {still->coverings[i].label, *paint, Finish::kNoFace};
+            return {still->coverings[i].label, *paint, still->coverings[i].face};
     return finish;
 }
 

@@ -10,6 +10,7 @@
 #include "render/lights.h"
 #include "render/render.h"
 #include "render/surface_set.h"
+#include "render/texture.h"
 
 namespace ispace {
 
@@ -28,6 +29,7 @@ struct Covering {
     Vec2 along, across;  ///< whole extents, at right angles
     std::size_t columns = 1;
     std::vector<std::uint32_t> paints;  ///< of the squares, row by row
+    std::uint32_t face = Finish::kNoFace;
 
     /// The paint at a place; nothing beside it.
     [[nodiscard]] std::optional<std::uint32_t> paintAt(Point2 place) const;
@@ -47,6 +49,8 @@ struct StillSurfaces {
     Vec3 shift;                       ///< takes places of the world to those of the surfaces
     std::vector<Paint> paints;        ///< those of Material first, in its order
     std::vector<Covering> coverings;  ///< later ones lie on earlier ones
+    std::vector<Texture> textures;
+    std::vector<TexturedFace> faces;  ///< relative to the middle of the plan
     std::optional<SurfaceSet> solid;  ///< what stops light
     std::optional<SurfaceSet> glass;  ///< clear one, which light passes
     std::optional<SurfaceSet> paint;  ///< see PaintedMesh

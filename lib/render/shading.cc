@@ -66,6 +66,9 @@ SurfacePoint Shading::surface(const SightTile& tile, std::size_t lane) const {
     if (set.triangles().isRound(tile.triangle[lane])) point.lift = 3e-4;
     const Paint& look = scene_.still->paints[finish.paint];
     point.color = look.color;
+    if (finish.face != Finish::kNoFace)
+        point.color = scene_.still->faces[finish.face].colorAt(point.place, tile.direction(lane),
+                                                               scene_.still->textures, look.color);
     if (look.is_ceiling && point.normal.z < 0 && light_ == Illumination::Lamps &&
         scene_.still->lamps.shinesAt(static_cast<float>(point.place.x),
                                      static_cast<float>(point.place.y)))
