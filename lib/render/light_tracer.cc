@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/simd.h"
 
 namespace ispace {
 
@@ -11,32 +12,38 @@ namespace {
 
 /// Surfaces throw back this share of the light of a bright room, less where they are near: corners
 /// and what stands close together is darker.
-constexpr float kBounce = 0.78F, kNearBounce = 0.30F, kNear = 0.9F;
+constexpr float kBounce = 0.90F, kNearBounce = 0.35F, kNear = 0.9F;
 /// Where there is no ceiling, lamps are thought to have a bright one above them.
 constexpr float kOpen = 0.50F;
 /// Clear glass lets this much light pass.
 constexpr Rgb kGlass{0.80F, 0.88F, 0.88F};
 
-/// Orders that tell the strata of a tile's pixels apart, each a magic square's: every row, column
-/// and quarter has high and low ones.
-constexpr std::array<std::uint8_t, kLanes> kOrderA{0, 8,  2, 10, 12, 4, 14, 6,
-                                                   3, 11, 1, 9,  15, 7, 13, 5};
-constexpr std::array<std::uint8_t, kLanes> kOrderB{5,  14, 3, 8, 10, 1,  12, 7,
-                                                   15, 4,  9, 2, 0,  11, 6,  13};
-constexpr std::array<std::uint8_t, kLanes> kOrderC{9, 3, 12, 6,  4,  14, 1,  11,
-                                                   2, 8, 7,  13, 15, 5,  10, 0};
+/// The point of a net (Sobol) that a pixel of a tile takes: neighbours take points far apart.
+constexpr std::array<std::uint8_t, kLanes> kOrder{0, 8,  2, 10, 12, 4, 14, 6,
+                                                  3, 11, 1, 9,  15, 7, 13, 5};
+using Directions4 = std::array<unsigned, 4>;
+constexpr std::array<Directions4, 3> kNet{{{8, 4, 2, 1}, {8, 12, 10, 15}, {8, 12, 6, 9}}};
 
-/// Where in a unit square, cut into 4 x 4 cells, a sample lies.
-struct Stratum {
-    float u, v;
-
-    Stratum(unsigned cell, float a, float b)
-        : u((static_cast<float>(cell & 3U) + a) / 4), v((static_cast<float>(cell >> 2U) + b) / 4) {}
-};
-
-unsigned cellOf(const std::array<std::uint8_t, kLanes>& order, std::size_t lane, int sample) {
-    return (order[lane] + 5U * static_cast<unsigned>(sample)) % 16U;
+/// One coordinate of the point of a net for a sample, somewhere in its sixteenth.
+float inNet(std::size_t dimension, std::size_t lane, int sample, float within) {
+    const unsigned point = (kOrder[lane] + 5U * static_cast<unsigned>(sample)) % 16U;
+    unsigned cell = 0;
+    for (unsigned bit = 0; bit < 4; ++bit)
+        if ((point >> bit & 1U) != 0) cell ^= kNet[dimension][bit];
+    return (static_cast<float>(cell) + within) / 16;
 }
+
+/// A place in the unit disc.
+struct InDisc {
+    float a, b, height;  ///< height: of the half sphere over it
+
+    InDisc(float u, float v) : height(std::sqrt(std::max(0.0F, 1 - u))) {
+        const float radius = std::sqrt(u);
+        const auto turn = static_cast<std::uint32_t>(v * 0x1p32F);
+        a = radius * simd::sineOfTurn(turn + 0x40000000U);
+        b = radius * simd::sineOfTurn(turn);
+    }
+};
 
 struct Vec3f {
     float x, y, z;
@@ -76,7 +83,8 @@ LightTracer::LightTracer(const RenderScene::Data& scene, Illumination light, int
 }
 
 void LightTracer::gather(LitPlaces& places, std::span<const float> draws) {
-    places.light.fill({});
+    places.direct.fill({});
+    places.bounced.fill({});
     for (int sample = 0; sample < samples_; ++sample) {
         if (light_ == Illumination::Lamps)
             towardsLamps(places, draws, sample);
@@ -86,8 +94,11 @@ void LightTracer::gather(LitPlaces& places, std::span<const float> draws) {
         addBounced(places, draws, sample);
     }
     const float share = 1 / static_cast<float>(samples_);
-    for (Rgb& light : places.light)
-        for (float& value : light) value *= share;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        for (std::size_t k = 0; k < 3; ++k) {
+            places.direct[lane][k] *= share;
+            places.bounced[lane][k] *= share;
+        }
 }
 
 void LightTracer::aimShadow(std::size_t lane, const LitPlaces& places, float x, float y, float z,
@@ -130,13 +141,13 @@ void LightTracer::towardsLamps(const LitPlaces& places, std::span<const float> d
         if (!(sum > 0)) continue;
         const float* const draw = &draws[kLightDraws * (lane * static_cast<std::size_t>(samples_) +
                                                         static_cast<std::size_t>(sample))];
-        float left = sum / 16 * (static_cast<float>(cellOf(kOrderA, lane, sample)) + draw[0]);
+        float left = sum * inNet(0, lane, sample, draw[0]);
         std::size_t chosen = 0;
         while (chosen + 1 < near.size() && (left -= weights[chosen]) > 0) ++chosen;
-        const Stratum at(cellOf(kOrderB, lane, sample), draw[1], draw[2]);
+        const float u = inNet(1, lane, sample, draw[1]), v = inNet(2, lane, sample, draw[2]);
         const Lamps::Lamp& lamp = lamps.all()[near[chosen]];
-        aimShadow(lane, places, lamp.x - x + Lamps::kHalf * (2 * at.u - 1),
-                  lamp.y - y + Lamps::kHalf * (2 * at.v - 1), z, 0.999F);
+        aimShadow(lane, places, lamp.x - x + Lamps::kHalf * (2 * u - 1),
+                  lamp.y - y + Lamps::kHalf * (2 * v - 1), z, 0.999F);
         strength_[lane] = {sum, sum, 0.97F * sum};
     }
 }
@@ -154,10 +165,8 @@ void LightTracer::towardsSun(const LitPlaces& places, std::span<const float> dra
         if (facing <= 0) continue;
         const float* const draw = &draws[kLightDraws * (lane * static_cast<std::size_t>(samples_) +
                                                         static_cast<std::size_t>(sample))];
-        const Stratum at(cellOf(kOrderB, lane, sample), draw[1], draw[2]);
-        const float radius = Sky::kSunRadius * std::sqrt(at.u);
-        const float turn = 2 * std::numbers::pi_v<float> * at.v;
-        const float a = radius * std::cos(turn), b = radius * std::sin(turn);
+        const InDisc at(inNet(1, lane, sample, draw[1]), inNet(2, lane, sample, draw[2]));
+        const float a = Sky::kSunRadius * at.a, b = Sky::kSunRadius * at.b;
         aimShadow(lane, places, to.x + a * across.a.x + b * across.b.x,
                   to.y + a * across.a.y + b * across.b.y, to.z + a * across.a.z + b * across.b.z,
                   1e30F);
@@ -179,7 +188,7 @@ void LightTracer::addDirect(LitPlaces& places) {
         if (!(shadows_.tfar[lane] > 0)) continue;
         const bool is_behind = has_glass && !(through.tfar[lane] > 0);
         for (std::size_t k = 0; k < 3; ++k)
-            places.light[lane][k] += strength_[lane][k] * (is_behind ? kGlass[k] : 1);
+            places.direct[lane][k] += strength_[lane][k] * (is_behind ? kGlass[k] : 1);
     }
 }
 
@@ -187,12 +196,10 @@ void LightTracer::addBounced(LitPlaces& places, std::span<const float> draws, in
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const float* const draw = &draws[kLightDraws * (lane * static_cast<std::size_t>(samples_) +
                                                         static_cast<std::size_t>(sample))];
-        const Stratum at(cellOf(kOrderC, lane, sample), draw[3], draw[4]);
+        const InDisc at(inNet(1, lane, sample, draw[3]), inNet(2, lane, sample, draw[4]));
         const Vec3f n{places.normal_x[lane], places.normal_y[lane], places.normal_z[lane]};
         const TangentFrame across(n);
-        const float radius = std::sqrt(at.u), turn = 2 * std::numbers::pi_v<float> * at.v;
-        const float a = radius * std::cos(turn), b = radius * std::sin(turn);
-        const float c = std::sqrt(std::max(0.0F, 1 - at.u));
+        const float a = at.a, b = at.b, c = at.height;
         RTCRay16& ray = hits_.ray;
         ray.org_x[lane] = places.x[lane];
         ray.org_y[lane] = places.y[lane];
@@ -213,7 +220,7 @@ void LightTracer::addBounced(LitPlaces& places, std::span<const float> draws, in
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         if (!places.is_wanted[lane]) continue;
         const Rgb more = bounced(lane);
-        for (std::size_t k = 0; k < 3; ++k) places.light[lane][k] += more[k];
+        for (std::size_t k = 0; k < 3; ++k) places.bounced[lane][k] += more[k];
     }
 }
 

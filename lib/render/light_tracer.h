@@ -18,7 +18,8 @@ struct alignas(64) LitPlaces {
     std::array<bool, kLanes> is_wanted{};
     Lanes x{}, y{}, z{};                       ///< a hair above the surface
     Lanes normal_x{}, normal_y{}, normal_z{};  ///< unit, towards the viewer
-    std::array<Rgb, kLanes> light{};           ///< what a white surface there shines with
+    /// What a white surface there shines with, by lamps or the sun, and by all else.
+    std::array<Rgb, kLanes> direct{}, bounced{};
 
     void set(std::size_t lane, Point3 place, Vec3 normal, double lift);
 };
@@ -33,8 +34,8 @@ class LightTracer {
     LightTracer(const RenderScene::Data& scene, Illumination light, int samples);
 
     [[nodiscard]] int samples() const { return samples_; }
-    /// Fills in light. Lanes stand for the pixels of a tile of 4 x 4: their samples are strata of
-    /// one another, so that the mean over any such square has little noise.
+    /// Fills in the light. Lanes stand for the pixels of a tile of 4 x 4, whose samples are points
+    /// of one net: the mean over any such square has little noise.
     /// `draws` has kLightDraws numbers for each sample of each lane.
     void gather(LitPlaces& places, std::span<const float> draws);
 

@@ -21,9 +21,12 @@ namespace {
 /// The light on what a pixel's centre shows.
 struct PixelLight {
     std::array<float, 3> place{}, normal{};
-    Rgb light{};
+    Rgb direct{}, bounced{};
     float depth = -1;  ///< below 0: there is nothing
 
+    [[nodiscard]] Rgb light() const {
+        return {direct[0] + bounced[0], direct[1] + bounced[1], direct[2] + bounced[2]};
+    }
     /// True if a surface there goes on at another place: that then has the same light.
     [[nodiscard]] bool reaches(const std::array<float, 3>& to,
                                const std::array<float, 3>& facing) const {
@@ -115,13 +118,15 @@ class TileWorker {
             const SurfacePoint point = job_.shading.surface(tile_, lane);
             places_.set(lane, point.place, point.normal, point.lift);
             const double depth = length(point.place - tile_.origin(lane));
-            job_.raw[pixel] = {
-                floats(point.place), floats(point.normal), {}, static_cast<float>(depth)};
+            job_.raw[pixel] = {.place = floats(point.place),
+                               .normal = floats(point.normal),
+                               .depth = static_cast<float>(depth)};
         });
         drawNumbers(column, row);
         lights_.gather(places_, draws_);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-            job_.raw[pixel].light = places_.light[lane];
+            job_.raw[pixel].direct = places_.direct[lane];
+            job_.raw[pixel].bounced = places_.bounced[lane];
         });
     }
 
@@ -215,7 +220,7 @@ class TileWorker {
             const int i = static_cast<int>(column) + dx, j = static_cast<int>(row) + dy;
             if (i < 0 || j < 0 || i >= job_.out.columns || j >= job_.out.rows) continue;
             const PixelLight& beside = job_.smooth[job_.pixel(i, j)];
-            if (beside.reaches(place, normal)) return beside.light;
+            if (beside.reaches(place, normal)) return beside.light();
         }
         return lightAlone(point, column, row);
     }
@@ -231,8 +236,9 @@ class TileWorker {
             places_.set(lane, point.place, point.normal, point.lift);
         lights_.gather(places_, draws_);
         Rgb mean{};
-        for (const Rgb& light : places_.light)
-            for (std::size_t k = 0; k < 3; ++k) mean[k] += light[k] / kLanes;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            for (std::size_t k = 0; k < 3; ++k)
+                mean[k] += (places_.direct[lane][k] + places_.bounced[lane][k]) / kLanes;
         return mean;
     }
 
@@ -253,25 +259,53 @@ class TileWorker {
     int drawn_column_ = -1, drawn_row_ = -1;
 };
 
-/// The mean light about a pixel: five by five, the outermost for half, so that each stratum of a
-/// tile counts the same (Keller and Heidrich, Interleaved Sampling, 2001).
-Rgb meanLight(const Job& job, int column, int row) {
-    constexpr int kReach = 2;
-    const PixelLight& middle = job.raw[job.pixel(column, row)];
-    Rgb sum{};
+/// The light about a pixel: the mean of what lies `step` and two steps aside, the outermost for
+/// half, so that each point of a tile's net counts the same (Keller and Heidrich, Interleaved
+/// Sampling, 2001), and then each tile about (Dammertz et al., Edge-Avoiding A-Trous Wavelet
+/// Transform, 2010).
+PixelLight meanLight(const Job& job, const std::vector<PixelLight>& lights, int column, int row,
+                     int step) {
+    PixelLight mean = lights[job.pixel(column, row)];
+    if (mean.depth < 0) return mean;
+    Rgb direct{}, bounced{};
     float whole = 0;
-    for (int y = std::max(0, row - kReach); y <= std::min(job.out.rows - 1, row + kReach); ++y)
-        for (int x = std::max(0, column - kReach);
-             x <= std::min(job.out.columns - 1, column + kReach); ++x) {
-            const PixelLight& other = job.raw[job.pixel(x, y)];
-            if (!middle.reaches(other.place, other.normal) || other.depth < 0) continue;
-            const float weight = (std::abs(x - column) == kReach ? 0.5F : 1.0F) *
-                                 (std::abs(y - row) == kReach ? 0.5F : 1.0F);
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * other.light[k];
+    for (int j = -2; j <= 2; ++j)
+        for (int i = -2; i <= 2; ++i) {
+            const int x = column + step * i, y = row + step * j;
+            if (x < 0 || y < 0 || x >= job.out.columns || y >= job.out.rows) continue;
+            const PixelLight& other = lights[job.pixel(x, y)];
+            if (other.depth < 0 || !mean.reaches(other.place, other.normal)) continue;
+            const float weight =
+                (std::abs(i) == 2 ? 0.5F : 1.0F) * (std::abs(j) == 2 ? 0.5F : 1.0F);
+            for (std::size_t k = 0; k < 3; ++k) {
+                direct[k] += weight * other.direct[k];
+                bounced[k] += weight * other.bounced[k];
+            }
             whole += weight;
         }
-    for (float& value : sum) value /= std::max(whole, 0.25F);
-    return sum;
+    for (std::size_t k = 0; k < 3; ++k) {
+        mean.direct[k] = direct[k] / whole;
+        mean.bounced[k] = bounced[k] / whole;
+    }
+    return mean;
+}
+
+/// Shadows of lamps are smoothed within a tile, what surfaces throw back over several.
+void smoothLight(Job& job) {
+    std::vector<PixelLight> near(job.raw.size());
+    const auto for_each_pixel = [&job](auto work) {
+        tbb::parallel_for(0, job.out.rows, [&job, &work](int row) {
+            for (int column = 0; column < job.out.columns; ++column)
+                work(job.pixel(column, row), column, row);
+        });
+    };
+    for_each_pixel([&](std::size_t pixel, int column, int row) {
+        near[pixel] = meanLight(job, job.raw, column, row, 1);
+    });
+    for_each_pixel([&](std::size_t pixel, int column, int row) {
+        job.smooth[pixel] = meanLight(job, near, column, row, kTile);
+        job.smooth[pixel].direct = near[pixel].direct;
+    });
 }
 
 /// Calls work(worker, column, row) for each tile.
@@ -296,13 +330,7 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
     Job job(scene.data(), viewpoint, options, out);
     forEachTile(job,
                 [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
-    tbb::parallel_for(0, out.rows, [&job](int row) {
-        for (int column = 0; column < job.out.columns; ++column) {
-            PixelLight& light = job.smooth[job.pixel(column, row)];
-            light = job.raw[job.pixel(column, row)];
-            if (light.depth >= 0) light.light = meanLight(job, column, row);
-        }
-    });
+    smoothLight(job);
     forEachTile(job, [](TileWorker& worker, int column, int row) { worker.color(column, row); });
     return out;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "layout/test_layout.h"
@@ -146,6 +147,60 @@ TEST(Render, HiddenBodiesAreNotSeen) {
     for (std::size_t i = 0; i < poses.size(); ++i)
         if (room.placed[i].record == far) poses[i].position.x = -2.9;
     EXPECT_EQ(count(prepared.at(poses), far), 0);
+}
+
+TEST(Render, ShadowsAreSoft) {
+    const Scene room = scene("ispace size=8,8 height=1\nbarrier at=0,0 size=3,0.02,1\n");
+    RenderOptions options;
+    options.light = Illumination::Sky;
+    options.samples = 16;
+    // A strip across the edge of the shadow that the sun in the south-west casts, on 60 cm.
+    const OrthographicView above({{0, 0.5, 3}, Angle::degrees(90), Angle::degrees(-90), {}}, 0.3,
+                                 30, 90);
+    const Rendering picture = render(RenderScene(room), above, options);
+    std::vector<float> column;
+    for (std::size_t row = 0; row < 90; ++row) column.push_back(picture.radiance[30 * row + 15][1]);
+    const auto [dark, bright] = std::minmax_element(column.begin(), column.end() - 10);
+    ASSERT_GT(*bright, 1.7F * *dark);
+    const auto between = std::count_if(column.begin(), column.end() - 10, [&](float value) {
+        return value > 0.9F * *dark + 0.1F * *bright && value < 0.2F * *dark + 0.8F * *bright;
+    });
+    EXPECT_GE(between, 3);
+    EXPECT_LE(between, 40);
+}
+
+TEST(Render, LampsStandInEveryRoomAndNoLightLeaksOut) {
+    // The inner room has no lamp of the outer one's.
+    const Scene room = scene("ispace size=8,8 height=2.5 ceiling=yes\ncube at=2,2 size=2,2,2.5\n");
+    const CameraView inside(camera(32, 24), {{2, 2, 1}, {}, {}, {}});
+    const Rendering dark = render(RenderScene(room), inside);
+    for (const Rgb& color : dark.radiance) EXPECT_LT(color[1], 0.4F);
+    const CameraView outside(camera(32, 24), {{-3, -3, 1.2}, Angle::degrees(45), {}, {}});
+    for (const Rgb& color : render(RenderScene(room), outside).radiance) EXPECT_GT(color[1], 0.05F);
+}
+
+TEST(Render, LightPassesClearGlassAndDarkens) {
+    const std::string walls = "ispace id=r size=6,6 height=2.5 ceiling=yes\n";
+    const CameraView view(camera(16, 12), {{0, 0, 1.4}, {}, {}, {}});
+    const auto middle = [&](const std::string& glass) {
+        const Scene room = scene(walls + "window wall=r at=3,0 size=2 glass=" + glass + "\n");
+        RenderOptions options;
+        options.background = Rgb{1, 0.5F, 0.25F};
+        return render(RenderScene(room), view, options).radiance[16 * 6 + 8];
+    };
+    EXPECT_EQ(middle("none"), (Rgb{1, 0.5F, 0.25F}));
+    const Rgb through = middle("clear");
+    EXPECT_LT(through[0], 0.95F);
+    EXPECT_GT(through[0], 0.7F);
+}
+
+TEST(Rendering, BecomesBytes) {
+    EXPECT_EQ(toSrgb8(Rgb{0, 1, 0.2158605F}), (std::array<std::uint8_t, 3>{0, 255, 128}));
+    Rendering picture{1, 2, {{0, 0.2158605F, 100}, {0.1F, 0.1F, 0.1F}}, {}, {}};
+    const std::vector<std::uint8_t> bytes = toSrgb8(picture);
+    EXPECT_EQ(bytes[1], 128);
+    EXPECT_EQ(bytes[2], 255);
+    EXPECT_GT(toSrgb8(picture, 2)[3], bytes[3]);
 }
 
 }  // namespace
