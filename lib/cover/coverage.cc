@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cover/metrics.h"
+#include "cover/pictures.h"
 #include "cover/sight.h"
 #include "env/level.h"
 #include "geom/boolean.h"
@@ -129,11 +130,31 @@ class Viewer {
         view.cells = by_beams && (scansSlice(sensor) || !isBuried(sensor))
                          ? cellsAmongBeams(grid_, sensor, view.beams)
                          : sight_.cellsOf(grid_, sensor);
-        if (!options_.exact) return;
+        if (options_.exact) view.region = regionOf(sensor);
+        if (sensor.is<Camera>()) addClasses(view, sensor);
+    }
+
+    [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const {
         try {
-            view.region = sight_.regionOf(sensor);
+            return sight_.regionOf(sensor);
         } catch (const FormatError&) {
-            view.region.reset();  // more crossings than can be laid over each other
+            return std::nullopt;  // more crossings than can be laid over each other
+        }
+    }
+
+    void addClasses(SensorView& view, const Sensor& sensor) const {
+        const Sensor& whole = sensorOf(view);
+        SeenSet seen{view.cells, view.region};
+        if (options_.density > 0) {
+            seen.cells = sight_.cellsOf(grid_, whole);
+            if (options_.exact) seen.region = regionOf(whole);
+        }
+        const FloorDensity density(sensor.as<Camera>(), sensor.pose, options_.plane);
+        try {
+            view.classes = classesOf(density, grid_, seen);
+        } catch (const FormatError&) {
+            seen.region.reset();
+            view.classes = classesOf(density, grid_, seen);
         }
     }
 
@@ -172,11 +193,15 @@ std::vector<SeenSet> setsOf(const std::vector<SensorView>& views, const Grid& gr
     return sets;
 }
 
-SensorMetrics metricsOf(const Scene& scene, const SensorView& view) {
+SensorMetrics metricsOf(const Scene& scene, const SensorView& view, const Grid& grid,
+                        double plane) {
     SensorMetrics metrics{.id = view.id, .model = view.model, .kind = view.kind};
     if (const auto* laser = std::get_if<Laser>(&scene.sensors[view.index].model))
         metrics.slice_area = sliceArea(*laser, view.beams);
     if (view.region) metrics.area.exact = std::max(0.0, signedArea(*view.region));
+    if (const auto* camera = std::get_if<Camera>(&scene.sensors[view.index].model))
+        metrics.picture = pictureMetricsOf(FloorDensity(*camera, view.pose, plane), grid,
+                                           view.pose.position.onFloor(), view);
     return metrics;
 }
 
@@ -265,11 +290,13 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     report.free_area = totalArea(level->freeFloor());
     report.sensors.reserve(coverage.sensors.size());
     for (const SensorView& view : coverage.sensors)
-        report.sensors.push_back(metricsOf(scene, view));
+        report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
     if (options.exact) tryExactMetrics(coverage, environment, level->freeFloor(), zones);
     addCellMetrics(coverage, zones);
+    addDensities(coverage, environment, level->freeFloor(), zones);
+    if (options.parallax) addParallax(coverage, environment, *options.parallax);
     return coverage;
 }
 

@@ -23,6 +23,12 @@ enum class CellRule {
     Beams,   ///< in the polygon through the ends of its beams (thesis, section 4.5.2)
 };
 
+/// Floor that so many cameras see whose axes are pairwise so far apart, for stereo and tracking.
+struct ParallaxChoice {
+    Angle least = Angle::degrees(30);
+    int cameras = 2;
+};
+
 struct CoverageOptions {
     CellChoice cells = RoomCells();
     double height = kScanHeight;  ///< at which the floor is free or not
@@ -30,6 +36,7 @@ struct CoverageOptions {
     double density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all in view
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< closed forms beside the cells
+    std::optional<ParallaxChoice> parallax = {};
 };
 
 /// A metric by cells and in closed form; one that is not known is empty (null in JSON), as a share
@@ -38,19 +45,39 @@ struct Metric {
     std::optional<double> grid, exact;
 };
 
+/// What a camera makes of the plane.
+struct PictureMetrics {
+    /// With at least the pixels of each of pixelDensities(), m2; of its whole field of view,
+    /// whatever density is asked for.
+    std::vector<Metric> areas;
+    /// Of what it covers, along the plane from the place below or above it; none if it covers
+    /// nothing.
+    std::optional<double> nearest = {}, farthest = {};
+    Metric mean_density = {};  ///< over what it covers, pixels a metre
+};
+
 struct SensorMetrics {
     std::string id, model;  ///< model "" for a bare sensor
     const SensorKind* kind = &kLaserKind;
-    std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
-    Metric area = {};                       ///< of its region, m2; what a receiver hears
-    Metric marginal = {};                   ///< lost if this sensor is removed, m2
-    Metric overlap = {};                    ///< that others see, too, m2; not of receivers
+    std::optional<double> slice_area = {};       ///< eq. (4.4), m2; of lasers
+    Metric area = {};                            ///< of its region, m2; what a receiver hears
+    Metric marginal = {};                        ///< lost if this sensor is removed, m2
+    Metric overlap = {};                         ///< that others see, too, m2; not of receivers
+    std::optional<PictureMetrics> picture = {};  ///< of cameras
 };
 
 struct ZoneMetrics {
     std::string id;
-    double area = 0;       ///< of its indoor part, exact, m2
-    Metric coverage = {};  ///< of that part; exact is 0 where there is none
+    double area = 0;                     ///< of its indoor part, exact, m2
+    Metric coverage = {};                ///< of that part; exact is 0 where there is none
+    std::vector<Metric> densities = {};  ///< as DensityMetrics::indoor, of that part
+};
+
+/// Shares of the floor that some camera sees with at least the pixels of each of pixelDensities(),
+/// whatever density is asked for. Empty without cameras.
+struct DensityMetrics {
+    Metric seen;  ///< of the indoor region: by any camera, at the density that is asked for
+    std::vector<Metric> indoor, free;
 };
 
 /// A connected piece of floor that no sensor sees.
@@ -96,8 +123,18 @@ struct CoverageReport {
     /// Pieces of the free floor that no sensor sees, the largest first. Likewise.
     std::vector<UnseenSpot> unseen;
     std::optional<Comparison> comparison;
+    DensityMetrics densities;
+    std::optional<ParallaxChoice> parallax;
+    Metric parallax_coverage;  ///< share of the indoor region
     /// Why exact metrics of all together are missing; "" where they are there or nobody asked.
     std::string exact_missing;
+};
+
+/// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four
+/// ultrasonic receivers hear.
+struct SeenSet {
+    CellSet cells = CellSet();
+    std::optional<std::vector<Curve>> region = {};
 };
 
 /// What one sensor sees.
@@ -111,16 +148,11 @@ struct SensorView {
     /// Its exact region: disjoint curves, what is seen on their left; nothing if not known.
     std::optional<std::vector<Curve>> region = {};
     std::vector<float> beams = {};  ///< of a laser, as of castBeams
+    /// Of a camera: what has the pixels of each of pixelDensities().
+    std::vector<SeenSet> classes = {};
 
     /// It covers floor only together with others.
     [[nodiscard]] bool isPartial() const { return kind->together > 1; }
-};
-
-/// Floor that counts as seen by one: what a laser or a ranger sees, or where at least four
-/// ultrasonic receivers hear.
-struct SeenSet {
-    CellSet cells = CellSet();
-    std::optional<std::vector<Curve>> region = {};
 };
 
 /// Bits of LayerLabel::marks in Coverage::overlay.
@@ -136,7 +168,20 @@ struct Coverage {
     /// The regions of all sets (count, number i + 1 of set i) over indoor region and free floor
     /// (marks). Nothing where a region is not known or nobody asked.
     std::optional<Overlay> overlay;
+    /// Indoor region and free floor (marks as above), what cameras see at all (kCameraMark) and
+    /// with the pixels of each of pixelDensities() (classMark), and some zones each
+    /// (densityZoneMark). Empty without cameras and where the region of one is not known.
+    std::vector<Overlay> density_overlays;
 };
+
+/// Marks in Coverage::density_overlays: of a class, by its index; of a zone, in the overlay with
+/// the index zone / kDensityZones.
+constexpr std::uint64_t kCameraMark = 4;
+constexpr std::uint64_t classMark(std::size_t index) { return std::uint64_t{8} << index; }
+constexpr std::size_t kDensityZones = 48;
+constexpr std::uint64_t densityZoneMark(std::size_t zone) {
+    return std::uint64_t{1} << (16 + zone % kDensityZones);
+}
 
 /// Measures all placed lasers, rangers, cameras and ultrasonic receivers of a scene. Deterministic
 /// for any number of threads. \throws UsageError as makeTarget
@@ -151,6 +196,9 @@ void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,
 std::vector<std::uint32_t> timesSeen(const Coverage& coverage);
 /// Cells seen by any.
 CellSet coveredCells(const Coverage& coverage);
+
+/// Cells that some camera sees with the pixels of a class, by its index.
+CellSet cellsOfClass(const Coverage& coverage, std::size_t index);
 
 /// Share of target cells that a union covers: eq. (4.7) on cells; nothing where the target has
 /// none.

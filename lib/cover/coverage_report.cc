@@ -32,6 +32,31 @@ void write(JsonWriter& json, const char* key, const Metric& metric) {
     json.endObject();
 }
 
+/// One for each class, or nothing.
+void writeClasses(JsonWriter& json, const char* key, const char* figure,
+                  const std::vector<Metric>& metrics) {
+    if (metrics.empty()) return;
+    json.key(key).beginArray();
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+        const PixelDensity& one = pixelDensities()[i];
+        json.beginObject();
+        json.key("class").value(std::string(one.name));
+        write(json, "pixels_per_metre", one.pixels_per_metre);
+        write(json, figure, metrics[i]);
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void write(JsonWriter& json, const PictureMetrics& picture) {
+    json.key("picture").beginObject();
+    writeClasses(json, "areas", "area", picture.areas);
+    write(json, "nearest", picture.nearest);
+    write(json, "farthest", picture.farthest);
+    write(json, "mean_density", picture.mean_density);
+    json.endObject();
+}
+
 void write(JsonWriter& json, const SensorMetrics& sensor) {
     json.beginObject();
     json.key("id").value(sensor.id);
@@ -47,6 +72,7 @@ void write(JsonWriter& json, const SensorMetrics& sensor) {
     write(json, "area", sensor.area);
     write(json, "marginal", sensor.marginal);
     write(json, "overlap", sensor.overlap);
+    if (sensor.picture) write(json, *sensor.picture);
     json.endObject();
 }
 
@@ -55,6 +81,7 @@ void write(JsonWriter& json, const ZoneMetrics& zone) {
     json.key("id").value(zone.id);
     write(json, "area", zone.area);
     write(json, "coverage", zone.coverage);
+    writeClasses(json, "densities", "coverage", zone.densities);
     json.endObject();
 }
 
@@ -120,6 +147,17 @@ std::string coverageJson(const CoverageReport& report) {
         json.null();
     else
         json.value(report.exact_missing);
+    if (!report.densities.indoor.empty()) {
+        write(json, "camera_coverage", report.densities.seen);
+        writeClasses(json, "densities", "coverage", report.densities.indoor);
+    }
+    if (report.parallax) {
+        json.key("parallax").beginObject();
+        write(json, "angle", report.parallax->least.degrees());
+        json.key("cameras").value(report.parallax->cameras);
+        write(json, "coverage", report.parallax_coverage);
+        json.endObject();
+    }
     if (report.comparison) write(json, *report.comparison);
     json.endObject();
     return json.take() + "\n";
@@ -208,6 +246,11 @@ void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
     }
 }
 
+std::string classText(std::size_t index) {
+    const PixelDensity& one = pixelDensities()[index];
+    return std::string(one.name) + ", " + formatDouble(one.pixels_per_metre) + " px/m";
+}
+
 std::string metricTable(const CoverageReport& report) {
     std::vector<Row> rows = {{"", "by cells", "exact", "difference"},
                              row("total effective area", report.total_effective_area, area),
@@ -215,6 +258,13 @@ std::string metricTable(const CoverageReport& report) {
                              row("coverage", report.coverage, percent),
                              row("free coverage", report.free_coverage, percent)};
     addRedundancy(report, rows);
+    for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
+        rows.push_back(row(classText(i), report.densities.indoor[i], percent));
+    if (report.parallax)
+        rows.push_back(row("by " + std::to_string(report.parallax->cameras) + " cameras, axes " +
+                               formatDouble(roundSignificant(report.parallax->least.degrees())) +
+                               " degrees apart",
+                           report.parallax_coverage, percent));
     for (const ZoneMetrics& zone : report.zones) {
         if (zone.area > 0)
             rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));
@@ -237,6 +287,28 @@ std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
              cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
     }
     return aligned(rows, "llr");
+}
+
+/// How far cameras see, and with how many pixels; "" without any. Areas are exact where they can
+/// be.
+std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
+    const auto best = [](const Metric& metric) {
+        return metric.exact ? metric.exact : metric.grid;
+    };
+    const auto text = [](const std::optional<double>& value, const char* unit, int decimals) {
+        return value ? formatFixed(*value, decimals) + unit : "-";
+    };
+    std::vector<Row> rows = {{"camera", "nearest", "farthest", "mean density"}};
+    for (const PixelDensity& one : pixelDensities()) rows.front().emplace_back(one.name);
+    for (const SensorMetrics& sensor : sensors) {
+        if (!sensor.picture) continue;
+        const PictureMetrics& picture = *sensor.picture;
+        Row row = {printable(sensor.id), text(picture.nearest, " m", 2),
+                   text(picture.farthest, " m", 2), text(best(picture.mean_density), " px/m", 1)};
+        for (const Metric& metric : picture.areas) row.push_back(text(best(metric), " m2", 2));
+        rows.push_back(std::move(row));
+    }
+    return rows.size() > 1 ? "\n" + aligned(rows, "lr") : "";
 }
 
 std::string piecesText(const CoverageReport& report) {
@@ -300,7 +372,8 @@ std::string coverageText(const CoverageReport& report) {
     if (report.sensors.empty())
         text += "no laser, ranger, camera or ultrasonic receiver is placed\n";
     else
-        text += sensorTable(report.sensors) + "\n" + piecesText(report);
+        text +=
+            sensorTable(report.sensors) + cameraTable(report.sensors) + "\n" + piecesText(report);
     return text;
 }
 

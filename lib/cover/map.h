@@ -14,6 +14,7 @@ namespace ispace {
 enum class MapColor {
     Redundancy,  ///< how many sensors see it
     Sensor,      ///< which one does; where several do, hatched or mixed so that it shows
+    Density,     ///< with how many pixels a metre cameras see it, by the classes of the standard
 };
 
 /// How a sensor's view is drawn.

@@ -141,6 +141,29 @@ void drawBySensor(Picture& picture, const MapPicture& map) {
     if (sets.size() > 1) drawShared(picture, map, sets);
 }
 
+/// Indoor floor that cameras see with the pixels of a class, exact where that is known.
+Curves densityCurves(const MapPicture& map, std::size_t density_class) {
+    const Coverage& coverage = map.coverage;
+    if (!coverage.density_overlays.empty()) {
+        const std::uint64_t wanted =
+            kIndoorMark | (density_class == 0 ? kCameraMark : classMark(density_class - 1));
+        return drawable(
+            map,
+            curvesOf(coverage.density_overlays.front().regions(
+                [wanted](const LayerLabel& label) { return (label.marks & wanted) == wanted; })));
+    }
+    if (density_class > 0) return curvesOfCells(map, cellsOfClass(coverage, density_class - 1));
+    CellSet cells(coverage.target.grid.size());
+    for (const SensorView& view : coverage.sensors)
+        if (!view.classes.empty()) cells |= view.cells;
+    return curvesOfCells(map, cells);
+}
+
+void drawDensity(Picture& picture, const MapPicture& map) {
+    for (std::size_t i = 0; i <= pixelDensities().size(); ++i)
+        picture.area(densityCurves(map, i), {densityColor(i)});
+}
+
 /// Both, gained and lost. Those that one sees alone are drawn over what both do: where the curves
 /// of the two run together, no seam shows.
 void drawComparison(Picture& picture, const MapPicture& map) {
@@ -256,8 +279,25 @@ Shades shadesFor(const CoverageReport& report) {
     return shades;
 }
 
+Color densityColor(std::size_t density_class) {
+    return sequentialColor(static_cast<int>(density_class) + 1,
+                           static_cast<int>(pixelDensities().size()) + 1);
+}
+
+Metric shareOfDensity(const CoverageReport& report, std::size_t density_class) {
+    const DensityMetrics& all = report.densities;
+    if (all.indoor.empty()) return {.grid = 0, .exact = 0};
+    const Metric& least = density_class == 0 ? all.seen : all.indoor[density_class - 1];
+    if (density_class == all.indoor.size()) return least;
+    const Metric& better = all.indoor[density_class];
+    const auto difference = [](const std::optional<double>& a, const std::optional<double>& b) {
+        return a && b ? std::optional(std::max(0.0, *a - *b)) : std::nullopt;
+    };
+    return {difference(least.grid, better.grid), difference(least.exact, better.exact)};
+}
+
 Color setColor(const MapPicture& map, std::size_t set) {
-    if (map.options.color == MapColor::Redundancy) return seriesColor(set);
+    if (map.options.color != MapColor::Sensor) return seriesColor(set);
     // Green and purple are greys to many colour-blind people: as floor they come late and apart.
     constexpr std::array<std::size_t, kSeriesColors> kOrder = {0, 3, 1, 4, 6, 2, 5};
     return seriesColor(kOrder[set % kSeriesColors]);
@@ -276,6 +316,8 @@ void drawCoverage(Picture& picture, const MapPicture& map) {
         drawComparison(picture, map);
     else if (map.options.color == MapColor::Sensor)
         drawBySensor(picture, map);
+    else if (map.options.color == MapColor::Density)
+        drawDensity(picture, map);
     else
         drawRedundancy(picture, map);
 }

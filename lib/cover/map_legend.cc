@@ -119,6 +119,31 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
     return block;
 }
 
+/// Classes that no floor is in are left out.
+LegendBlock densityBlock(const CoverageReport& report) {
+    const Metric& seen = report.densities.seen;
+    LegendBlock block = metricBlock("Pixels a metre", seen.exact.has_value());
+    const auto add = [&](Color color, std::string text, const Metric& share) {
+        LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
+        setMetric(item, block, share, percent);
+        block.items.push_back(std::move(item));
+    };
+    const auto rest = [](const std::optional<double>& share) {
+        return share ? std::optional(1 - *share) : std::nullopt;
+    };
+    add(palette::kFloor, "no camera", {rest(seen.grid), rest(seen.exact)});
+    constexpr double kMinShare = 1e-6;
+    const auto classes = pixelDensities();
+    for (std::size_t i = 0; i <= classes.size(); ++i) {
+        const Metric share = shareOfDensity(report, i);
+        if (share.grid.value_or(0) <= kMinShare && share.exact.value_or(0) <= kMinShare) continue;
+        const std::string from = i == 0 ? "fewer" : std::string(classes[i - 1].name);
+        const double pixels = classes[i == 0 ? 0 : i - 1].pixels_per_metre;
+        add(densityColor(i), from + (i == 0 ? " than " : ", ") + formatDouble(pixels), share);
+    }
+    return block;
+}
+
 Metric sum(const Metric& a, const Metric& b, double factor) {
     const auto add = [factor](std::optional<double> x, std::optional<double> y) {
         return x && y ? std::optional(std::max(0.0, *x + factor * *y)) : std::nullopt;
@@ -341,6 +366,8 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
         blocks.push_back(comparisonBlock(report));
     else if (map.options.color == MapColor::Sensor)
         blocks.push_back(bySensorBlock(report, map.coverage.sets.size()));
+    else if (map.options.color == MapColor::Density)
+        blocks.push_back(densityBlock(report));
     else
         blocks.push_back(shadesBlock(report));
     blocks.push_back(sensorsBlock(map));

@@ -31,7 +31,7 @@ std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
 void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
                   const Stroke& line) {
     constexpr std::size_t kMaxBands = 12;  // soft rims help to tell few views apart, and hide many
-    const bool plain = map.other == nullptr && map.options.color == MapColor::Redundancy;
+    const bool plain = map.other == nullptr && map.options.color != MapColor::Sensor;
     if (plain && map.coverage.sets.size() <= kMaxBands) {
         const Box2& limits = map.limits();
         const double rim = std::min(

@@ -71,6 +71,12 @@ Color stripeColor(const MapPicture& map, std::size_t set);
 /// Sets more than these share stripes without colours.
 constexpr std::size_t kMaxStriped = 6;
 
+/// Of floor that cameras see (MapColor::Density): class 0 has fewer pixels than the least of
+/// pixelDensities(), class i + 1 those of the one with index i.
+Color densityColor(std::size_t density_class);
+/// Share of the indoor region in such a class and no better one.
+Metric shareOfDensity(const CoverageReport& report, std::size_t density_class);
+
 /// Indoor floor in the colours of coverage. In metres: a view is open.
 void drawCoverage(Picture& picture, const MapPicture& map);
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "geom/boolean.h"
 
 namespace ispace {
 
@@ -14,7 +15,7 @@ namespace {
 double shareOfText(std::string_view text) {
     if (const auto share = parseShare(text)) return *share;
     throw UsageError('`' + std::string(text) +
-                     "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%");
+                     "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%, identify:95%");
 }
 
 /// With all digits where two do not show that a share is below another.
@@ -31,14 +32,63 @@ struct Subject {
     double area = 0;
 };
 
+/// \pre there is such a zone
+std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& report) {
+    const auto found =
+        std::find_if(report.zones.begin(), report.zones.end(),
+                     [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
+    return static_cast<std::size_t>(found - report.zones.begin());
+}
+
+Subject densitySubject(const Requirement& requirement, const CoverageReport& report) {
+    const std::size_t index = *requirement.density;
+    const auto of = [index](const std::vector<Metric>& metrics) {
+        return metrics.empty() ? Metric{.grid = 0, .exact = 0} : metrics[index];
+    };
+    const std::string name(pixelDensities()[index].name);
+    switch (requirement.of) {
+        case Requirement::Of::Free:
+            return {"free coverage to " + name, of(report.densities.free), report.free_area};
+        case Requirement::Of::Zone: {
+            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
+            return {"coverage to " + name + " of zone " + printable(zone.id), of(zone.densities),
+                    zone.area};
+        }
+        case Requirement::Of::Indoor:
+            break;
+    }
+    return {"coverage to " + name, of(report.densities.indoor), report.indoor_area};
+}
+
+/// The largest piece of what is asked for that no camera sees so well; nothing if it is not known.
+std::optional<UnseenSpot> largestWithout(const Requirement& requirement, const Coverage& coverage) {
+    if (coverage.density_overlays.empty()) return std::nullopt;
+    std::uint64_t wanted = requirement.of == Requirement::Of::Free ? kFreeMark : kIndoorMark;
+    std::size_t pass = 0;
+    if (requirement.of == Requirement::Of::Zone) {
+        const std::size_t zone = zoneIndex(requirement, coverage.report);
+        wanted |= densityZoneMark(zone);
+        pass = zone / kDensityZones;
+    }
+    const Overlay& overlay = coverage.density_overlays[pass];
+    const std::vector<Region> pieces = overlay.regions([&](const LayerLabel& label) {
+        return (label.marks & wanted) == wanted &&
+               (label.marks & classMark(*requirement.density)) == 0;
+    });
+    if (pieces.empty()) return std::nullopt;
+    const std::vector<double> areas = overlay.areasOf(pieces);
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+    return UnseenSpot{interiorPoint(pieces[largest]), areas[largest]};
+}
+
 Subject subjectOf(const Requirement& requirement, const CoverageReport& report) {
+    if (requirement.density) return densitySubject(requirement, report);
     switch (requirement.of) {
         case Requirement::Of::Free:
             return {"free coverage", report.free_coverage, report.free_area};
         case Requirement::Of::Zone: {
-            const ZoneMetrics& zone = *std::find_if(
-                report.zones.begin(), report.zones.end(),
-                [&requirement](const ZoneMetrics& one) { return one.id == requirement.zone; });
+            const ZoneMetrics& zone = report.zones[zoneIndex(requirement, report)];
             return {"coverage of zone " + printable(zone.id), zone.coverage, zone.area};
         }
         case Requirement::Of::Indoor:
@@ -47,12 +97,32 @@ Subject subjectOf(const Requirement& requirement, const CoverageReport& report) 
     return {"coverage", report.coverage, report.indoor_area};
 }
 
+/// Of a name of pixelDensities().
+std::optional<std::size_t> densityIndex(std::string_view name) {
+    if (name.empty() || (name.front() >= '0' && name.front() <= '9')) return std::nullopt;
+    const auto pixels = pixelDensityOf(name);
+    const auto classes = pixelDensities();
+    for (std::size_t i = 0; i < classes.size(); ++i)
+        if (pixels == classes[i].pixels_per_metre) return i;
+    return std::nullopt;
+}
+
 /// With more digits where two would be 0.00.
 std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
 
 }  // namespace
 
 Requirement parseRequirement(std::string_view text) {
+    const auto colon = text.find(':');
+    if (const auto density =
+            colon == std::string_view::npos ? std::nullopt : densityIndex(text.substr(0, colon))) {
+        const std::string rest(text.substr(colon + 1));
+        const bool names_zone = rest.find('=') != std::string::npos && !rest.starts_with("zone:");
+        Requirement requirement = parseRequirement(names_zone ? "zone:" + rest : rest);
+        if (requirement.density) throw UsageError('`' + std::string(text) + "` has two classes");
+        requirement.density = density;
+        return requirement;
+    }
     constexpr std::string_view kFree = "free:", kZone = "zone:";
     if (text.starts_with(kFree))
         return {Requirement::Of::Free, "", shareOfText(text.substr(kFree.size()))};
@@ -75,7 +145,8 @@ void mustHaveZone(const Requirement& requirement, const Environment& environment
                      didYouMean(requirement.zone, known));
 }
 
-Verdict checkRequirement(const Requirement& requirement, const CoverageReport& report) {
+Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage) {
+    const CoverageReport& report = coverage.report;
     constexpr double kExactError = 1e-7;
     const auto [what, metric, area] = subjectOf(requirement, report);
     if (!metric.exact && !metric.grid)
@@ -91,9 +162,15 @@ Verdict checkRequirement(const Requirement& requirement, const CoverageReport& r
     text += ", below the required " + required;
     if (area <= 0) return {false, text + ": it has no floor in the room"};
     text += ": " + squareMetres((requirement.share - share) * area) + " are missing";
-    if (requirement.of == Requirement::Of::Zone || report.unseen.empty()) return {false, text};
-    const UnseenSpot& spot = report.unseen.front();
-    return {false, text + "; the largest unseen spot has " + squareMetres(spot.area) + " around (" +
+    std::optional<UnseenSpot> largest;
+    if (requirement.density)
+        largest = largestWithout(requirement, coverage);
+    else if (requirement.of != Requirement::Of::Zone && !report.unseen.empty())
+        largest = report.unseen.front();
+    if (!largest) return {false, text};
+    const UnseenSpot& spot = *largest;
+    return {false, text + "; the largest " + (requirement.density ? "such" : "unseen") +
+                       " spot has " + squareMetres(spot.area) + " around (" +
                        formatFixed(spot.place.x, 2) + ", " + formatFixed(spot.place.y, 2) + ")"};
 }
 

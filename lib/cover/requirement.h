@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,12 +11,14 @@
 namespace ispace {
 
 /// What somebody asks of a layout: `95%` of the indoor region, `free:95%` of the free floor, or
-/// `zone:NAME=95%` of a zone.
+/// `zone:NAME=95%` of a zone; with the name of a density class before, such as `identify:90%`,
+/// `identify:free:90%` and `identify:NAME=100%`, by cameras with so many pixels.
 struct Requirement {
     enum class Of { Indoor, Free, Zone };
     Of of = Of::Indoor;
     std::string zone;
     double share = 0;
+    std::optional<std::size_t> density = {};  ///< index in pixelDensities()
     friend bool operator==(const Requirement&, const Requirement&) = default;
 };
 
@@ -33,8 +37,8 @@ struct Verdict {
 };
 
 /// The exact metric decides where it is known, else that by cells; a share of which neither is
-/// known is not met. An exact one may be short by what rounding takes, 1e-7.
-/// \pre mustHaveZone()
-Verdict checkRequirement(const Requirement& requirement, const CoverageReport& report);
+/// known is not met. Of classes without a camera all is missing. An exact one may be short by what
+/// rounding takes, 1e-7. \pre mustHaveZone()
+Verdict checkRequirement(const Requirement& requirement, const Coverage& coverage);
 
 }  // namespace ispace

@@ -17,11 +17,16 @@ TEST(ParseRequirement, KnowsAllForms) {
     EXPECT_EQ(parseRequirement("free:50%"), (Requirement{Of::Free, "", 0.5}));
     EXPECT_EQ(parseRequirement("zone:door=100%"), (Requirement{Of::Zone, "door", 1}));
     EXPECT_EQ(parseRequirement("zone:a=b=0"), (Requirement{Of::Zone, "a=b", 0}));
+    EXPECT_EQ(parseRequirement("monitor:95%"), (Requirement{Of::Indoor, "", 0.95, 0}));
+    EXPECT_EQ(parseRequirement("recognize:free:50%"), (Requirement{Of::Free, "", 0.5, 3}));
+    EXPECT_EQ(parseRequirement("identify:door=100%"), (Requirement{Of::Zone, "door", 1, 4}));
+    EXPECT_EQ(parseRequirement("identify:zone:door=1"), (Requirement{Of::Zone, "door", 1, 4}));
 }
 
 TEST(ParseRequirement, RefusesTheRest) {
     for (const char* text : {"", "95", "120%", "-1%", "free", "free:", "free:95", "zone:", "zone:a",
-                             "zone:=95%", "zone:a=", "zone:a=95", "room:95%", "nan%"})
+                             "zone:=95%", "zone:a=", "zone:a=95", "room:95%", "nan%", "identify",
+                             "identify:", "identify:detect:1", "250:95%"})
         EXPECT_THROW(parseRequirement(text), UsageError) << text;
 }
 
@@ -38,7 +43,9 @@ CoverageReport sampleReport() {
 }
 
 Verdict verdict(const char* text, const CoverageReport& report = sampleReport()) {
-    return checkRequirement(parseRequirement(text), report);
+    Coverage coverage;
+    coverage.report = report;
+    return checkRequirement(parseRequirement(text), coverage);
 }
 std::string missing(const char* text) {
     const Verdict found = verdict(text);

@@ -96,10 +96,10 @@ void writeProduct(const CoverageToolOptions& options, const Scene& scene,
     writeTogether(std::vector<NamedBytes>{{beside, files.beside}, {output, files.product}});
 }
 
-void checkRequired(const CoverageToolOptions& options, const CoverageReport& report) {
+void checkRequired(const CoverageToolOptions& options, const Coverage& coverage) {
     std::string missing;
     for (const Requirement& requirement : options.requirements) {
-        const auto [is_met, text] = checkRequirement(requirement, report);
+        const auto [is_met, text] = checkRequirement(requirement, coverage);
         if (is_met)
             talk(options.common, "coverage", text);
         else
@@ -145,7 +145,7 @@ void coverage(CoverageToolOptions options) {
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
-    checkRequired(options, report);
+    checkRequired(options, measured.coverage);
 }
 
 }  // namespace

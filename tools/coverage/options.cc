@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/options.h"
 
+#include <cmath>
+#include <optional>
+
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/common_options.h"
 
 namespace ispace {
@@ -21,6 +25,20 @@ struct Words {
     std::vector<std::string> requirements;
 };
 
+/// `30` or `30,3`.
+ParallaxChoice parseParallax(const std::string& text) {
+    const auto comma = text.find(',');
+    const auto degrees = parseDouble(text.substr(0, comma));
+    const auto cameras =
+        comma == std::string::npos ? std::optional(2.0) : parseDouble(text.substr(comma + 1));
+    constexpr double kMaxCameras = 100;
+    if (!degrees || *degrees < 0 || *degrees > 180 || !cameras || *cameras < 2 ||
+        *cameras > kMaxCameras || *cameras != std::floor(*cameras))
+        throw UsageError("`" + text +
+                         "` is not DEG or DEG,K with degrees from 0 to 180 and 2 to 100 cameras");
+    return {Angle::degrees(*degrees), static_cast<int>(*cameras)};
+}
+
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
     addCellOptions(line, words.cells, "that metrics count");
     line.choice("--grid-of", words.cells_by, {"region", "beams"},
@@ -32,6 +50,13 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
                 "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
                 Enters::History);
     addDensityOption(line, measure.density);
+    const auto parallax = [&measure](const std::string& text) {
+        measure.parallax = parseParallax(text);
+    };
+    line.parsed("--parallax", "DEG[,K]", parallax,
+                "report the floor that K cameras see (default 2) whose axes are pairwise at least "
+                "so many degrees apart",
+                Enters::History);
 }
 
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
@@ -82,7 +107,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
-               "indoor floor, free:95%, zone:NAME=95%",
+               "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
+               "identify:NAME=95%",
                Enters::History);
     line.file("--compare", "LAYOUT", o.other,
               "report gains and losses against this layout, in numbers and on the map",
@@ -92,9 +118,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     constexpr int kNarrowest = 200, kWidest = 10000;
     line.count("--width", "PIXELS", o.map.width, kNarrowest, kWidest, "width of a PNG or SVG",
                Enters::History);
-    line.choice("--color", words.color, {"redundancy", "sensor"},
-                "colour the floor by how many sensors see it, or by which (default "
-                "redundancy)",
+    line.choice("--color", words.color, {"redundancy", "sensor", "density"},
+                "colour the floor by how many sensors see it, by which, or by the pixels a metre "
+                "that cameras have there (default redundancy)",
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},
                 "how views are drawn (default contours)", Enters::History);
@@ -109,6 +135,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
     if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
     if (words.color == "sensor") o.map.color = MapColor::Sensor;
+    if (words.color == "density") o.map.color = MapColor::Density;
     if (words.fans == "beams") o.map.fans = FanStyle::Beams;
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
