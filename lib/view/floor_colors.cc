@@ -31,18 +31,17 @@ std::vector<Polygon> rectanglesOf(const CellSet& cells, const Grid& grid) {
 }  // namespace
 
 FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits()) {
-    constexpr double kMostPixels = 4000, kFinest = 100;
+    constexpr double kMostPixels = 2400, kFinest = 100;
     scale_ = std::min(kFinest, kMostPixels / std::max(limits_.width(), limits_.depth()));
-    Picture floor(std::max(1.0, std::ceil(scale_ * limits_.width())),
-                  std::max(1.0, std::ceil(scale_ * limits_.depth())));
-    floor.pushView({scale_, {limits_.low.x, limits_.high.y}, {0, 0}});
+    columns_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.width())));
+    rows_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.depth())));
+    sums_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     Worlds worlds(scene.environment);
     const Sight sight(scene.environment, 0, &worlds);
     constexpr int kCells = 400;
     const double cell = std::max(limits_.width(), limits_.depth()) / kCells;
     const Grid grid{limits_, std::max(1, static_cast<int>(limits_.width() / cell)),
                     std::max(1, static_cast<int>(limits_.depth() / cell))};
-    constexpr double kShade = 0.45;
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
         const Sensor& sensor = scene.sensors[i];
         if (!kindOf(sensor.model).perceives) continue;
@@ -53,17 +52,40 @@ FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits(
             sight.prepare(sensor);
             seen = rectanglesOf(sight.cellsOf(grid, sensor), grid);
         }
-        floor.area(seen, {sensorColor(i).faded(kShade)});
+        add(seen, sensorColor(i));
     }
+}
+
+void FloorColors::add(const std::vector<Polygon>& seen, const Color& color) {
+    Picture floor(columns_, rows_);
+    floor.pushView({scale_, {limits_.low.x, limits_.high.y}, {0, 0}});
+    floor.area(seen, {Color{}});
     floor.pop();
-    image_ = decodePng(floor.write(PictureFormat::Png));
+    const Image image = decodePng(floor.write(PictureFormat::Png));
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+        const auto share = 1 - static_cast<float>(image.pixels[i] & 0xFFU) / 255;
+        Sum& sum = sums_[i];
+        sum.color[0] += share * static_cast<float>(color.red);
+        sum.color[1] += share * static_cast<float>(color.green);
+        sum.color[2] += share * static_cast<float>(color.blue);
+        sum.sensors += share;
+    }
 }
 
 Rgb FloorColors::at(Point2 place) const {
     const auto x = static_cast<int>(std::floor(scale_ * (place.x - limits_.low.x)));
     const auto y = static_cast<int>(std::floor(scale_ * (limits_.high.y - place.y)));
-    if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return {1, 1, 1};
-    return linearOf(Color::rgb(image_.at(x, y)));
+    if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return {1, 1, 1};
+    const Sum& sum = sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                           static_cast<std::size_t>(x)];
+    if (sum.sensors <= 0) return {1, 1, 1};
+    // The mean colour, the deeper the more sensors there are; it never turns dark.
+    constexpr double kOne = 0.38, kEachMore = 0.07, kMost = 0.6;
+    const double share = std::min(sum.sensors, 1.0F);
+    const double depth = share * std::min(kOne + kEachMore * (sum.sensors - share), kMost);
+    const Color mean{sum.color[0] / sum.sensors, sum.color[1] / sum.sensors,
+                     sum.color[2] / sum.sensors};
+    return linearOf(tint(mean, depth));
 }
 
 }  // namespace ispace

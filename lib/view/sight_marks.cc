@@ -73,16 +73,16 @@ std::vector<Vec3> rimOf(const FieldOfView& view) {
 /// Rays through all that stands, and stops light.
 class Sightlines {
   public:
-    explicit Sightlines(const Scene& scene)
-        : scene_(scene), worlds_(scene.environment), bodies_(bodiesOf(scene)) {
+    explicit Sightlines(const Scene& scene) : worlds_(scene.environment), bodies_(bodiesOf(scene)) {
         worlds_.prepareMesh();
         const Box2& plan = scene.environment.limits();
         reach_ = std::hypot(plan.width(), plan.depth());
     }
 
-    /// Where rays from a sensor end, by their directions in its frame.
+    /// Where rays from a sensor end, by their directions in its frame: at what stops them, or so
+    /// far that the view cubes of many sensors can be told apart.
     [[nodiscard]] std::vector<Point3> ends(const Sensor& sensor, const std::vector<Vec3>& rays,
-                                           double farthest, bool by_depth) const {
+                                           const FieldOfView& view) const {
         const Frame3 frame(sensor.pose);
         Directions directions;
         directions.resize(rays.size());
@@ -90,15 +90,15 @@ class Sightlines {
         std::vector<float> ranges(rays.size());
         worlds_.mesh().cast(frame.origin, directions, reach_, ranges);
         bodies_.shorten(frame.origin, directions, reach_, carrierOf(sensor), ranges);
+        constexpr double kLength = 0.25;  // of the plan
+        const double most = std::min(view.max_range, kLength * reach_);
+        // A flat end, as long as it is not too wide.
+        constexpr double kSteepest = 0.4;
         std::vector<Point3> ends;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const double most = by_depth ? farthest / std::max(rays[i].x, 1e-3) : farthest;
-            double range = std::min({static_cast<double>(ranges[i]), most, reach_});
-            // Rooms need no ceiling, but nobody looks at what is above the walls.
-            const double rise = directions[i].z * range;
-            const double room = std::max(scene_.environment.height() - frame.origin.z, 0.0);
-            if (rise > room) range *= room / rise;
-            ends.push_back(frame.origin + range * directions[i]);
+            const double range = most / std::max(rays[i].x, kSteepest);
+            ends.push_back(frame.origin +
+                           std::min(static_cast<double>(ranges[i]), range) * directions[i]);
         }
         return ends;
     }
@@ -113,20 +113,19 @@ class Sightlines {
     }
 
   private:
-    const Scene& scene_;
     Worlds worlds_;
     MovingBodies bodies_;
     double reach_ = 0;
 };
 
-/// A pyramid on any base.
-Mesh coneOf(Point3 apex, const std::vector<Point3>& base) {
+/// The sides from `apex` to a rim.
+Mesh cubeOf(Point3 apex, const std::vector<Point3>& rim) {
     Mesh mesh;
     mesh.material = Material::View;
     mesh.open = true;
-    mesh.vertices = base;
+    mesh.vertices = rim;
     mesh.vertices.push_back(apex);
-    const auto count = static_cast<std::uint32_t>(base.size());
+    const auto count = static_cast<std::uint32_t>(rim.size());
     for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.push_back({i, (i + 1) % count, count});
     return mesh;
 }
@@ -135,15 +134,23 @@ void addCube(SightMarks& marks, const Sightlines& sightlines, const Sensor& sens
     const std::optional<FieldOfView> view = fieldOfView(sensor);
     if (!view) return;
     const bool is_camera = sensor.is<Camera>();
-    const std::vector<Vec3> rim = is_camera ? rimOf(sensor.as<Camera>()) : rimOf(*view);
-    std::vector<Point3> ends = sightlines.ends(sensor, rim, view->max_range, view->is_by_depth);
+    const std::vector<Vec3> rays = is_camera ? rimOf(sensor.as<Camera>()) : rimOf(*view);
+    std::vector<Point3> ends = sightlines.ends(sensor, rays, *view);
     const Point3 apex = sensor.pose.position;
-    marks.paint.push_back({coneOf(apex, ends), linearOf(color), 0.13F, false});
+    constexpr float kOpacity = 0.16F;
+    marks.paint.push_back({cubeOf(apex, ends), linearOf(color), kOpacity, false});
+    const Color edge = color.faded(0.85);
     if (is_camera)
         for (std::size_t i = 0; i < ends.size(); i += kRimRays / 4)
-            marks.lines.push_back({{apex, ends[i]}, color.faded(0.9), 1.3});
+            marks.lines.push_back({{apex, ends[i]}, edge});
     ends.push_back(ends.front());
-    marks.lines.push_back({std::move(ends), color.faded(0.9), 1.3});
+    marks.lines.push_back({std::move(ends), edge});
+}
+
+/// True in what a sensor would see were nothing in the way, or where it is.
+bool isWithin(std::optional<Point3> place, const Sensor& sensor) {
+    const std::optional<FieldOfView> view = fieldOfView(sensor);
+    return place && view && (*place == sensor.pose.position || view->holds(*place));
 }
 
 void addBeams(SightMarks& marks, Sightlines& sightlines, const Sensor& sensor, Color color) {
@@ -173,14 +180,14 @@ Rgb linearOf(const Color& color) {
     return {linear(color.red), linear(color.green), linear(color.blue)};
 }
 
-SightMarks sightMarks(const Scene& scene, bool beams) {
+SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer) {
     SightMarks marks;
     Sightlines sightlines(scene);
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
         const Sensor& sensor = scene.sensors[i];
-        if (!sensor.is<Laser>())
+        if (!sensor.is<Laser>() && !isWithin(viewer, sensor))
             addCube(marks, sightlines, sensor, sensorColor(i));
-        else if (beams && sensor.as<Laser>().sweep == SweepAxis::None)
+        else if (beams && sensor.is<Laser>() && sensor.as<Laser>().sweep == SweepAxis::None)
             addBeams(marks, sightlines, sensor, sensorColor(i));
     }
     return marks;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "draw/color.h"
@@ -27,9 +28,10 @@ struct SightMarks {
     std::vector<Line> lines;
 };
 
-/// View cubes of all sensors with an axis, up to what stops them (thesis, fig. 3.15), and with
-/// `beams` those of lasers, thinned where they would run together.
-SightMarks sightMarks(const Scene& scene, bool beams);
+/// View cubes of all sensors with an axis (thesis, fig. 3.15), up to what stops them or a quarter
+/// of the plan, and with `beams` those of lasers, thinned where they would run together. \param
+/// viewer where one looks from: the view cubes about it are left out
+SightMarks sightMarks(const Scene& scene, bool beams, std::optional<Point3> viewer);
 
 /// What sensors cover, as colours on the floor.
 class FloorColors {
@@ -40,9 +42,18 @@ class FloorColors {
     [[nodiscard]] Rgb at(Point2 place) const;
 
   private:
+    /// Of the sensors that see a place.
+    struct Sum {
+        Rgb color{};  ///< sRGB
+        float sensors = 0;
+    };
+
+    void add(const std::vector<Polygon>& seen, const Color& color);
+
     Box2 limits_;
     double scale_ = 1;  // pixels a metre
-    Image image_;
+    int columns_ = 0, rows_ = 0;
+    std::vector<Sum> sums_;
 };
 
 }  // namespace ispace

@@ -10,6 +10,7 @@
 #include "render/render.h"
 #include "sense/warnings.h"
 #include "view/sight_marks.h"
+#include "view/wall_tops.h"
 
 namespace ispace {
 
@@ -25,94 +26,6 @@ int finenessFor(PictureSize size, int samples) {
     const double pixels = 1.0 * size.columns * size.rows;
     return samples >= 4 && 4 * pixels <= kMostPixels ? 2 : 1;
 }
-
-/// Walls of which nothing is seen from above but a line, in the plan's colour.
-class WallTops {
-  public:
-    explicit WallTops(const Standpoint& standpoint, const Scene& scene)
-        : standpoint_(standpoint), scene_(scene) {}
-
-    /// True for parts of walls between the viewer and the room: the side that faces the viewer is
-    /// not indoors, the other one is.
-    [[nodiscard]] bool isBetween(const Element& element, std::span<const Point2> footprint) const {
-        if (!standpoint_.looks_in || !standpoint_.place || !isWall(element)) return false;
-        const auto [middle, across] = crossingOf(footprint);
-        const Vec2 way = standpoint_.place->onFloor() - middle;
-        const Vec2 outward = dot(way, across) < 0 ? -across : across;
-        const Regions& indoor = scene_.environment.indoor();
-        return indoor.locate(middle + outward) != Side::Inside &&
-               indoor.locate(middle - outward) == Side::Inside;
-    }
-
-    [[nodiscard]] std::vector<PaintedMesh> paint() const {
-        PaintedMesh tops{{}, linearOf(palette::kWall), 1, false};
-        tops.mesh.material = Material::Wall;
-        tops.mesh.open = true;
-        constexpr double kAbove = 0.003;
-        for (const Element& element : scene_.environment.elements()) {
-            if (!isWall(element)) continue;
-            for (const Sheet& sheet : element.body.sheets) {
-                const std::array line{sheet.line.a, sheet.line.b};
-                addStrip(tops.mesh, sheet.line,
-                         (isBetween(element, line) ? sheet.bottom : sheet.top) + kAbove);
-            }
-            for (const Prism& prism : element.body.prisms)
-                if (isStrictlyConvex(prism.footprint))
-                    addPlate(
-                        tops.mesh, prism.footprint,
-                        (isBetween(element, prism.footprint) ? prism.bottom : prism.top) + kAbove);
-        }
-        return {tops};
-    }
-
-  private:
-    struct Crossing {
-        Point2 middle;
-        Vec2 across;  ///< from the middle to a little beside the wall
-    };
-
-    static bool isWall(const Element& element) {
-        const std::string& keyword = element.record.keyword();
-        return keyword == "wall" || keyword == "ispace" || keyword == "fence" ||
-               keyword == "door" || keyword == "window";
-    }
-
-    /// Of the longest edge, or of the line.
-    static Crossing crossingOf(std::span<const Point2> footprint) {
-        Box2 box;
-        Vec2 longest{};
-        Vec2 sum{};
-        for (std::size_t i = 0; i < footprint.size(); ++i) {
-            const Vec2 edge = footprint[(i + 1) % footprint.size()] - footprint[i];
-            if (length(edge) > length(longest)) longest = edge;
-            sum = sum + (footprint[i] - Point2());
-        }
-        const Point2 middle = Point2() + 1.0 / static_cast<double>(footprint.size()) * sum;
-        const Vec2 unit = 1 / length(longest) * perpendicular(longest);
-        double half = 0;
-        for (const Point2& p : footprint) half = std::max(half, std::fabs(dot(p - middle, unit)));
-        constexpr double kBeside = 0.05;
-        return {middle, (half + kBeside) * unit};
-    }
-
-    static void addPlate(Mesh& mesh, std::span<const Point2> outline, double z) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const Point2& p : outline) mesh.vertices.push_back({p.x, p.y, z});
-        for (std::uint32_t i = 2; i < outline.size(); ++i)
-            mesh.triangles.push_back({first, first + i - 1, first + i});
-    }
-
-    static void addStrip(Mesh& mesh, const Segment2& line, double z) {
-        constexpr double kHalfWidth = 0.035;
-        const Vec2 along = kHalfWidth / distance(line.a, line.b) * (line.b - line.a);
-        const Vec2 side = perpendicular(along);
-        const Point2 a = line.a - along, b = line.b + along;
-        addPlate(mesh, std::array{a - side, b - side, b + side, a + side}, z);
-    }
-
-    const Standpoint& standpoint_;
-    const Scene& scene_;
-};
 
 /// One picture in the making.
 class ViewDrawer {
@@ -130,7 +43,8 @@ class ViewDrawer {
 
     Image draw() {
         if (options_.show != ShownSight::None)
-            marks_ = sightMarks(scene_, options_.show == ShownSight::Beams);
+            marks_ = sightMarks(scene_, options_.show == ShownSight::Beams,
+                                standpoint_.looks_in ? std::nullopt : standpoint_.place);
         render();
         if (options_.show == ShownSight::Area) colorFloor();
         Picture page(size_.columns, size_.rows);
@@ -158,7 +72,7 @@ class ViewDrawer {
         what.paint = std::move(marks_.paint);
         const WallTops walls(standpoint_, scene_);
         if (standpoint_.looks_in) {
-            for (PaintedMesh& mesh : walls.paint()) what.paint.push_back(std::move(mesh));
+            what.paint.push_back(walls.paint());
             what.leaves_out = [&walls](const Element& element, std::span<const Point2> footprint) {
                 return walls.isBetween(element, footprint);
             };
@@ -170,7 +84,10 @@ class ViewDrawer {
         how.labels = !highlighted_.empty();
         how.depths = true;
         how.hidden = standpoint_.hidden;
-        if (standpoint_.looks_in) how.background = Rgb{1, 1, 1};
+        if (standpoint_.looks_in) {
+            how.background = Rgb{1, 1, 1};
+            how.light = Illumination::Lamps;
+        }
         picture_ = ispace::render(RenderScene(scene_, what), standpoint_.eye->viewpoint(), how);
     }
 
@@ -317,7 +234,7 @@ class ViewDrawer {
     }
 
     void addDot(Picture& page, Point2 at) const {
-        page.circle(at, 0.36 * em(), {kViewerColor, Stroke{palette::kWhite, 0.12 * em()}});
+        page.circle(at, 0.3 * em(), {kViewerColor, Stroke{palette::kWhite, 0.1 * em()}});
     }
 
     void addLabels(Picture& page) const {

@@ -21,7 +21,7 @@ struct ViewOptions {
     ShownSight show = ShownSight::None;
     std::vector<std::string> highlight = {};  ///< ids of records that stand out
     bool labels = true;                       ///< ids beside sensors and robots, dots for cameras
-    int samples = 4;                          ///< of each pixel, see RenderOptions
+    int samples = 16;                         ///< of each pixel, see RenderOptions
     /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
     std::vector<Point3> viewers = {};
 };
