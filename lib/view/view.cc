@@ -27,13 +27,20 @@ int finenessFor(PictureSize size, int samples) {
     return samples >= 4 && 4 * pixels <= kMostPixels ? 2 : 1;
 }
 
+/// Nothing is drawn into what a camera takes.
+ViewOptions asTaken(ViewOptions options) {
+    options.show = ShownSight::None;
+    options.labels = false;
+    return options;
+}
+
 /// One picture in the making.
 class ViewDrawer {
   public:
     ViewDrawer(const Scene& scene, const ViewSpec& spec, PictureSize size,
                const ViewOptions& options)
         : scene_(scene),
-          options_(options),
+          options_(spec.mode == ViewMode::Camera ? asTaken(options) : options),
           size_(size),
           fine_(finenessFor(size, options.samples)),
           standpoint_(standpointOf(spec, scene, {fine_ * size.columns, fine_ * size.rows})) {
@@ -142,7 +149,8 @@ class ViewDrawer {
 
     /// The rendered picture at its size.
     [[nodiscard]] Image finished() const {
-        std::vector<std::uint8_t> bytes = toSrgb8(picture_);
+        constexpr double kPaper = 1.15;  // a floor looks dull beside white
+        std::vector<std::uint8_t> bytes = toSrgb8(picture_, standpoint_.looks_in ? kPaper : 1);
         if (standpoint_.looks_in)  // paper
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
                 if (!std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1})
@@ -268,7 +276,7 @@ class ViewDrawer {
     }
 
     const Scene& scene_;
-    const ViewOptions& options_;
+    ViewOptions options_;
     PictureSize size_;
     int fine_;
     Standpoint standpoint_;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "layout/test_layout.h"
+#include "view/contact_sheet.h"
 #include "view/run_record.h"
 
 namespace ispace {
@@ -142,6 +143,29 @@ TEST(View, WarnsOfViewersInTheWrongPlace) {
     EXPECT_EQ(warning("first-person:0,0,0"), "");
     EXPECT_EQ(warning("omni:9,0"), "omni: the viewer stands outside the room");
     EXPECT_EQ(warning("omni:2,0.5,0.3"), "omni: the viewer stands inside something solid");
+}
+
+TEST(ContactSheet, HasTheOthersInRowsBelow) {
+    const std::vector<PictureSize> shapes = {{200, 150}, {640, 480}, {640, 480}, {100, 200}};
+    const ContactSheet sheet(shapes);
+    EXPECT_EQ(sheet.sizeOf(0), shapes[0]);
+    const PictureSize below = sheet.sizeOf(1);
+    EXPECT_EQ(below, sheet.sizeOf(2));
+    EXPECT_NEAR(3 * below.columns, 200, 10);
+    EXPECT_NEAR(below.rows, 0.75 * below.columns, 0.6);
+    std::vector<Image> images;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const auto [columns, rows] = sheet.sizeOf(i);
+        const auto pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+        images.push_back({columns, rows, std::vector<std::uint32_t>(pixels, 0xFF0000)});
+    }
+    const Image page = sheet.draw(images, {"a", "b", "c", "d"});
+    EXPECT_EQ(page.width, 200);
+    EXPECT_GT(page.height, 150 + 2 * below.columns);
+    EXPECT_EQ(page.at(199, 149), 0xFF0000U);
+    EXPECT_EQ(page.at(100, page.height - 1), 0xFFFFFFU);
+    EXPECT_EQ(page.at(199, page.height - 1), 0xFFFFFFU);
+    EXPECT_EQ(page.at(2 * (below.columns + 2) + 1, page.height - 1), 0xFF0000U);
 }
 
 TEST(RunRecord, PutsRobotsWhereTheyWere) {

@@ -45,9 +45,8 @@ void addPlate(Mesh& mesh, std::span<const Point2> outline, double z) {
         mesh.triangles.push_back({first, first + i - 1, first + i});
 }
 
-void addStrip(Mesh& mesh, const Segment2& line, double z) {
-    constexpr double kHalfWidth = 0.035;
-    const Vec2 along = kHalfWidth / distance(line.a, line.b) * (line.b - line.a);
+void addStrip(Mesh& mesh, const Segment2& line, double half_width, double z) {
+    const Vec2 along = half_width / distance(line.a, line.b) * (line.b - line.a);
     const Vec2 side = perpendicular(along);
     const Point2 a = line.a - along, b = line.b + along;
     addPlate(mesh, std::array{a - side, b - side, b + side, a + side}, z);
@@ -70,6 +69,11 @@ PaintedMesh WallTops::paint() const {
     tops.mesh.material = Material::Wall;
     tops.mesh.open = true;
     constexpr double kAbove = 0.003;
+    // Seen as a line in pictures of whole buildings, too.
+    constexpr double kThin = 0.03, kThick = 0.2, kOfPlan = 0.0014;
+    const Box2& plan = scene_.environment.limits();
+    const double half_width =
+        std::clamp(kOfPlan * std::max(plan.width(), plan.depth()), kThin, kThick);
     const auto height = [&](const Element& element, std::span<const Point2> footprint,
                             double bottom, double top) {
         return (isBetween(element, footprint) ? bottom : top) + kAbove;
@@ -78,7 +82,8 @@ PaintedMesh WallTops::paint() const {
         if (!isWall(element)) continue;
         for (const Sheet& sheet : element.body.sheets) {
             const std::array line{sheet.line.a, sheet.line.b};
-            addStrip(tops.mesh, sheet.line, height(element, line, sheet.bottom, sheet.top));
+            addStrip(tops.mesh, sheet.line, half_width,
+                     height(element, line, sheet.bottom, sheet.top));
         }
         for (const Prism& prism : element.body.prisms)
             if (isStrictlyConvex(prism.footprint))

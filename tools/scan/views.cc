@@ -12,6 +12,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "scan/options.h"
+#include "view/contact_sheet.h"
 #include "view/run_record.h"
 
 namespace ispace {
@@ -40,35 +41,67 @@ std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& s
     return viewers;
 }
 
-/// Where pictures go: one file, or a set of them.
+/// Draws views of a scene.
+struct DrawView {
+    const ScanToolOptions& options;
+    const Scene& scene;
+    const ViewOptions& drawing;
+    Progress& progress;
+
+    [[nodiscard]] PictureSize sizeOf(const ViewSpec& view) const {
+        return ispace::sizeOf(view, scene, options.picture_size);
+    }
+    [[nodiscard]] Image draw(const ViewSpec& view, PictureSize size) const {
+        Image image = viewPicture(scene, view, size, drawing);
+        progress.advance(1);
+        return image;
+    }
+};
+
+/// Where pictures go: a set of files, or one file, which is a sheet if there are several.
 class PictureFiles {
   public:
     PictureFiles(const ScanToolOptions& options, int frames)
         : output_(options.common.output), set_(OutputSet::of(output_)) {
         std::vector<std::string> names;
         for (const ViewSpec& view : options.view.views) names.push_back(view.name);
-        const std::size_t count = names.size() * static_cast<std::size_t>(frames);
         if (set_) {
             if (options.common.dependencies.wanted)
                 throw UsageError("-MD writes a rule for one product, and a set is many files");
             set_->prepare(names, frames > 1, {".png"});
-        } else if (count > 1) {
-            throw UsageError(std::to_string(count) +
-                             " pictures: name a folder (-o DIR/) or a pattern (-o '%s" +
-                             (frames > 1 ? "-%04d" : "") + ".png'), where %s is the view's name" +
-                             (frames > 1 ? " and %d the frame's number" : ""));
+        } else if (frames > 1) {
+            throw UsageError(std::to_string(frames) +
+                             " frames make as many pictures: name a folder (-o DIR/) or a pattern "
+                             "(-o '%s-%04d.png'), where %s is the view's name");
         } else {
             refuseTerminal(output_, "png");
         }
     }
 
-    void write(const ViewSpec& view, int frame, const Image& image) const {
-        OutputFile file(set_ ? set_->fileOf(view.name, frame, ".png") : output_);
+    void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) const {
+        std::vector<PictureSize> sizes;
+        for (const ViewSpec& view : views) sizes.push_back(draw.sizeOf(view));
+        const ContactSheet sheet(sizes);
+        std::vector<Image> images;
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            Image image = draw.draw(views[i], set_ ? sizes[i] : sheet.sizeOf(i));
+            if (set_)
+                writeFile(set_->fileOf(views[i].name, frame, ".png"), image);
+            else
+                images.push_back(std::move(image));
+            names.push_back(views[i].id.empty() ? views[i].name : views[i].id);
+        }
+        if (!set_) writeFile(output_, sheet.draw(images, names));
+    }
+
+  private:
+    static void writeFile(const std::string& name, const Image& image) {
+        OutputFile file(name);
         file.write(encodePng(image));
         file.commit();
     }
 
-  private:
     std::string output_;
     std::optional<OutputSet> set_;
 };
@@ -155,11 +188,7 @@ void takeViews(const ScanCommand& command) {
         if (run) run->apply(scene, run->begin() + share * (run->end() - run->begin()));
         ViewOptions drawing = options.view.drawing;
         drawing.viewers = viewersOf(views, scene);
-        for (const ViewSpec& view : views) {
-            const PictureSize size = sizeOf(view, scene, options.picture_size);
-            pictures.write(view, frame, viewPicture(scene, view, size, drawing));
-            progress->advance(1);
-        }
+        pictures.write(views, frame, {options, scene, drawing, *progress});
     }
     progress->end();
     writeDependencies(options.common, files);
