@@ -127,8 +127,9 @@ Standpoint orbit(const ViewSpec& spec, const Scene& scene, PictureSize size) {
 
 Standpoint central(const ViewSpec& spec, const Scene& scene, PictureSize size) {
     if (!spec.at && spec.id.empty()) return orbit(spec, scene, size);
-    const Focus focus = spec.at ? Focus{{spec.at->x, spec.at->y, 0.8}, 2} : focusOn(spec.id, scene);
-    const double distance = spec.distance.value_or(std::max(4.0, 3 * focus.size));
+    const Focus focus =
+        spec.at ? Focus{{spec.at->x, spec.at->y, 0.8}, 1.2} : focusOn(spec.id, scene);
+    const double distance = spec.distance.value_or(std::max(4.0, 5 * focus.size));
     const Pose3 pose = around(focus.middle, spec.heading.value_or(kAzimuth),
                               spec.tilt.value_or(kElevation), distance);
     return lookIn(scene, pinhole(size, Angle::degrees(55)), pose);

@@ -233,19 +233,34 @@ class ViewDrawer {
         return p;
     }
 
-    void addLabel(Picture& page, Point2 at, const std::string& id, Color color) const {
+    /// Beside a place, where no other id is.
+    void addLabel(Picture& page, Point2 at, const std::string& id, Color color) {
         const TextStyle style{em(), true, Align::Left, color, palette::kWhite};
         const double wide = textWidth(id, style), gap = 0.6 * em();
-        const bool is_left = at.x + gap + wide > size_.columns;
-        page.text({is_left ? at.x - gap - wide : at.x + gap, std::max(at.y - gap, em())}, id,
-                  style);
+        std::optional<Box2> best;
+        for (int i = 0; i < 6 && !best; ++i) {
+            const double left = i % 2 == 0 ? at.x + gap : at.x - gap - wide;
+            const double base = at.y + (i / 2 == 0 ? -gap : i / 2 == 1 ? gap + em() : 2 * em());
+            const Box2 box{{left, base - em()}, {left + wide, base}};
+            const bool is_free =
+                box.low.x >= 0 && box.low.y >= 0 && box.high.x <= size_.columns &&
+                box.high.y <= size_.rows &&
+                std::none_of(labels_.begin(), labels_.end(), [&box](const Box2& other) {
+                    return box.low.x < other.high.x && other.low.x < box.high.x &&
+                           box.low.y < other.high.y && other.low.y < box.high.y;
+                });
+            if (is_free) best = box;
+        }
+        if (!best) return;
+        labels_.push_back(*best);
+        page.text({best->low.x, best->high.y}, id, style);
     }
 
     void addDot(Picture& page, Point2 at) const {
         page.circle(at, 0.3 * em(), {kViewerColor, Stroke{palette::kWhite, 0.1 * em()}});
     }
 
-    void addLabels(Picture& page) const {
+    void addLabels(Picture& page) {
         const auto isHidden = [&](const std::string& id) {
             return std::any_of(standpoint_.hidden.begin(), standpoint_.hidden.end(),
                                [&](std::size_t record) { return scene_.ids[record] == id; });
@@ -283,6 +298,7 @@ class ViewDrawer {
     std::vector<std::size_t> highlighted_;
     SightMarks marks_;
     Rendering picture_;
+    std::vector<Box2> labels_;  // places of ids on the page
 };
 
 }  // namespace
