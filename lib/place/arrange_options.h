@@ -43,11 +43,16 @@ struct CandidateDensity {
 constexpr double kOffWall = 0.02;
 /// Distance of a ceiling mount from the ceiling, metres.
 constexpr double kBelowCeiling = 0.05;
+/// Where kinds that hang overhead hang on walls, metres; less in lower rooms.
+constexpr double kOnWall = 2.4, kBelowWallTop = 0.1;
 
 struct MountRules {
-    MountOn on = MountOn::Floor;
-    std::vector<double> heights = {};  ///< to choose from; empty: kScanHeight, or the mount's
-    std::vector<Angle> tilts = {};     ///< to choose from, for sensors without a tilt of their own
+    /// Nothing: the ceiling for kinds that hang overhead (with Strategy::Wall walls), the floor for
+    /// all others.
+    std::optional<MountOn> on = {};
+    std::vector<double> heights = {};  ///< to choose from; empty: those of the mount
+    /// To choose from, for sensors without a tilt of their own; empty: those of the mount.
+    std::vector<Angle> tilts = {};
     double clearance = 0;
     std::vector<NamedZone> keep_out = {}, keep_in = {};
 };
@@ -73,7 +78,8 @@ struct ArrangeOptions {
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false;
 
-    double plane = 0;                               ///< height of what rangers and receivers cover
+    double plane = 0;          ///< height of what rangers, cameras and receivers cover
+    double pixel_density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all
     std::optional<CellChoice> cells;                ///< while searching, see searchCells()
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
     std::uint64_t seed = 0;

@@ -11,6 +11,7 @@
 #include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "place/scene_problem.h"
+#include "sensor/camera.h"
 #include "solve/mps_file.h"
 #include "solve/search_state.h"
 
@@ -195,8 +196,15 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const SceneProblem& m
 
 }  // namespace
 
-Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
-                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+namespace {
+
+/// A camera as far as it has enough pixels; any other sensor as it is.
+void limit(SensorModel& model, double pixel_density) {
+    if (auto* camera = std::get_if<Camera>(&model)) *camera = withDensity(*camera, pixel_density);
+}
+
+Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
+                           const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     SceneProblem model(scene, groups, options, progress);
     const Problem& problem = model.problem();
     if (mps != nullptr) writeModel(model, *mps);
@@ -229,6 +237,19 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     }
     if (options.wants_trace) result.tried = model.triedPoses(chosen);
     return result;
+}
+
+}  // namespace
+
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    if (!(options.pixel_density > 0)) return arrangeLimited(scene, groups, options, progress, mps);
+    // Candidates, bounds and what is measured in the end: all of cameras that see no farther.
+    Scene limited = scene;
+    for (Sensor& sensor : limited.sensors) limit(sensor.model, options.pixel_density);
+    std::vector<SensorGroup> limited_groups = groups;
+    for (SensorGroup& group : limited_groups) limit(group.model, options.pixel_density);
+    return arrangeLimited(limited, limited_groups, options, progress, mps);
 }
 
 namespace {

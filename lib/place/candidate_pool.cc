@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 
 #include "base/error.h"
@@ -27,6 +28,24 @@ std::vector<Site> onNanometres(std::vector<Site> sites) {
         for (Angle& heading : site.headings) heading = wrapped(heading);
     }
     return sites;
+}
+
+std::vector<Angle> degrees(std::initializer_list<double> angles) {
+    std::vector<Angle> all;
+    all.reserve(angles.size());
+    for (const double angle : angles) all.push_back(Angle::degrees(angle));
+    return all;
+}
+
+/// What scans a plane stays level. What has an axis looks down from above; one that is aimed has
+/// some tilts to choose from, unless it sees all around from there.
+std::vector<Angle> usualTilts(const SensorModel& model, MountOn mount) {
+    const bool is_aimed = kindOf(model).is_overhead;
+    if (mount == MountOn::Wall && is_aimed) return degrees({-30, -15, -45});
+    const bool hangs = mount == MountOn::Frame || mount == MountOn::Ceiling;
+    if (!hangs || !fieldOfView(Sensor{{}, model, {}})) return {Angle()};
+    const Pose3 down{{}, {}, Angle::degrees(-90), {}};
+    return is_aimed && !looksAround(model, down) ? degrees({-90, -60, -30}) : degrees({-90});
 }
 
 /// Sites at one height.
@@ -62,21 +81,26 @@ struct CandidatePool::Data {
         return *validity;
     }
 
-    [[nodiscard]] std::vector<double> heights() const {
+    [[nodiscard]] MountOn mountOf(const SensorClass& kind) const {
+        if (options.mount.on) return *options.mount.on;
+        if (!kindOf(kind.model).is_overhead) return MountOn::Floor;
+        return options.strategy == Strategy::Wall ? MountOn::Wall : MountOn::Ceiling;
+    }
+
+    [[nodiscard]] std::vector<double> heightsOf(const SensorClass& kind) const {
         if (!options.mount.heights.empty()) return options.mount.heights;
-        if (options.mount.on == MountOn::Ceiling)
-            return {onNanometres(environment.height() - kBelowCeiling)};
+        const MountOn mount = mountOf(kind);
+        const double top = environment.height();
+        if (mount == MountOn::Ceiling) return {onNanometres(top - kBelowCeiling)};
+        if (mount == MountOn::Wall && kindOf(kind.model).is_overhead)
+            return {onNanometres(std::min(kOnWall, top - kBelowWallTop))};
         return {kScanHeight};
     }
 
     [[nodiscard]] std::vector<Angle> tiltsOf(const SensorClass& kind) const {
         if (kind.record.has("tilt")) return {kind.record.angle("tilt")};
         if (!options.mount.tilts.empty()) return options.mount.tilts;
-        const bool hangs =
-            options.mount.on == MountOn::Frame || options.mount.on == MountOn::Ceiling;
-        // What has an axis looks down; what scans a plane stays level.
-        if (hangs && fieldOfView(Sensor{{}, kind.model, {}})) return {Angle::degrees(-90)};
-        return {Angle()};
+        return usualTilts(kind.model, mountOf(kind));
     }
 
     /// What the strategy proposes at one height; Random comes by itself.
@@ -102,7 +126,7 @@ struct CandidatePool::Data {
         if (options.mount.on == MountOn::Frame)
             levels = frameLevels();
         else
-            for (const double height : heights())
+            for (const double height : heightsOf(kind))
                 levels.push_back({height, proposals(kind, height)});
         std::size_t proposed = 0, valid = 0;
         for (SitesAtHeight& level : levels) {
@@ -129,7 +153,7 @@ struct CandidatePool::Data {
             " (" + std::to_string(proposed) + ") none lies indoors and clear of objects";
         if (!on_frame) {
             text += " at ";
-            const std::vector<double> all = heights();
+            const std::vector<double> all = heightsOf(kind);
             for (std::size_t i = 0; i < all.size(); ++i)
                 text.append(i == 0 ? "" : ", ").append(formatDouble(all[i]));
             text += " m";
@@ -174,13 +198,14 @@ struct CandidatePool::Data {
     /// Valid random places; fewer if they are hard to find or progress says stop. `needs_one`: even
     /// then tries for one place as long as a single place allows.
     template <typename Draw>
-    Drawn randomLevels(int count, bool needs_one, Draw draw) {
+    Drawn randomLevels(const SensorClass& kind, int count, bool needs_one, Draw draw) {
         constexpr std::uint64_t kTries = 1000;  // a place
         const std::uint64_t max_tries = kTries * static_cast<std::uint64_t>(count);
         Drawn drawn;
         std::uint64_t k = 0;
-        progress.begin("drawing places", std::int64_t{count} * std::ssize(heights()));
-        for (const double height : heights()) {
+        const std::vector<double> heights = heightsOf(kind);
+        progress.begin("drawing places", std::int64_t{count} * std::ssize(heights));
+        for (const double height : heights) {
             const SiteValidity& validity = validityAt(height);
             std::vector<Point2> places;
             for (std::uint64_t tries = 0;
@@ -206,7 +231,7 @@ struct CandidatePool::Data {
     /// Hierarchical Random: R1 places; for each sensor R2 more about its best one. All sensors
     /// share these places. False if progress says stop.
     bool addRandom(PosedCandidates& set, const SensorClass& kind) {
-        const Drawn first = randomLevels(options.first_places, true, [&](std::uint64_t k) {
+        const Drawn first = randomLevels(kind, options.first_places, true, [&](std::uint64_t k) {
             return randomPlace(environment.limits(), options.seed, kind.id, k);
         });
         if (first.places == 0) {
@@ -228,7 +253,7 @@ struct CandidatePool::Data {
             const std::size_t start = best();
             if (values[start] == 0) break;  // nothing is left to be seen
             const Point2 center = set.pose(start).position.onFloor();
-            const Drawn more = randomLevels(options.more_places, false, [&](std::uint64_t k) {
+            const Drawn more = randomLevels(kind, options.more_places, false, [&](std::uint64_t k) {
                 return randomPlaceAbout(center, scope, options.seed, kind.id,
                                         static_cast<std::uint64_t>(sensor), k);
             });

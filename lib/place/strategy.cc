@@ -118,9 +118,9 @@ const StrategyRow* strategyNamed(std::string_view name) {
     return row == std::end(kRows) ? nullptr : row;
 }
 
-bool takes(Strategy strategy, MountOn mount, const StrategyOption& option) {
+bool takes(Strategy strategy, std::optional<MountOn> mount, const StrategyOption& option) {
     const auto options = rowOf(strategy).options;
-    return option.or_mount == mount ||
+    return (mount && option.or_mount == mount) ||
            std::any_of(options.begin(), options.end(), [&option](const StrategyOption& own) {
                return own.name == std::string_view(option.name);
            });

@@ -57,7 +57,7 @@ const StrategyRow& rowOf(Strategy strategy);
 /// The row with this name; null if there is none.
 const StrategyRow* strategyNamed(std::string_view name);
 /// True if it is an option of this strategy or mount.
-bool takes(Strategy strategy, MountOn mount, const StrategyOption& option);
+bool takes(Strategy strategy, std::optional<MountOn> mount, const StrategyOption& option);
 
 /// The headings to try at each place, if the strategy does not choose them itself.
 std::vector<Angle> headingsPerPlace(const ArrangeOptions& options);

@@ -559,7 +559,8 @@ const SensorKind kCameraKind = {
         return {-half, half, camera.max_range};
     },
     .is_read = false,
-    .is_arranged = false,
+    .is_arranged = true,
+    .is_overhead = true,
     .follows_poses = false};
 
 }  // namespace ispace

@@ -56,6 +56,7 @@ struct SensorKind {
     bool perceives = true;       ///< sees or hears; false for what others look for
     bool is_read = false;        ///< `scan` takes readings of it, or through it
     bool is_arranged = false;    ///< `arrange` can place it
+    bool is_overhead = false;    ///< it hangs above people's heads unless `--mount` says otherwise
     bool follows_poses = false;  ///< `scan --poses` can move it
     /// A place counts as covered if this many of the kind see it.
     std::size_t together = 1;

@@ -25,9 +25,6 @@ namespace {
 
 using namespace ispace;
 
-/// Sensors that stay without a place.
-constexpr std::string_view kUnplaced[] = {"camera"};
-
 /// What is read before the search.
 struct Work {
     SceneInput input;
@@ -81,11 +78,6 @@ Work read(const ArrangeToolOptions& options) {
         input.layout = withoutPlaces(*input.layout, options.fixed);
         input.scene = makeScene(input.environment, &*input.layout, devices);
     }
-    const auto is_pending = [&records = input.scene.records](std::size_t i) {
-        return !records[i].has("at") && !records[i].has("on");
-    };
-    for (const std::string& phrase : leftOut(input.scene, kUnplaced, "placed", is_pending))
-        warn(options.common, "arrange", phrase);
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);
     if (work.groups.empty())
@@ -140,6 +132,19 @@ Numbers numbersOf(const Work& work) {
     return numbers;
 }
 
+/// Where the pixels of a camera are too few; "" without one, or if any number will do.
+std::string reasonOfDensity(const Work& work) {
+    const double density = work.how.pixel_density;
+    if (!(density > 0)) return "";
+    for (const SensorGroup& group : work.groups)
+        if (const auto* camera = std::get_if<Camera>(&group.model))
+            return "nowhere on the " + std::string(work.how.plane > 0 ? "plane" : "floor") +
+                   " are there " + formatDouble(density) + " pixels a metre (--density): " +
+                   (camera->model.empty() ? "a camera" : camera->model) + " has so many up to " +
+                   formatFixed(rangeOf(*camera, density), 2) + " m away";
+    return "";
+}
+
 /// Why nothing is covered; "" where something is.
 std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
     const auto [receivers, others] = numbersOf(work);
@@ -151,10 +156,10 @@ std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
     if (times > 1 && together < times)
         return "nothing counts: floor has to be seen by " + std::to_string(times) +
                " sensors, and there are " + std::to_string(together);
-    if (arrangement.coverage == 0 && !arrangement.sensors.empty())
-        return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
-               "`coverage` draws (-o map.png)";
-    return "";
+    if (arrangement.coverage > 0 || arrangement.sensors.empty()) return "";
+    if (std::string text = reasonOfDensity(work); !text.empty()) return text;
+    return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
+           "`coverage` draws (-o map.png)";
 }
 
 /// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.

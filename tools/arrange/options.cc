@@ -102,8 +102,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
           "Writes a layout (.3dm) and says how near it is to the best there can be.") {
     line_.operands(options_.operands, 2);
     line_.texts("--sensor", "MODEL[,KEY=VALUE...][:COUNT]", options_.sensors,
-                "place COUNT sensors of a device or a bare kind (laser, ranger, ultrasound), e.g. "
-                "urg-04lx:3 or laser,range=4,fov=180:3",
+                "place COUNT sensors of a device or a bare kind (laser, ranger, camera, "
+                "ultrasound), e.g. urg-04lx:3 or laser,range=4,fov=180:3",
                 Enters::History);
     line_.texts("--fixed", "ID", options_.fixed,
                 "keep only these sensors of LAYOUT in place (globs allowed) and place the others "
@@ -171,15 +171,16 @@ void ArrangeCommand::addMountOptions() {
     MountRules& mount = options_.how.mount;
     line_.choice(
         "--mount", words_.mount, wordsOf(kMounts),
-        "what sensors are fixed to: floor (default), wall (only places along walls), frame "
-        "(bars of infra), ceiling; on the last two rangers and ultrasound look down",
+        "what sensors are fixed to: floor (default; cameras: ceiling), wall (only places along "
+        "walls), frame (bars of infra), ceiling; on the last two rangers and ultrasound look down",
         Enters::History);
     line_.parsed(
         "--z", "H[,H...]",
         [&mount](const std::string& text) {
             mount.heights = numbers("H", text, Unit::Length, 1, 100, 0, 1000);
         },
-        "heights to choose from (default 0.15, or that of the mount)", Enters::History);
+        "heights to choose from (default 0.15, or that of the mount; of cameras on walls 2.4)",
+        Enters::History);
     line_.parsed(
         "--tilt", "DEG[,DEG...]",
         [&mount](const std::string& text) {
@@ -187,7 +188,9 @@ void ArrangeCommand::addMountOptions() {
             for (const double tilt : numbers("DEG", text, Unit::Angle, 1, 100, -90, 90))
                 mount.tilts.push_back(Angle::degrees(tilt));
         },
-        "tilts to choose from, for sensors without one of their own (default 0)", Enters::History);
+        "tilts to choose from, for sensors without one of their own (default 0; of cameras "
+        "-30,-15,-45 on walls and -90,-60,-30 above)",
+        Enters::History);
     line_.meters("--clearance", mount.clearance, 0, 1000,
                  "minimum distance from walls and objects at that height", Enters::History);
     line_.texts("--keep-out", "ZONE", options_.zones.keep_out, "no sensor stands there",
@@ -222,8 +225,9 @@ void ArrangeCommand::addGoalOptions() {
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
-                 "height of the plane that rangers and ultrasound cover, 0 is the floor",
+                 "height of the plane that rangers, cameras and ultrasound cover, 0 is the floor",
                  Enters::History);
+    addDensityOption(line_, how.pixel_density);
     addCellOptions(line_, words_.cells, "while searching");
 }
 
