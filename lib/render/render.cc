@@ -91,11 +91,13 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
     out.rows = viewpoint.rows();
     const std::size_t pixels =
         static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
-    out.radiance.resize(pixels);
-    raw.resize(pixels);
-    smooth.resize(pixels);
+    if (options.colors) {
+        out.radiance.resize(pixels);
+        raw.resize(pixels);
+        smooth.resize(pixels);
+    }
     if (options.labels) out.labels.resize(pixels);
-    if (options.depths) out.depths.resize(pixels, std::numeric_limits<float>::infinity());
+    if (options.depths) out.depths.resize(pixels);
 }
 
 /// Works on one tile after another; one for each thread.
@@ -107,13 +109,21 @@ class TileWorker {
           clear_(job.scene, job.options.min_depth),
           lights_(job.scene, job.light, job.lightSamples()) {}
 
-    /// Finds what the centres of the tile's pixels show, and the light there.
+    /// Finds what the centres of the tile's pixels show.
+    void measure(int column, int row) {
+        aim(column, row, {});
+        tracer_.trace(tile_);
+        forEachPixel(column, row,
+                     [&](std::size_t lane, std::size_t pixel) { writeMeasures(lane, pixel); });
+    }
+
+    /// The same, and the light there.
     void gatherLight(int column, int row) {
         aim(column, row, {});
         tracer_.trace(tile_);
         places_.is_wanted.fill(false);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-            measure(lane, pixel);
+            writeMeasures(lane, pixel);
             if (!job_.shading.meetsSurface(tile_, lane)) return;
             const SurfacePoint point = job_.shading.surface(tile_, lane);
             places_.set(lane, point.place, point.normal, point.lift);
@@ -154,14 +164,45 @@ class TileWorker {
   private:
     void aim(int column, int row, PixelPoint at) {
         const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
+        const Vec3 shift = job_.scene.still->shift;
+        if (job_.even) return tile_.set(*job_.even, column, row, at, last_column, last_row, shift);
         for (int i = 0; i < kTile * kTile; ++i) {
             const auto lane = static_cast<std::size_t>(i);
-            const PixelPoint place{std::min(column + i % kTile, last_column) + at.column,
-                                   std::min(row + i / kTile, last_row) + at.row};
-            const auto line = job_.even ? job_.even->at(place) : job_.viewpoint.sightLine(place);
+            const PixelPoint place{1.0 * std::min(column + i % kTile, last_column),
+                                   1.0 * std::min(row + i / kTile, last_row)};
+            const auto line = sightLineNear(place, at);
             tile_.is_black[lane] = !line;
-            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), job_.scene.still->shift);
+            tile_.set(lane, line.value_or(SightLine{{}, {1, 0, 0}}), shift);
         }
+    }
+
+    /// The line of sight a part of a pixel beside a pixel's centre, taken as even between the
+    /// centres about it where all have one: those are known.
+    [[nodiscard]] std::optional<SightLine> sightLineNear(PixelPoint place, PixelPoint at) const {
+        const Viewpoint& from = job_.viewpoint;
+        const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
+                              place.row > 0 && place.row + 1 < job_.out.rows;
+        if (at.column == 0 && at.row == 0) return from.sightLine(place);
+        const auto middle = from.sightLine(place);
+        const auto aside =
+            is_inner ? from.sightLine({place.column + (at.column < 0 ? -1 : 1), place.row})
+                     : std::nullopt;
+        const auto below = is_inner
+                               ? from.sightLine({place.column, place.row + (at.row < 0 ? -1 : 1)})
+                               : std::nullopt;
+        if (!middle || !aside || !below)
+            return from.sightLine({place.column + at.column, place.row + at.row});
+        const double u = std::fabs(at.column), v = std::fabs(at.row);
+        const auto between = [u, v](double a, double b, double c) {
+            return a + u * (b - a) + v * (c - a);
+        };
+        const auto& [o, d] = *middle;
+        return SightLine{{between(o.x, aside->origin.x, below->origin.x),
+                          between(o.y, aside->origin.y, below->origin.y),
+                          between(o.z, aside->origin.z, below->origin.z)},
+                         {between(d.x, aside->direction.x, below->direction.x),
+                          between(d.y, aside->direction.y, below->direction.y),
+                          between(d.z, aside->direction.z, below->direction.z)}};
     }
 
     template <typename Visit>
@@ -173,14 +214,14 @@ class TileWorker {
         }
     }
 
-    void measure(std::size_t lane, std::size_t pixel) {
-        if (!tile_.meets(lane)) return;
-        if (!job_.out.depths.empty())
-            job_.out.depths[pixel] = static_cast<float>(tile_.depth[lane]);
-        if (job_.out.labels.empty()) return;
+    void writeMeasures(std::size_t lane, std::size_t pixel) {
+        if (!job_.out.depths.empty()) job_.out.depths[pixel] = tile_.multiples[lane];
+        if (job_.out.labels.empty() || !tile_.meets(lane)) return;
         const Finish& finish = job_.scene.set(tile_.kind[lane]).finish(tile_.triangle[lane]);
-        job_.out.labels[pixel] = static_cast<std::uint16_t>(
-            std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
+        std::uint32_t label = finish.label;
+        if (label == 0 && has_coverings_)
+            label = job_.scene.finishAt(finish, tile_.place(lane)).label;
+        job_.out.labels[pixel] = static_cast<std::uint16_t>(std::min(label, 65535U));
     }
 
     /// By the pixel alone, whatever the threads.
@@ -257,6 +298,7 @@ class TileWorker {
     LitPlaces places_;
     std::vector<float> draws_;
     int drawn_column_ = -1, drawn_row_ = -1;
+    bool has_coverings_ = !job_.scene.still->coverings.empty();
 };
 
 /// The light about a pixel: the mean of what lies `step` and two steps aside, the outermost for
@@ -328,6 +370,11 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
     assert(options.samples > 0);
     Rendering out;
     Job job(scene.data(), viewpoint, options, out);
+    if (!options.colors) {
+        forEachTile(job,
+                    [](TileWorker& worker, int column, int row) { worker.measure(column, row); });
+        return out;
+    }
     forEachTile(job,
                 [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
     smoothLight(job);

@@ -61,6 +61,7 @@ struct RenderOptions {
     std::uint64_t seed = 1;
     Illumination light = Illumination::Auto;
     bool labels = false, depths = false;
+    bool colors = true;  ///< false: labels and depths alone, far quicker
     /// Records whose bodies the viewpoint does not see, though they cast shadows: the camera that
     /// looks and what carries it, see ownRecords().
     std::vector<std::size_t> hidden = {};

@@ -275,7 +275,8 @@ RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span
       views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
 
 Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
-    if (!still->paints[finish.paint].is_floor || finish.label != 0) return finish;
+    if (finish.label != 0 || still->coverings.empty() || !still->paints[finish.paint].is_floor)
+        return finish;
     for (std::size_t i = still->coverings.size(); i-- > 0;)
         if (const auto paint = still->coverings[i].paintAt(place.onFloor()))
             return {still->coverings[i].label, *paint, still->coverings[i].face};

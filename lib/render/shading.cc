@@ -136,7 +136,7 @@ const std::array<std::vector<ClearLayer>, kLanes>& ClearTracer::trace(const Sigh
         hits_.ray.dir_x[lane] = static_cast<float>(tile.x[lane]);
         hits_.ray.dir_y[lane] = static_cast<float>(tile.y[lane]);
         hits_.ray.dir_z[lane] = static_cast<float>(tile.z[lane]);
-        const double far = tile.meets(lane) ? tile.depth[lane] * (1 - 1e-6) : kFarthest;
+        const double far = tile.meets(lane) ? tile.depth(lane) * (1 - 1e-6) : kFarthest;
         hits_.ray.tfar[lane] = tile.is_black[lane] ? -1.0F : static_cast<float>(far);
         hits_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }

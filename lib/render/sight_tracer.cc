@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/sight_tracer.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +48,7 @@ void SightTile::set(std::size_t lane, const SightLine& line, Vec3 shift) {
 SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>& hidden,
                          double min_depth)
     : scene_(scene), hidden_(hidden), width_(scene.still->packet_width) {
+    valid_.fill(-1);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         hits_.ray.mask[lane] = ~0U;
         hits_.ray.tnear[lane] = static_cast<float>(min_depth);
@@ -53,54 +56,94 @@ SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>
     }
 }
 
-ISPACE_SIMD_CLONES static void roundTile(const SightTile& tile, RTCRayHit16& rays) {
+namespace {
+
+struct Places {
+    alignas(64) std::array<double, kLanes> u, v;
+};
+
+ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, const Places& at,
+                                       SightTile& tile) {
+    const Vec3 d = lines.direction, right = lines.right, down = lines.down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        rays.ray.org_x[lane] = static_cast<float>(tile.origin_x[lane]);
-        rays.ray.org_y[lane] = static_cast<float>(tile.origin_y[lane]);
-        rays.ray.org_z[lane] = static_cast<float>(tile.origin_z[lane]);
-        rays.ray.dir_x[lane] = static_cast<float>(tile.x[lane]);
-        rays.ray.dir_y[lane] = static_cast<float>(tile.y[lane]);
-        rays.ray.dir_z[lane] = static_cast<float>(tile.z[lane]);
-        rays.ray.tfar[lane] = static_cast<float>(kFarthest);
-        rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+        tile.x[lane] = d.x + at.u[lane] * right.x + at.v[lane] * down.x;
+        tile.y[lane] = d.y + at.u[lane] * right.y + at.v[lane] * down.y;
+        tile.z[lane] = d.z + at.u[lane] * right.z + at.v[lane] * down.z;
     }
+}
+
+ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, const Places& at,
+                                    SightTile& tile) {
+    const Point3 o = lines.origin + shift;
+    const Vec3 right = lines.origin_right, down = lines.origin_down;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        tile.origin_x[lane] = o.x + at.u[lane] * right.x + at.v[lane] * down.x;
+        tile.origin_y[lane] = o.y + at.u[lane] * right.y + at.v[lane] * down.y;
+        tile.origin_z[lane] = o.z + at.u[lane] * right.z + at.v[lane] * down.z;
+    }
+}
+
+}  // namespace
+
+void SightTile::set(const EvenSightLines& lines, int column, int row, PixelPoint at,
+                    int last_column, int last_row, Vec3 shift) {
+    Places places;  // NOLINT: computed here
+    for (int i = 0; i < kTile; ++i)
+        for (int k = 0; k < kTile; ++k) {
+            const auto lane = static_cast<std::size_t>(i * kTile + k);
+            places.u[lane] = std::min(column + k, last_column) + at.column;
+            places.v[lane] = std::min(row + i, last_row) + at.row;
+        }
+    fillDirections(lines, places, *this);
+    fillOrigins(lines, shift, places, *this);
 }
 
 void SightTracer::trace(SightTile& tile) {
-    roundTile(tile, hits_);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) valid_[lane] = tile.is_black[lane] ? 0 : -1;
+    roundOrigins(tile, hits_);
+    roundRays(tile, 0, hits_);
     EmbreeQuery query;
-    tracePacket(query, scene_.still->solid->scene(), width_, valid_.data(), hits_);
+    const SurfaceSet& solid = *scene_.still->solid;
+    tracePacket(query, solid.scene(), width_, valid_.data(), hits_);
+    bool is_careful = solid.empty();
     if (!scene_.bodies.empty()) {
         PassingHidden passing(scene_.bodies, hidden_);
         tracePacket(passing, scene_.bodies.scene(), width_, valid_.data(), hits_);
+        for (const unsigned geometry : hits_.hit.geomID)
+            is_careful |= geometry == static_cast<unsigned>(SurfaceKind::Body);
     }
-    resolve(tile);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        tile.triangle[lane] = hits_.hit.primID[lane];
+        tile.kind[lane] = static_cast<SurfaceKind>(hits_.hit.geomID[lane]);
+    }
+    std::uint32_t care = ~0U >> (32 - kLanes);
+    if (!is_careful) {
+        const TriangleSet& set = solid.triangles();
+        care = meetPlanes(hits_, set.planes().data(), set.margins().data(), set.tolerance(),
+                          kNoReturn, tile);
+    }
+    for (; care != 0; care &= care - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(care));
+        tile.multiples[lane] = static_cast<float>(resolve(tile, lane));
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        if (tile.is_black[lane]) tile.multiples[lane] = kNoReturn;
 }
 
-void SightTracer::resolve(SightTile& tile) const {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        tile.depth[lane] = kInfinity;
-        if (hits_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID || tile.is_black[lane]) continue;
-        const auto kind = static_cast<SurfaceKind>(hits_.hit.geomID[lane]);
-        const std::uint32_t triangle = hits_.hit.primID[lane];
-        tile.kind[lane] = kind;
-        tile.triangle[lane] = triangle;
-        const TriangleSet& set = scene_.set(kind).triangles();
-        const double found = static_cast<double>(hits_.ray.tfar[lane]);
-        if (set.isRound(triangle)) {
-            const RayHit hit =
-                set.meet(triangle, {tile.origin(lane), tile.direction(lane), kFarthest}, 0);
-            tile.depth[lane] = hit.isNone() ? found : hit.multiple;
-            continue;
-        }
-        const Plane& plane = set.planes()[triangle];
-        const double depth =
-            plane.heightOver(tile.origin(lane)) / dot(plane.normal, tile.direction(lane));
-        // What is seen almost edge-on is met at the rim of its enlarged triangle.
-        const bool is_near = std::fabs(depth - found) <= 1e-4 * (1 + found);
-        tile.depth[lane] = is_near ? depth : found;
+double SightTracer::resolve(const SightTile& tile, std::size_t lane) const {
+    if (hits_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return kInfinity;
+    const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
+    const std::uint32_t triangle = tile.triangle[lane];
+    const double found = static_cast<double>(hits_.ray.tfar[lane]);
+    if (set.isRound(triangle)) {
+        const RayHit hit =
+            set.meet(triangle, {tile.origin(lane), tile.direction(lane), kFarthest}, 0);
+        return hit.isNone() ? found : hit.multiple;
     }
+    const Plane& plane = set.planes()[triangle];
+    const double depth =
+        plane.heightOver(tile.origin(lane)) / dot(plane.normal, tile.direction(lane));
+    // What is seen almost edge-on is met at the rim of its enlarged triangle.
+    return std::fabs(depth - found) <= 1e-4 * (1 + found) ? depth : found;
 }
 
 }  // namespace ispace

@@ -10,27 +10,31 @@
 
 namespace ispace {
 
-/// A square tile of a picture's lines of sight, in doubles, and what they meet.
-struct alignas(64) SightTile {
-    using Lanes = std::array<double, kLanes>;
-
-    Lanes x, y, z;                       ///< of the directions
-    Lanes origin_x, origin_y, origin_z;  ///< relative to the middle of the plan
+/// A square tile of a picture's lines of sight, relative to the middle of the plan, and what they
+/// meet: `multiples` are depths.
+struct SightTile : RayPacket {
     std::array<bool, kLanes> is_black{};
-    Lanes depth;  ///< to the surface met, +infinity without one
-    std::array<std::uint32_t, kLanes> triangle;
-    std::array<SurfaceKind, kLanes> kind;
+    std::array<std::uint32_t, kLanes> triangle{};
+    std::array<SurfaceKind, kLanes> kind{};
 
+    SightTile() { reach.fill(kFarthest); }
     void set(std::size_t lane, const SightLine& line, Vec3 shift);
+    /// Lines of sight of the pixels from (column, row) on, moved by `at`; beyond the last ones
+    /// those.
+    void set(const EvenSightLines& lines, int column, int row, PixelPoint at, int last_column,
+             int last_row, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
     [[nodiscard]] Point3 origin(std::size_t lane) const {
         return {origin_x[lane], origin_y[lane], origin_z[lane]};
     }
-    /// \pre depth is finite
-    [[nodiscard]] Point3 place(std::size_t lane) const {
-        return origin(lane) + depth[lane] * direction(lane);
+    [[nodiscard]] double depth(std::size_t lane) const {
+        return static_cast<double>(multiples[lane]);
     }
-    [[nodiscard]] bool meets(std::size_t lane) const { return depth[lane] < kFarthest; }
+    [[nodiscard]] bool meets(std::size_t lane) const { return multiples[lane] < kNoReturn; }
+    /// \pre it meets something
+    [[nodiscard]] Point3 place(std::size_t lane) const {
+        return origin(lane) + depth(lane) * direction(lane);
+    }
 };
 
 /// Finds what a picture's lines of sight meet; one for each thread.
@@ -42,7 +46,8 @@ class SightTracer {
     void trace(SightTile& tile);
 
   private:
-    void resolve(SightTile& tile) const;
+    /// The depth of what a lane's ray has hit, with care.
+    [[nodiscard]] double resolve(const SightTile& tile, std::size_t lane) const;
 
     const RenderScene::Data& scene_;
     const std::vector<bool>& hidden_;
