@@ -73,4 +73,19 @@ void RunRecord::apply(Scene& scene, double time) const {
     }
 }
 
+std::vector<std::vector<Point2>> RunRecord::waysUntil(double time) const {
+    std::map<std::string, std::vector<Point2>> ways;
+    for (const Step& step : steps_) {
+        if (step.time > time) break;
+        std::vector<Point2>& way = ways[step.id];
+        constexpr double kStep = 0.02;
+        if (way.empty() || distance(way.back(), step.pose.position) > kStep)
+            way.push_back(step.pose.position);
+    }
+    std::vector<std::vector<Point2>> out;
+    for (auto& [id, way] : ways)
+        if (way.size() > 1) out.push_back(std::move(way));
+    return out;
+}
+
 }  // namespace ispace

@@ -22,6 +22,9 @@ class RunRecord {
     /// Puts robots where they were at the last step at or before this time, with what they carry.
     /// \throws FormatError for a robot that the scene does not have
     void apply(Scene& scene, double time) const;
+    /// The ways of all robots from the beginning up to this time, on the floor, without turns on
+    /// the spot.
+    [[nodiscard]] std::vector<std::vector<Point2>> waysUntil(double time) const;
 
   private:
     struct Step {

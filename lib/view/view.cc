@@ -9,6 +9,7 @@
 #include "base/message.h"
 #include "render/render.h"
 #include "sense/warnings.h"
+#include "view/bands.h"
 #include "view/sight_marks.h"
 #include "view/wall_tops.h"
 
@@ -31,6 +32,7 @@ int finenessFor(PictureSize size, int samples) {
 ViewOptions asTaken(ViewOptions options) {
     options.show = ShownSight::None;
     options.labels = false;
+    options.ways.clear();
     return options;
 }
 
@@ -52,6 +54,7 @@ class ViewDrawer {
         if (options_.show != ShownSight::None)
             marks_ = sightMarks(scene_, options_.show == ShownSight::Beams,
                                 standpoint_.looks_in ? std::nullopt : standpoint_.place);
+        for (const std::vector<Point2>& way : options_.ways) addWay(way);
         render();
         if (options_.show == ShownSight::Area) colorFloor();
         Picture page(size_.columns, size_.rows);
@@ -95,7 +98,7 @@ class ViewDrawer {
             how.background = Rgb{1, 1, 1};
             how.light = Illumination::Lamps;
         }
-        picture_ = ispace::render(RenderScene(scene_, what), standpoint_.eye->viewpoint(), how);
+        picture_ = renderInBands(RenderScene(scene_, what), standpoint_.eye->viewpoint(), how);
     }
 
     void colorFloor() {
@@ -113,6 +116,13 @@ class ViewDrawer {
             const Rgb color = colors.at(place.onFloor());
             for (std::size_t k = 0; k < 3; ++k) picture_.radiance[i][k] *= color[k];
         }
+    }
+
+    /// A line just above the floor.
+    void addWay(const std::vector<Point2>& way) {
+        SightMarks::Line line{{}, palette::kRobot.faded(0.8), 2.5};
+        for (const Point2& p : way) line.places.push_back({p.x, p.y, 0.01});
+        marks_.lines.push_back(std::move(line));
     }
 
     /// The rims of what stands out, so wide, in a picture as it was rendered.

@@ -24,6 +24,7 @@ struct ViewOptions {
     int samples = 16;                         ///< of each pixel, see RenderOptions
     /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
     std::vector<Point3> viewers = {};
+    std::vector<std::vector<Point2>> ways = {};  ///< that robots have gone
 };
 
 /// A picture of a scene for people. The same pixels for any number of threads.

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "layout/test_layout.h"
+#include "view/bands.h"
 #include "view/contact_sheet.h"
 #include "view/run_record.h"
 
@@ -145,6 +146,27 @@ TEST(View, WarnsOfViewersInTheWrongPlace) {
     EXPECT_EQ(warning("omni:2,0.5,0.3"), "omni: the viewer stands inside something solid");
 }
 
+TEST(Bands, JoinToTheWholePicture) {
+    const Scene scene = room();
+    const RenderScene prepared(scene);
+    RenderOptions options;
+    options.samples = 1;
+    options.labels = options.depths = true;
+    for (const char* text : {"orbit", "omni:0,0"}) {
+        const Standpoint standpoint = standpointOf(parseView(text), scene, kSmall);
+        const Viewpoint& viewpoint = standpoint.eye->viewpoint();
+        const Rendering whole = render(prepared, viewpoint, options);
+        const Rendering joined = renderInBands(prepared, viewpoint, options, 6000);
+        EXPECT_EQ(joined.labels, whole.labels);
+        ASSERT_EQ(joined.depths.size(), whole.depths.size());
+        for (std::size_t i = 0; i < whole.depths.size(); ++i)
+            if (std::isfinite(whole.depths[i])) {
+                EXPECT_NEAR(joined.depths[i], whole.depths[i], 1e-5 * whole.depths[i]);
+            }
+        EXPECT_EQ(joined.radiance.size(), whole.radiance.size());
+    }
+}
+
 TEST(ContactSheet, HasTheOthersInRowsBelow) {
     const std::vector<PictureSize> shapes = {{200, 150}, {640, 480}, {640, 480}, {100, 200}};
     const ContactSheet sheet(shapes);
@@ -180,6 +202,10 @@ TEST(RunRecord, PutsRobotsWhereTheyWere) {
     // The laser rides along.
     EXPECT_NEAR(moved.sensors[0].pose.position.x, 1, 1e-12);
     EXPECT_NEAR(moved.sensors[0].pose.position.y, 0.6, 1e-12);
+    const std::vector<Point2> way{{0, 0}, {1, 0.5}};
+    ASSERT_EQ(run.waysUntil(1.5).size(), 1U);
+    EXPECT_EQ(run.waysUntil(1.5).front(), way);
+    EXPECT_TRUE(run.waysUntil(0.5).empty());
 }
 
 TEST(RunRecord, RefusesOtherFiles) {

@@ -49,7 +49,12 @@ struct DrawView {
     Progress& progress;
 
     [[nodiscard]] PictureSize sizeOf(const ViewSpec& view) const {
-        return ispace::sizeOf(view, scene, options.picture_size);
+        const PictureSize size = ispace::sizeOf(view, scene, options.picture_size);
+        constexpr double kMostPixels = 64e6;
+        if (1.0 * size.columns * size.rows > kMostPixels)
+            throw UsageError("--size: " + std::to_string(size.columns) + " x " +
+                             std::to_string(size.rows) + " pixels, wanted at most 64 million");
+        return size;
     }
     [[nodiscard]] Image draw(const ViewSpec& view, PictureSize size) const {
         Image image = viewPicture(scene, view, size, drawing);
@@ -183,10 +188,14 @@ void takeViews(const ScanCommand& command) {
     const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
     progress->begin("pictures", count);
     for (int frame = 0; frame < frames; ++frame) {
-        // One picture is of the end.
-        const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
-        if (run) run->apply(scene, run->begin() + share * (run->end() - run->begin()));
         ViewOptions drawing = options.view.drawing;
+        if (run) {
+            // One picture is of the end.
+            const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
+            const double time = run->begin() + share * (run->end() - run->begin());
+            run->apply(scene, time);
+            drawing.ways = run->waysUntil(time);
+        }
         drawing.viewers = viewersOf(views, scene);
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
