@@ -113,17 +113,16 @@ class TileWorker {
     void measure(int column, int row) {
         aim(column, row, {});
         tracer_.trace(tile_);
-        forEachPixel(column, row,
-                     [&](std::size_t lane, std::size_t pixel) { writeMeasures(lane, pixel); });
+        writeMeasures(column, row);
     }
 
     /// The same, and the light there.
     void gatherLight(int column, int row) {
         aim(column, row, {});
         tracer_.trace(tile_);
+        writeMeasures(column, row);
         places_.is_wanted.fill(false);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-            writeMeasures(lane, pixel);
             if (!job_.shading.meetsSurface(tile_, lane)) return;
             const SurfacePoint point = job_.shading.surface(tile_, lane);
             places_.set(lane, point.place, point.normal, point.lift);
@@ -214,14 +213,28 @@ class TileWorker {
         }
     }
 
-    void writeMeasures(std::size_t lane, std::size_t pixel) {
-        if (!job_.out.depths.empty()) job_.out.depths[pixel] = tile_.multiples[lane];
-        if (job_.out.labels.empty() || !tile_.meets(lane)) return;
-        const Finish& finish = job_.scene.set(tile_.kind[lane]).finish(tile_.triangle[lane]);
+    void writeMeasures(int column, int row) {
+        const auto wide = static_cast<std::size_t>(std::min(kTile, job_.out.columns - column));
+        const int high = std::min(kTile, job_.out.rows - row);
+        for (int k = 0; k < high; ++k) {
+            const std::size_t pixel = job_.pixel(column, row + k);
+            const auto first = static_cast<std::size_t>(k * kTile);
+            if (!job_.out.depths.empty())
+                std::copy_n(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
+            if (job_.out.labels.empty()) continue;
+            for (std::size_t i = 0; i < wide; ++i)
+                job_.out.labels[pixel + i] = tile_.meets(first + i) ? labelAt(first + i) : 0;
+        }
+    }
+
+    [[nodiscard]] std::uint16_t labelAt(std::size_t lane) const {
+        const SurfaceKind kind = tile_.kind[lane];
+        const SurfaceSet& set = kind == SurfaceKind::Solid ? solid_ : job_.scene.set(kind);
+        const Finish& finish = set.finish(tile_.triangle[lane]);
         std::uint32_t label = finish.label;
         if (label == 0 && has_coverings_)
             label = job_.scene.finishAt(finish, tile_.place(lane)).label;
-        job_.out.labels[pixel] = static_cast<std::uint16_t>(std::min(label, 65535U));
+        return static_cast<std::uint16_t>(std::min(label, 65535U));
     }
 
     /// By the pixel alone, whatever the threads.
@@ -298,6 +311,7 @@ class TileWorker {
     LitPlaces places_;
     std::vector<float> draws_;
     int drawn_column_ = -1, drawn_row_ = -1;
+    const SurfaceSet& solid_ = *job_.scene.still->solid;
     bool has_coverings_ = !job_.scene.still->coverings.empty();
 };
 

@@ -37,6 +37,7 @@ struct PassingHidden : EmbreeQuery {
 }  // namespace
 
 void SightTile::set(std::size_t lane, const SightLine& line, Vec3 shift) {
+    has_new_origins = true;
     x[lane] = line.direction.x;
     y[lane] = line.direction.y;
     z[lane] = line.direction.z;
@@ -95,15 +96,19 @@ void SightTile::set(const EvenSightLines& lines, int column, int row, PixelPoint
             places.v[lane] = std::min(row + i, last_row) + at.row;
         }
     fillDirections(lines, places, *this);
+    const Point3 kept = lines.origin + shift;
+    const bool is_one = lines.origin_right == Vec3() && lines.origin_down == Vec3();
+    if (is_one && origin(0) == kept && origin(kLanes - 1) == kept) return;
     fillOrigins(lines, shift, places, *this);
+    has_new_origins = true;
 }
 
 void SightTracer::trace(SightTile& tile) {
-    roundOrigins(tile, hits_);
+    if (tile.has_new_origins) roundOrigins(tile, hits_);
+    tile.has_new_origins = false;
     roundRays(tile, 0, hits_);
-    EmbreeQuery query;
     const SurfaceSet& solid = *scene_.still->solid;
-    tracePacket(query, solid.scene(), width_, valid_.data(), hits_);
+    tracePacket(query_, solid.scene(), width_, valid_.data(), hits_);
     bool is_careful = solid.empty();
     if (!scene_.bodies.empty()) {
         PassingHidden passing(scene_.bodies, hidden_);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "render/scene_data.h"
@@ -16,8 +17,12 @@ struct SightTile : RayPacket {
     std::array<bool, kLanes> is_black{};
     std::array<std::uint32_t, kLanes> triangle{};
     std::array<SurfaceKind, kLanes> kind{};
+    bool has_new_origins = true;  ///< since it was traced last
 
-    SightTile() { reach.fill(kFarthest); }
+    SightTile() {
+        reach.fill(kFarthest);
+        origin_x.fill(std::numeric_limits<double>::quiet_NaN());
+    }
     void set(std::size_t lane, const SightLine& line, Vec3 shift);
     /// Lines of sight of the pixels from (column, row) on, moved by `at`; beyond the last ones
     /// those.
@@ -52,6 +57,7 @@ class SightTracer {
     const RenderScene::Data& scene_;
     const std::vector<bool>& hidden_;
     std::size_t width_;
+    EmbreeQuery query_;
     alignas(64) RTCRayHit16 hits_{};
     alignas(64) std::array<int, kLanes> valid_{};
 };
