@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "env/body.h"
+#include "geom/spatial_index.h"
 #include "layout/bodies.h"
 #include "render/render.h"
 #include "render/scene_data.h"
@@ -65,11 +66,58 @@ Mesh meshAround(Prism round) {
     return std::move(meshesOf(body, Surfaces::Solid).front());
 }
 
+/// Tells which sides of boxes lie in sheets: the ends of thick walls in thin ones, cupboards at
+/// walls. A ray would meet either of both.
+class SheetSides {
+  public:
+    SheetSides(const Environment& environment, const RenderSceneOptions& options)
+        : lines_(linesOf(environment, options)), grid_(lines_, kOn) {}
+
+    [[nodiscard]] bool hold(const Segment2& side, double bottom, double top) const {
+        return holdsPoint(side.a, side, bottom, top) && holdsPoint(side.b, side, bottom, top);
+    }
+
+  private:
+    static constexpr double kOn = 1e-6;
+
+    [[nodiscard]] std::vector<Segment2> linesOf(const Environment& environment,
+                                                const RenderSceneOptions& options) {
+        std::vector<Segment2> lines;
+        for (const Element& element : environment.elements())
+            for (const Sheet& sheet : element.body.sheets) {
+                const std::array ends{sheet.line.a, sheet.line.b};
+                if (sheet.clear || (options.leaves_out && options.leaves_out(element, ends)))
+                    continue;
+                lines.push_back(sheet.line);
+                heights_.emplace_back(sheet.bottom, sheet.top);
+            }
+        return lines;
+    }
+
+    [[nodiscard]] bool holdsPoint(Point2 p, const Segment2& side, double bottom, double top) const {
+        if (lines_.empty()) return false;
+        const auto near = grid_.near(p);
+        return std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+            const auto& [a, b] = lines_[i];
+            const double size = distance(a, b);
+            const Vec2 along = (1 / size) * (b - a);
+            const double at = dot(p - a, along);
+            return heights_[i].first <= bottom && heights_[i].second >= top && at >= -kOn &&
+                   at <= size + kOn && std::fabs(cross(along, side.a - a)) <= kOn &&
+                   std::fabs(cross(along, side.b - a)) <= kOn;
+        });
+    }
+
+    std::vector<std::pair<double, double>> heights_;  // first: filled with the lines
+    std::vector<Segment2> lines_;
+    SegmentGrid grid_;
+};
+
 /// Puts what stands still together.
 class StillBuilder {
   public:
     StillBuilder(const Scene& scene, const RenderSceneOptions& options)
-        : scene_(scene), options_(options) {
+        : scene_(scene), options_(options), sheets_(scene.environment, options) {
         still_.device = makeEmbreeDevice();
         still_.packet_width = nativeWidthOf(still_.device);
         still_.paints = paintsOfMaterials();
@@ -162,7 +210,7 @@ class StillBuilder {
                 add(solid_, meshAround(prism));
                 makeRound(prism);
             } else {
-                addPart(solid_, {.prisms = {prism}, .sheets = {}, .plates = {}, .meshes = {}});
+                add(solid_, boxMesh(prism));
             }
         }
         for (const Sheet& sheet : element.body.sheets) {
@@ -185,6 +233,20 @@ class StillBuilder {
             std::fill(covering.paints.begin(), covering.paints.end(), tint->second);
         if (faces.begin < faces.end) covering.face = static_cast<std::uint32_t>(faces.begin);
         still_.coverings.push_back(std::move(covering));
+    }
+
+    /// A prism without the sides that lie in sheets.
+    [[nodiscard]] Mesh boxMesh(const Prism& prism) const {
+        const Body part{.prisms = {prism}, .sheets = {}, .plates = {}, .meshes = {}};
+        Mesh mesh = std::move(meshesOf(part, Surfaces::Solid).front());
+        const Polygon& p = prism.footprint;
+        // Sides come first, two triangles each.
+        for (std::size_t i = p.size(); i-- > 0;)
+            if (sheets_.hold({p[i], p[(i + 1) % p.size()]}, prism.bottom, prism.top)) {
+                const auto first = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(2 * i);
+                mesh.triangles.erase(first, first + 2);
+            }
+        return mesh;
     }
 
     /// The triangles added last stand for a round body.
@@ -223,6 +285,7 @@ class StillBuilder {
     const RenderSceneOptions& options_;
     std::unordered_map<std::string, std::uint32_t> labels_;
     std::unordered_map<std::size_t, std::uint32_t> tints_;  // by label
+    SheetSides sheets_;
     TextureReader reader_;
     Diagnostics findings_;
     FinishedSoup solid_, glass_, paint_;

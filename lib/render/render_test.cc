@@ -179,6 +179,21 @@ TEST(Render, LampsStandInEveryRoomAndNoLightLeaksOut) {
     for (const Rgb& color : render(RenderScene(room), outside).radiance) EXPECT_GT(color[1], 0.05F);
 }
 
+TEST(Render, SidesThatLieInWallsAreTheWall) {
+    const Scene room = scene(
+        "ispace id=r size=6,6 height=2.5\ncube at=2.5,0 size=1\n"
+        "wall from=3,1.5 to=0,1.5 thickness=0.2 kind=brick\n");
+    RenderOptions options;
+    options.colors = false;
+    options.labels = true;
+    const CameraView outside(camera(64, 48), {{8, 0.5, 1.2}, Angle::degrees(180), {}, {}});
+    const Rendering picture = render(RenderScene(room), outside, options);
+    const auto wall = static_cast<std::uint16_t>(indexOf(room, "r") + 1);
+    for (std::size_t row = 16; row < 36; ++row)
+        for (std::size_t column = 16; column < 48; ++column)
+            EXPECT_EQ(picture.labels[64 * row + column], wall);
+}
+
 TEST(Render, LightPassesClearGlassAndDarkens) {
     const std::string walls = "ispace id=r size=6,6 height=2.5 ceiling=yes\n";
     const CameraView view(camera(16, 12), {{0, 0, 1.4}, {}, {}, {}});
