@@ -201,11 +201,11 @@ class StillBuilder {
             for (const Mesh& mesh : meshesOf(part, Surfaces::Solid)) add(soup, mesh);
         };
         std::vector<Plate> pattern;
-        const auto isLeftOut = [&](std::span<const Point2> footprint) {
+        const auto is_left_out = [&](std::span<const Point2> footprint) {
             return options_.leaves_out && options_.leaves_out(element, footprint);
         };
         for (const Prism& prism : element.body.prisms) {
-            if (isLeftOut(prism.footprint)) continue;
+            if (is_left_out(prism.footprint)) continue;
             if (prism.curve) {
                 add(solid_, meshAround(prism));
                 makeRound(prism);
@@ -214,7 +214,7 @@ class StillBuilder {
             }
         }
         for (const Sheet& sheet : element.body.sheets) {
-            if (isLeftOut(std::array{sheet.line.a, sheet.line.b})) continue;
+            if (is_left_out(std::array{sheet.line.a, sheet.line.b})) continue;
             addPart(sheet.clear ? glass_ : solid_,
                     {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
         }

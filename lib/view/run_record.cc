@@ -64,12 +64,13 @@ void RunRecord::apply(Scene& scene, double time) const {
     const auto later = std::upper_bound(steps_.begin(), steps_.end(), time,
                                         [](double t, const Step& step) { return t < step.time; });
     for (auto step = steps_.begin(); step != later; ++step) poses[step->id] = step->pose;
-    for (const auto& [id, pose] : poses) {
+    for (const auto& entry : poses) {
+        const std::string& id = entry.first;
         const auto robot = std::find_if(scene.robots.begin(), scene.robots.end(),
                                         [&id](const PlacedRobot& r) { return r.id == id; });
         if (robot == scene.robots.end())
             throw FormatError({name_, 0, 0, "the scene has no robot " + excerpt(id)});
-        moveRobot(scene, static_cast<std::size_t>(robot - scene.robots.begin()), pose);
+        moveRobot(scene, static_cast<std::size_t>(robot - scene.robots.begin()), entry.second);
     }
 }
 

@@ -22,11 +22,11 @@ constexpr int kMostBeams = 120;
 
 /// The farthest of the directions from `inside` to `rim` that is in view, where `inside` is.
 template <typename IsSeen>
-double edgeOf(const IsSeen& isSeen, double inside, double rim) {
+double edgeOf(const IsSeen& is_seen, double inside, double rim) {
     constexpr int kHalvings = 30;
     for (int i = 0; i < kHalvings; ++i) {
         const double middle = (inside + rim) / 2;
-        (isSeen(middle) ? inside : rim) = middle;
+        (is_seen(middle) ? inside : rim) = middle;
     }
     return inside;
 }
@@ -73,7 +73,10 @@ std::vector<Vec3> rimOf(const FieldOfView& view) {
 /// Rays through all that stands, and stops light.
 class Sightlines {
   public:
-    explicit Sightlines(const Scene& scene) : worlds_(scene.environment), bodies_(bodiesOf(scene)) {
+    explicit Sightlines(const Scene& scene)
+        : worlds_(scene.environment),
+          bodies_(bodiesOf(scene)),
+          height_(scene.environment.height()) {
         worlds_.prepareMesh();
         const Box2& plan = scene.environment.limits();
         reach_ = std::hypot(plan.width(), plan.depth());
@@ -96,7 +99,10 @@ class Sightlines {
         constexpr double kSteepest = 0.4;
         std::vector<Point3> ends;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const double range = most / std::max(rays[i].x, kSteepest);
+            double range = most / std::max(rays[i].x, kSteepest);
+            // Rooms need no ceiling, but nothing is above the walls.
+            const double room = height_ - frame.origin.z, rise = directions[i].z * range;
+            if (room > 0 && rise > room) range *= room / rise;
             ends.push_back(frame.origin +
                            std::min(static_cast<double>(ranges[i]), range) * directions[i]);
         }
@@ -115,7 +121,7 @@ class Sightlines {
   private:
     Worlds worlds_;
     MovingBodies bodies_;
-    double reach_ = 0;
+    double height_ = 0, reach_ = 0;
 };
 
 /// The sides from `apex` to a rim.

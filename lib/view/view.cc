@@ -106,8 +106,9 @@ class ViewDrawer {
         const Viewpoint& viewpoint = standpoint_.eye->viewpoint();
         for (std::size_t i = 0; i < picture_.radiance.size(); ++i) {
             if (!std::isfinite(picture_.depths[i])) continue;
-            const auto line = viewpoint.sightLine(
-                {static_cast<double>(i % columns()), static_cast<double>(i / columns())});
+            const std::size_t row = i / columns(), column = i % columns();
+            const auto line =
+                viewpoint.sightLine({static_cast<double>(column), static_cast<double>(row)});
             if (!line) continue;
             const Point3 place =
                 line->origin + static_cast<double>(picture_.depths[i]) * line->direction;
@@ -271,19 +272,19 @@ class ViewDrawer {
     }
 
     void addLabels(Picture& page) {
-        const auto isHidden = [&](const std::string& id) {
+        const auto is_hidden = [&](const std::string& id) {
             return std::any_of(standpoint_.hidden.begin(), standpoint_.hidden.end(),
                                [&](std::size_t record) { return scene_.ids[record] == id; });
         };
         for (const PlacedRobot& robot : scene_.robots) {
             const Point2 p = robot.pose.position;
             const auto at = signPlace({p.x, p.y, robot.model.height});
-            if (at && !isHidden(robot.id)) addLabel(page, *at, robot.id, palette::kRobot);
+            if (at && !is_hidden(robot.id)) addLabel(page, *at, robot.id, palette::kRobot);
         }
         for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
             const Sensor& sensor = scene_.sensors[i];
             const auto at = signPlace(sensor.pose.position);
-            if (!at || isHidden(sensor.id)) continue;
+            if (!at || is_hidden(sensor.id)) continue;
             if (sensor.is<Camera>()) addDot(page, *at);
             addLabel(page, *at, sensor.id, mixed(sensorColor(i), palette::kInk, 0.25));
         }

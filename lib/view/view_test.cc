@@ -92,7 +92,7 @@ TEST(View, IsTheSameForAnyNumberOfThreads) {
     ViewOptions options;
     options.show = ShownSight::Area;
     std::vector<Image> pictures;
-    for (const std::size_t threads : {1, 2}) {
+    for (const std::size_t threads : {1U, 2U}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         pictures.push_back(viewPicture(scene, parseView("orbit"), kSmall, options));
     }
@@ -120,7 +120,7 @@ TEST(View, CoveredFloorHasTheSensorsColour) {
 
 TEST(View, NamesWhatItDoesNotKnow) {
     const Scene scene = room();
-    const auto errorOf = [&](const std::string& text, const ViewOptions& options = {}) {
+    const auto error_of = [&](const std::string& text, const ViewOptions& options = {}) {
         try {
             viewPicture(scene, parseView(text), kSmall, options);
         } catch (const UsageError& error) {
@@ -128,12 +128,12 @@ TEST(View, NamesWhatItDoesNotKnow) {
         }
         return std::string();
     };
-    EXPECT_EQ(errorOf("robot:r2"), "no robot has the id `r2`, did you mean `r1`?");
-    EXPECT_EQ(errorOf("camera:l1"), "`l1` is no camera");
-    EXPECT_EQ(errorOf("central:crat"), "nothing has the id `crat`, did you mean `crate`?");
+    EXPECT_EQ(error_of("robot:r2"), "no robot has the id `r2`, did you mean `r1`?");
+    EXPECT_EQ(error_of("camera:l1"), "`l1` is no camera");
+    EXPECT_EQ(error_of("central:crat"), "nothing has the id `crat`, did you mean `crate`?");
     ViewOptions options;
     options.highlight = {"crtae"};
-    EXPECT_EQ(errorOf("bird", options), "nothing has the id `crtae`, did you mean `crate`?");
+    EXPECT_EQ(error_of("bird", options), "nothing has the id `crtae`, did you mean `crate`?");
 }
 
 TEST(View, WarnsOfViewersInTheWrongPlace) {
@@ -209,7 +209,7 @@ TEST(RunRecord, PutsRobotsWhereTheyWere) {
 }
 
 TEST(RunRecord, RefusesOtherFiles) {
-    const auto errorOf = [](const char* bytes) {
+    const auto error_of = [](const char* bytes) {
         try {
             RunRecord(bytes, "robots.csv");
         } catch (const FormatError& error) {
@@ -217,12 +217,12 @@ TEST(RunRecord, RefusesOtherFiles) {
         }
         return std::string();
     };
-    EXPECT_EQ(errorOf("a,b\n"),
+    EXPECT_EQ(error_of("a,b\n"),
               "robots.csv:1: error: no record of a run: wanted the columns t,id,x,y,heading_deg,…, "
               "as `simrun --record` writes");
-    EXPECT_EQ(errorOf("t,id,x,y,heading_deg\n0,r1,0,0,x\n"),
+    EXPECT_EQ(error_of("t,id,x,y,heading_deg\n0,r1,0,0,x\n"),
               "robots.csv:2: error: not a pose: `0,r1,0,0,x`");
-    EXPECT_EQ(errorOf("t,id,x,y,heading_deg\n"), "robots.csv: error: holds no pose of a robot");
+    EXPECT_EQ(error_of("t,id,x,y,heading_deg\n"), "robots.csv: error: holds no pose of a robot");
     Scene scene = room();
     EXPECT_THROW(RunRecord("t,id,x,y,heading_deg\n0,r9,0,0,0\n", "robots.csv").apply(scene, 0),
                  FormatError);

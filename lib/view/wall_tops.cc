@@ -70,7 +70,7 @@ PaintedMesh WallTops::paint() const {
     tops.mesh.open = true;
     constexpr double kAbove = 0.003;
     // Seen as a line in pictures of whole buildings, too.
-    constexpr double kThin = 0.03, kThick = 0.2, kOfPlan = 0.0014;
+    constexpr double kThin = 0.03, kThick = 0.2, kOfPlan = 0.0009;
     const Box2& plan = scene_.environment.limits();
     const double half_width =
         std::clamp(kOfPlan * std::max(plan.width(), plan.depth()), kThin, kThick);

@@ -85,6 +85,7 @@ class PictureFiles {
 
     void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) const {
         std::vector<PictureSize> sizes;
+        sizes.reserve(views.size());
         for (const ViewSpec& view : views) sizes.push_back(draw.sizeOf(view));
         const ContactSheet sheet(sizes);
         std::vector<Image> images;
