@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -166,6 +167,101 @@ void addSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, doub
         parts);
 }
 
+/// Tells of nearly all directions whether they are in the picture of a lens that bends by the angle
+/// to the axis alone, without the lens's own mathematics: where a direction lies in the picture is
+/// read off a table over the cosine of that angle.
+class PictureTable {
+  public:
+    enum class Answer { Outside, Inside, Unsure };
+
+    /// \pre a fisheye or a mirror
+    explicit PictureTable(const Camera& camera)
+        : low_{(-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy},
+          high_{(camera.columns - 0.5 - camera.cx) / camera.fx,
+                (camera.rows - 0.5 - camera.cy) / camera.fy} {
+        const Angle widest = camera.widestInPicture();
+        has_all_ = widest <= kLimit;
+        // A little less, as the lens may have nothing beyond.
+        least_ = cos(std::min(widest, kLimit) - Angle::radians(kRounding / 10));
+        step_ = (1 - least_) / kSteps;
+        for (int i = 0; i <= kSteps; ++i)
+            stretch_[static_cast<std::size_t>(i)] = stretchAt(camera, least_ + i * step_);
+        for (int i = 0; i < kSteps; ++i) {
+            const double cosine = least_ + (i + 0.5) * step_;
+            margin_ = std::max(margin_, std::fabs(stretchOf(cosine) - stretchAt(camera, cosine)));
+        }
+        margin_ = kSafety * margin_ + kRounding;
+    }
+
+    /// \pre distance is the length of `local`
+    [[nodiscard]] Answer locate(Vec3 local, double distance) const {
+        if (!(distance > 0)) return Answer::Unsure;
+        const double cosine = local.x / distance;
+        if (cosine < least_ - kRounding) return has_all_ ? Answer::Outside : Answer::Unsure;
+        if (cosine < least_ + kRounding) return Answer::Unsure;
+        const double scale = stretchOf(cosine) / distance;
+        const double u = -scale * local.y, v = -scale * local.z;
+        const double inside =
+            std::min(std::min(u - low_.x, high_.x - u), std::min(v - low_.y, high_.y - v));
+        if (std::fabs(inside) <= margin_) return Answer::Unsure;
+        return inside > 0 ? Answer::Inside : Answer::Outside;
+    }
+
+  private:
+    static constexpr int kSteps = 256;
+    static constexpr double kSafety = 8, kRounding = 1e-9;
+    /// Beyond it pictures of directions move apart quickly.
+    static constexpr Angle kLimit = Angle::radians(2.4);
+
+    /// Distance from the centre of the picture, in focal lengths, over the sine of the angle.
+    static double stretchAt(const Camera& camera, double cosine) {
+        const double sine = std::max(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 1e-5);
+        const auto place = camera.project({cosine, -sine, 0});
+        return place ? (place->column - camera.cx) / camera.fx / sine : 0;
+    }
+    [[nodiscard]] double stretchOf(double cosine) const {
+        const double at = (cosine - least_) / step_;
+        const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, kSteps - 1.0));
+        return stretch_[i] + (at - static_cast<double>(i)) * (stretch_[i + 1] - stretch_[i]);
+    }
+
+    Vec2 low_, high_;       // the picture's borders, in focal lengths from its centre
+    bool has_all_ = false;  // nothing beyond the table is in the picture
+    double least_ = 0, step_ = 0, margin_ = 0;
+    std::array<double, kSteps + 1> stretch_{};
+};
+
+/// The same as views[k].holds(), for views of one sensor that differ in heading.
+class ViewTest {
+  public:
+    explicit ViewTest(std::span<const FieldOfView> views) : views_(views) {
+        const FieldOfView& first = views.front();
+        if (first.shape == FieldOfView::Shape::Picture && first.camera->lens != Lens::Pinhole)
+            table_.emplace(*first.camera);
+    }
+
+    [[nodiscard]] std::uint64_t holding(Point3 place) const {
+        std::uint64_t held = 0;
+        for (std::size_t k = 0; k < views_.size(); ++k)
+            if (table_ ? isInTable(views_[k], place) : views_[k].holds(place))
+                held |= std::uint64_t{1} << k;
+        return held;
+    }
+
+  private:
+    [[nodiscard]] bool isInTable(const FieldOfView& view, Point3 place) const {
+        const Vec3 local = view.frame.toLocal(place);
+        const double distance = std::sqrt(dot(local, local));
+        if (!withinRange(distance, view.max_range)) return false;
+        const PictureTable::Answer answer = table_->locate(local, distance);
+        if (answer == PictureTable::Answer::Unsure) return view.points(local);
+        return answer == PictureTable::Answer::Inside;
+    }
+
+    std::span<const FieldOfView> views_;
+    std::optional<PictureTable> table_;
+};
+
 }  // namespace
 
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
@@ -180,11 +276,10 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
             parts.first.insert(parts.first.end(), some.size(), 0);
             continue;
         }
+        const ViewTest test(some);
         const auto target_of = [&](Point2 center) {
-            CellTarget target{{center.x, center.y, height}};
-            for (std::size_t k = 0; k < some.size(); ++k)
-                if (some[k].holds(target.place)) target.held |= std::uint64_t{1} << k;
-            return target;
+            const Point3 place{center.x, center.y, height};
+            return CellTarget{place, test.holding(place)};
         };
         addParts(grid, mesh, *reach, some.size(), target_of, parts);
     }

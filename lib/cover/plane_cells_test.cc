@@ -11,6 +11,7 @@
 #include "cover/sight.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
+#include "sensor/test_sensors.h"
 
 namespace ispace {
 namespace {
@@ -95,6 +96,47 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
             const double ring = length(way) - 2 / tanOf(50);
             return std::min({side, ring, 4 - std::hypot(way.x, way.y, 2)});
         }));
+    }
+}
+
+TEST(PlaneCells, BentPicturesHoldWhatTheirLensesProjectThere) {
+    const Room room("ispace size=12,9,3", 150, 110);
+    Worlds worlds(room.scene.environment);
+    const Sight sight(room.scene.environment, 0, &worlds);
+    for (const char* const lens :
+         {"projection=fisheye fov=106,59 pixels=1920,1080 range=100",
+          "projection=fisheye fov=150 coefficients=0.02,-0.01,0.003,-0.0005 range=7",
+          "projection=fisheye fx=150 cx=120 cy=-40 range=6", "projection=fisheye fov=12 range=50",
+          "projection=omni fov=170 pixels=600,600 range=6",
+          "projection=omni fov=250 pixels=500,480 range=5",
+          "projection=omni fov=360 pixels=512,512 range=5",
+          "projection=omni fov=220 mirror=0.9 pixels=480,480 range=6",
+          "projection=omni mirror=0.6 fx=300 pixels=640,480 range=7"}) {
+        const SensorModel model = cameraOf(testing::sensorRecord(std::string("camera ") + lens));
+        std::size_t held = 0;
+        for (const double tilt : {-90.0, -47.0, -3.0, 20.0}) {
+            std::vector<FieldOfView> views;
+            for (int k = 0; k < 5; ++k)
+                views.push_back(*fieldOfView({"",
+                                              model,
+                                              {{-1.3, 0.7, 2.6},
+                                               Angle::degrees(71.0 * k),
+                                               Angle::degrees(tilt),
+                                               Angle::degrees(4)}}));
+            sight.prepare({"", model, {}});
+            CellParts parts;
+            cellsByView(room.grid, sight.meshFor(model), views, 0, parts);
+            for (std::size_t k = 0; k < views.size(); ++k) {
+                const CellSet cells = cellsOf(parts, k, room.grid.size());
+                for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
+                    const Point2 center = room.grid.center(cell);
+                    ASSERT_EQ(cells.test(cell), views[k].holds({center.x, center.y, 0}))
+                        << lens << " tilt " << tilt << " view " << k << " cell " << cell;
+                }
+                held += cells.count();
+            }
+        }
+        EXPECT_GT(held, 100U) << lens;
     }
 }
 
