@@ -103,10 +103,19 @@ struct CandidatePool::Data {
         return usualTilts(kind.model, mountOf(kind));
     }
 
+    /// By which strategies space their places: the maximum range, but of what hangs overhead no
+    /// more than it looks over.
+    [[nodiscard]] double reachOf(const SensorClass& kind, double height) const {
+        constexpr double kOverHeight = 3;
+        const double range = maxRange(kind.model);
+        const bool hangs = kindOf(kind.model).is_overhead && mountOf(kind) != MountOn::Floor;
+        return hangs ? std::min(range, kOverHeight * height) : range;
+    }
+
     /// What the strategy proposes at one height; Random comes by itself.
     [[nodiscard]] std::vector<Site> proposals(const SensorClass& kind, double height) const {
         return onNanometres(
-            rowOf(options.strategy).propose({environment, height, maxRange(kind.model), options}));
+            rowOf(options.strategy).propose({environment, height, reachOf(kind, height), options}));
     }
 
     [[nodiscard]] std::vector<SitesAtHeight> frameLevels() const {
@@ -240,7 +249,8 @@ struct CandidatePool::Data {
                 kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
         }
         if (!addLevels(set, kind, first.levels, kMinPlaces) || !first.is_complete) return false;
-        const double scope = options.scope.value_or(maxRange(kind.model) / kSegments);
+        const double scope =
+            options.scope.value_or(reachOf(kind, first.levels.front().height) / kSegments);
         std::vector<std::uint32_t> weights_left = weights.left;
         std::vector<std::uint32_t> values;
         const auto best = [&] {

@@ -82,7 +82,8 @@ void verify(const Job& job, const Arrangement& found) {
     const Scene placed = withArranged(*job.scene, groupsOf(job), found.sensors);
     Worlds worlds(placed.environment);
     const double measured =
-        measureCoverage(placed, worlds, {.exact = false}).report.coverage.grid.value_or(0);
+        measureCoverage(placed, worlds, {.density = job.how.pixel_density, .exact = false})
+            .report.coverage.grid.value_or(0);
     if (measured == found.coverage && found.candidate_value <= found.candidate_bound &&
         found.value.value_or(measured) <= found.bound)
         return;
@@ -232,6 +233,29 @@ void growing(benchmark::State& state, const Scene& scene, const CandidateDensity
                    bench::cell(std::to_string(cells) + "^2", 8) + figures(result));
 }
 
+/// Sensors that hang from the ceiling of an office and look down in three tilts.
+struct CameraRow {
+    std::string name, sensors;
+    CandidateDensity density;
+    double pixel_density = 0;
+    std::optional<double> target = {};
+};
+
+void overhead(benchmark::State& state, const Scene& office, const CameraRow& row) {
+    Job job{&office, row.sensors, {}};
+    job.how.mount.on = MountOn::Ceiling;
+    for (const double tilt : {-90.0, -60.0, -30.0})
+        job.how.mount.tilts.push_back(Angle::degrees(tilt));
+    job.how.density = row.density;
+    job.how.pixel_density = row.pixel_density;
+    job.how.target = row.target;
+    job.how.search.optimizer = Optimizer::Exact;
+    const Result result = quickest(state, job);
+    state.SetLabel(bench::leftCell(row.name, 28) +
+                   bench::cell(static_cast<double>(result.arrangement.sensors.size()), 0, 3) +
+                   figures(result));
+}
+
 template <typename Run>
 void add(const std::string& name, Run run) {
     benchmark::RegisterBenchmark(name.c_str(), run)->Iterations(kRounds)->UseManualTime();
@@ -268,6 +292,16 @@ int main(int argc, char** argv) {
             [&middle, density = density, cells = cells](benchmark::State& state) {
                 growing(state, middle, density, cells);
             });
+    const Scene office = bench::loadScene(bench::sceneFile("open-office.env"));
+    const std::string dome = "dome-2.8-1080p,fov=110";
+    const CameraRow of_cameras[] = {{"domes", dome + ":4", {1, 1, 8}},
+                                    {"domes, 90 %", dome, {1, 1, 8}, 0, 0.9},
+                                    {"domes, 90 % recognised", dome, {1, 1, 8}, 125, 0.9},
+                                    {"pinholes", "camera,fov=110,62:4", {1, 1, 8}},
+                                    {"rangers", "ranger,fov=110,62,range=20:4", {1, 1, 8}}};
+    for (const CameraRow& row : of_cameras)
+        add("cameras/" + row.name,
+            [&office, &row](benchmark::State& state) { overhead(state, office, row); });
     const std::string columns =
         "candidates coverage    bound     gap set-up,ms search,ms      MB\n";
     bench::TableReporter table(
@@ -279,6 +313,10 @@ int main(int argc, char** argv) {
           "thread, "
           "processor time\n"
           "plan                       m2  k  fov " +
+              columns},
+         {"cameras",
+          "Cameras in an open-plan office of 14 m x 9 m, proven or for 3 s\n"
+          "                             k " +
               columns},
          {"growth",
           "3 lasers of 180 degrees in the third plan\ncandidates         cells " + columns}});

@@ -1,0 +1,29 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cameras.sh [FOLDER]: what four dome cameras on the ceiling of an office see of its floor, how many see
+# 90 % of it, and how many it takes to recognise people there; each answer with its proof. Needs
+# the tools in PATH; leaves its files in FOLDER (default: ispace-cameras).
+set -eu
+office=$(cd "$(dirname "$0")/../scenes" && pwd)/open-office.env
+mkdir -p "${1:-ispace-cameras}"
+cd "${1:-ispace-cameras}"
+dome=dome-2.8-1080p,fov=110
+exactly="--candidates 1,1,8 --optimize exact"
+
+run() {
+    echo "\$ $*"
+    "$@" 2>&1
+}
+
+run envc "$office" -o office.glb
+run arrange office.glb --sensor $dome:4 $exactly -o four.3dm
+run arrange office.glb --sensor $dome $exactly --target 90% -o most.3dm
+run arrange office.glb --sensor $dome $exactly --target 90% --density recognise -o recognise.3dm
+coverage office.glb recognise.3dm --density recognise -o recognise.png >recognise.txt
+
+# What a layout covers, and how many cameras it has.
+share() { LC_ALL=C printf '%.2f %%' "$(sed -n 's/^result coverage=\([^%]*\)%.*/\1/p' "$1")"; }
+count() { grep -c '^camera' "$1"; }
+echo
+echo "four domes of 110 degrees see $(share four.3dm) of the floor; $(count most.3dm) see $(share most.3dm)"
+echo "to recognise people on 90 % of it takes $(count recognise.3dm): $(share recognise.3dm)"
