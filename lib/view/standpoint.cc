@@ -94,6 +94,10 @@ Focus focusOn(const std::string& id, const Scene& scene) {
     for (const Element& element : scene.environment.elements())
         if (element.id == id) {
             const Focus focus = focusOf(meshesOf(element.body, Surfaces::Drawn));
+            if (element.record.keyword() == "zone") {
+                const Box2 zone = bounds(zoneOutline(element.record));
+                return {{zone.center().x, zone.center().y, 0}, zone.width()};
+            }
             if (focus.size > 0) return focus;
         }
     throw UsageError(excerpt(id) + " has no place to look at");

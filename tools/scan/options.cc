@@ -126,6 +126,7 @@ void ScanCommand::checkViews() const {
     for (const char* name : {"--select", "--poses", "--model", "--motion", "--noise"})
         if (line_.given(name))
             throw UsageError(std::string(name) + " is about readings, and --view takes none");
+    if (o.format != "png") throw UsageError("--view draws png, and --to says " + o.format);
     if (o.frames && o.view.run.empty())
         throw UsageError("--frames with --view are those of a run: give --run DIR");
 }

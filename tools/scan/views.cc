@@ -120,7 +120,7 @@ void addViewOptions(CommandLine& line, ViewToolOptions& options) {
     line.ordered(
         "--view", "SPEC",
         [&options](const std::string& text) { options.views.push_back(parseView(text)); },
-        "draw a picture of the room instead of readings (repeatable): " + forms);
+        "draw a picture of the room instead of readings: " + forms);
     line.parsed(
         "--show", "beams|area|none",
         [&options](const std::string& text) { options.drawing.show = shownSight(text); },
@@ -128,7 +128,7 @@ void addViewOptions(CommandLine& line, ViewToolOptions& options) {
         "(default none)",
         Enters::History);
     line.texts("--highlight", "ID", options.drawing.highlight,
-               "views: make the record with this id stand out (repeatable)", Enters::History);
+               "views: make the record with this id stand out", Enters::History);
     line.switchFlag("--labels", "--no-labels", options.labels,
                     "views: ids of sensors and robots, red dots for cameras (default)",
                     "views: no ids and dots", Enters::History);
