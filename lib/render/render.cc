@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
 #include "render/light_tracer.h"
@@ -57,6 +56,7 @@ struct Job {
     std::vector<bool> hidden;
     Shading shading;
     Rendering& out;
+    std::vector<PixelPoint> samples;  ///< of each pixel, about its centre
     std::vector<PixelLight> raw, smooth;
 
     Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
@@ -82,7 +82,8 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
       light(chosen(wanted.light, *data.still)),
       even(from.evenSightLines()),
       shading(data, light, wanted),
-      out(picture) {
+      out(picture),
+      samples(placesInPixel(wanted.samples)) {
     for (const std::size_t record : options.hidden) {
         hidden.resize(std::max(hidden.size(), record + 2));
         hidden[record + 1] = true;
@@ -141,13 +142,8 @@ class TileWorker {
 
     /// The samples of the tile's pixels.
     void color(int column, int row) {
-        const int samples = job_.options.samples;
-        const int across = std::max(1, static_cast<int>(std::sqrt(samples)));
-        const int down = (samples + across - 1) / across;
-        const float share = 1 / static_cast<float>(samples);
-        for (int sample = 0; sample < samples; ++sample) {
-            const PixelPoint at{(sample % across + 0.5) / across - 0.5,
-                                (sample / across + 0.5) / down - 0.5};
+        const float share = 1 / static_cast<float>(job_.samples.size());
+        for (const PixelPoint at : job_.samples) {
             aim(column, row, at);
             tracer_.trace(tile_);
             const auto* layers = clear_.isIdle() ? nullptr : &clear_.trace(tile_);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/simd.h"
 
@@ -149,6 +150,22 @@ double SightTracer::resolve(const SightTile& tile, std::size_t lane) const {
         plane.heightOver(tile.origin(lane)) / dot(plane.normal, tile.direction(lane));
     // What is seen almost edge-on is met at the rim of its enlarged triangle.
     return std::fabs(depth - found) <= 1e-4 * (1 + found) ? depth : found;
+}
+
+std::vector<PixelPoint> placesInPixel(int count) {
+    std::vector<std::pair<std::uint32_t, int>> order;
+    for (int i = 0; i < count; ++i) {
+        std::uint32_t turned = 0;
+        for (unsigned bit = 0; bit < 32; ++bit)
+            turned |= (static_cast<std::uint32_t>(i) >> bit & 1U) << (31 - bit);
+        order.emplace_back(turned, i);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<PixelPoint> places;
+    for (int rank = 0; rank < count; ++rank)
+        places.push_back({(order[static_cast<std::size_t>(rank)].second + 0.5) / count - 0.5,
+                          (rank + 0.5) / count - 0.5});
+    return places;
 }
 
 }  // namespace ispace

@@ -42,6 +42,11 @@ struct SightTile : RayPacket {
     }
 };
 
+/// Places in a pixel that lie apart in either direction: edges along rows and columns have as many
+/// shades as there are samples (Hammersley's points by their ranks, so that their mean is the
+/// centre).
+std::vector<PixelPoint> placesInPixel(int count);
+
 /// Finds what a picture's lines of sight meet; one for each thread.
 class SightTracer {
   public:
