@@ -76,10 +76,10 @@ class Sightlines {
     explicit Sightlines(const Scene& scene)
         : worlds_(scene.environment),
           bodies_(bodiesOf(scene)),
+          plan_(scene.environment.limits()),
           height_(scene.environment.height()) {
         worlds_.prepareMesh();
-        const Box2& plan = scene.environment.limits();
-        reach_ = std::hypot(plan.width(), plan.depth());
+        reach_ = std::hypot(plan_.width(), plan_.depth());
     }
 
     /// Where rays from a sensor end, by their directions in its frame: at what stops them, or so
@@ -100,13 +100,26 @@ class Sightlines {
         std::vector<Point3> ends;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             double range = most / std::max(rays[i].x, kSteepest);
-            // Rooms need no ceiling, but nothing is above the walls.
-            const double room = height_ - frame.origin.z, rise = directions[i].z * range;
-            if (room > 0 && rise > room) range *= room / rise;
+            range = std::min(range, wayOut(frame.origin, directions[i]));
             ends.push_back(frame.origin +
                            std::min(static_cast<double>(ranges[i]), range) * directions[i]);
         }
         return ends;
+    }
+
+    /// How far it is until a ray leaves the plan, or passes over its walls: rooms need no ceiling,
+    /// and windows may be open.
+    [[nodiscard]] double wayOut(Point3 origin, Vec3 direction) const {
+        double way = std::numeric_limits<double>::infinity();
+        const auto limit = [&way](double room, double speed) {
+            if (room > 0 && speed > 0) way = std::min(way, room / speed);
+        };
+        limit(plan_.high.x - origin.x, direction.x);
+        limit(origin.x - plan_.low.x, -direction.x);
+        limit(plan_.high.y - origin.y, direction.y);
+        limit(origin.y - plan_.low.y, -direction.y);
+        limit(height_ - origin.z, direction.z);
+        return way;
     }
 
     [[nodiscard]] std::vector<float> ranges(const Sensor& laser) {
@@ -121,7 +134,8 @@ class Sightlines {
   private:
     Worlds worlds_;
     MovingBodies bodies_;
-    double height_ = 0, reach_ = 0;
+    Box2 plan_;
+    double height_, reach_ = 0;
 };
 
 /// The sides from `apex` to a rim.
