@@ -160,7 +160,7 @@ class TileWorker {
     void aim(int column, int row, PixelPoint at) {
         const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
         const Vec3 shift = job_.scene.still->shift;
-        if (job_.even) return tile_.set(*job_.even, column, row, at, last_column, last_row, shift);
+        if (job_.even) return tile_.set(*job_.even, {column + at.column, row + at.row}, shift);
         for (int i = 0; i < kTile * kTile; ++i) {
             const auto lane = static_cast<std::size_t>(i);
             const PixelPoint place{1.0 * std::min(column + i % kTile, last_column),

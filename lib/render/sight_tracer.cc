@@ -60,47 +60,44 @@ SightTracer::SightTracer(const RenderScene::Data& scene, const std::vector<bool>
 
 namespace {
 
-struct Places {
-    alignas(64) std::array<double, kLanes> u, v;
-};
+/// Places of a tile's pixels from its first.
+alignas(64) constexpr std::array<double, kLanes> kAside{0, 1, 2, 3, 0, 1, 2, 3,
+                                                        0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) constexpr std::array<double, kLanes> kBelow{0, 0, 0, 0, 1, 1, 1, 1,
+                                                        2, 2, 2, 2, 3, 3, 3, 3};
+static_assert(kTile == 4);
 
-ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, const Places& at,
+ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, PixelPoint first,
                                        SightTile& tile) {
     const Vec3 d = lines.direction, right = lines.right, down = lines.down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        tile.x[lane] = d.x + at.u[lane] * right.x + at.v[lane] * down.x;
-        tile.y[lane] = d.y + at.u[lane] * right.y + at.v[lane] * down.y;
-        tile.z[lane] = d.z + at.u[lane] * right.z + at.v[lane] * down.z;
+        const double u = first.column + kAside[lane], v = first.row + kBelow[lane];
+        tile.x[lane] = d.x + u * right.x + v * down.x;
+        tile.y[lane] = d.y + u * right.y + v * down.y;
+        tile.z[lane] = d.z + u * right.z + v * down.z;
     }
 }
 
-ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, const Places& at,
+ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, PixelPoint first,
                                     SightTile& tile) {
     const Point3 o = lines.origin + shift;
     const Vec3 right = lines.origin_right, down = lines.origin_down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        tile.origin_x[lane] = o.x + at.u[lane] * right.x + at.v[lane] * down.x;
-        tile.origin_y[lane] = o.y + at.u[lane] * right.y + at.v[lane] * down.y;
-        tile.origin_z[lane] = o.z + at.u[lane] * right.z + at.v[lane] * down.z;
+        const double u = first.column + kAside[lane], v = first.row + kBelow[lane];
+        tile.origin_x[lane] = o.x + u * right.x + v * down.x;
+        tile.origin_y[lane] = o.y + u * right.y + v * down.y;
+        tile.origin_z[lane] = o.z + u * right.z + v * down.z;
     }
 }
 
 }  // namespace
 
-void SightTile::set(const EvenSightLines& lines, int column, int row, PixelPoint at,
-                    int last_column, int last_row, Vec3 shift) {
-    Places places;  // NOLINT: computed here
-    for (int i = 0; i < kTile; ++i)
-        for (int k = 0; k < kTile; ++k) {
-            const auto lane = static_cast<std::size_t>(i * kTile + k);
-            places.u[lane] = std::min(column + k, last_column) + at.column;
-            places.v[lane] = std::min(row + i, last_row) + at.row;
-        }
-    fillDirections(lines, places, *this);
+void SightTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
+    fillDirections(lines, first, *this);
     const Point3 kept = lines.origin + shift;
     const bool is_one = lines.origin_right == Vec3() && lines.origin_down == Vec3();
     if (is_one && origin(0) == kept && origin(kLanes - 1) == kept) return;
-    fillOrigins(lines, shift, places, *this);
+    fillOrigins(lines, shift, first, *this);
     has_new_origins = true;
 }
 

@@ -24,10 +24,8 @@ struct SightTile : RayPacket {
         origin_x.fill(std::numeric_limits<double>::quiet_NaN());
     }
     void set(std::size_t lane, const SightLine& line, Vec3 shift);
-    /// Lines of sight of the pixels from (column, row) on, moved by `at`; beyond the last ones
-    /// those.
-    void set(const EvenSightLines& lines, int column, int row, PixelPoint at, int last_column,
-             int last_row, Vec3 shift);
+    /// Those of the places from `first` on, also beyond the picture.
+    void set(const EvenSightLines& lines, PixelPoint first, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
     [[nodiscard]] Point3 origin(std::size_t lane) const {
         return {origin_x[lane], origin_y[lane], origin_z[lane]};
