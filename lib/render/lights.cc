@@ -11,9 +11,9 @@ namespace ispace {
 
 namespace {
 
-/// Distance between lamps, of the height; and the most of them.
+/// Distance between lamps, of the height; and the most of them, and of places looked at for them.
 constexpr double kSpacing = 1.1, kLeastSpacing = 1.8;
-constexpr double kMostLamps = 4000;
+constexpr double kMostLamps = 4000, kMostPlaces = 200'000;
 /// What a white floor shines with below many lamps, without what surfaces throw back.
 constexpr double kBrightness = 0.72;
 
@@ -21,8 +21,10 @@ constexpr double kBrightness = 0.72;
 
 Lamps::Lamps(const Environment& environment, Vec3 shift) {
     const double area = std::max(1.0, environment.indoor().area());
+    const Box2 plan = bounds(environment.indoor());
     const double spacing =
-        std::max({kLeastSpacing, kSpacing * environment.height(), std::sqrt(area / kMostLamps)});
+        std::max({kLeastSpacing, kSpacing * environment.height(), std::sqrt(area / kMostLamps),
+                  std::sqrt(plan.width() * plan.depth() / kMostPlaces)});
     height_ = static_cast<float>(std::max(1.0, environment.height() - 0.02));
     reach_ = static_cast<float>(4 * spacing);
     for (const Region& part : environment.indoor().parts) {
@@ -65,15 +67,26 @@ void Lamps::index() {
                                      static_cast<double>(cell_)) +
             1;
     first_.assign(1, 0);
-    for (std::size_t row = 0; row < rows_; ++row)
-        for (std::size_t column = 0; column < columns_; ++column) {
-            const float x = left_ + (static_cast<float>(column) + 0.5F) * cell_;
-            const float y = bottom_ + (static_cast<float>(row) + 0.5F) * cell_;
-            for (std::size_t i = 0; i < lamps_.size(); ++i)
-                if (std::hypot(lamps_[i].x - x, lamps_[i].y - y) < reach_ + 0.75F * cell_)
-                    near_.push_back(static_cast<std::uint32_t>(i));
-            first_.push_back(static_cast<std::uint32_t>(near_.size()));
-        }
+    // Counted, and then laid behind one another.
+    const auto for_each_cell = [this](const Lamp& lamp, auto visit) {
+        const auto cell = [this](float offset, std::size_t count) {
+            return std::min(static_cast<std::size_t>(std::max(0.0F, offset / cell_)), count - 1);
+        };
+        const std::size_t top = cell(lamp.y + reach_ - bottom_, rows_),
+                          right = cell(lamp.x + reach_ - left_, columns_);
+        for (std::size_t row = cell(lamp.y - reach_ - bottom_, rows_); row <= top; ++row)
+            for (std::size_t column = cell(lamp.x - reach_ - left_, columns_); column <= right;
+                 ++column)
+                visit(row * columns_ + column);
+    };
+    first_.assign(columns_ * rows_ + 1, 0);
+    for (const Lamp& lamp : lamps_)
+        for_each_cell(lamp, [this](std::size_t cell) { ++first_[cell + 1]; });
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    near_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t i = 0; i < lamps_.size(); ++i)
+        for_each_cell(lamps_[i], [&](std::size_t cell) { near_[next[cell]++] = i; });
 }
 
 std::span<const std::uint32_t> Lamps::near(float x, float y) const {

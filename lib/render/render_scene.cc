@@ -197,7 +197,7 @@ class StillBuilder {
             soup.add(mesh, {label, paintFor(label, mesh.material)}, still_.shift);
             assignFaces(soup, first, faces);
         };
-        const auto addPart = [&](FinishedSoup& soup, const Body& part) {
+        const auto add_part = [&](FinishedSoup& soup, const Body& part) {
             for (const Mesh& mesh : meshesOf(part, Surfaces::Solid)) add(soup, mesh);
         };
         std::vector<Plate> pattern;
@@ -215,8 +215,8 @@ class StillBuilder {
         }
         for (const Sheet& sheet : element.body.sheets) {
             if (is_left_out(std::array{sheet.line.a, sheet.line.b})) continue;
-            addPart(sheet.clear ? glass_ : solid_,
-                    {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
+            add_part(sheet.clear ? glass_ : solid_,
+                     {.prisms = {}, .sheets = {sheet}, .plates = {}, .meshes = {}});
         }
         for (const Plate& plate : element.body.plates) {
             const bool is_ceiling = plate.material == Material::Ceiling;
@@ -224,7 +224,7 @@ class StillBuilder {
             if (plate.visual_only)
                 pattern.push_back(plate);
             else if (!is_ceiling || options_.ceilings)
-                addPart(solid_, {.prisms = {}, .sheets = {}, .plates = {plate}, .meshes = {}});
+                add_part(solid_, {.prisms = {}, .sheets = {}, .plates = {plate}, .meshes = {}});
         }
         for (const Mesh& mesh : element.body.meshes) add(solid_, mesh);
         if (pattern.empty()) return;
