@@ -22,7 +22,7 @@ SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
         return sensorModelOf(record, devices);
     } catch (const FormatError& error) {
         // An error in the parameters of --sensor is one of the command line.
-        throw UsageError(error.diagnostics().front().message);
+        throw UsageError("--sensor: " + error.diagnostics().front().message);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "base/message.h"
 #include "base/number.h"
 #include "sensor/drawing.h"
 #include "sensor/keys.h"
@@ -364,9 +365,11 @@ class OpticsReader {
         }
         const auto size = imageSensorSize(record_.text("sensor"), camera_.columns, camera_.rows);
         if (!size) {
-            findings_.add(record_.finding("sensor",
-                                          "wanted a format such as 1/2.8\" or width and "
-                                          "height such as 5.37,3.02mm"));
+            findings_.add(
+                record_.finding("sensor", excerpt(record_.text("sensor")) +
+                                              " is no size of an image sensor: wanted a format "
+                                              "such as 1/2.8\" or width and height such as "
+                                              "5.37,3.02mm"));
             return;
         }
         const double focal = record_.number("focal");
