@@ -234,21 +234,72 @@ class PictureTable {
 /// The same as views[k].holds(), for views of one sensor that differ in heading.
 class ViewTest {
   public:
+    /// \pre at most kTogether
     explicit ViewTest(std::span<const FieldOfView> views) : views_(views) {
         const FieldOfView& first = views.front();
+        is_pyramid_ = first.shape == FieldOfView::Shape::Pyramid;
         if (first.shape == FieldOfView::Shape::Picture && first.camera->lens != Lens::Pinhole)
             table_.emplace(*first.camera);
+        if (!is_pyramid_) return;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            const Frame3& frame = views[k].frame;
+            const Tangents& s = views[k].sides;
+            setSide(0, k, 1, frame.left, s.left);
+            setSide(1, k, -1, frame.left, s.right);
+            setSide(2, k, 1, frame.up, s.up);
+            setSide(3, k, -1, frame.up, s.down);
+        }
     }
 
     [[nodiscard]] std::uint64_t holding(Point3 place) const {
-        std::uint64_t held = 0;
-        for (std::size_t k = 0; k < views_.size(); ++k)
-            if (table_ ? isInTable(views_[k], place) : views_[k].holds(place))
-                held |= std::uint64_t{1} << k;
-        return held;
+        if (is_pyramid_) return pyramidsHolding(place);
+        if (table_) return all([&](const FieldOfView& view) { return isInTable(view, place); });
+        return all([&](const FieldOfView& view) { return view.holds(place); });
     }
 
   private:
+    /// Outward normals of one side, by view.
+    struct Normals {
+        std::array<double, kTogether> x, y, z;
+    };
+
+    /// Of the side on this side of an axis.
+    void setSide(std::size_t side, std::size_t view, double sign, Vec3 axis, double tangent) {
+        const Vec3& forward = views_[view].frame.forward;
+        sides_[side].x[view] = sign * axis.x - tangent * forward.x;
+        sides_[side].y[view] = sign * axis.y - tangent * forward.y;
+        sides_[side].z[view] = sign * axis.z - tangent * forward.z;
+    }
+    template <typename Holds>
+    [[nodiscard]] std::uint64_t all(Holds holds) const {
+        std::uint64_t held = 0;
+        for (std::size_t k = 0; k < views_.size(); ++k)
+            if (holds(views_[k])) held |= std::uint64_t{1} << k;
+        return held;
+    }
+    /// A loop over all views that compilers vectorise tells of nearly all places.
+    [[nodiscard]] std::uint64_t pyramidsHolding(Point3 place) const {
+        constexpr double kEdge = 1e-9;  // wider than the margin for rounding
+        const Vec3 way = place - views_.front().frame.origin;
+        const double edge = kEdge * (std::fabs(way.x) + std::fabs(way.y) + std::fabs(way.z));
+        std::array<double, kTogether> beyond;
+        const auto out = [&](const Normals& n, std::size_t k) {
+            return n.x[k] * way.x + n.y[k] * way.y + n.z[k] * way.z;
+        };
+        for (std::size_t k = 0; k < views_.size(); ++k)
+            beyond[k] = std::max(std::max(out(sides_[0], k), out(sides_[1], k)),
+                                 std::max(out(sides_[2], k), out(sides_[3], k)));
+        std::uint64_t held = 0;
+        for (std::size_t k = 0; k < views_.size(); ++k) {
+            if (beyond[k] > edge) continue;
+            const FieldOfView& view = views_[k];
+            const Vec3 local = view.frame.toLocal(place);
+            if (beyond[k] >= -edge && !view.points(local)) continue;
+            const double range = view.is_by_depth ? local.x : std::sqrt(dot(local, local));
+            if (withinRange(range, view.max_range)) held |= std::uint64_t{1} << k;
+        }
+        return held;
+    }
     [[nodiscard]] bool isInTable(const FieldOfView& view, Point3 place) const {
         const Vec3 local = view.frame.toLocal(place);
         const double distance = std::sqrt(dot(local, local));
@@ -259,6 +310,8 @@ class ViewTest {
     }
 
     std::span<const FieldOfView> views_;
+    bool is_pyramid_ = false;
+    std::array<Normals, 4> sides_;  // of pyramids
     std::optional<PictureTable> table_;
 };
 

@@ -99,12 +99,14 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
     }
 }
 
-TEST(PlaneCells, BentPicturesHoldWhatTheirLensesProjectThere) {
+TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     const Room room("ispace size=12,9,3", 150, 110);
     Worlds worlds(room.scene.environment);
     const Sight sight(room.scene.environment, 0, &worlds);
     for (const char* const lens :
-         {"projection=fisheye fov=106,59 pixels=1920,1080 range=100",
+         {"fov=75", "fov=110,62 range=3.1", "fx=400 cx=610 cy=50 range=6",
+          "fov=90 coefficients=-0.3,0.05 range=8",
+          "projection=fisheye fov=106,59 pixels=1920,1080 range=100",
           "projection=fisheye fov=150 coefficients=0.02,-0.01,0.003,-0.0005 range=7",
           "projection=fisheye fx=150 cx=120 cy=-40 range=6", "projection=fisheye fov=12 range=50",
           "projection=omni fov=170 pixels=600,600 range=6",
