@@ -34,6 +34,14 @@ TEST(MakeScene, EnvironmentAlone) {
     EXPECT_EQ(made.digest, environmentDigest(roomDocument(kRoom).records));
 }
 
+TEST(MakeScene, PicturesDoNotCountInTheDigest) {
+    const auto digest = [](const std::string& cube) {
+        return scene("ispace size=4,4\ncube " + cube + "\n").digest;
+    };
+    EXPECT_EQ(digest("size=1 texture=a.png"), digest("size=1"));
+    EXPECT_NE(digest("size=2"), digest("size=1"));
+}
+
 TEST(MakeScene, SensorsOfLayoutFollowPlacedAndPending) {
     const Scene made = scene(kRoom,
                              "environment file=room.glb digest=sha256:0\n"

@@ -129,5 +129,17 @@ TEST(PngPicture, OpacityInMaps) {
     EXPECT_EQ(free(Mode::Raw, 0.2), "##..");
 }
 
+TEST(ColorPicture, HasTheColoursOfTheFile) {
+    const std::string png = pngFile(2, 8, 6, {std::string("\x10\x20\x30\xff\x01\x02\x03\x00", 8)});
+    EXPECT_EQ(parseColorPicture(png, "a.png").rgba,
+              (std::vector<std::uint8_t>{0x10, 0x20, 0x30, 0xff, 1, 2, 3, 0}));
+    EXPECT_EQ(parseColorPicture("P2\n1 2\n10\n10 0\n", "a.pgm").rgba,
+              (std::vector<std::uint8_t>{255, 255, 255, 255, 0, 0, 0, 255}));
+    // Through OpenCV, which has blue first.
+    const ColorPicture ppm = parseColorPicture("P6\n1 1\n255\n\x01\x02\x03", "a.ppm");
+    EXPECT_EQ(ppm.rgba, (std::vector<std::uint8_t>{1, 2, 3, 255}));
+    EXPECT_THROW(parseColorPicture("no picture", "a.png"), FormatError);
+}
+
 }  // namespace
 }  // namespace ispace
