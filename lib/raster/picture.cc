@@ -16,6 +16,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/program.h"
+#include "raster/encode.h"
 #include "raster/module/decoded_picture.h"
 
 namespace ispace {
@@ -182,21 +183,25 @@ const PictureFormat* formatOf(std::string_view bytes) {
     return found == std::end(kFormats) ? nullptr : found;
 }
 
-/// Opened anew each time: the loader counts, and pictures are few.
-PictureDecoder& decoder(const std::string& format, const std::string& name) {
+/// A function of the module. Opened anew each time: the loader counts, and pictures are few.
+/// \throws FormatError with the hint what else one can do
+void* moduleFunction(const char* function, const std::string& format, const std::string& name,
+                     const char* hint) {
     const std::string path =
         (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "pictures.so").string();
     void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    void* const function = module == nullptr ? nullptr : ::dlsym(module, kPictureDecoder);
-    if (function == nullptr) {
-        const char* const reason = ::dlerror();
-        throw FormatError(
-            Diagnostic{displayName(name), 0, 0,
-                       "a " + format + " picture needs OpenCV (Debian: libopencv-imgcodecs406): " +
-                           printable(reason == nullptr ? path : reason) +
-                           "; or convert it, for example with `convert FILE map.png`"});
-    }
-    return *reinterpret_cast<PictureDecoder*>(function);
+    void* const found = module == nullptr ? nullptr : ::dlsym(module, function);
+    if (found != nullptr) return found;
+    const char* const reason = ::dlerror();
+    throw FormatError(Diagnostic{displayName(name), 0, 0,
+                                 "a " + format +
+                                     " picture needs OpenCV (Debian: libopencv-imgcodecs406): " +
+                                     printable(reason == nullptr ? path : reason) + hint});
+}
+
+PictureDecoder& decoder(const std::string& format, const std::string& name) {
+    return *reinterpret_cast<PictureDecoder*>(moduleFunction(
+        kPictureDecoder, format, name, "; or convert it, for example with `convert FILE map.png`"));
 }
 
 GreyPicture pictureOf(const DecodedPicture& decoded) {
@@ -255,6 +260,14 @@ DecodedPicture decodeForeign(std::string_view bytes, const std::string& name, st
 
 GreyPicture decodePicture(std::string_view bytes, const std::string& name) {
     return pictureOf(decodeForeign(bytes, name, kMaxDecodedPixels));
+}
+
+std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> samples, int quality) {
+    JpegPicture picture{columns, rows, quality, samples.data(), {}, {}};
+    (*reinterpret_cast<JpegEncoder*>(
+        moduleFunction(kJpegEncoder, "JPEG", "", "; PNG needs nothing else")))(picture);
+    if (!picture.error.empty()) throw FormatError(Diagnostic{"", 0, 0, picture.error});
+    return {picture.bytes.begin(), picture.bytes.end()};
 }
 
 bool isPicture(std::string_view bytes) {
