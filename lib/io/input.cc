@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "io/calibration.h"
 #include "io/glb.h"
 #include "io/import_records.h"
 #include "io/importers.h"
@@ -231,8 +232,13 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
     const InputFormat* format = formatOf(
         source, [&](int line, const std::string& message) { failFile(operand, message, line); });
     Document document = format->read(source);
-    if (options.load_meshes) loadMeshes(document, operand);
+    if (options.load_files) loadFiles(document, operand);
     return document;
+}
+
+void loadFiles(Document& document, const std::string& operand) {
+    loadMeshes(document, operand);
+    loadCalibrations(document, operand);
 }
 
 Document readDocument(const std::string& operand, const ImportOptions& options,

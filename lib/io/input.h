@@ -48,14 +48,14 @@ struct ImportOptions {
     std::vector<std::string> window_layers;  ///< globs; default none
     bool points = false;                     ///< points of an ARIA map become obstacles
     std::size_t max_points = 2'000'000;      ///< drawings that come to more are refused
-    bool load_meshes = true;                 ///< false: `mesh` records keep their file unread
+    bool load_files = true;                  ///< false: records keep the files they name unread
 };
 
 /// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`,
 /// YAML, ROS map YAML, pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and
 /// meshes, also GLB without our records, which become a `mesh` record. What content does not tell
-/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files of `mesh`
-/// records unless ImportOptions::load_meshes is false. \throws FormatError (also: empty input, or
+/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records name
+/// unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or
 /// no format we know, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
@@ -68,6 +68,9 @@ bool isPlan(std::string_view bytes, const std::string& operand, const ImportOpti
 /// The same as readDocument() for bytes already read.
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);
+
+/// Reads what records name and do not hold yet: loadMeshes() and loadCalibrations().
+void loadFiles(Document& document, const std::string& operand);
 
 /// Refuses a file as a whole, or because of one line of it. \throws FormatError
 [[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);

@@ -56,7 +56,7 @@ TEST(Input, ImportsToldApartByContent) {
     // JSON is YAML, too.
     EXPECT_EQ(parse("{\"desk\": {\"at\": [1, 2]}}").records.size(), 1U);
     ImportOptions unread;
-    unread.load_meshes = false;
+    unread.load_files = false;
     for (const std::string& bytes :
          {"# Blender\nmtllib a.mtl\nv 1 2 3\n"s, "ply\nformat ascii 1.0\n"s,
           "solid x\nfacet normal\n"s, "<?xml?><COLLADA>"s,

@@ -246,7 +246,7 @@ TEST_F(MeshFile, RecordsGetTheirContent) {
     EXPECT_EQ(document.records[0].mesh()->vertices, document.records[2].mesh()->vertices);
     EXPECT_EQ(document.sources, std::vector<std::string>{path("chairs/t.obj")});
     ImportOptions unread;
-    unread.load_meshes = false;
+    unread.load_files = false;
     const Document text = read("mesh file=none.obj\n", unread);
     EXPECT_EQ(text.records[0].mesh(), nullptr);
     EXPECT_TRUE(text.sources.empty());

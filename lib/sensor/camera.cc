@@ -400,6 +400,10 @@ class OpticsReader {
 
 Camera withParameters(Camera base, const Record& record) {
     Diagnostics findings;
+    if (record.has("calibration"))
+        findings.add(record.finding("calibration",
+                                    "a calibration is read only where a room or a layout names it; "
+                                    "write its figures here"));
     applyRange(record, base.min_range, base.max_range, findings);
     if (record.has("rate")) base.rate = record.number("rate");
     if (record.has("full_well")) base.full_well = record.number("full_well");
@@ -495,6 +499,12 @@ void addCameraKeys(std::vector<KeySpec>& keys) {
                     .max_count = 5,
                     .lower = -1000,
                     .upper = 1000});
+    keys.push_back({.name = "calibration",
+                    .type = KeyType::Text,
+                    .help = "calibration file, relative to the folder of the file that names it: "
+                            "camera_info of ROS or a file of OpenCV, as YAML; it gives pixels, fx, "
+                            "fy, cx, cy, lens and coefficients",
+                    .role = Role::File});
     keys.push_back(positiveKey("full_well", Unit::None,
                                "electrons of a white pixel, for --noise; default 10000", 1e9));
     keys.push_back({.name = "read_noise",
@@ -561,9 +571,9 @@ const SensorKind kCameraKind = {
         const Angle half = 0.5 * camera.fovX();
         return {-half, half, camera.max_range};
     },
-    .is_read = false,
+    .is_read = true,
     .is_arranged = true,
     .is_overhead = true,
-    .follows_poses = false};
+    .follows_poses = true};
 
 }  // namespace ispace

@@ -15,7 +15,7 @@
 #include "env/info.h"
 #include "envc/options.h"
 #include "io/exporters.h"
-#include "io/mesh_file.h"
+#include "io/input.h"
 #include "layout/check_scene.h"
 #include "layout/schemas.h"
 
@@ -37,13 +37,13 @@ Document readModel(const EnvcOptions& options) {
     request.inputs = options.inputs;
     request.import = options.import;
     request.compiles = options.format == nullptr || options.format->write != nullptr;
-    request.import.load_meshes = request.compiles;
+    request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
     request.any_environment = options.any_environment;
     request.may_be_empty = !options.edits.empty();
     Document document = readInputs(request);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
-    if (request.compiles) loadMeshes(document, "");
+    if (request.compiles) loadFiles(document, "");
     document.history.push_back(options.history_line);
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) talk(options.common, "envc", note);
