@@ -29,6 +29,7 @@ class Carriers {
     struct Place {
         Pose3 pose;  ///< in the world; on a robot where that starts
         std::optional<Mount> mount;
+        std::optional<std::size_t> person = {};
     };
     /// Where a sensor with `on` is. \throws FormatError if that names no carrier
     [[nodiscard]] Place place(const Record& sensor);
@@ -36,7 +37,7 @@ class Carriers {
   private:
     struct Thing {
         const Record* record;
-        std::size_t robot;  // index among the robots, if it is one
+        std::size_t index;  // among the robots or the people, if it is one of them
         std::optional<double> top = {};
     };
 
@@ -50,13 +51,20 @@ bool isObject(const Record& record) {
     return type == RecordType::Other || type == RecordType::Infra;
 }
 
-bool isCarrier(const Record& record) { return record.keyword() == "robot" || isObject(record); }
+bool isCarrier(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human" || isObject(record);
+}
+
+/// Where a sensor on a person is that has no height of its own: at the eyes.
+constexpr double kEyes = 0.94;
 
 Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids) {
-    std::size_t robots = 0;
+    std::size_t robots = 0, people = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
-        things_.emplace(ids[i], Thing{&records[i], robots});
+        const bool is_human = records[i].keyword() == "human";
+        things_.emplace(ids[i], Thing{&records[i], is_human ? people : robots});
         if (records[i].keyword() == "robot") ++robots;
+        if (is_human) ++people;
         if (isCarrier(records[i])) candidates_.push_back(ids[i]);
     }
 }
@@ -67,13 +75,19 @@ Carriers::Place Carriers::place(const Record& sensor) {
     if (found == things_.end())
         throw FormatError(sensor.finding(
             "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates_)));
-    auto& [record, robot, top] = found->second;
+    auto& [record, index, top] = found->second;
     if (!isCarrier(*record))
-        throw FormatError(sensor.finding("on", "`on`: `" + on + "` is a `" + record->keyword() +
-                                                   "`; only robots and objects carry sensors"));
+        throw FormatError(
+            sensor.finding("on", "`on`: `" + on + "` is a `" + record->keyword() +
+                                     "`; only robots, people and objects carry sensors"));
     const Pose2 carrier = floorPoseOf(*record);
     Pose3 local = poseOf(sensor);
-    if (record->keyword() == "robot") return {mountedPose(carrier, local), Mount{robot, local}};
+    if (record->keyword() == "robot") return {mountedPose(carrier, local), Mount{index, local}};
+    if (record->keyword() == "human") {
+        const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
+        if (!has_height) local.position.z = kEyes * record->number("height");
+        return {mountedPose(carrier, local), std::nullopt, index};
+    }
     if (!top) top = topOf(bodyOf(*record));
     local.position.z += *top;
     return {mountedPose(carrier, local), std::nullopt};
@@ -137,7 +151,8 @@ class Resolver {
             return;
         }
         out_.placed.push_back({i, place->pose, out_.sensors.size(), place->mount});
-        out_.sensors.push_back({ids_[i], std::move(model), place->pose, place->mount});
+        out_.sensors.push_back(
+            {ids_[i], std::move(model), place->pose, place->mount, place->person});
     }
 
     /// Of a sensor; nothing if it is still to be placed.

@@ -233,6 +233,22 @@ TEST(MakeScene, SensorsStandOnTheTopOfAnyObject) {
     EXPECT_NEAR(made.placed[1].pose.position.z, 1.95, 1e-12);
 }
 
+TEST(MakeScene, PeopleCarrySensorsAtTheirEyes) {
+    const Scene made = scene(kRoom,
+                             "camera on=h2\ncamera on=h1 at=0.1,0,1.2 heading=10\n"
+                             "human id=h1 at=1,1 heading=90\nhuman id=h2 at=3,2 height=1.5\n"
+                             "camera on=h1 at=0.5,0\n");
+    ASSERT_EQ(made.sensors.size(), 3U);
+    EXPECT_EQ(made.sensors[0].pose.position, (Point3{3, 2, 0.94 * 1.5}));
+    EXPECT_EQ(made.sensors[0].person, 1U);
+    EXPECT_FALSE(made.sensors[0].mount);
+    EXPECT_NEAR(made.sensors[1].pose.position.y, 1.1, 1e-12);
+    EXPECT_EQ(made.sensors[1].pose.position.z, 1.2);
+    EXPECT_EQ(made.sensors[1].pose.heading.degrees(), 100);
+    EXPECT_EQ(made.sensors[1].person, 0U);
+    EXPECT_NEAR(made.sensors[2].pose.position.z, 1.598, 1e-12);
+}
+
 TEST(MakeScene, OnMustNameACarrier) {
     const std::string unknown = sceneFindings(kRoom, "robot id=rover\nlaser on=rovre at=0,0\n");
     EXPECT_EQ(unknown,

@@ -109,7 +109,7 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
 /// The files of the textures that a scene names, each once: what a picture depends on.
 std::vector<std::string> textureFiles(const Scene& scene);
 
-/// Records of the sensor and of the robot that carries it, see RenderOptions::hidden.
+/// Records of the sensor and of the robot or person that carries it, see RenderOptions::hidden.
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor);
 
 /// Red, green and blue bytes for screens and files: radiance times exposure, highlights rolled off

@@ -359,10 +359,12 @@ RenderScene RenderScene::at(std::span<const Pose3> poses) const {
 
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor) {
     std::vector<std::size_t> own;
+    std::size_t people = 0;
     for (const Placed& placed : scene.placed) {
         const std::string& keyword = scene.records[placed.record].keyword();
         const bool carries =
-            sensor.mount && keyword == "robot" && placed.index == sensor.mount->robot;
+            (sensor.mount && keyword == "robot" && placed.index == sensor.mount->robot) ||
+            (keyword == "human" && sensor.person == people++);
         if (carries || scene.ids[placed.record] == sensor.id) own.push_back(placed.record);
     }
     return own;

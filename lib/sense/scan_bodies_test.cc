@@ -109,6 +109,14 @@ TEST(ScanOfPeople, LegsTrunkAndHeadAreMet) {
     EXPECT_NEAR(scans[4].ranges[90], 0.7, 1e-6) << "onto the head";
 }
 
+TEST(ScanOfPeople, OnesOwnBodyIsNotSeen) {
+    const auto scans = scansOf(
+        "human id=a at=2,3\nhuman id=b at=5,3\n"
+        "laser on=a at=0,0,1.2 range=8\nlaser at=2,3,1.2 range=8\n");
+    EXPECT_NEAR(scans[0].ranges[90], 3 - 0.102, 1e-6);
+    EXPECT_LT(scans[1].ranges[90], 0.2F);
+}
+
 /// Largest distance of the directions of a sensor's beams to those of Pose3::beam.
 double worstDirection(Beams& beams, const Sensor& sensor) {
     double worst = 0;

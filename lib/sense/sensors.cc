@@ -68,7 +68,9 @@ double wholeNanoseconds(double seconds) {
 }
 
 std::uint32_t carrierOf(const Sensor& sensor) {
-    return sensor.mount ? static_cast<std::uint32_t>(sensor.mount->robot) : MovingBodies::kNobody;
+    if (sensor.mount) return static_cast<std::uint32_t>(sensor.mount->robot);
+    if (sensor.person) return kFirstPerson + static_cast<std::uint32_t>(*sensor.person);
+    return MovingBodies::kNobody;
 }
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner) {
@@ -104,13 +106,12 @@ std::vector<MovingBody> bodiesOf(const Scene& scene) {
     for (const PlacedRobot& robot : scene.robots)
         bodies.push_back(
             robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
-    // Nobody's: no sensor rides on a person.
-    const auto owner = static_cast<std::uint32_t>(bodies.size());
+    std::uint32_t owner = kFirstPerson;
     for (const Placed& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         if (record.keyword() != "human") continue;
         const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
-        const std::vector<MovingBody> parts = humanBodies(record.number("height"), pose, owner);
+        const std::vector<MovingBody> parts = humanBodies(record.number("height"), pose, owner++);
         bodies.insert(bodies.end(), parts.begin(), parts.end());
     }
     return bodies;

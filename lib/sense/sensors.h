@@ -35,11 +35,12 @@ bool isSelected(const std::string& id, const std::vector<std::string>& globs);
 double wholeNanoseconds(double seconds);
 
 /// The robots and people of a scene where they start. The owner of a robot's body is its index in
-/// Scene::robots.
+/// Scene::robots, that of a person's parts kFirstPerson and the index among the people.
 std::vector<MovingBody> bodiesOf(const Scene& scene);
+constexpr std::uint32_t kFirstPerson = 1U << 31U;
 
-/// Owner of the bodies that do not hide anything from a sensor: the robot that carries it, or
-/// MovingBodies::kNobody.
+/// Owner of the bodies that do not hide anything from a sensor: the robot or person that carries
+/// it, or MovingBodies::kNobody.
 std::uint32_t carrierOf(const Sensor& sensor);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);

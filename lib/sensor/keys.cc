@@ -74,8 +74,9 @@ KeySpec onKey() {
     return {.name = "on",
             .type = KeyType::Word,
             .help =
-                "id of the robot or object that carries it: `at` and `heading` are in its "
-                "frame, z counts from the floor or from the object's top",
+                "id of the robot, person or object that carries it: `at` and `heading` are in its "
+                "frame, z counts from the floor or from the object's top; without z a person "
+                "carries it at the eyes, 0.94 of the height",
             .role = Role::Carrier};
 }
 

@@ -28,12 +28,13 @@ struct Mount {
     Pose3 robot_from_sensor;  ///< z counts from the floor, as the robot's frame lies there
 };
 
-/// A placed sensor; one on a robot is where the robot starts.
+/// A placed sensor; one on a robot or a person is where that starts.
 struct Sensor {
     std::string id;
     SensorModel model;
     Pose3 pose;
     std::optional<Mount> mount = {};
+    std::optional<std::size_t> person = {};  ///< who carries it: index among the scene's people
 
     template <typename Model>
     [[nodiscard]] bool is() const {
