@@ -17,7 +17,8 @@ enum class Purpose : std::uint32_t {
     Ultrasound = 2,
     Placement = 3,
     Candidates = 4,
-    Light = 5
+    Light = 5,
+    Picture = 6
 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.

@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "env/walls.h"
 #include "io/input.h"
+#include "io/side_files.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -36,6 +37,14 @@ bool hasPlaced(const Document& document, const std::vector<std::string>& keyword
         return std::find(keywords.begin(), keywords.end(), r.keyword()) != keywords.end() &&
                (r.has("at") || r.has("on"));
     });
+}
+
+/// Names textures relative to the current folder, where pictures are made.
+void rebaseTextures(std::vector<Record>& records, const std::string& operand) {
+    constexpr const char* kKey = "texture";
+    for (Record& record : records)
+        if (record.schema().find(kKey) != nullptr && record.has(kKey))
+            record.set(kKey, sideFilePath(operand, record.text(kKey)), record.keyPlace(kKey));
 }
 
 /// The operands as they are found, before they are joined.
@@ -63,6 +72,7 @@ class OperandReader {
 
   private:
     void take(const std::string& operand, Document document) {
+        rebaseTextures(document.records, operand);
         if (document.kind == DocumentKind::Layout) {
             if (layout_) throw UsageError("two layouts given, one is wanted: " + operand);
             layout_ = std::move(document);

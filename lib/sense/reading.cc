@@ -73,9 +73,8 @@ struct ReadingTaker::Data {
     // Receivers hear tags; alone they read nothing.
     void prepare(const Receiver& /*receiver*/, const ReadingJob& /*job*/) {}
     static Reading take(const Receiver& /*receiver*/, const ReadingJob& /*job*/) { return {}; }
-    // Cameras are measured, but take no pictures: sensorsOf() leaves them out.
     void prepare(const Camera& /*camera*/, const ReadingJob& /*job*/) {}
-    static Reading take(const Camera& /*camera*/, const ReadingJob& /*job*/) { return {}; }
+    Reading take(const Camera& camera, const ReadingJob& job);
 };
 
 void ReadingTaker::Data::prepare(const Laser& laser, const ReadingJob& job) {
@@ -109,6 +108,13 @@ Reading ReadingTaker::Data::take(const Ranger& /*ranger*/, const ReadingJob& job
 Reading ReadingTaker::Data::take(const Tag& /*tag*/, const ReadingJob& job) {
     return castBurst(worlds.mesh(Surfaces::Solid), bodies, sensors.read[job.sensor],
                      sensors.receivers, job.frame, job.time, {options.celsius, options.noise_seed});
+}
+
+Reading ReadingTaker::Data::take(const Camera& /*camera*/, const ReadingJob& job) {
+    const Pose3 pose = job.way.empty() ? job.pose : poseAlong(job.way, job.time);
+    Photo photo = options.photographer->take(sensors.read[job.sensor], pose, job.frame);
+    photo.time = job.time;
+    return photo;
 }
 
 ReadingTaker::ReadingTaker(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,

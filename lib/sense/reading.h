@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sense/depth.h"
+#include "sense/photo.h"
 #include "sense/scan.h"
 #include "sense/sensors.h"
 #include "sense/trajectory.h"
@@ -27,14 +28,16 @@ struct ReadingJob {
     std::vector<TimedPose> way;
 };
 
-/// The scans of a sweep (or a single one), a depth picture, or a burst.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst>;
+/// The scans of a sweep (or a single one), a depth picture, a burst, or a picture.
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo>;
 
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
     double celsius = 20;                           ///< of the air, for sound
     /// Sensors move from job to job, so their beams are turned as a whole; see Beams.
     bool follows_poses = false;
+    /// Takes the pictures of cameras; null if there are none. It outlives the taker.
+    const Photographer* photographer = nullptr;
 };
 
 /// Takes readings in any order on any thread; each depends only on its job.

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "raster/encode.h"
 #include "sense/reading_picture.h"
 #include "sense/reading_text.h"
 #include "sensor/kind.h"
@@ -50,12 +52,40 @@ class Base : public ReadingFormat {
         append(bytes, index, reading);
         return bytes;
     }
-    static bool hasRanges(const Sensor& one) { return !one.is<Tag>(); }
+    static bool hasRanges(const Sensor& one) { return one.is<Laser>() || one.is<Ranger>(); }
+    static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
+
+    /// What stands beside a picture.
+    void addBeside(std::vector<ReadingFile>& files, const Sensor& placed,
+                   const Photo& photo) const {
+        const Camera& camera = placed.as<Camera>();
+        if (options_.labels) {
+            files.push_back({kLabels, labelPng(camera, photo)});
+            files.push_back({kLabelTable, labelTable(*options_.scene, photo)});
+        }
+        if (options_.depths)
+            files.push_back({kDepth, depthPng(camera.columns, camera.rows, photo.depths,
+                                              options_.depth_per_metre)});
+        files.push_back({kCameraInfo, cameraInfoYaml(camera, placed.id)});
+    }
+    /// Adds the endings of these files to others that may have them, too.
+    void addEndingsBeside(std::vector<std::string>& endings) const {
+        if (options_.labels) {
+            endings.emplace_back(kLabels);
+            endings.emplace_back(kLabelTable);
+        }
+        if (options_.depths) endings.emplace_back(kDepth);
+        if (std::find(endings.begin(), endings.end(), kCameraInfo) == endings.end())
+            endings.emplace_back(kCameraInfo);
+    }
+    static constexpr const char* kCameraInfo = ".yaml";
 
     const Sensors& sensors_;
     const FormatOptions options_;
 
   private:
+    static constexpr const char *kLabels = "-labels.png", *kLabelTable = "-labels.csv",
+                                *kDepth = "-depth.png";
     std::string ending_;
 };
 
@@ -75,8 +105,9 @@ class Jsonl final : public Base {
 
 class Csv final : public Base {
   public:
-    Csv(const Sensors& sensors, FormatOptions options)
-        : Base(sensors, std::move(options), ".csv") {}
+    Csv(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".csv") {
+        accept("csv", "numbers", [](const Sensor& one) { return !isCamera(one); });
+    }
     [[nodiscard]] std::string header() const override { return csvHeader(sensors_.read.front()); }
     void checkStream() const override {
         for (const Sensor& one : sensors_.read)
@@ -91,7 +122,8 @@ class Csv final : public Base {
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         std::visit(
             [&](const auto& one) {
-                appendRows(out, sensor(index), one, options_.coordinates, sensors_.receivers);
+                if constexpr (!std::is_same_v<decltype(one), const Photo&>)
+                    appendRows(out, sensor(index), one, options_.coordinates, sensors_.receivers);
             },
             reading);
     }
@@ -203,11 +235,12 @@ class Carmen final : public Base {
     }
 };
 
-/// Depths and obstacle maps.
+/// Pictures, depths and obstacle maps.
 class Png final : public Base {
   public:
     Png(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".png") {
-        accept("png", "depths and obstacle maps", hasRanges);
+        accept("png", "pictures, depths and obstacle maps",
+               [](const Sensor& one) { return hasRanges(one) || isCamera(one); });
         for (const Sensor& one : sensors.read)
             if (one.is<Laser>() && one.as<Laser>().scans() > 1)
                 throw UsageError("an obstacle map shows one scan, and " + one.id +
@@ -216,14 +249,20 @@ class Png final : public Base {
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
             out += obstacleMapPng(sensor(index), scans->front(), options_.map_pixels);
+        } else if (const auto* photo = std::get_if<Photo>(&reading)) {
+            const Camera& camera = sensor(index).as<Camera>();
+            out += pngOfRgb(camera.columns, camera.rows, photo->rgb);
         } else {
-            out += depthPng(sensor(index).as<Ranger>(), std::get<DepthFrame>(reading),
+            const Ranger& ranger = sensor(index).as<Ranger>();
+            out += depthPng(ranger.columns, ranger.rows, std::get<DepthFrame>(reading).depths,
                             options_.depth_per_metre);
         }
     }
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
         std::vector<ReadingFile> files = Base::files(index, reading);
+        if (const auto* photo = std::get_if<Photo>(&reading))
+            addBeside(files, sensor(index), *photo);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const Sensor& placed = sensor(index);
             if (options_.color) files.push_back({kColor, colorDepthPng(placed, *frame)});
@@ -254,6 +293,8 @@ class Png final : public Base {
             if (options_.color) endings.emplace_back(kColor);
             endings.emplace_back(kCameraInfo);
         }
+        if (std::any_of(sensors_.read.begin(), sensors_.read.end(), isCamera))
+            addEndingsBeside(endings);
         return endings;
     }
     [[nodiscard]] bool isStream() const override { return false; }
@@ -261,7 +302,82 @@ class Png final : public Base {
 
   private:
     static constexpr double kMaxDepth = 65535;
-    static constexpr const char *kColor = "-color.png", *kCameraInfo = ".yaml";
+    static constexpr const char* kColor = "-color.png";
+};
+
+class Jpeg final : public Base {
+  public:
+    Jpeg(const Sensors& sensors, FormatOptions options)
+        : Base(sensors, std::move(options), ".jpg") {
+        accept("jpeg", "pictures of cameras", isCamera);
+    }
+    void append(std::string& out, std::size_t index, const Reading& reading) const override {
+        const Camera& camera = sensor(index).as<Camera>();
+        out += jpegOfRgb(camera.columns, camera.rows, std::get<Photo>(reading).rgb);
+    }
+    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
+                                                 const Reading& reading) const override {
+        std::vector<ReadingFile> files = Base::files(index, reading);
+        addBeside(files, sensor(index), std::get<Photo>(reading));
+        return files;
+    }
+    [[nodiscard]] std::vector<std::string> endings() const override {
+        std::vector<std::string> endings = Base::endings();
+        addEndingsBeside(endings);
+        return endings;
+    }
+    [[nodiscard]] bool isStream() const override { return false; }
+    [[nodiscard]] bool isBinary() const override { return true; }
+};
+
+/// The pictures of one camera, one behind another, for programs that make films.
+class Film : public Base {
+  public:
+    using Header = std::string (*)(const Camera& camera);
+    using Append = void (*)(std::string& out, const Photo& photo);
+    Film(const Sensors& sensors, FormatOptions options, std::string name, const std::string& ending,
+         Header header, Append append)
+        : Base(sensors, std::move(options), ending),
+          name_(std::move(name)),
+          header_(header),
+          append_(append) {
+        accept(name_, "pictures of cameras", isCamera);
+    }
+    void checkStream() const override {
+        if (sensors_.read.size() == 1) return;
+        throw UsageError(name_ + " is the film of one camera, and there are " +
+                         std::to_string(sensors_.read.size()) +
+                         ": choose one with --select, or name a folder (-o DIR/) for a file each");
+    }
+    [[nodiscard]] std::string header() const override { return header_(sensor(0).as<Camera>()); }
+    [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
+        std::string bytes = header_(sensor(index).as<Camera>());
+        append(bytes, index, reading);
+        return bytes;
+    }
+    void append(std::string& out, std::size_t /*index*/, const Reading& reading) const override {
+        append_(out, std::get<Photo>(reading));
+    }
+    [[nodiscard]] bool isBinary() const override { return true; }
+
+  private:
+    std::string name_;
+    Header header_;
+    Append append_;
+};
+
+class Rgb24 final : public Film {
+  public:
+    Rgb24(const Sensors& sensors, FormatOptions options)
+        : Film(
+              sensors, std::move(options), "rgb24", ".rgb",
+              [](const Camera&) { return std::string(); }, appendRgb24) {}
+};
+
+class Y4m final : public Film {
+  public:
+    Y4m(const Sensors& sensors, FormatOptions options)
+        : Film(sensors, std::move(options), "y4m", ".y4m", y4mHeader, appendY4mFrame) {}
 };
 
 using Maker = std::unique_ptr<ReadingFormat> (*)(const Sensors& sensors, FormatOptions options);
@@ -274,7 +390,8 @@ std::unique_ptr<ReadingFormat> make(const Sensors& sensors, FormatOptions option
 /// The table: a new format is a class above and a row here.
 constexpr std::pair<std::string_view, Maker> kFormats[] = {
     {"jsonl", make<Jsonl>}, {"csv", make<Csv>},       {"raw", make<Raw>}, {"pcd", make<Pcd>},
-    {"ply", make<Ply>},     {"carmen", make<Carmen>}, {"png", make<Png>}};
+    {"ply", make<Ply>},     {"carmen", make<Carmen>}, {"png", make<Png>}, {"jpeg", make<Jpeg>},
+    {"rgb24", make<Rgb24>}, {"y4m", make<Y4m>}};
 
 }  // namespace
 

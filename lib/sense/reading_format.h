@@ -51,6 +51,9 @@ struct FormatOptions {
     double depth_per_metre = 1000;                 ///< of png
     bool color = true;                             ///< of png: a picture for people, too
     int map_pixels = 800;                          ///< of png: side of an obstacle map
+    /// Of png and jpeg: pictures have these files beside them; the table of labels needs the scene.
+    bool labels = false, depths = false;
+    const Scene* scene = nullptr;
 };
 
 /// Names of the formats.

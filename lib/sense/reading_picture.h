@@ -31,10 +31,12 @@ std::string degrees(Angle angle);
 
 /// Depths as a 16-bit grey PNG in units of 1 / per_metre (1000: millimetres), rounded. 0 means no
 /// return, or a depth that does not fit 16 bits.
-std::string depthPng(const Ranger& ranger, const DepthFrame& frame, double per_metre);
+std::string depthPng(int columns, int rows, const std::vector<float>& depths, double per_metre);
 
-/// ROS camera_info as YAML: size and matrices, no distortion. Pixel centres are whole numbers, so
-/// cx = (columns - 1) / 2. \pre a pinhole
+/// ROS camera_info as YAML, which applyCalibration() reads: size, matrices and distortion. Pixel
+/// centres are whole numbers, so cx of a ranger is (columns - 1) / 2. A mirror has OpenCV's model
+/// `omnidir` with `xi`. \pre a ranger is a pinhole
 std::string cameraInfoYaml(const Ranger& ranger, std::string_view name);
+std::string cameraInfoYaml(const Camera& camera, std::string_view name);
 
 }  // namespace ispace

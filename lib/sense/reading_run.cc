@@ -158,11 +158,20 @@ namespace {
 /// Rays of one batch: enough to hide what a batch costs, few enough for the cache.
 constexpr std::size_t kBatchRays = 1 << 15;
 
-/// Jobs of a batch, by the sensor with the most rays.
-std::size_t jobsOf(const Sensors& sensors) {
+/// Rays of the sensor with the most.
+std::size_t mostRays(const Sensors& sensors) {
     std::size_t most = 1;
     for (const Sensor& sensor : sensors.read) most = std::max(most, raysOf(sensor.model));
-    return std::max<std::size_t>(1, kBatchRays / most);
+    return most;
+}
+
+/// Batches that are worked on at once: enough for all cores, and few where pictures are so large
+/// that memory would run out.
+std::size_t batchesOf(std::size_t most_rays) {
+    constexpr std::size_t kBytesOfRay = 64, kMaxBytes = std::size_t{2} << 30U;
+    const auto cores = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    return std::clamp<std::size_t>(kMaxBytes / (kBytesOfRay * most_rays), 1,
+                                   2 * std::max<std::size_t>(1, cores));
 }
 
 }  // namespace
@@ -171,7 +180,8 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write) {
     using Batch = std::shared_ptr<Readings>;
-    const std::size_t most = jobsOf(sensors);
+    const std::size_t most_rays = mostRays(sensors);
+    const std::size_t most = std::max<std::size_t>(1, kBatchRays / most_rays);
     // Batches come back: their memory is used again.
     tbb::concurrent_queue<Batch> spare;
     // What comes before a bad pose is written, for any number of threads.
@@ -217,10 +227,8 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         progress.advance(static_cast<std::int64_t>(batch->jobs.size()));
         spare.push(batch);
     };
-    const auto cores = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    const std::size_t tokens = 2 * std::max<std::size_t>(1, cores);
     tbb::parallel_pipeline(
-        tokens,
+        batchesOf(most_rays),
         tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order, read) &
             tbb::make_filter<Batch, Batch>(tbb::filter_mode::parallel, take) &
             tbb::make_filter<Batch, void>(tbb::filter_mode::serial_in_order, deliver_batch));

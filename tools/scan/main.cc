@@ -2,6 +2,7 @@
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -21,9 +22,6 @@ namespace {
 
 using namespace ispace;
 
-/// What a scene may hold and nobody reads.
-constexpr std::string_view kUnread[] = {"camera"};
-
 Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     Sensors sensors = sensorsOf(input.scene, options.select);
     if (!sensors.read.empty()) return sensors;
@@ -34,7 +32,7 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
     const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
     throw FormatError(
         {displayName(file), 0, 0,
-         "no placed laser, ranger or tag: give one `at=x,y`, or let arrange place it"});
+         "no placed laser, ranger, camera or tag: give one `at=x,y`, or let arrange place it"});
 }
 
 /// Counts the poses that are inside something solid.
@@ -84,7 +82,10 @@ FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input)
             .encoding = options.encoding,
             .depth_per_metre = options.depth_per_metre,
             .color = options.color,
-            .map_pixels = options.map_pixels};
+            .map_pixels = options.map_pixels,
+            .labels = options.photo.labels,
+            .depths = options.photo.depths,
+            .scene = &input.scene};
 }
 
 SceneRequest requestOf(const ScanToolOptions& options) {
@@ -96,7 +97,10 @@ SceneRequest requestOf(const ScanToolOptions& options) {
     if (options.poses == "-" && takes_stdin)
         throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
     // A receiver alone reads nothing.
-    return {options.operands, options.any_environment, wants_layout, {"laser", "ranger", "tag"}};
+    return {options.operands,
+            options.any_environment,
+            wants_layout,
+            {"laser", "ranger", "camera", "tag"}};
 }
 
 void scan(const ScanCommand& command) {
@@ -110,12 +114,9 @@ void scan(const ScanCommand& command) {
     warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
-    const auto is_selected = [&](std::size_t i) {
-        return isSelected(scene.ids[i], options.select);
-    };
-    if (!moves) warn(options.common, "scan", leftOut(scene, kUnread, "simulated", is_selected));
+    std::vector<std::string> files = filesOf(input);
     const Sensors sensors =
-        moves ? sensorForPoses(options, scene, devices) : placedSensors(options, input);
+        moves ? sensorForPoses(options, scene, devices, files) : placedSensors(options, input);
     if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     warn(options.common, "scan", format->warnings());
@@ -125,6 +126,10 @@ void scan(const ScanCommand& command) {
     const MovingBodies bodies(bodiesOf(scene));
     TakerOptions taking{.celsius = options.celsius, .follows_poses = moves};
     if (options.noise) taking.noise_seed = options.common.seed;
+    std::optional<Photographer> photographer;
+    if (std::any_of(sensors.read.begin(), sensors.read.end(),
+                    [](const Sensor& one) { return one.is<Camera>(); }))
+        taking.photographer = &photographer.emplace(scene, options.photo);
     ReadingTaker taker(sensors, worlds, bodies, taking);
     const auto source = sourceFor(options, sensors);
     const std::int64_t count = moves ? -1 : static_cast<const StillSource&>(*source).count();
@@ -142,8 +147,11 @@ void scan(const ScanCommand& command) {
     delivery->commit();
     progress->end();
     warn(options.common, "scan", buried.phrases());
-    std::vector<std::string> files = filesOf(input);
     if (moves) files.push_back(options.poses);
+    if (photographer) {
+        const std::vector<std::string> textures = textureFiles(scene);
+        files.insert(files.end(), textures.begin(), textures.end());
+    }
     writeDependencies(options.common, files);
     talk(options.common, "scan",
          std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");

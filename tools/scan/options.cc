@@ -2,6 +2,7 @@
 #include "scan/options.h"
 
 #include <cmath>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -25,19 +26,26 @@ double numberWithin(const std::string& text, double lowest, double highest) {
 ScanCommand::ScanCommand(int argc, const char* const* argv)
     : ToolCommand(
           "scan", "[ENV] [LAYOUT]",
-          "Simulate what placed sensors read: lasers, 3-D rangers, ultrasonic receivers. Without "
-          "LAYOUT read it from stdin unless ENV holds placed sensors.") {
+          "Simulate what placed sensors read: lasers, 3-D rangers, cameras, ultrasonic receivers. "
+          "Without LAYOUT read it from stdin unless ENV holds placed sensors.") {
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
     checkViewOptions(line_, o.view);
     o.format = o.view.views.empty()
-                   ? outputFormat(to_, o.common.output, readingFormats(), {{"log", "carmen"}})
+                   ? outputFormat(to_, o.common.output, readingFormats(),
+                                  {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}})
                    : outputFormat(to_, o.common.output, {"png"});
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
     o.coordinates = coordinates_ == "sensor" ? Coordinates::Sensor : Coordinates::World;
+    o.photo.light = light_ == "lamps" ? Illumination::Lamps
+                    : light_ == "sky" ? Illumination::Sky
+                                      : Illumination::Auto;
+    o.photo.sensor_bodies = sensor_bodies_.value_or(false);
+    o.photo.seed = o.common.seed;
+    o.photo.with_noise = o.noise;
     check();
 }
 
@@ -88,6 +96,7 @@ void ScanCommand::declare() {
         "--temperature", "C",
         [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
         "air temperature for ultrasound, Celsius (default 20)", Enters::History);
+    declarePictures();
     addViewOptions(line_, o.view);
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
@@ -95,6 +104,42 @@ void ScanCommand::declare() {
     addCommonOptions(line_, o.common,
                      "write the readings there: a file, a folder, or a pattern with %d (frame) and "
                      "%s (sensor) (default: stdout)");
+}
+
+void ScanCommand::declarePictures() {
+    PhotoOptions& photo = options_.photo;
+    constexpr int kMaxSamples = 4096;
+    line_.count("--samples", "N", photo.samples, 1, kMaxSamples,
+                "pictures: lines of sight for each pixel; more are smoother (default 4)",
+                Enters::History);
+    line_.choice("--light", light_, {"auto", "lamps", "sky"},
+                 "pictures of cameras: lamps under the ceiling, or sun and sky (default auto: "
+                 "lamps where there is a ceiling)",
+                 Enters::History);
+    constexpr double kMaxStops = 20;
+    line_.parsed(
+        "--exposure", "EV",
+        [&photo](const std::string& text) {
+            photo.exposure = std::exp2(numberWithin(text, -kMaxStops, kMaxStops));
+        },
+        "pictures of cameras: stops brighter, negative darker (default 0: a white wall in full "
+        "light is white)",
+        Enters::History);
+    line_.switchFlag("--sensor-bodies", "--no-sensor-bodies", sensor_bodies_,
+                     "pictures of cameras: the bodies of other sensors are seen",
+                     "pictures of cameras: sensors are not seen (default)", Enters::History);
+    line_.parsed(
+        "--layers", "labels,depth",
+        [&photo](const std::string& text) {
+            std::istringstream list(text);
+            for (std::string layer; std::getline(list, layer, ',');) {
+                if (layer != "labels" && layer != "depth")
+                    throw UsageError("`" + layer + "` is none of labels|depth");
+                (layer == "labels" ? photo.labels : photo.depths) = true;
+            }
+        },
+        "png and jpeg of cameras: also NAME-labels.png with NAME-labels.csv, NAME-depth.png",
+        Enters::History);
 }
 
 void ScanCommand::check() {
@@ -123,7 +168,8 @@ void ScanCommand::check() {
 
 void ScanCommand::checkViews() const {
     const ScanToolOptions& o = options_;
-    for (const char* name : {"--select", "--poses", "--model", "--motion", "--noise"})
+    for (const char* name : {"--select", "--poses", "--model", "--motion", "--noise", "--light",
+                             "--exposure", "--sensor-bodies", "--layers"})
         if (line_.given(name))
             throw UsageError(std::string(name) + " is about readings, and --view takes none");
     if (o.format != "png") throw UsageError("--view draws png, and --to says " + o.format);

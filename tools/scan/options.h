@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "scan/views.h"
+#include "sense/photo.h"
 #include "sense/point_cloud.h"
 
 namespace ispace {
@@ -30,6 +31,7 @@ struct ScanToolOptions {
     std::optional<PictureSize> picture_size;
     ViewToolOptions view;
     double celsius = 20;
+    PhotoOptions photo;
     bool list_models = false;
     bool any_environment = false;
 };
@@ -41,11 +43,12 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
 
   private:
     void declare();
+    void declarePictures();
     void check();
     void checkViews() const;
 
-    std::optional<bool> noise_, color_;
-    std::string to_, encoding_, coordinates_;
+    std::optional<bool> noise_, color_, sensor_bodies_;
+    std::string to_, encoding_, coordinates_, light_;
 };
 
 }  // namespace ispace

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/run_files.h"
 #include "cli/outputs.h"
+#include "io/calibration.h"
 #include "layout/schemas.h"
 #include "layout/sensor_spec.h"
 #include "sensor/kind.h"
@@ -18,11 +19,16 @@ namespace {
 /// Keywords of what may follow poses.
 std::vector<std::string_view> movable() { return keywordsOf(&SensorKind::follows_poses); }
 
-Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
+/// \param sources gets the calibration that it names
+Record recordOfModel(const std::string& model, const DeviceCatalogue& devices,
+                     std::vector<std::string>& sources) {
     const SensorSpec spec = readSensorSpec(model, movable(), sceneSchemas(), devices);
-    const Record& record = spec.record;
+    Document only;
+    only.records.push_back(spec.record);
+    const Record& record = only.records.front();
     // Bad parameters are errors of the command line.
     try {
+        loadCalibrations(only, "-");
         static_cast<void>(sensorModelOf(record, devices));
     } catch (const FormatError& error) {
         throw UsageError(error.diagnostics().front().message);
@@ -31,6 +37,7 @@ Record recordOfModel(const std::string& model, const DeviceCatalogue& devices) {
     for (const char* key : {"at", "heading", "tilt", "roll", "on"})
         if (record.has(key))
             throw UsageError(std::string("`") + key + "` is told by the poses; leave it out");
+    sources.insert(sources.end(), only.sources.begin(), only.sources.end());
     return record;
 }
 
@@ -41,21 +48,22 @@ std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs
                      " sensors could take them; say which with --model or --select");
 }
 
-/// The mount of a sensor that the scene has placed.
-std::optional<Mount> mountOf(const Scene& scene, const std::string& id) {
+/// The sensor with the id if the scene has placed it, or null.
+const Sensor* placedSensor(const Scene& scene, const std::string& id) {
     const auto found = std::find_if(scene.sensors.begin(), scene.sensors.end(),
                                     [&id](const Sensor& sensor) { return sensor.id == id; });
-    return found == scene.sensors.end() ? std::nullopt : found->mount;
+    return found == scene.sensors.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
-                       const DeviceCatalogue& devices) {
+                       const DeviceCatalogue& devices, std::vector<std::string>& sources) {
     std::optional<Record> of_model;
     std::string id;
     if (!options.model.empty()) {
-        of_model = ofOption("--model", [&] { return recordOfModel(options.model, devices); });
+        of_model =
+            ofOption("--model", [&] { return recordOfModel(options.model, devices, sources); });
         id = of_model->writtenId().empty() ? of_model->keyword() + "1" : of_model->writtenId();
     }
     const std::size_t only = of_model ? 0 : onlySensor(scene, options.select);
@@ -63,8 +71,11 @@ Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
     if (!of_model) id = scene.ids[only];
 
     Sensors sensors;
-    const auto mount = of_model ? std::nullopt : mountOf(scene, id);
-    sensors.read.push_back({id, sensorModelOf(record, devices), {}, mount});
+    sensors.read.push_back({id, sensorModelOf(record, devices), {}});
+    if (const Sensor* placed = of_model ? nullptr : placedSensor(scene, id)) {
+        sensors.read.front().mount = placed->mount;
+        sensors.read.front().person = placed->person;
+    }
     const Sensor& sensor = sensors.read.front();
     if (options.motion && sensor.is<Laser>() && sensor.as<Laser>().sweep != SweepAxis::None)
         throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");

@@ -11,11 +11,12 @@
 
 namespace ispace {
 
-/// The sensor that takes the poses: that of --model, or the only laser or ranger of the scene,
-/// placed or not. It does not see the robot that carries it there. \throws UsageError for a bad
-/// --model and where it is not clear which; FormatError as laserOf
+/// The sensor that takes the poses: that of --model, or the only laser, ranger or camera of the
+/// scene, placed or not. It does not see the robot or person that carries it there. \param sources
+/// what --model names is appended \throws UsageError for a bad --model and where it is not clear
+/// which; FormatError as laserOf
 Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
-                       const DeviceCatalogue& devices);
+                       const DeviceCatalogue& devices, std::vector<std::string>& sources);
 
 /// Where readings go: one stream, a set of files, or one cloud.
 class Delivery {

@@ -197,6 +197,7 @@ void takeViews(const ScanCommand& command) {
             run->apply(scene, time);
             drawing.ways = run->waysUntil(time);
         }
+        drawing.samples = options.photo.samples;
         drawing.viewers = viewersOf(views, scene);
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
