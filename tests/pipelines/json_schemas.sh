@@ -25,6 +25,7 @@ for layout in ultrasound ranger; do
     scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"
     coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null
 done
+coverage "$data/zones.env" "$data/domes.3dm" --density 500 --parallax 45 --json >cameras.json
 coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json >compared.json
 arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
     --trace tried.jsonl -o best.3dm
