@@ -35,7 +35,8 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     o.format = o.view.views.empty()
                    ? outputFormat(to_, o.common.output, readingFormats(),
                                   {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}})
-                   : outputFormat(to_, o.common.output, {"png"});
+                   : outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
+    if (!o.view.views.empty() && !line_.given("--samples")) o.photo.samples = ViewOptions().samples;
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
@@ -110,7 +111,8 @@ void ScanCommand::declarePictures() {
     PhotoOptions& photo = options_.photo;
     constexpr int kMaxSamples = 4096;
     line_.count("--samples", "N", photo.samples, 1, kMaxSamples,
-                "pictures: lines of sight for each pixel; more are smoother (default 4)",
+                "pictures: lines of sight for each pixel; more are smoother (default 4; of "
+                "views 16)",
                 Enters::History);
     line_.choice("--light", light_, {"auto", "lamps", "sky"},
                  "pictures of cameras: lamps under the ceiling, or sun and sky (default auto: "
@@ -172,7 +174,8 @@ void ScanCommand::checkViews() const {
                              "--exposure", "--sensor-bodies", "--layers"})
         if (line_.given(name))
             throw UsageError(std::string(name) + " is about readings, and --view takes none");
-    if (o.format != "png") throw UsageError("--view draws png, and --to says " + o.format);
+    if (o.format != "png" && o.format != "jpeg")
+        throw UsageError("--view draws png or jpeg, and --to says " + o.format);
     if (o.frames && o.view.run.empty())
         throw UsageError("--frames with --view are those of a run: give --run DIR");
 }

@@ -11,6 +11,8 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "raster/encode.h"
+#include "render/render.h"
 #include "scan/options.h"
 #include "view/contact_sheet.h"
 #include "view/run_record.h"
@@ -67,19 +69,21 @@ struct DrawView {
 class PictureFiles {
   public:
     PictureFiles(const ScanToolOptions& options, int frames)
-        : output_(options.common.output), set_(OutputSet::of(output_)) {
+        : output_(options.common.output),
+          set_(OutputSet::of(output_)),
+          is_jpeg_(options.format == "jpeg") {
         std::vector<std::string> names;
         for (const ViewSpec& view : options.view.views) names.push_back(view.name);
         if (set_) {
             if (options.common.dependencies.wanted)
                 throw UsageError("-MD writes a rule for one product, and a set is many files");
-            set_->prepare(names, frames > 1, {".png"});
+            set_->prepare(names, frames > 1, {ending()});
         } else if (frames > 1) {
             throw UsageError(std::to_string(frames) +
                              " frames make as many pictures: name a folder (-o DIR/) or a pattern "
                              "(-o '%s-%04d.png'), where %s is the view's name");
         } else {
-            refuseTerminal(output_, "png");
+            refuseTerminal(output_, options.format);
         }
     }
 
@@ -93,7 +97,7 @@ class PictureFiles {
         for (std::size_t i = 0; i < views.size(); ++i) {
             Image image = draw.draw(views[i], set_ ? sizes[i] : sheet.sizeOf(i));
             if (set_)
-                writeFile(set_->fileOf(views[i].name, frame, ".png"), image);
+                writeFile(set_->fileOf(views[i].name, frame, ending()), image);
             else
                 images.push_back(std::move(image));
             names.push_back(views[i].id.empty() ? views[i].name : views[i].id);
@@ -102,14 +106,26 @@ class PictureFiles {
     }
 
   private:
-    static void writeFile(const std::string& name, const Image& image) {
+    [[nodiscard]] std::string ending() const { return is_jpeg_ ? ".jpg" : ".png"; }
+
+    void writeFile(const std::string& name, const Image& image) const {
         OutputFile file(name);
-        file.write(encodePng(image));
+        file.write(is_jpeg_ ? jpegOf(image) : encodePng(image));
         file.commit();
+    }
+
+    static std::string jpegOf(const Image& image) {
+        std::vector<std::uint8_t> samples;
+        samples.reserve(3 * image.pixels.size());
+        for (const std::uint32_t pixel : image.pixels)
+            for (const unsigned shift : {16U, 8U, 0U})
+                samples.push_back(static_cast<std::uint8_t>(pixel >> shift));
+        return jpegOfRgb(image.width, image.height, samples);
     }
 
     std::string output_;
     std::optional<OutputSet> set_;
+    bool is_jpeg_;
 };
 
 }  // namespace
@@ -202,6 +218,8 @@ void takeViews(const ScanCommand& command) {
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
     progress->end();
+    const std::vector<std::string> textures = textureFiles(scene);
+    files.insert(files.end(), textures.begin(), textures.end());
     writeDependencies(options.common, files);
     talk(options.common, "scan",
          std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
