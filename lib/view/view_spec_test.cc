@@ -20,7 +20,7 @@ std::string errorOf(const std::string& text) {
 TEST(ViewSpec, ReadsWhatIsThere) {
     EXPECT_FALSE(parseView("bird").at);
     const ViewSpec bird = parseView("bird:1,-2,6.5");
-    EXPECT_EQ(bird.at, Point2(1, -2));
+    EXPECT_EQ(bird.at, (Point2{1, -2}));
     EXPECT_EQ(bird.width, 6.5);
     const ViewSpec eyes = parseView("first-person:0,1,-90,5");
     EXPECT_EQ(eyes.heading, Angle::degrees(-90));
