@@ -42,7 +42,7 @@ inline bool isNear(std::uint32_t pixel, Color color) {
     return true;
 }
 
-inline std::string mapOf(const std::string& lines, MapOptions options = {}) {
+inline std::string mapOf(const std::string& lines, const MapOptions& options = {}) {
     const Scene scene = sceneOf(lines);
     return drawCoverageMap(scene, coverageOf(scene), options);
 }
