@@ -51,10 +51,8 @@ TEST(Viewpoint, ProjectsWhatItsLinesOfSightMeet) {
             ASSERT_TRUE(line);
             const auto back = view->project(line->origin + 3 * line->direction);
             ASSERT_TRUE(back);
-            // Between pixel centres, bent lines of sight are interpolated.
-            const double limit = view == &curved ? 1e-3 : 1e-9;
-            EXPECT_NEAR(back->column, place.column, limit);
-            EXPECT_NEAR(back->row, place.row, limit);
+            EXPECT_NEAR(back->column, place.column, 1e-9);
+            EXPECT_NEAR(back->row, place.row, 1e-9);
         }
     const OrthographicView above({{1, 2, 10}, Angle::degrees(90), Angle::degrees(-90), {}}, 8, 80,
                                  60);

@@ -3,10 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 
 namespace ispace {
 
@@ -44,28 +42,13 @@ CameraView CameraView::at(const Pose3& pose) const {
 }
 
 std::optional<Vec3> CameraView::localRay(PixelPoint place) const {
-    const double left = std::floor(place.column), top = std::floor(place.row);
-    const double across = place.column - left, down = place.row - top;
-    // The next column and row matter only between pixel centres.
-    const double right = left + (across > 0 ? 1 : 0), bottom = top + (down > 0 ? 1 : 0);
-    if (rays_ != nullptr && left >= 0 && right < columns() && top >= 0 && bottom < rows()) {
-        const auto kept = [&](double column, double row) {
-            return (*rays_)[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
-                            static_cast<std::size_t>(column)];
-        };
-        const Vec3 corners[] = {kept(left, top), kept(right, top), kept(left, bottom),
-                                kept(right, bottom)};
-        const bool is_whole = std::none_of(std::begin(corners), std::end(corners),
-                                           [](Vec3 ray) { return ray == Vec3(); });
-        if (is_whole) {
-            const auto mix = [](Vec3 a, Vec3 b, double share) {
-                return Vec3{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-                            a.z + share * (b.z - a.z)};
-            };
-            return mix(mix(corners[0], corners[1], across), mix(corners[2], corners[3], across),
-                       down);
-        }
-        if (across == 0 && down == 0) return std::nullopt;
+    const double column = std::round(place.column), row = std::round(place.row);
+    const bool is_kept = rays_ != nullptr && column == place.column && row == place.row &&
+                         column >= 0 && column < columns() && row >= 0 && row < rows();
+    if (is_kept) {
+        const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns());
+        const Vec3 ray = (*rays_)[i + static_cast<std::size_t>(column)];
+        return ray == Vec3() ? std::nullopt : std::optional(ray);
     }
     const auto ray = camera_.ray(place);
     return ray ? std::optional(byDepth(camera_, *ray)) : std::nullopt;

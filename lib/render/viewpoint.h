@@ -76,7 +76,7 @@ class CameraView : public Viewpoint {
     Camera camera_;
     Frame3 world_from_camera_;
     /// Rays of the pixel centres, row by row, in the camera's frame; null vectors where it has
-    /// none. Those between them are interpolated. Null for straight cameras.
+    /// none. Null for straight cameras.
     std::shared_ptr<const std::vector<Vec3>> rays_;
 };
 
