@@ -12,6 +12,7 @@
 #include <span>
 
 #include "base/random.h"
+#include "render/bands.h"
 
 namespace ispace {
 
@@ -46,7 +47,8 @@ Photo Photographer::take(const Sensor& sensor, const Pose3& pose, int frame) con
     how.labels = options.labels;
     how.depths = options.depths;
     how.hidden = ownRecords(data_->scene, sensor);
-    Rendering picture = render(data_->surfaces, data_->view(sensor, pose), how);
+    constexpr int kBandPixels = 4'000'000;
+    Rendering picture = renderInBands(data_->surfaces, data_->view(sensor, pose), how, kBandPixels);
     if (options.with_noise)
         addExposureNoise(sensor.as<Camera>(), options.exposure, options.seed, sensor.id, frame,
                          picture.radiance);

@@ -3,12 +3,15 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/base64.h"
 #include "base/json_writer.h"
 #include "raster/encode.h"
 #include "sense/float_text.h"
 #include "sense/photo.h"
+#include "sense/reading_format.h"
+#include "sense/reading_picture.h"
 #include "sense/reading_text.h"
 
 namespace ispace {
@@ -77,6 +80,36 @@ void appendY4mFrame(std::string& out, const Photo& photo) {
             to[i] = static_cast<char>(static_cast<std::uint8_t>(sum >> kShift));
         }
     }
+}
+
+namespace {
+
+constexpr const char *kLabels = "-labels.png", *kLabelTable = "-labels.csv", *kDepth = "-depth.png",
+                     *kCameraInfo = ".yaml";
+
+}  // namespace
+
+void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOptions& options,
+                    std::vector<ReadingFile>& files) {
+    const Camera& camera = sensor.as<Camera>();
+    if (options.labels) {
+        files.push_back({kLabels, labelPng(camera, photo)});
+        files.push_back({kLabelTable, labelTable(*options.scene, photo)});
+    }
+    if (options.depths)
+        files.push_back(
+            {kDepth, depthPng(camera.columns, camera.rows, photo.depths, options.depth_per_metre)});
+    files.push_back({kCameraInfo, cameraInfoYaml(camera, sensor.id)});
+}
+
+void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& endings) {
+    std::vector<std::string> beside;
+    if (options.labels) beside = {kLabels, kLabelTable};
+    if (options.depths) beside.emplace_back(kDepth);
+    beside.emplace_back(kCameraInfo);
+    for (std::string& ending : beside)
+        if (std::find(endings.begin(), endings.end(), ending) == endings.end())
+            endings.push_back(std::move(ending));
 }
 
 void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,

@@ -55,37 +55,12 @@ class Base : public ReadingFormat {
     static bool hasRanges(const Sensor& one) { return one.is<Laser>() || one.is<Ranger>(); }
     static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
 
-    /// What stands beside a picture.
-    void addBeside(std::vector<ReadingFile>& files, const Sensor& placed,
-                   const Photo& photo) const {
-        const Camera& camera = placed.as<Camera>();
-        if (options_.labels) {
-            files.push_back({kLabels, labelPng(camera, photo)});
-            files.push_back({kLabelTable, labelTable(*options_.scene, photo)});
-        }
-        if (options_.depths)
-            files.push_back({kDepth, depthPng(camera.columns, camera.rows, photo.depths,
-                                              options_.depth_per_metre)});
-        files.push_back({kCameraInfo, cameraInfoYaml(camera, placed.id)});
-    }
-    /// Adds the endings of these files to others that may have them, too.
-    void addEndingsBeside(std::vector<std::string>& endings) const {
-        if (options_.labels) {
-            endings.emplace_back(kLabels);
-            endings.emplace_back(kLabelTable);
-        }
-        if (options_.depths) endings.emplace_back(kDepth);
-        if (std::find(endings.begin(), endings.end(), kCameraInfo) == endings.end())
-            endings.emplace_back(kCameraInfo);
-    }
     static constexpr const char* kCameraInfo = ".yaml";
 
     const Sensors& sensors_;
     const FormatOptions options_;
 
   private:
-    static constexpr const char *kLabels = "-labels.png", *kLabelTable = "-labels.csv",
-                                *kDepth = "-depth.png";
     std::string ending_;
 };
 
@@ -262,7 +237,7 @@ class Png final : public Base {
                                                  const Reading& reading) const override {
         std::vector<ReadingFile> files = Base::files(index, reading);
         if (const auto* photo = std::get_if<Photo>(&reading))
-            addBeside(files, sensor(index), *photo);
+            addFilesBeside(sensor(index), *photo, options_, files);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const Sensor& placed = sensor(index);
             if (options_.color) files.push_back({kColor, colorDepthPng(placed, *frame)});
@@ -294,7 +269,7 @@ class Png final : public Base {
             endings.emplace_back(kCameraInfo);
         }
         if (std::any_of(sensors_.read.begin(), sensors_.read.end(), isCamera))
-            addEndingsBeside(endings);
+            addEndingsBeside(options_, endings);
         return endings;
     }
     [[nodiscard]] bool isStream() const override { return false; }
@@ -318,12 +293,12 @@ class Jpeg final : public Base {
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
         std::vector<ReadingFile> files = Base::files(index, reading);
-        addBeside(files, sensor(index), std::get<Photo>(reading));
+        addFilesBeside(sensor(index), std::get<Photo>(reading), options_, files);
         return files;
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
         std::vector<std::string> endings = Base::endings();
-        addEndingsBeside(endings);
+        addEndingsBeside(options_, endings);
         return endings;
     }
     [[nodiscard]] bool isStream() const override { return false; }

@@ -64,6 +64,12 @@ std::vector<std::string> readingFormats();
 std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
                                           FormatOptions options);
 
+/// Adds what stands beside the picture of a camera (labels and their table, depths, camera_info),
+/// and the endings of these files where they are not there yet.
+void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOptions& options,
+                    std::vector<ReadingFile>& files);
+void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& endings);
+
 /// The points of a reading; empty for a burst.
 PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
                    Coordinates in);

@@ -167,11 +167,15 @@ std::size_t mostRays(const Sensors& sensors) {
 
 /// Batches that are worked on at once: enough for all cores, and few where pictures are so large
 /// that memory would run out.
-std::size_t batchesOf(std::size_t most_rays) {
-    constexpr std::size_t kBytesOfRay = 64, kMaxBytes = std::size_t{2} << 30U;
+std::size_t batchesOf(const Sensors& sensors) {
+    constexpr std::size_t kMaxBytes = std::size_t{2} << 30U;
+    std::size_t bytes = 1;
+    for (const Sensor& sensor : sensors.read) {
+        const std::size_t of_ray = sensor.is<Camera>() ? 200 : 64;
+        bytes = std::max(bytes, of_ray * raysOf(sensor.model));
+    }
     const auto cores = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    return std::clamp<std::size_t>(kMaxBytes / (kBytesOfRay * most_rays), 1,
-                                   2 * std::max<std::size_t>(1, cores));
+    return std::clamp<std::size_t>(kMaxBytes / bytes, 1, 2 * std::max<std::size_t>(1, cores));
 }
 
 }  // namespace
@@ -180,8 +184,7 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write) {
     using Batch = std::shared_ptr<Readings>;
-    const std::size_t most_rays = mostRays(sensors);
-    const std::size_t most = std::max<std::size_t>(1, kBatchRays / most_rays);
+    const std::size_t most = std::max<std::size_t>(1, kBatchRays / mostRays(sensors));
     // Batches come back: their memory is used again.
     tbb::concurrent_queue<Batch> spare;
     // What comes before a bad pose is written, for any number of threads.
@@ -228,7 +231,7 @@ void runReadings(ReadingSource& source, ReadingTaker& taker, const Sensors& sens
         spare.push(batch);
     };
     tbb::parallel_pipeline(
-        batchesOf(most_rays),
+        batchesOf(sensors),
         tbb::make_filter<void, Batch>(tbb::filter_mode::serial_in_order, read) &
             tbb::make_filter<Batch, Batch>(tbb::filter_mode::parallel, take) &
             tbb::make_filter<Batch, void>(tbb::filter_mode::serial_in_order, deliver_batch));

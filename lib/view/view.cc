@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "base/message.h"
+#include "render/bands.h"
 #include "render/render.h"
 #include "sense/warnings.h"
-#include "view/bands.h"
 #include "view/sight_marks.h"
 #include "view/wall_tops.h"
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "layout/test_layout.h"
-#include "view/bands.h"
+#include "render/bands.h"
 #include "view/contact_sheet.h"
 #include "view/run_record.h"
 

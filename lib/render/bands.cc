@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "view/bands.h"
+#include "render/bands.h"
 
 #include <algorithm>
 
