@@ -159,6 +159,10 @@ std::optional<std::vector<Curve>> ShadowCaster::regionSeen(const Sensor& sensor,
                                                            double height) const {
     const auto view = fieldOfView(sensor);
     if (!view) return data_->regionScanned(sensor);
+    // Such a lens ends somewhere in the picture, and on no circle.
+    if (const Camera* camera = std::get_if<Camera>(&sensor.model);
+        camera != nullptr && camera->isLopsided() && !camera->fillsPicture())
+        return std::nullopt;
     const bool is_light = kindOf(sensor.model).stopped_by == Surfaces::Opaque;
     return regionInView(is_light ? data_->opaque() : data_->solid(), *view, height);
 }

@@ -17,7 +17,8 @@ namespace ispace {
 /// not; a receiver hears there a tag that emits all around.
 ///
 /// A laser that scans in one tilted plane covers the floor over or under which that plane passes in
-/// sight, above the floor (`height` does not count). Of swept lasers no closed form is known.
+/// sight, above the floor (`height` does not count). Of swept lasers no closed form is known, nor
+/// of cameras whose tangential distortion ends their field of view within the picture.
 ///
 /// Needs the environment no longer once it is made; copies share what they hold. Thread-safe.
 class ShadowCaster {

@@ -100,7 +100,8 @@ class CalibrationReader {
             fail(node, '`' + std::string(what) + "`: " + std::to_string(data.size()) +
                            " numbers, wanted at most " + std::to_string(kMaxCoefficients));
         std::vector<double> values;
-        for (const YAML::Node& one : data) values.push_back(numberOf(one, what, -kLargest, kLargest));
+        for (const YAML::Node& one : data)
+            values.push_back(numberOf(one, what, -kLargest, kLargest));
         return values;
     }
 

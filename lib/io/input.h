@@ -54,9 +54,9 @@ struct ImportOptions {
 /// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`,
 /// YAML, ROS map YAML, pictures, HouseExpo JSON, ARIA and MovingAI maps, ASCII DXF, SVG, IFC, and
 /// meshes, also GLB without our records, which become a `mesh` record. What content does not tell
-/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records name
-/// unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or
-/// no format we know, with a hint), std::system_error
+/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records
+/// name unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or no
+/// format we know, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 

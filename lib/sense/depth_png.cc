@@ -62,7 +62,9 @@ struct CameraInfo {
 std::string yamlOf(const CameraInfo& info, std::string_view name) {
     const double fx = nineDecimals(info.fx), fy = nineDecimals(info.fy);
     const double cx = nineDecimals(info.cx), cy = nineDecimals(info.cy);
+    // ROS does without the first two lines; OpenCV's FileStorage does not.
     std::string out =
+        "%YAML 1.0\n---\n"
         "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n";
     out.append("image_width: ").append(std::to_string(info.columns));
     out.append("\nimage_height: ").append(std::to_string(info.rows));

@@ -71,6 +71,7 @@ TEST(CameraInfo, Yaml) {
     ranger.fov_x = Angle::degrees(90);
     ranger.fov_y = Angle::degrees(90);
     EXPECT_EQ(cameraInfoYaml(ranger, "r\"1"),
+              "%YAML 1.0\n---\n"
               "# Pixel centres are whole numbers: the middle of the picture is (columns - 1) / 2.\n"
               "image_width: 640\nimage_height: 480\ncamera_name: \"r\\\"1\"\n"
               "camera_matrix:\n  rows: 3\n  cols: 3\n"

@@ -54,6 +54,12 @@ struct Camera {
     static constexpr double kFarthestSeen = 100;
 
     Camera();
+    /// Puts the optical centre in the middle of the picture.
+    void center();
+    /// Focal length in pixels by which `side` pixels span the angle.
+    [[nodiscard]] double focalFor(double side, Angle fov) const;
+    /// The angle off the axis beyond which the picture of a ray moves back towards the centre.
+    [[nodiscard]] Angle turningAngle() const;
 
     [[nodiscard]] std::size_t pixels() const {
         return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -81,6 +87,12 @@ struct Camera {
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] std::size_t rays() const { return pixels(); }
+    /// True if every place on the border of the picture has a ray.
+    [[nodiscard]] bool fillsPicture() const;
+    /// True if distortion differs about the axis (p1, p2).
+    [[nodiscard]] bool isLopsided() const {
+        return lens == Lens::Pinhole && (distortion[2] != 0 || distortion[3] != 0);
+    }
     /// True if its whole circle is in the picture and it faces straight up or down.
     [[nodiscard]] bool looksAround(const Pose3& mount) const;
     friend bool operator==(const Camera&, const Camera&) = default;
@@ -93,8 +105,8 @@ std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int ro
 
 /// Parameters of a `camera` record: its explicit keys, else its model's, else the bare camera's.
 /// The focal length follows from `fov` (square pixels without its second number), from `focal` and
-/// `sensor`, or from `fx` (fy is the same without its own); `pixels` alone keeps the fields of
-/// view. \throws FormatError with all findings
+/// `sensor`, or from `fx` (fy is the same without its own); `pixels` alone keeps the field of view
+/// across and square pixels, or the whole circle. \throws FormatError with all findings
 Camera cameraOf(const Record& record, const Record* device = nullptr);
 Camera withParameters(Camera base, const Record& record);
 

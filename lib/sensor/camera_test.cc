@@ -94,6 +94,26 @@ TEST(Camera, MirrorsGoThereAndBack) {
     EXPECT_FALSE(around.looksAround({}));
 }
 
+TEST(Camera, OfAnyMirrorGoesThereAndBackUpToItsEnd) {
+    for (int i = 1; i <= 20; ++i)
+        for (const double focal : {50.0, 152.8, 400.0}) {
+            const std::string keys = "projection=omni mirror=" + std::to_string(i * 0.05) +
+                                     " fx=" + std::to_string(focal) + " cx=352.1 cy=241.5";
+            const Camera camera = cameraFrom(keys);
+            for (const double angle : {0.0, 0.3, 1.0, 1.5, 1.7, 1.9, 2.4, 3.0})
+                for (const double around : {0.0, 1.0, 2.5, 4.0}) {
+                    const Vec3 way{std::cos(angle), std::sin(angle) * std::cos(around),
+                                   std::sin(angle) * std::sin(around)};
+                    const auto place = camera.project(way);
+                    EXPECT_EQ(place.has_value(), angle <= camera.widest.radians()) << keys;
+                    if (!place) continue;
+                    const auto back = camera.ray(*place);
+                    ASSERT_TRUE(back) << keys << ' ' << angle;
+                    EXPECT_NEAR(dot(*back, way), 1, 1e-13) << keys << ' ' << angle;
+                }
+        }
+}
+
 TEST(Camera, OfTheUnifiedModelIsThatOfMei) {
     const Camera camera = cameraFrom("projection=omni mirror=0.7 fov=180 pixels=600,600");
     // On the sphere, then from the point `mirror` behind its centre.
@@ -112,7 +132,12 @@ TEST(Camera, TakesItsFocalLengthFromWhatThereIs) {
     EXPECT_NEAR(cameraFrom("fov=90,60").fovY().degrees(), 60, 1e-9);
     const Camera sheet = cameraFrom("pixels=1920,1080 focal=2.8mm sensor=5.37,3.02mm");
     EXPECT_NEAR(sheet.fx, 2.8 / 5.37 * 1920, 1e-9);
-    EXPECT_NEAR(sheet.fy, 2.8 / 3.02 * 1080, 1e-9);
+    EXPECT_EQ(sheet.fy, sheet.fx) << "pixels are square";
+    EXPECT_DOUBLE_EQ(cameraFrom("focal=2.8mm sensor=5.37,3.02mm").fy, 2.8 / 5.37 * 640);
+    const Camera wide = cameraFrom("pixels=1920,1080");
+    EXPECT_NEAR(wide.fovX().degrees(), 45, 1e-9);
+    EXPECT_EQ(wide.fy, wide.fx);
+    EXPECT_EQ(wide.cy, 539.5);
     // 18 mm an inch: 6.43 mm across.
     const Camera format = cameraFrom("pixels=1920,1080 focal=2.8mm sensor=1/2.8\"");
     EXPECT_NEAR(format.fx, 2.8 / (18 / 2.8 * 1920 / std::hypot(1920, 1080)) * 1920, 1e-9);
@@ -152,14 +177,28 @@ TEST(Camera, SaysWhatIsWrong) {
     EXPECT_NE(findingsOf("sensor=1/3\"").find("add `focal`"), std::string::npos);
     EXPECT_NE(findingsOf("focal=3mm sensor=big").find("wanted a format"), std::string::npos);
     EXPECT_NE(findingsOf("focal=3mm sensor=1/0\"").find("wanted a format"), std::string::npos);
+    EXPECT_NE(findingsOf("focal=2.8 sensor=1/3\""), "") << "metres";
+    EXPECT_NE(findingsOf("focal=3mm sensor=5.37,3.02").find("wanted a format"), std::string::npos);
     EXPECT_NE(findingsOf("pixels=0,480"), "");
     EXPECT_NE(findingsOf("pixels=16384,16384").find("at most"), std::string::npos);
     EXPECT_NE(findingsOf("fov=60 fx=500").find("twice"), std::string::npos);
     EXPECT_NE(findingsOf("mirror=1").find("projection=omni"), std::string::npos);
     EXPECT_NE(findingsOf("projection=pinhole distortion=fisheye"), "");
     EXPECT_NE(findingsOf("projection=fisheye distortion=plumb_bob"), "");
+    for (const char* keys :
+         {"fx=1e-19", "fx=500 fy=1e-300", "fov=1e-300", "focal=1e-300 sensor=1/3\""})
+        EXPECT_NE(findingsOf(keys).find("pixels, wanted 0.00001 to"), std::string::npos) << keys;
     // r - r^3 is greatest at 30 degrees.
-    EXPECT_NE(findingsOf("coefficients=-1 fov=80").find("this lens ends at 60"), std::string::npos);
+    EXPECT_NE(
+        findingsOf("coefficients=-1 fov=80").find("this lens sees at most 60 degrees, not 80"),
+        std::string::npos);
+}
+
+TEST(Camera, OfAFullCircleSeesHalfOfAllDirections) {
+    const Camera camera = cameraFrom("projection=omni pixels=600,400");
+    EXPECT_NEAR(camera.widest.degrees(), 90, 1e-9);
+    EXPECT_TRUE(camera.looksAround({{}, {}, Angle::degrees(-90), {}}));
+    EXPECT_NEAR(cameraFrom("projection=omni mirror=1").widest.degrees(), 90, 1e-9);
 }
 
 TEST(Camera, OfAStrongLensHasNoRayBeyondItsTurningPoint) {

@@ -43,8 +43,8 @@ struct EmbreeQuery {
     }
     void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, &arguments); }
     void makeIncoherent() {
-        arguments.flags = static_cast<RTCRayQueryFlags>(arguments.flags &
-                                                        ~RTC_RAY_QUERY_FLAG_COHERENT);
+        arguments.flags =
+            static_cast<RTCRayQueryFlags>(arguments.flags & ~RTC_RAY_QUERY_FLAG_COHERENT);
     }
 };
 #else

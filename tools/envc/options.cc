@@ -23,8 +23,7 @@ std::vector<std::string> formatNames(bool of_slices) {
 double heightFrom(const std::string& text) {
     constexpr double kMax = 1000;
     return std::get<double>(parseValue(
-        {.name = "height", .unit = Unit::Length, .help = "", .lower = -kMax, .upper = kMax},
-        text));
+        {.name = "height", .unit = Unit::Length, .help = "", .lower = -kMax, .upper = kMax}, text));
 }
 
 void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {

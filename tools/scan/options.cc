@@ -111,8 +111,8 @@ void ScanCommand::declarePictures() {
     PhotoOptions& photo = options_.photo;
     constexpr int kMaxSamples = 4096;
     line_.count("--samples", "N", photo.samples, 1, kMaxSamples,
-                "pictures: lines of sight for each pixel; more are smoother (default 4; of "
-                "views 16)",
+                "pictures: lines of sight for each pixel; more are smoother; views have 16 "
+                "by default",
                 Enters::History);
     line_.choice("--light", light_, {"auto", "lamps", "sky"},
                  "pictures of cameras: lamps under the ceiling, or sun and sky (default auto: "
@@ -154,6 +154,9 @@ void ScanCommand::check() {
             throw UsageError("--size: an obstacle map is a square of " + std::to_string(kLeast) +
                              " to " + std::to_string(kMost) + " pixels a side");
     }
+    if (line_.given("--layers") && o.format != "png" && o.format != "jpeg")
+        throw UsageError("--layers are files beside pictures in png or jpeg, and --to says " +
+                         o.format);
     if (o.list_models && !o.operands.empty())
         throw UsageError("--list-models reads no operands, and there is " + o.operands.front());
     if (o.poses.empty()) {
