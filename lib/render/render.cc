@@ -214,7 +214,7 @@ class TileWorker {
         const int high = std::min(kTile, job_.out.rows - row);
         for (int k = 0; k < high; ++k) {
             const std::size_t pixel = job_.pixel(column, row + k);
-            const auto first = static_cast<std::size_t>(k * kTile);
+            const auto first = static_cast<std::size_t>(k) * kTile;
             if (!job_.out.depths.empty())
                 std::copy_n(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
             if (job_.out.labels.empty()) continue;
@@ -243,7 +243,7 @@ class TileWorker {
                                 .sensor = 0,
                                 .frame = static_cast<std::uint64_t>(row + k)};
             const auto first = static_cast<std::uint32_t>(each * static_cast<std::size_t>(column));
-            const std::size_t begin = each * static_cast<std::size_t>(k * kTile);
+            const std::size_t begin = each * static_cast<std::size_t>(k) * kTile;
             draw(key, first,
                  {.normal = {},
                   .other = {},

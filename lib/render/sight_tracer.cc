@@ -159,6 +159,7 @@ std::vector<PixelPoint> placesInPixel(int count) {
     }
     std::sort(order.begin(), order.end());
     std::vector<PixelPoint> places;
+    places.reserve(order.size());
     for (int rank = 0; rank < count; ++rank)
         places.push_back({(order[static_cast<std::size_t>(rank)].second + 0.5) / count - 0.5,
                           (rank + 0.5) / count - 0.5});

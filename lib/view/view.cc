@@ -18,7 +18,8 @@ namespace ispace {
 namespace {
 
 const Color kViewerColor = Color::rgb(0xE3120B);
-const Color kHighlight = Color::rgb(0xFF7A00);
+/// Of no material, and of no sensor.
+const Color kHighlight = Color::rgb(0xE6007E);
 
 /// How many times as wide, and as high, a picture is rendered: what is decided for each pixel as a
 /// whole (colours on the floor, outlines) has smooth edges, too.
@@ -271,6 +272,20 @@ class ViewDrawer {
         page.circle(at, 0.3 * em(), {kViewerColor, Stroke{palette::kWhite, 0.1 * em()}});
     }
 
+    [[nodiscard]] bool isHighlighted(const std::string& id) const {
+        return std::any_of(highlighted_.begin(), highlighted_.end(),
+                           [&](std::size_t record) { return scene_.ids[record] == id; });
+    }
+
+    /// Small things are hardly seen in their colour alone: one of these has a ring, and its id.
+    void addId(Picture& page, Point2 at, const std::string& id, Color color) {
+        if (isHighlighted(id)) {
+            page.circle(at, 0.7 * em(), {Stroke{kHighlight, 0.2 * em()}});
+            color = kHighlight;
+        }
+        addLabel(page, at, id, color);
+    }
+
     void addLabels(Picture& page) {
         const auto is_hidden = [&](const std::string& id) {
             return std::any_of(standpoint_.hidden.begin(), standpoint_.hidden.end(),
@@ -279,14 +294,14 @@ class ViewDrawer {
         for (const PlacedRobot& robot : scene_.robots) {
             const Point2 p = robot.pose.position;
             const auto at = signPlace({p.x, p.y, robot.model.height});
-            if (at && !is_hidden(robot.id)) addLabel(page, *at, robot.id, palette::kRobot);
+            if (at && !is_hidden(robot.id)) addId(page, *at, robot.id, palette::kRobot);
         }
         for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
             const Sensor& sensor = scene_.sensors[i];
             const auto at = signPlace(sensor.pose.position);
             if (!at || is_hidden(sensor.id)) continue;
             if (sensor.is<Camera>()) addDot(page, *at);
-            addLabel(page, *at, sensor.id, mixed(sensorColor(i), palette::kInk, 0.25));
+            addId(page, *at, sensor.id, mixed(sensorColor(i), palette::kInk, 0.25));
         }
         if (!standpoint_.is_to_scale) return;
         for (const Point3& viewer : options_.viewers)

@@ -83,7 +83,7 @@ TEST(View, WallsInBetweenAreLeftOut) {
     ViewOptions options;
     options.highlight = {"crate"};
     const Image picture = viewPicture(scene, parseView("orbit:0,5"), kSmall, options);
-    constexpr std::uint32_t kOutline = 0xFF7A00;
+    constexpr std::uint32_t kOutline = 0xE6007E;
     EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), kOutline), 20);
 }
 
