@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -57,15 +58,6 @@ Covering coveringOf(const std::vector<Plate>& plates, std::uint32_t label, Vec3 
     return covering;
 }
 
-/// A mesh that just holds a round prism.
-Mesh meshAround(Prism round) {
-    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
-    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
-    Body body;
-    body.prisms.push_back(std::move(round));
-    return std::move(meshesOf(body, Surfaces::Solid).front());
-}
-
 /// Tells which sides of boxes lie in sheets: the ends of thick walls in thin ones, cupboards at
 /// walls. A ray would meet either of both.
 class SheetSides {
@@ -119,7 +111,8 @@ class StillBuilder {
     StillBuilder(const Scene& scene, const RenderSceneOptions& options)
         : scene_(scene), options_(options), sheets_(scene.environment, options) {
         still_.device = makeEmbreeDevice();
-        still_.packet_width = nativeWidthOf(still_.device);
+        if (!still_.device) throw std::runtime_error("Embree cannot be started");
+        still_.packet_width = nativeWidthOf(still_.device.get());
         still_.paints = paintsOfMaterials();
         const Box2 plan = scene.environment.limits();
         if (!plan.empty()) {

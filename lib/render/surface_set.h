@@ -3,15 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "env/mesh.h"
 #include "render/render.h"
+#include "trace/embree_device.h"
 #include "trace/triangle_set.h"
-
-struct RTCDeviceTy;
-struct RTCSceneTy;
 
 namespace ispace {
 
@@ -32,16 +29,6 @@ struct FinishedSoup {
     void add(const Mesh& mesh, Finish finish, Vec3 shift);
 };
 
-struct EmbreeRelease {
-    void operator()(RTCDeviceTy* device) const;
-    void operator()(RTCSceneTy* scene) const;
-};
-using EmbreeDevice = std::unique_ptr<RTCDeviceTy, EmbreeRelease>;
-/// Nothing but the program decides how Embree works. \throws std::runtime_error if it fails
-EmbreeDevice makeEmbreeDevice();
-/// Rays that the processor traces together.
-std::size_t nativeWidthOf(const EmbreeDevice& device);
-
 /// Triangles ready to be traced. Hits of it have this geometry id.
 class SurfaceSet {
   public:
@@ -56,7 +43,7 @@ class SurfaceSet {
   private:
     TriangleSet triangles_;
     std::vector<Finish> finishes_;  // of the set's triangles
-    std::unique_ptr<RTCSceneTy, EmbreeRelease> scene_;
+    EmbreeTriangles scene_;
 };
 
 }  // namespace ispace

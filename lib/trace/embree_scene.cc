@@ -55,15 +55,6 @@ class EmbreeErrors {
     std::array<char, 200> text_{};
 };
 
-std::size_t nativeWidth(RTCDevice device) {
-    const auto has = [device](RTCDeviceProperty property) {
-        return rtcGetDeviceProperty(device, property) != 0;
-    };
-    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
-    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return 8;
-    return 4;
-}
-
 /// The shortest that a ray of the plane through a picture is, at most.
 double shortestRay(const RayGrid& grid) {
     const Vec3 normal = cross(grid.right, grid.down);
@@ -204,39 +195,13 @@ struct EmbreeScene::Caster {
     }
 };
 
-void EmbreeScene::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
-void EmbreeScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
-
 EmbreeScene::EmbreeScene(const TriangleSoup& soup, double ray_epsilon, int packet_width)
     : set_(soup), ray_epsilon_(ray_epsilon) {
-    // Nothing but this line decides how Embree works: no file in the user's home does.
-    device_.reset(rtcNewDevice("ignore_config_files=1"));
+    device_ = makeEmbreeDevice();
     const EmbreeErrors errors(device_.get());
-    scene_.reset(rtcNewScene(device_.get()));
-    errors.throwIfAny();
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
-    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-    if (set_.size() > 0) {
-        using Corner = std::array<float, 3>;
-        const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        errors.throwIfAny();
-        rtcAttachGeometry(scene_.get(), geometry);
-        rtcReleaseGeometry(geometry);  // the scene holds it
-        auto* const corners = static_cast<std::array<Corner, 3>*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(Corner), 3 * set_.size()));
-        auto* const indices = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), set_.size()));
-        errors.throwIfAny();
-        for (std::size_t i = 0; i < set_.size(); ++i) corners[i] = set_.enlarged(i);
-        for (std::size_t i = 0; i < 3 * set_.size(); ++i)
-            indices[i] = static_cast<std::uint32_t>(i);
-        rtcCommitGeometry(geometry);
-    }
-    rtcCommitScene(scene_.get());
-    errors.throwIfAny();
-    width_ = packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidth(device_.get());
+    scene_ = buildTriangles(device_.get(), set_, 0, [&errors] { errors.throwIfAny(); });
+    width_ =
+        packet_width > 0 ? static_cast<std::size_t>(packet_width) : nativeWidthOf(device_.get());
 }
 
 void EmbreeScene::cast(Point3 origin, const Directions& directions, double most,

@@ -3,14 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "trace/embree_device.h"
 #include "trace/rays.h"
 #include "trace/triangle_set.h"
-
-struct RTCDeviceTy;
-struct RTCSceneTy;
 
 namespace ispace {
 
@@ -53,17 +50,13 @@ class EmbreeScene {
 
   private:
     struct Caster;
-    struct Release {
-        void operator()(RTCDeviceTy* device) const;
-        void operator()(RTCSceneTy* scene) const;
-    };
     /// True if one of these may lie within ray_epsilon_ of a surface.
     [[nodiscard]] bool mayTouch(std::span<const Point3> origins) const;
 
     TriangleSet set_;
     double ray_epsilon_;
-    std::unique_ptr<RTCDeviceTy, Release> device_;
-    std::unique_ptr<RTCSceneTy, Release> scene_;
+    EmbreeDevice device_;
+    EmbreeTriangles scene_;
     std::size_t width_ = 4;
 };
 

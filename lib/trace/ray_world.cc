@@ -30,16 +30,6 @@ Body withoutRounds(Body body) {
     return body;
 }
 
-/// A mesh that just holds a round prism.
-Mesh meshAround(Prism round) {
-    // By a hair more, for rounding.
-    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
-    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
-    Body body;
-    body.prisms.push_back(std::move(round));
-    return std::move(meshesOf(body, Surfaces::Solid).front());
-}
-
 /// What lies a hair beyond max_range lies at it.
 ISPACE_SIMD_CLONES void limit(std::span<float> ranges, float far) {
     float* const range = ranges.data();

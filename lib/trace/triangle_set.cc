@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ispace {
 
@@ -156,6 +157,15 @@ double TriangleSet::distance(std::size_t triangle, Point3 p) const {
         nearest = std::min(nearest, length(p - (from + share * side)));
     }
     return is_over ? std::fabs(plane.heightOver(p)) : nearest;
+}
+
+Mesh meshAround(Prism round) {
+    // By a hair more, for rounding.
+    const double growth = growthAround(round.footprint.size()) * (1 + 1e-9);
+    for (Point2& p : round.footprint) p = round.curve->center + growth * (p - round.curve->center);
+    Body body;
+    body.prisms.push_back(std::move(round));
+    return std::move(meshesOf(body, Surfaces::Solid).front());
 }
 
 }  // namespace ispace

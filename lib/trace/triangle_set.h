@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "env/body.h"
+#include "env/mesh.h"
 #include "geom/curve.h"
 #include "geom/point.h"
 
@@ -114,5 +116,8 @@ class TriangleSet {
     std::vector<std::uint32_t> round_of_, sources_;
     double tolerance_ = 0;
 };
+
+/// A mesh that just encloses a round prism, see TriangleSoup::round_of.
+Mesh meshAround(Prism round);
 
 }  // namespace ispace

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace/embree_device.h"
+
+#include <array>
+#include <cstdint>
+
+#include "trace/embree_query.h"
+
+namespace ispace {
+
+void EmbreeRelease::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+void EmbreeRelease::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+
+EmbreeDevice makeEmbreeDevice() { return EmbreeDevice(rtcNewDevice("ignore_config_files=1")); }
+
+std::size_t nativeWidthOf(RTCDeviceTy* device) {
+    const auto has = [device](RTCDeviceProperty property) {
+        return rtcGetDeviceProperty(device, property) != 0;
+    };
+    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+    return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
+}
+
+EmbreeTriangles buildTriangles(RTCDeviceTy* device, const TriangleSet& triangles,
+                               unsigned geometry_id, const std::function<void()>& throw_if_failed) {
+    EmbreeTriangles scene(rtcNewScene(device));
+    throw_if_failed();
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFilterFlag);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    if (const std::size_t count = triangles.size(); count > 0) {
+        using Corner = std::array<float, 3>;
+        const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        throw_if_failed();
+        rtcAttachGeometryByID(scene.get(), geometry, geometry_id);
+        rtcReleaseGeometry(geometry);  // the scene holds it
+        auto* const corners = static_cast<std::array<Corner, 3>*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Corner), 3 * count));
+        auto* const indices = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), count));
+        throw_if_failed();
+        for (std::size_t i = 0; i < count; ++i) corners[i] = triangles.enlarged(i);
+        for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+        rtcCommitGeometry(geometry);
+    }
+    rtcCommitScene(scene.get());
+    throw_if_failed();
+    return scene;
+}
+
+}  // namespace ispace
