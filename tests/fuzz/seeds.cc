@@ -42,7 +42,7 @@ std::shared_ptr<const TriangleMesh> tetrahedron() {
 
 void compile(const std::string& file, const std::string& folder) {
     ImportOptions options;
-    options.load_meshes = false;
+    options.load_files = false;
     Document document = readDocument(file, options, sceneSchemas());
     for (Record& record : document.records)
         if (record.keyword() == "mesh") record.setMesh(tetrahedron());
