@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <asio/post.hpp>
+#include <boost/asio/post.hpp>
 #include <chrono>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace ispace {
@@ -85,7 +84,7 @@ constexpr auto kTurn = std::chrono::microseconds(200);
 /// How long a connection may take to close after its last message; what it sends is not read.
 constexpr auto kLinger = std::chrono::seconds(1);
 
-bool wouldBlock(const std::error_code& error) {
+bool wouldBlock(const error_code& error) {
     return error == asio::error::would_block || error == asio::error::try_again ||
            error == asio::error::interrupted;
 }
@@ -181,7 +180,7 @@ void ClientConnection::flush() {
             owed_ = out_.unsent() + out_.scanBytes();
             waiting_since_ = steady_clock::now();
         }
-        std::error_code error;
+        error_code error;
         const std::size_t sent = socket_.write_some(asio::buffer(piece), error);
         out_.pop(sent);
         owed_ -= std::min(owed_, sent);
@@ -210,7 +209,7 @@ void ClientConnection::listen() {
 
 void ClientConnection::receive() {
     std::array<char, kBlock> block;
-    std::error_code error;
+    error_code error;
     const std::size_t size = socket_.read_some(asio::buffer(block), error);
     if (error == asio::error::eof)
         eof_ = true;
@@ -227,7 +226,7 @@ void ClientConnection::linger() {
     if (writing_ || std::exchange(discarding_, true)) return;
     if (eof_) return close();
     closeAfter(kLinger);
-    std::error_code ignored;
+    error_code ignored;
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
     discard();
 }
@@ -243,7 +242,7 @@ void ClientConnection::discard() {
     constexpr int kBlocksInTurn = 16;
     std::array<char, kBlock> block;
     for (int i = 0; i < kBlocksInTurn; ++i) {
-        std::error_code error;
+        error_code error;
         socket_.read_some(asio::buffer(block), error);
         if (wouldBlock(error)) break;
         if (error) return close();
@@ -266,7 +265,7 @@ void ClientConnection::end() {
 }
 
 void ClientConnection::close() {
-    std::error_code ignored;
+    error_code ignored;
     timer_.cancel();
     socket_.close(ignored);
     session_.reset();

@@ -2,8 +2,9 @@
 // Private to lib/net, since it includes Asio.
 #pragma once
 
-#include <asio/ip/tcp.hpp>
-#include <asio/steady_timer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/system/error_code.hpp>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -15,6 +16,9 @@
 #include "net/session.h"
 
 namespace ispace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
 
 /// Cuts a stream of bytes into lines that end in LF or CRLF. Holds at most one line of the greatest
 /// length and one block, provided that lines are taken before more is appended.

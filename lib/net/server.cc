@@ -6,13 +6,13 @@
 #include <netinet/tcp.h>
 
 #include <algorithm>
-#include <asio/io_context.hpp>
-#include <asio/ip/address.hpp>
-#include <asio/ip/tcp.hpp>
-#include <asio/posix/stream_descriptor.hpp>
-#include <asio/post.hpp>
-#include <asio/steady_timer.hpp>
 #include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <cerrno>
 #include <optional>
 #include <system_error>
@@ -45,7 +45,7 @@ template <int kName>
 using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, kName>;
 
 void prepare(tcp::socket& socket) {
-    std::error_code ignored;
+    error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
     socket.set_option(tcp::socket::keep_alive(true), ignored);
@@ -87,7 +87,7 @@ struct Server::Data {
 };
 
 void Server::Data::accept() {
-    acceptor.async_accept([this](std::error_code error, tcp::socket socket) {
+    acceptor.async_accept([this](error_code error, tcp::socket socket) {
         if (error == asio::error::operation_aborted) return;
         if (!error) {
             welcome(std::move(socket));
@@ -95,7 +95,7 @@ void Server::Data::accept() {
         }
         // Out of descriptors, or a client that is gone already: it may go better in a while.
         accept_pause.expires_after(kAcceptPause);
-        accept_pause.async_wait([this](std::error_code aborted) {
+        accept_pause.async_wait([this](error_code aborted) {
             if (!aborted) accept();
         });
     });
@@ -180,7 +180,7 @@ void Server::Data::sleepUntil(WallTime time) {
         // Once for each time: moving a timer makes a handler ready, which would end the sleep.
         alarm_time = time;
         alarm.expires_at(time);
-        alarm.async_wait([](std::error_code) {});
+        alarm.async_wait([](error_code) {});
     }
     io.run_one();
 }
@@ -194,7 +194,7 @@ void Server::Data::sweep() {
 }
 
 void Server::Data::end() {
-    std::error_code ignored;
+    error_code ignored;
     acceptor.close(ignored);
     accept_pause.cancel();
     stopper.close(ignored);
@@ -222,7 +222,7 @@ Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLim
         data_->acceptor.bind(wanted);
         data_->acceptor.listen();
         data_->local = data_->acceptor.local_endpoint();
-    } catch (const std::system_error& error) {
+    } catch (const boost::system::system_error& error) {
         std::string where = "cannot listen on ";
         where.append(endpoint.address).append(":").append(std::to_string(endpoint.port));
         // Asio's own category knows no std::errc.
@@ -271,7 +271,7 @@ void Server::stopOn(int descriptor) {
     if (own < 0) throw std::system_error(errno, std::system_category(), "signals");
     data_->stopper.assign(own);
     data_->stopper.async_wait(asio::posix::descriptor_base::wait_read,
-                              [data = data_.get()](std::error_code error) {
+                              [data = data_.get()](error_code error) {
                                   if (!error) data->simulation.finish();
                               });
 }
@@ -308,7 +308,7 @@ Endpoint parseEndpoint(const std::string& text) {
     const bool bracketed = host.starts_with('[') && host.ends_with(']');
     if (bracketed) host = host.substr(1, host.size() - 2);
     if (host == "localhost" && !bracketed) host = "127.0.0.1";
-    std::error_code bad;
+    error_code bad;
     const auto address = asio::ip::make_address(host, bad);
     if (bad || address.is_v6() != bracketed)
         fail(text,
