@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "sense/sensors.h"
@@ -69,6 +70,22 @@ LaserReader::LaserReader(const Scene& scene)
     latest_.reserve(lasers_.size());
     // Robots first, as they move; people behind them.
     places_ = bodiesOf(scene);
+}
+
+void LaserReader::follow(const LaserReader& before,
+                         const std::unordered_set<std::string_view>& stayers) {
+    std::unordered_map<std::string_view, std::size_t> old;
+    for (std::size_t i = 0; i < before.lasers_.size(); ++i) old.emplace(before.lasers_[i].id, i);
+    for (std::size_t i = 0; i < lasers_.size(); ++i) {
+        const Sensor& laser = lasers_[i];
+        const auto found = stayers.contains(laser.id) ? old.find(laser.id) : old.end();
+        if (found == old.end()) continue;
+        if (!laser.mount && laser.pose != before.lasers_[found->second].pose) continue;
+        const auto mount = laser.mount;  // the carrier may have another index
+        readings_[i] = before.readings_[found->second];
+        readings_[i].sensor.mount = mount;
+        due_[i] = before.due_[found->second];
+    }
 }
 
 void LaserReader::read(SimTime time, std::span<const Motion> robots) {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "layout/scene.h"
@@ -35,6 +37,9 @@ class LaserReader {
 
     /// Reads the lasers whose next period has begun, in parallel. \pre robots are the scene's
     void read(SimTime time, std::span<const Motion> robots);
+    /// Before the first reading in another scene: those that stay as they are keep their last
+    /// reading.
+    void follow(const LaserReader& before, const std::unordered_set<std::string_view>& stayers);
     /// Says that robots have moved.
     void robotsMoved() { moved_ = true; }
 

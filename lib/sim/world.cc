@@ -5,9 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "base/number.h"
+#include "sim/change.h"
 #include "sim/collision.h"
 #include "sim/lasers.h"
 #include "sim/motion.h"
@@ -50,7 +53,7 @@ std::optional<std::size_t> find(const std::map<std::string_view, std::size_t>& i
 }  // namespace
 
 struct World::Data {
-    Data(const Scene& room, SimTime step_length);
+    Data(std::shared_ptr<const Scene> room, SimTime step_length);
 
     [[nodiscard]] const std::vector<Element>& elements() const {
         return scene->environment.elements();
@@ -66,10 +69,13 @@ struct World::Data {
     void collide(const Collision& collision);
     void apply();
     void end(std::size_t robot, Outcome outcome);
+    [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
+    [[nodiscard]] std::unique_ptr<Data> next(
+        Scene scene, const std::unordered_set<std::string_view>& stayers) const;
 
-    const Scene* scene;
+    std::shared_ptr<const Scene> scene;
     SimTime step_length, time{};
-    std::int64_t steps = 0;
+    std::int64_t steps = 0, changes = 0;
 
     std::map<std::string_view, std::size_t> robot_index;
     std::vector<Person> people;
@@ -89,24 +95,24 @@ struct World::Data {
     std::vector<Collision> collisions;
 };
 
-World::Data::Data(const Scene& room, SimTime length)
-    : scene(&room),
+World::Data::Data(std::shared_ptr<const Scene> room, SimTime length)
+    : scene(std::move(room)),
       step_length(length),
-      robot_index(indexById(room.robots)),
-      people(peopleOf(room)),
-      obstacles(obstaclesOf(room)),
-      friction(room.environment),
-      order(settlingOrder(room.robots)),
-      motions(room.robots.size()),
+      robot_index(indexById(scene->robots)),
+      people(peopleOf(*scene)),
+      obstacles(obstaclesOf(*scene)),
+      friction(scene->environment),
+      order(settlingOrder(scene->robots)),
+      motions(scene->robots.size()),
       standing(people.size()),
-      movers(room.robots.size()),
-      moves(room.robots.size() + people.size()),
-      traffic(room.robots, people, order, seconds(length)),
-      lasers(room),
+      movers(scene->robots.size()),
+      moves(scene->robots.size() + people.size()),
+      traffic(scene->robots, people, order, seconds(length)),
+      lasers(*scene),
       laser_index(indexById(lasers.lasers())) {
-    checkStart(room, people, obstacles);
+    checkStart(*scene, people, obstacles);
     for (std::size_t i = 0; i < motions.size(); ++i) {
-        const PlacedRobot& robot = room.robots[i];
+        const PlacedRobot& robot = scene->robots[i];
         motions[i].pose = {robot.pose.position, wrapped(robot.pose.heading)};
         movers[i].obstacles = &obstacles.at(robot.model.height);
         movers[i].limits = limitsOf(robot.model, 0);
@@ -122,7 +128,6 @@ World::Data::Data(const Scene& room, SimTime length)
         move.radius = people[i].radius;
         move.to = {.motion = standing[i]};
     }
-    lasers.read(time, motions);
 }
 
 /// Independent of all other robots.
@@ -203,15 +208,62 @@ void World::Data::end(std::size_t robot, Outcome outcome) {
     ends.push_back({robot, std::exchange(movers[robot].running, 0), outcome, time});
 }
 
-World::World(const Scene& scene, SimTime step) : data_(std::make_unique<Data>(scene, step)) {
-    assert(kShortestStep <= step && step <= kLongestStep);
+/// Of robots and people, by id.
+std::unordered_map<std::string_view, Pose2> World::Data::places() const {
+    std::unordered_map<std::string_view, Pose2> places;
+    for (std::size_t i = 0; i < motions.size(); ++i)
+        places.emplace(scene->robots[i].id, motions[i].pose);
+    for (const Placed& placed : scene->placed) {
+        const Point3 p = placed.pose.position;
+        places.try_emplace(scene->ids[placed.record], Pose2{{p.x, p.y}, placed.pose.heading});
+    }
+    return places;
 }
+
+/// Another scene, with what goes on: of robots that stay their motion, of the others what their
+/// clients know them by.
+std::unique_ptr<World::Data> World::Data::next(
+    Scene next_scene, const std::unordered_set<std::string_view>& stayers) const {
+    auto after =
+        std::make_unique<Data>(std::make_shared<const Scene>(std::move(next_scene)), step_length);
+    after->time = time;
+    after->steps = steps;
+    after->changes = changes + 1;
+    for (std::size_t i = 0; i < after->motions.size(); ++i) {
+        const std::string& id = after->scene->robots[i].id;
+        const auto old = find(robot_index, id);
+        if (!old) continue;
+        Mover& mover = after->movers[i];
+        mover.ids = movers[*old].ids;
+        mover.running = movers[*old].running;
+        if (stayers.contains(id)) {
+            mover.stall = movers[*old].stall;
+            after->motions[i] = motions[*old];
+        } else if (mover.running != 0) {
+            after->end(i, Outcome::Stopped);
+        }
+    }
+    after->lasers.follow(lasers, stayers);
+    after->lasers.read(time, after->motions);
+    return after;
+}
+
+World::World(std::shared_ptr<const Scene> scene, SimTime step)
+    : data_(std::make_unique<Data>(std::move(scene), step)) {
+    assert(kShortestStep <= step && step <= kLongestStep);
+    data_->lasers.read(data_->time, data_->motions);
+}
+
+World::World(const Scene& scene, SimTime step)
+    : World(std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene), step) {}
 
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 SimTime World::time() const { return data_->time; }
+const Scene& World::scene() const { return *data_->scene; }
+std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
 std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
@@ -267,6 +319,14 @@ int World::command(std::size_t robot, const Command& command) {
     if (comesToAnEnd(command.verb)) mover.running = ++mover.ids;
     return mover.running;
 }
+
+void World::change(Scene scene) {
+    const auto stayers = stayersOf(*data_->scene, scene);
+    keepInPlace(scene, stayers, data_->places());
+    data_ = data_->next(std::move(scene), stayers);
+}
+
+void World::restart(Scene scene) { data_ = data_->next(std::move(scene), {}); }
 
 void World::step() {
     Data& data = *data_;

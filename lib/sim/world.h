@@ -70,10 +70,12 @@ class World {
     static constexpr SimTime kLongestStep = std::chrono::seconds(1);
     static constexpr SimTime kShortestStep = std::chrono::microseconds(1);
 
-    /// Sensors take their first reading at time 0. The scene must outlive the world.
+    /// Sensors take their first reading at time 0.
     /// \throws FormatError with all findings if a robot stands in something, in another robot or in
     ///         a person
     /// \pre kShortestStep <= step <= kLongestStep
+    World(std::shared_ptr<const Scene> scene, SimTime step);
+    /// The same with a scene that must outlive the world.
     World(const Scene& scene, SimTime step);
     ~World();
     World(World&&) noexcept;
@@ -83,6 +85,8 @@ class World {
     [[nodiscard]] SimTime stepLength() const;
     [[nodiscard]] std::int64_t steps() const;  ///< taken so far
 
+    /// What is in it, as of the last change. Views of its ids last until the next one.
+    [[nodiscard]] const Scene& scene() const;
     /// Robots and lasers keep the order of the scene.
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
     [[nodiscard]] std::span<const Sensor> lasers() const;
@@ -100,6 +104,19 @@ class World {
     int command(std::size_t robot, const Command& command);
 
     void step();
+
+    /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
+    /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,
+    /// which puts them there at rest; sensors keep their last reading, and new ones take their
+    /// first. Indices are those of the new scene. Time goes on. Commands of robots that are gone
+    /// do not end.
+    /// \throws FormatError as the constructor does; the world is then as it was
+    void change(Scene scene);
+    /// The same, but everything starts anew where the scene has it; running commands are Stopped.
+    /// A robot's ids of commands go on all the same.
+    void restart(Scene scene);
+    /// Changes and restarts so far.
+    [[nodiscard]] std::int64_t changes() const;
 
     /// Commands that ended in the last step or since, in order; step() starts the list anew. Those
     /// of one step are in the order of the robots' ids. A robot never reuses an id, so a reader

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/change.h"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "layout/robot.h"
+#include "record/record.h"
+#include "sensor/kind.h"
+#include "sensor/sensor.h"
+
+namespace ispace {
+
+namespace {
+
+bool isMover(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human";
+}
+
+bool isPlaced(const Record& record) { return record.schema().type == RecordType::Placement; }
+
+/// True if what says where it is and where it faces is the same in both.
+bool sameStart(const Record& a, const Record& b) {
+    if (a.keyword() != b.keyword()) return false;
+    for (const KeySpec& key : a.schema().keys) {
+        if (key.role != Role::Place && key.role != Role::Heading) continue;
+        const Value* const of_a = a.find(key.name);
+        const Value* const of_b = b.find(key.name);
+        if ((of_a == nullptr) != (of_b == nullptr)) return false;
+        if (of_a != nullptr && *of_a != *of_b) return false;
+    }
+    return true;
+}
+
+/// A pose that follows its carrier from one place to another.
+Pose3 carried(Pose3 pose, const Pose2& from, const Pose2& to) {
+    const CosSin back = cosSin(from.heading);
+    const Vec2 apart = Point2{pose.position.x, pose.position.y} - from.position;
+    pose.position.x = back.cos * apart.x + back.sin * apart.y;
+    pose.position.y = back.cos * apart.y - back.sin * apart.x;
+    pose.heading = pose.heading - from.heading;
+    return mountedPose(to, pose);
+}
+
+}  // namespace
+
+std::unordered_set<std::string_view> stayersOf(const Scene& before, const Scene& next) {
+    std::unordered_map<std::string_view, std::size_t> records;
+    for (std::size_t i = 0; i < before.records.size(); ++i)
+        if (isPlaced(before.records[i])) records.emplace(before.ids[i], i);
+    std::unordered_set<std::string_view> stayers;
+    for (std::size_t i = 0; i < next.records.size(); ++i) {
+        if (!isPlaced(next.records[i])) continue;
+        const auto old = records.find(next.ids[i]);
+        if (old == records.end()) continue;
+        const Record& was = before.records[old->second];
+        const Record& is = next.records[i];
+        if (isMover(is) ? sameStart(was, is) : was == is) stayers.insert(old->first);
+    }
+    return stayers;
+}
+
+void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayers,
+                 const std::unordered_map<std::string_view, Pose2>& places) {
+    std::vector<Pose2> people_before, people;
+    for (Placed& placed : next.placed) {
+        const Record& record = next.records[placed.record];
+        if (!isMover(record)) continue;
+        const std::string& id = next.ids[placed.record];
+        const Pose2 start = floorPoseOf(record);
+        const Pose2 pose = stayers.contains(id) ? places.at(id) : start;
+        placed.pose.position = {pose.position.x, pose.position.y, 0};
+        placed.pose.heading = pose.heading;
+        if (record.keyword() == "robot") {
+            next.robots[placed.index].pose = pose;
+        } else {
+            people_before.push_back(start);
+            people.push_back(pose);
+        }
+    }
+    for (Placed& placed : next.placed) {
+        if (sensorKind(next.records[placed.record].keyword()) == nullptr) continue;
+        Sensor& sensor = next.sensors[placed.index];
+        if (sensor.mount)
+            sensor.pose =
+                mountedPose(next.robots[sensor.mount->robot].pose, sensor.mount->robot_from_sensor);
+        else if (sensor.person)
+            sensor.pose =
+                carried(sensor.pose, people_before[*sensor.person], people[*sensor.person]);
+        placed.pose = sensor.pose;
+    }
+}
+
+}  // namespace ispace
