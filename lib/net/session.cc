@@ -107,7 +107,7 @@ void Session::request(std::string_view line) {
     // for those of a client.
     if (role_ == Role::None && words.back().starts_with("HTTP/")) {
         closing_ = true;
-        return error(400, {"this is no web server, simrun(1) has its protocol"});
+        return error(400, {"this is no web server, see ispace-protocol(7)"});
     }
     const auto all = requests();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {

@@ -17,7 +17,7 @@
 namespace ispace {
 
 /// The server's end of one client's dialogue in the Simulator TCP Protocol, version 1, without a
-/// transport: lines in, bytes out. See simrun(1) for the language.
+/// transport: lines in, bytes out. See ispace-protocol(7) for the language.
 class Session {
   public:
     explicit Session(ServerState& state);

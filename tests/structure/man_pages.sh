@@ -77,3 +77,16 @@ grep -q '^\.BR sill= ' "$formats/ispace-env.5" || fail "the manual lacks keys"
 envc example.env -o example.glb
 envc example.yaml --check
 envc example.3dm --to yaml >/dev/null
+
+# Section 7: every request that the server knows has a paragraph of its own.
+page=$binary_dir/share/man/man7/ispace-protocol.7
+if command -v groff >/dev/null; then
+    groff -man -ww -z -Tutf8 "$page" 2>groff.err
+    [ ! -s groff.err ] || fail "ispace-protocol: $(cat groff.err)"
+fi
+verbs=$(sed -n 's/^ *{"\([A-Z]*\)", .*&C::.*/\1/p' "$source_dir"/lib/net/session*.cc | sort -u)
+[ "$(wc -w <<<"$verbs")" -gt 20 ] || fail "no list of requests: $verbs"
+plain "$page" | grep -E -A 1 '^\.(SS|TP)|^(\.B.* )?(HELP|QUIT|TOKEN)\b|^\.B[RI]? (HELP|QUIT|TOKEN)' >heads
+for verb in $verbs; do
+    grep -qw -- "$verb" heads || fail "the manual lacks the request $verb"
+done
