@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "cover/scan_plane.h"
+#include "sense/scan_plane.h"
 
 namespace ispace {
 

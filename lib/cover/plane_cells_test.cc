@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "cover/scan_plane.h"
+#include "sense/scan_plane.h"
 #include "cover/sight.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "cover/scan_plane.h"
+#include "sense/scan_plane.h"
 #include "cover/shadow_bodies.h"
 #include "cover/shadow_footprint.h"
 #include "geom/overlay.h"

@@ -47,14 +47,6 @@ CellSet cellsOfScan(const Grid& grid, const Level& level, const Sensor& sensor) 
 
 }  // namespace
 
-bool scansSlice(const Laser& laser, const Pose3& pose) {
-    return pose.isLevel() && (laser.sweep == SweepAxis::None || laser.sweep == SweepAxis::Heading);
-}
-
-bool scansSlice(const Sensor& sensor) {
-    return sensor.is<Laser>() && scansSlice(sensor.as<Laser>(), sensor.pose);
-}
-
 void Sight::prepare(const Sensor& sensor) const {
     if (!scansSlice(sensor)) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
 }

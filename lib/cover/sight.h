@@ -10,15 +10,11 @@
 #include "env/level.h"
 #include "geom/curve.h"
 #include "raster/grid.h"
+#include "sense/scan_plane.h"
 #include "sensor/sensor.h"
 #include "trace/worlds.h"
 
 namespace ispace {
-
-/// True for a laser whose scans all lie in the slice at its height: level, and turning about the
-/// vertical if it sweeps.
-bool scansSlice(const Laser& laser, const Pose3& pose);
-bool scansSlice(const Sensor& sensor);
 
 /// What each sensor of an environment sees of the floor by itself: a laser that scans a slice sees
 /// of that slice, any other sensor of one level plane (see ShadowCaster). From inside a solid,

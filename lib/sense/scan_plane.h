@@ -6,6 +6,11 @@
 
 namespace ispace {
 
+/// True for a laser whose scans all lie in the slice at its height: level, and turning about the
+/// vertical if it sweeps.
+bool scansSlice(const Laser& laser, const Pose3& pose);
+bool scansSlice(const Sensor& sensor);
+
 /// Bearings between the first and the last beam of a laser, ends included.
 struct BearingWindow {
     Vec2 middle;    ///< of unit length

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cover/scan_plane.h"
+#include "sense/scan_plane.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +32,14 @@ Angle sweepOf(const Laser& laser) {
 double cosineOfHalf(Angle span) { return span >= Angle::degrees(360) ? -1 : cos(0.5 * span); }
 
 }  // namespace
+
+bool scansSlice(const Laser& laser, const Pose3& pose) {
+    return pose.isLevel() && (laser.sweep == SweepAxis::None || laser.sweep == SweepAxis::Heading);
+}
+
+bool scansSlice(const Sensor& sensor) {
+    return sensor.is<Laser>() && scansSlice(sensor.as<Laser>(), sensor.pose);
+}
 
 BearingWindow::BearingWindow(const Laser& laser, Angle more)
     : middle(unitVector(laser.first + 0.5 * (laser.span() + more))),
