@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "env/environment.h"
+
+namespace ispace {
+
+/// Part of the floor that somebody names: the id of a `zone` record, `rect:X,Y,X,Y` (two opposite
+/// corners), or `poly:X,Y;X,Y;...` (thesis section 4.4.6); lengths with units as in records.
+struct NamedZone {
+    std::string name;  ///< as written
+    Polygon outline;   ///< counter-clockwise
+    /// A point inside by which the Insider Judge knows the inside from the outside: the centre of
+    /// gravity, or, where that does not lie strictly inside, another one.
+    Point2 inside;
+    bool is_center_outside = false;  ///< the thesis' warning
+};
+
+/// A record's id goes before what it may read like else.
+/// \throws UsageError for an unknown zone (with the nearest name), a polygon of fewer than three
+///         corners, without area, or that crosses itself
+NamedZone readZone(std::string_view text, const Environment& environment);
+
+}  // namespace ispace
