@@ -53,6 +53,13 @@ violations() {
         # One private header hides the versions of Embree from the sources beside it.
         if (FILENAME == "lib/trace/embree_query.h" && target ~ /^embree/) next
         if (FILENAME ~ /\.h$/ && target ~ heavy) report("keep " target " out of headers")
+        # Its headers are copied and installed without the library; tests have GoogleTest besides.
+        if (folder == "client" && in_lib && !in_test &&
+            (index($0, "\"") || (target ~ /\// && target !~ /^(ispace_client|sim_aria|sys|netinet)\//) ||
+             (target ~ /\.h$/ && target !~ /\// && target !~ /^(fcntl|netdb|poll|unistd|signal|Sim_Aria)\.h$/)))
+            report("lib/client stands by itself: " target)
+        if (target ~ /^(ispace_client|sim_aria)[\/.]/ && folder != "client")
+            report("lib/client is for other programs: " target)
         if (target ~ /^CLI\// && in_lib && folder != "cli") report("only lib/cli may include " target)
         next
     }
@@ -98,6 +105,13 @@ expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes
 expect lib/trace/a.h '#include <embree3/rtcore.h>' yes
 expect lib/record/a.h '#include <yaml-cpp/yaml.h>' yes
 expect lib/env/a.cc '#include <CLI/CLI.hpp>' yes
+expect lib/client/a.h '#include "base/error.h"' yes
+expect lib/client/ispace_client/a.h '#include <base/error.h>' yes
+expect lib/client/a.h '#include <boost/asio.hpp>' yes
+expect lib/client/a.h '#include <zlib.h>' yes
+expect lib/client/a.h '#include <ispace_client/error.h>' no
+expect lib/client/a.h '#include <sys/socket.h>' no
+expect lib/net/a.h '#include <ispace_client/error.h>' yes
 expect lib/env/a.cc 'std::cerr << 1;' yes
 expect lib/env/a.cc 'if (x) exit(1);' yes
 expect lib/env/a.cc 'auto* v = std::getenv("HOME");' yes

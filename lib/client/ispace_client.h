@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Drives the robots and people of simrun and reads its sensors, from C++11 on; standard library
+/// and sockets alone, headers alone.
+///
+///     #include <ispace_client.h>
+///     using namespace ispace::client;
+///
+///     Robot robot("127.0.0.1:7001", "r1");
+///     robot.wait(robot.forward(1.5));
+///     if (robot.status().stall) robot.wait(robot.left(90));
+///     LaserSensor laser("127.0.0.1:7001", "l1");
+///     for (float range : laser.scan().ranges) …
+///
+/// Robot and Person drive, LaserSensor, Camera and their kin read, World has the clock, changes and
+/// events. Units are those of the protocol: metres, degrees, simulated seconds; frames are
+/// right-handed and headings counter-clockwise. Functions block until the server has answered, at
+/// most for Options::timeout seconds of wall time; what goes wrong is an exception of
+/// <ispace_client/error.h> with the server's text. In CMake: find_package(ispace_client),
+/// ispace::client.
+#ifndef ISPACE_CLIENT_H
+#define ISPACE_CLIENT_H
+
+#include <ispace_client/error.h>
+#include <ispace_client/robot.h>
+#include <ispace_client/sensor.h>
+#include <ispace_client/world.h>
+
+#endif  // ISPACE_CLIENT_H

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ISPACE_CLIENT_ERROR_H
+#define ISPACE_CLIENT_ERROR_H
+
+#include <stdexcept>
+#include <string>
+
+namespace ispace {
+namespace client {
+
+/// Base of everything this library throws.
+class Error : public std::runtime_error {
+  public:
+    explicit Error(const std::string& what) : std::runtime_error(what) {}
+};
+
+/// No server there, or it has closed the connection.
+class ConnectionError : public Error {
+  public:
+    explicit ConnectionError(const std::string& what) : Error(what) {}
+};
+
+/// The answer has not come in time. The connection can still be used: the answer is dropped when it
+/// comes.
+class Timeout : public Error {
+  public:
+    explicit Timeout(const std::string& what) : Error(what) {}
+};
+
+/// The server said something that is not in the protocol as this library knows it.
+class ProtocolError : public Error {
+  public:
+    explicit ProtocolError(const std::string& what) : Error(what) {}
+};
+
+/// The server answered `ERR code text`; what() is its text.
+class Refused : public Error {
+  public:
+    Refused(int code, const std::string& text) : Error(text), code_(code) {}
+    /// 400 syntax, 401 token, 403 not allowed, 404 unknown name, 405 not in this role, 408 no role
+    /// in time, 409 held by another client, 413 too long, 416 out of range, 429 too many.
+    int code() const { return code_; }
+
+  private:
+    int code_;
+};
+
+}  // namespace client
+}  // namespace ispace
+
+#endif  // ISPACE_CLIENT_ERROR_H

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ISPACE_CLIENT_MESSAGE_H
+#define ISPACE_CLIENT_MESSAGE_H
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <locale>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ispace_client/error.h>
+
+namespace ispace {
+namespace client {
+
+/// The number that `text` is, whatever the locale; "-" is infinity, which stands for no return.
+/// \throws ProtocolError if it is none
+inline double numberOf(const std::string& text) {
+    if (text == "-") return std::numeric_limits<double>::infinity();
+    // Up to 15 digits, as the server writes measured values, one division rounds correctly.
+    std::size_t i = text.size() > 1 && text[0] == '-' ? 1 : 0;
+    std::int64_t digits = 0;
+    double scale = 1;
+    bool behind_point = false;
+    std::size_t count = 0;
+    for (; i < text.size(); ++i) {
+        if (text[i] == '.' && !behind_point) {
+            behind_point = true;
+            continue;
+        }
+        if (text[i] < '0' || text[i] > '9' || ++count > 15) break;
+        digits = digits * 10 + (text[i] - '0');
+        if (behind_point) scale *= 10;
+    }
+    if (i == text.size() && count > 0)
+        return (text[0] == '-' ? -1.0 : 1.0) * static_cast<double>(digits) / scale;
+    std::istringstream in(text);
+    in.imbue(std::locale::classic());
+    double value = 0;
+    if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof())
+        throw ProtocolError("the server sent `" + text + "` for a number");
+    return value;
+}
+
+/// The shortest text that a double is read from again, whatever the locale.
+inline std::string textOf(double value) {
+    if (!std::isfinite(value)) throw Error("a request has a number that is not finite");
+    for (int digits = 6;; ++digits) {
+        std::ostringstream out;
+        out.imbue(std::locale::classic());
+        out.precision(digits);
+        out << value;
+        std::istringstream in(out.str());
+        in.imbue(std::locale::classic());
+        double again = 0;
+        if (digits >= 17 || ((in >> again) && again == value)) return out.str();
+    }
+}
+
+/// The parts of `text` between separators; none of an empty text.
+inline std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin < text.size() || !parts.empty();) {
+        const std::size_t end = text.find(separator, begin);
+        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+        if (end == std::string::npos) break;
+        begin = end + 1;
+    }
+    return parts;
+}
+
+/// Where something is in the room, metres and degrees. A heading is in (-180, 180],
+/// counter-clockwise, 0 along x.
+struct Pose {
+    double x = 0, y = 0, heading = 0;
+};
+
+/// The same in space. Tilt is positive upward.
+struct Pose3 {
+    double x = 0, y = 0, z = 0, heading = 0, tilt = 0, roll = 0;
+};
+
+/// The `key=value` pairs of a line, in its order.
+class Fields {
+  public:
+    void add(const std::string& key, const std::string& value) {
+        pairs_.push_back(std::make_pair(key, value));
+    }
+    bool has(const std::string& key) const { return find(key) != nullptr; }
+    /// \throws ProtocolError if there is no such key; so do all below
+    const std::string& text(const std::string& key) const {
+        const std::string* const value = find(key);
+        if (!value) throw ProtocolError("the server's answer has no `" + key + "`");
+        return *value;
+    }
+    std::string text(const std::string& key, const std::string& otherwise) const {
+        const std::string* const value = find(key);
+        return value ? *value : otherwise;
+    }
+    double number(const std::string& key) const { return numberOf(text(key)); }
+    long integer(const std::string& key) const { return std::lround(number(key)); }
+    bool flag(const std::string& key) const { return text(key) == "1"; }
+    /// Parts between commas.
+    std::vector<std::string> list(const std::string& key) const { return split(text(key), ','); }
+    std::vector<double> numbers(const std::string& key) const {
+        std::vector<double> values;
+        for (const std::string& part : list(key)) values.push_back(numberOf(part));
+        return values;
+    }
+    const std::vector<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
+
+  private:
+    const std::string* find(const std::string& key) const {
+        for (const auto& pair : pairs_)
+            if (pair.first == key) return &pair.second;
+        return nullptr;
+    }
+    std::vector<std::pair<std::string, std::string>> pairs_;
+};
+
+/// One line of the server, and the bytes that came with it.
+struct Message {
+    std::string line;  ///< as it came
+    std::vector<std::string>
+        words;  ///< what is no pair; the first is OK, ERR, SCAN, DONE, FAIL, EVENT
+    Fields fields;
+    std::string data;  ///< the bytes behind a line with `bytes=`, or in its `base64=`
+
+    std::string word(std::size_t i) const { return i < words.size() ? words[i] : std::string(); }
+};
+
+/// The bytes that a text in base64 stands for.
+inline std::string fromBase64(const std::string& text) {
+    std::string bytes;
+    unsigned bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        int value = -1;
+        if (c >= 'A' && c <= 'Z') value = c - 'A';
+        if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
+        if (c >= '0' && c <= '9') value = c - '0' + 52;
+        if (c == '+') value = 62;
+        if (c == '/') value = 63;
+        if (c == '=') break;
+        if (value < 0) throw ProtocolError("the server's base64 has a `" + std::string(1, c) + "`");
+        bits = bits << 6U | static_cast<unsigned>(value);
+        count += 6;
+        if (count >= 8) {
+            count -= 8;
+            bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 0xFFU);
+        }
+    }
+    return bytes;
+}
+
+/// A line taken apart. `text=`, in events, goes to the end of its line.
+inline Message parseMessage(const std::string& line) {
+    Message message;
+    message.line = line;
+    for (std::size_t begin = 0; begin < line.size();) {
+        std::size_t end = line.find(' ', begin);
+        if (line.compare(begin, 5, "text=") == 0) end = std::string::npos;
+        const std::string word = line.substr(begin, end == std::string::npos ? end : end - begin);
+        const std::size_t equal = word.find('=');
+        if (equal == std::string::npos || message.words.empty()) {
+            if (!word.empty()) message.words.push_back(word);
+        } else {
+            message.fields.add(word.substr(0, equal), word.substr(equal + 1));
+        }
+        if (end == std::string::npos) break;
+        begin = end + 1;
+    }
+    return message;
+}
+
+}  // namespace client
+}  // namespace ispace
+
+#endif  // ISPACE_CLIENT_MESSAGE_H

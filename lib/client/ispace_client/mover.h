@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ISPACE_CLIENT_MOVER_H
+#define ISPACE_CLIENT_MOVER_H
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <ispace_client/connection.h>
+
+namespace ispace {
+namespace client {
+
+/// A place on the floor, metres.
+struct Point {
+    double x = 0, y = 0;
+    Point() = default;
+    Point(double east, double north) : x(east), y(north) {}
+};
+
+/// What a robot or person does: its true pose in the room.
+struct Status {
+    double time = 0;      ///< simulated seconds
+    Pose pose;            ///< m, degrees
+    double speed = 0;     ///< m/s, negative backward
+    double rotspeed = 0;  ///< degrees/s, counter-clockwise
+    double accel = 0;     ///< m/s²
+    double rotaccel = 0;  ///< degrees/s²
+    bool stall = false;   ///< it has run into something, and stands until its next motion
+    Fields fields;        ///< all that the server says
+};
+
+/// What a robot's wheels tell it, from (0, 0, 0) where it started; differs from Status::pose where
+/// the run has noise.
+struct Odometry {
+    double time = 0;
+    Pose pose;            ///< m, degrees
+    double speed = 0;     ///< m/s
+    double rotspeed = 0;  ///< degrees/s
+};
+
+/// A motion with an end: what forward(), left(), path() and their kin began.
+struct Motion {
+    int id = 0;
+    double length = 0;  ///< of a path, m
+};
+
+/// How a motion ended.
+struct End {
+    int id = 0;
+    bool done = false;   ///< it got where it was to go
+    std::string reason;  ///< otherwise: stall, replaced or stopped
+    double time = 0;     ///< simulated seconds
+};
+
+/// How to drive a path.
+struct PathOptions {
+    double speed = 0;   ///< m/s; 0: as the robot or person does by itself
+    bool loop = false;  ///< from the last point to the first, again and again
+};
+
+/// A robot or person that this client drives. Only one client can; others are refused (409). When
+/// the object is gone, or its program dies, the robot brakes and is free. A motion replaces the one
+/// that runs.
+class Mover {
+  public:
+    Mover(const Mover&) = delete;
+    Mover& operator=(const Mover&) = delete;
+
+    const std::string& id() const { return id_; }
+    /// What the server said of it when it was taken: model, radius …
+    const Fields& info() const { return info_; }
+
+    /// So far, at the model's own speed.
+    /// \param metres not negative
+    Motion forward(double metres) { return begin("FORWARD " + textOf(metres)); }
+    Motion backward(double metres) { return begin("BACKWARD " + textOf(metres)); }
+    /// On the spot, counter-clockwise.
+    /// \param degrees not negative
+    Motion left(double degrees) { return begin("LEFT " + textOf(degrees)); }
+    /// Clockwise.
+    Motion right(double degrees) { return begin("RIGHT " + textOf(degrees)); }
+    /// Along straight lines from where it stands.
+    Motion path(const std::vector<Point>& points, const PathOptions& options = PathOptions()) {
+        std::string request = "PATH ";
+        for (std::size_t i = 0; i < points.size(); ++i)
+            request += (i > 0 ? ";" : "") + textOf(points[i].x) + "," + textOf(points[i].y);
+        if (options.speed > 0) request += " speed=" + textOf(options.speed);
+        if (options.loop) request += " loop=yes";
+        return begin(request);
+    }
+    /// A speed to keep, m/s, negative backward; leaves the rotation as it is.
+    void speed(double metres_per_second) { ask("SPEED " + textOf(metres_per_second)); }
+    /// A rotation to keep, degrees/s, counter-clockwise; leaves the speed as it is.
+    void rotspeed(double degrees_per_second) { ask("ROTSPEED " + textOf(degrees_per_second)); }
+    /// Brakes.
+    void stop() { ask("STOP"); }
+
+    Status status() {
+        const Fields fields = ask("STATUS").fields;
+        Status status;
+        status.time = fields.number("t");
+        status.pose = poseOf(fields);
+        status.speed = fields.number("speed");
+        status.rotspeed = fields.number("rotspeed");
+        status.accel = fields.number("accel");
+        status.rotaccel = fields.number("rotaccel");
+        status.stall = fields.flag("stall");
+        status.fields = fields;
+        return status;
+    }
+
+    /// Waits for the end of a motion of this client; ends of others are kept until they are asked
+    /// for. \param timeout seconds of wall time \throws Timeout
+    End wait(const Motion& motion, double timeout = std::numeric_limits<double>::infinity()) {
+        const Deadline deadline(timeout);
+        for (;;) {
+            const auto found = ends_.find(motion.id);
+            if (found != ends_.end()) {
+                const End end = found->second;
+                ends_.erase(found);
+                return end;
+            }
+            const int left = deadline.left();
+            Message message;
+            const double seconds = left < 0 ? timeout : left / 1000.0;
+            if (!connection_.nextEnd(message, seconds))
+                throw Timeout(id_ + " is still moving (motion " + std::to_string(motion.id) + ")");
+            keepEnd(message);
+        }
+    }
+    /// Whether a motion has ended, as far as the server has said; wait() then returns at once.
+    bool ended(const Motion& motion) {
+        Message message;
+        while (connection_.nextEnd(message, 0)) keepEnd(message);
+        return ends_.count(motion.id) > 0;
+    }
+
+    /// For requests that this class has no function for.
+    Connection& connection() { return connection_; }
+
+  protected:
+    Mover(const std::string& role, const Address& address, const std::string& id,
+          const Options& options)
+        : connection_(address, options), id_(id) {
+        info_ = ask(role + " " + id).fields;
+    }
+    ~Mover() = default;
+
+    Message ask(const std::string& request) { return connection_.ask(request); }
+    static Pose poseOf(const Fields& fields) {
+        Pose pose;
+        pose.x = fields.number("x");
+        pose.y = fields.number("y");
+        pose.heading = fields.number("heading");
+        return pose;
+    }
+
+  private:
+    Motion begin(const std::string& request) {
+        const Fields fields = ask(request).fields;
+        Motion motion;
+        motion.id = static_cast<int>(fields.integer("id"));
+        if (fields.has("length")) motion.length = fields.number("length");
+        return motion;
+    }
+
+    void keepEnd(const Message& message) {
+        End end;
+        end.id = static_cast<int>(message.fields.integer("id"));
+        end.done = message.word(0) == "DONE";
+        end.reason = message.fields.text("reason", "");
+        end.time = message.fields.number("t");
+        ends_[end.id] = end;
+        // Nobody may ever ask for most of them.
+        if (ends_.size() > 10000) ends_.erase(ends_.begin());
+    }
+
+    Connection connection_;
+    std::string id_;
+    Fields info_;
+    std::map<int, End> ends_;
+};
+
+/// A person, driven as a robot is (role PERSON).
+class Person : public Mover {
+  public:
+    Person(const Address& address, const std::string& id, const Options& options = Options())
+        : Mover("PERSON", address, id, options) {}
+};
+
+}  // namespace client
+}  // namespace ispace
+
+#endif  // ISPACE_CLIENT_MOVER_H

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ISPACE_CLIENT_WORLD_H
+#define ISPACE_CLIENT_WORLD_H
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <ispace_client/connection.h>
+
+namespace ispace {
+namespace client {
+
+/// Something that happened in the world.
+struct Event {
+    std::string kind;  ///< collision, stall, enter, leave, mat, gate, seen, lost, mark, change
+    double time = 0;   ///< simulated seconds
+    Fields fields;     ///< id=, into=, zone= and what else belongs to its kind
+};
+
+/// The simulated world and its clock (role WORLD).
+class World {
+  public:
+    explicit World(const Address& address, const Options& options = Options())
+        : connection_(address, options) {
+        info_ = ask("WORLD").fields;
+    }
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    double dt() const { return info_.number("dt"); }           ///< length of a step, s
+    std::string clock() const { return info_.text("clock"); }  ///< real, fast or step
+    /// Simulated seconds in a second of wall time; 1 unless the clock is real.
+    double rate() const { return info_.has("rate") ? info_.number("rate") : 1; }
+
+    /// The ids of what is there, by what LIST calls it: robots, lasers, people, sensors …
+    std::map<std::string, std::vector<std::string>> list() {
+        std::map<std::string, std::vector<std::string>> ids;
+        const Message answer = ask("LIST");
+        for (const auto& pair : answer.fields.pairs()) ids[pair.first] = split(pair.second, ',');
+        return ids;
+    }
+    /// Simulated seconds since the run began.
+    double time() { return ask("TIME").fields.number("t"); }
+    long steps() { return ask("TIME").fields.integer("steps"); }
+    /// Where the robots and people are, m and degrees.
+    std::map<std::string, Pose> poses() {
+        std::map<std::string, Pose> poses;
+        for (const std::string& item : split(ask("POSES").fields.text("poses"), ';')) {
+            const std::vector<std::string> parts = split(item, ',');
+            if (parts.size() != 4) throw ProtocolError("`" + item + "` is no pose");
+            Pose& pose = poses[parts[0]];
+            pose.x = numberOf(parts[1]);
+            pose.y = numberOf(parts[2]);
+            pose.heading = numberOf(parts[3]);
+        }
+        return poses;
+    }
+
+    /// Stops the clock, for all clients.
+    void pause() { ask("PAUSE"); }
+    void resume() { ask("RESUME"); }
+    /// Advances a paused world, or one with the clock `step`, and waits until it has.
+    /// \param timeout seconds of wall time
+    /// \return how many steps were taken: fewer if somebody else pauses or the run ends
+    long step(long steps = 1, double timeout = std::numeric_limits<double>::infinity()) {
+        return connection_.ask("STEP " + std::to_string(steps), timeout).fields.integer("n");
+    }
+    /// Ends the run.
+    void shutdown() { ask("SHUTDOWN"); }
+
+    /// Robots and people go back to where they started; time goes on.
+    void reset() { ask("RESET"); }
+    /// Changes a key of a record: set("r1", "speed", "0.3").
+    void set(const std::string& id, const std::string& key, const std::string& value) {
+        ask("SET " + id + "." + key + "=" + value);
+    }
+    /// Adds a record, as in an environment or layout: add("cube id=b at=1,1 size=1,1,1").
+    void add(const std::string& record) { ask("ADD " + record); }
+    void remove(const std::string& id) { ask("DELETE " + id); }
+    /// Another room. Names of files as the server sees them; without `layout` there is none.
+    void load(const std::string& environment, const std::string& layout = "") {
+        connection_.ask("LOAD " + environment + (layout.empty() ? "" : " " + layout), kLoadTimeout);
+    }
+    /// Writes a line into the records and to all who follow events.
+    void mark(const std::string& text) { ask("MARK " + text); }
+
+    /// Follow events of these kinds from now on, or of all.
+    void events(const std::vector<std::string>& kinds = std::vector<std::string>()) {
+        std::string request = "EVENTS";
+        for (std::size_t i = 0; i < kinds.size(); ++i) request += (i > 0 ? "," : " ") + kinds[i];
+        ask(request);
+    }
+    void eventsOff() { ask("EVENTS off"); }
+    /// The next event; waits for it.
+    /// \param timeout seconds of wall time
+    /// \return false if none came in time
+    bool nextEvent(Event& event, double timeout = std::numeric_limits<double>::infinity()) {
+        Message message;
+        if (!connection_.nextEvent(message, timeout)) return false;
+        event.kind = message.word(1);
+        event.time = message.fields.number("t");
+        event.fields = message.fields;
+        return true;
+    }
+
+    /// For requests that this class has no function for.
+    Connection& connection() { return connection_; }
+
+  private:
+    static constexpr double kLoadTimeout = 600;  // of a building
+
+    Message ask(const std::string& request) { return connection_.ask(request); }
+
+    Connection connection_;
+    Fields info_;
+};
+
+}  // namespace client
+}  // namespace ispace
+
+#endif  // ISPACE_CLIENT_WORLD_H
