@@ -132,12 +132,18 @@ KeySpec areaSizeKey(std::string help, Tuple standard) {
             .lower_open = true};
 }
 
+KeySpec rateKey() {
+    KeySpec rate = positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate);
+    rate.default_value = 10.0;
+    return rate;
+}
+
 Schema matSchema() {
     return {.keyword = "mat",
             .type = RecordType::Placement,
             .help = "a pressure mat on the floor: tells whether somebody stands on it",
             .keys = {idKey(), floorAtKey("centre x,y"), headingKey("direction of the length"),
-                     areaSizeKey("length,width", {1, 1})}};
+                     areaSizeKey("length,width", {1, 1}), rateKey()}};
 }
 
 Schema gateSchema() {
@@ -150,7 +156,7 @@ Schema gateSchema() {
         .type = RecordType::Placement,
         .help = "a light gate: tells whether something stands between its posts",
         .keys = {idKey(), floorAtKey("middle between the posts"),
-                 headingKey("direction in which one passes"), std::move(width), std::move(height)}};
+                 headingKey("direction in which one passes"), std::move(width), std::move(height), rateKey()}};
 }
 
 Schema environmentSchema() {

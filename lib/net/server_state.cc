@@ -71,7 +71,7 @@ ServerState::ServerState(Simulation& simulation, const ServerLimits& limits)
       steps_(simulation),
       held_(simulation.world().robots().size()),
       pauses_(limits.all_pauses),
-      texts_(simulation.world().lasers().size()) {}
+      texts_(simulation.world().sensors().size()) {}
 
 bool ServerState::hold(std::size_t robot) {
     if (held_[robot]) return false;
@@ -85,10 +85,11 @@ void ServerState::release(std::size_t robot) {
 }
 
 std::shared_ptr<const std::string> ServerState::scan(std::size_t laser, bool stream, bool binary) {
-    const SensorReading& reading = simulation_->world().reading(laser);
+    const World& world = simulation_->world();
+    const SensorReading& reading = world.reading(laser);
     Text& text = texts_[laser][(stream ? 1U : 0U) + (binary ? 2U : 0U)];
     if (text.seq == reading.seq && text.bytes) return text.bytes;
-    auto bytes = counted(scanText(reading, stream, binary));
+    auto bytes = counted(scanText(world.sensors()[laser], reading, stream, binary));
     keep(text, reading.seq, bytes);
     return bytes;
 }
@@ -116,15 +117,16 @@ void ServerState::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::
 
 namespace {
 
-void appendHead(std::string& out, const SensorReading& reading, bool stream) {
-    const Laser& laser = reading.sensor.as<Laser>();
-    out.append("SCAN ").append(reading.sensor.id);
+void appendHead(std::string& out, const RunSensor& sensor, const SensorReading& reading,
+                bool stream) {
+    const Laser& laser = *sensor.model<Laser>();
+    out.append("SCAN ").append(sensor.id);
     out.append(" t=").append(formatMilliseconds(reading.time));
     out.append(" seq=").append(std::to_string(reading.seq));
     out.append(" angle_min=").append(formatDouble(laser.first.degrees()));
     out.append(" angle_max=").append(formatDouble(laser.last().degrees()));
     out.append(" step=").append(formatDouble(laser.step.degrees()));
-    out.append(" n=").append(std::to_string(reading.scan.ranges.size()));
+    out.append(" n=").append(std::to_string(reading.scan().ranges.size()));
     if (stream) out += " stream=1";
 }
 
@@ -160,12 +162,13 @@ void appendRange(std::string& out, float range) {
     out.append(digits.data(), end + 4);
 }
 
-std::string scanText(const SensorReading& reading, bool stream, bool binary) {
-    const auto& ranges = reading.scan.ranges;
+std::string scanText(const RunSensor& sensor, const SensorReading& reading, bool stream,
+                     bool binary) {
+    const auto& ranges = reading.scan().ranges;
     constexpr std::size_t kHead = 192, kTextRange = sizeof "12.345,", kBinaryRange = 4;
     std::string out;
     out.reserve(kHead + ranges.size() * (binary ? kBinaryRange : kTextRange));
-    appendHead(out, reading, stream);
+    appendHead(out, sensor, reading, stream);
     if (binary) {
         out.append(" bytes=").append(std::to_string(ranges.size() * kBinaryRange)).append("\n");
         for (const float range : ranges) appendLittleEndian(out, range);

@@ -17,12 +17,20 @@
 
 namespace ispace {
 
-/// Ids of robots or lasers, in order.
+/// Ids of robots or sensors, in order.
 template <typename Things>
 std::vector<std::string> idsOf(const Things& things) {
     std::vector<std::string> ids;
     ids.reserve(things.size());
     for (const auto& thing : things) ids.push_back(thing.id);
+    return ids;
+}
+
+/// Ids of the lasers among the sensors, in order.
+inline std::vector<std::string> laserIdsOf(const World& world) {
+    std::vector<std::string> ids;
+    for (const RunSensor& sensor : world.sensors())
+        if (sensor.model<Laser>() != nullptr) ids.push_back(sensor.id);
     return ids;
 }
 
@@ -127,6 +135,7 @@ void appendRange(std::string& out, float range);
 
 /// A reading as a SCAN line with its newline; `stream` marks one sent unasked. Binary: the line has
 /// bytes=N in place of r=, and N bytes of little-endian float32 follow, +inf for no return.
-std::string scanText(const SensorReading& reading, bool stream, bool binary);
+std::string scanText(const RunSensor& sensor, const SensorReading& reading, bool stream,
+                     bool binary);
 
 }  // namespace ispace

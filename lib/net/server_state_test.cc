@@ -104,23 +104,27 @@ TEST(AppendRange, RoundsAsFormatFixed) {
     }
 }
 
+RunSensor sensor() {
+    Laser laser;
+    laser.first = Angle::degrees(-0.5);
+    laser.step = Angle::degrees(0.25);
+    laser.beams = 3;
+    return {"l1", Sensor{"l1", laser, {}}};
+}
+
 SensorReading reading() {
     SensorReading reading;
     reading.time = std::chrono::milliseconds(12300);
     reading.seq = 123;
-    reading.sensor.id = "l1";
-    reading.sensor.as<Laser>().first = Angle::degrees(-0.5);
-    reading.sensor.as<Laser>().step = Angle::degrees(0.25);
-    reading.sensor.as<Laser>().beams = 3;
-    reading.scan.ranges = {1.25, kNoReturn, 4};
+    std::get<Scan>(reading.value).ranges = {1.25, kNoReturn, 4};
     return reading;
 }
 
 TEST(ScanText, Line) {
-    EXPECT_EQ(scanText(reading(), false, false),
+    EXPECT_EQ(scanText(sensor(), reading(), false, false),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 "
               "r=1.250,-,4.000\n");
-    EXPECT_EQ(scanText(reading(), true, false),
+    EXPECT_EQ(scanText(sensor(), reading(), true, false),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 stream=1 "
               "r=1.250,-,4.000\n");
 }
@@ -129,9 +133,9 @@ TEST(ScanText, BinaryIsLittleEndian) {
     using namespace std::string_literals;
     const std::string bytes = "\0\0\xa0\x3f\0\0\x80\x7f\0\0\x80\x40"s;
     EXPECT_EQ(
-        scanText(reading(), false, true),
+        scanText(sensor(), reading(), false, true),
         "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 bytes=12\n" + bytes);
-    EXPECT_EQ(scanText(reading(), true, true),
+    EXPECT_EQ(scanText(sensor(), reading(), true, true),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 stream=1 "
               "bytes=12\n" +
                   bytes);

@@ -156,7 +156,7 @@ std::string Session::roleText() const {
         case Role::Robot:
             return "the role ROBOT " + world().robots()[subject_].id;
         case Role::Laser:
-            return "the role LASER " + world().lasers()[subject_].id;
+            return "the role LASER " + world().sensors()[subject_].id;
         case Role::World:
             return "the role WORLD";
     }
@@ -231,9 +231,9 @@ void Session::sendPendingScan() {
 
 std::string Session::unknownLaser(std::string_view id) const {
     std::vector<std::string> known;
-    for (const Sensor& laser : world().lasers())
-        if (role_ != Role::Robot || (laser.mount && laser.mount->robot == subject_))
-            known.push_back(laser.id);
+    for (const RunSensor& sensor : world().sensors())
+        if (sensor.model<Laser>() != nullptr && (role_ != Role::Robot || sensor.isOn(subject_)))
+            known.push_back(sensor.id);
     return unknownThing("laser", id, known, role_ == Role::Robot ? " on this robot" : "");
 }
 
@@ -251,11 +251,12 @@ void Session::takeRobot(Words words) {
 }
 
 void Session::takeLaser(Words words) {
-    const auto found = world().laserNamed(words[1]);
-    if (!found) return error(404, {unknownLaser(words[1])});
+    const auto found = world().sensorNamed(words[1]);
+    const Laser* const model = found ? world().sensors()[*found].model<Laser>() : nullptr;
+    if (model == nullptr) return error(404, {unknownLaser(words[1])});
     role_ = Role::Laser;
     subject_ = *found;
-    const Laser& laser = world().lasers()[*found].as<Laser>();
+    const Laser& laser = *model;
     out_.append("OK LASER ").append(words[1]);
     out_.append(" angle_min=").append(formatDouble(laser.first.degrees()));
     out_.append(" angle_max=").append(formatDouble(laser.last().degrees()));

@@ -87,10 +87,10 @@ void Session::status(Words /*words*/) {
 }
 
 void Session::scanOfRobot(Words words) {
-    const auto laser = world().laserNamed(words[1]);
-    if (!laser) return error(404, {unknownLaser(words[1])});
-    const auto& mount = world().lasers()[*laser].mount;
-    if (!mount || mount->robot != subject_)
+    const auto laser = world().sensorNamed(words[1]);
+    if (!laser || world().sensors()[*laser].model<Laser>() == nullptr)
+        return error(404, {unknownLaser(words[1])});
+    if (!world().sensors()[*laser].isOn(subject_))
         return error(404, {"laser ", words[1], " is not on this robot: open another connection ",
                            "and take the role LASER ", words[1]});
     out_ += *state_->scan(*laser, false, false);
@@ -137,7 +137,7 @@ void Session::binary(Words words) {
 
 void Session::list(Words /*words*/) {
     out_.append("OK LIST robots=").append(joined(idsOf(world().robots()), ","));
-    out_.append(" lasers=").append(joined(idsOf(world().lasers()), ",")).append("\n");
+    out_.append(" lasers=").append(joined(laserIdsOf(world()), ",")).append("\n");
 }
 
 void Session::time(Words /*words*/) {

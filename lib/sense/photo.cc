@@ -38,6 +38,10 @@ Photographer::Photographer(const Scene& scene, const PhotoOptions& options)
 
 Photographer::~Photographer() = default;
 
+void Photographer::moveTo(std::span<const Pose3> poses) {
+    data_->surfaces = data_->surfaces.at(poses);
+}
+
 Photo Photographer::take(const Sensor& sensor, const Pose3& pose, int frame) const {
     const PhotoOptions& options = data_->options;
     RenderOptions how;

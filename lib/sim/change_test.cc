@@ -49,7 +49,7 @@ TEST(Change, WhatStaysGoesOn) {
     run(same, 100);
     EXPECT_EQ(changed.status(1).pose, same.status(0).pose);
     EXPECT_NEAR(changed.status(1).pose.position.x, 2, 1e-12);
-    EXPECT_EQ(changed.reading(0).scan.ranges, same.reading(0).scan.ranges);
+    EXPECT_EQ(changed.reading(0).scan().ranges, same.reading(0).scan().ranges);
     EXPECT_EQ(changed.reading(0).seq, same.reading(0).seq);
     // Ids of commands go on as well.
     EXPECT_EQ(changed.command(1, {Verb::Left, 90}), 2);
@@ -69,7 +69,7 @@ TEST(Change, ARobotWithAnotherStartIsPutThere) {
     EXPECT_EQ(world.ends().front().outcome, Outcome::Stopped);
     run(world, 10);
     EXPECT_EQ(world.status(0).pose.position, (Point2{1, -1}));
-    EXPECT_EQ(world.reading(0).sensor.pose.position.x, 1);
+    EXPECT_EQ(world.reading(0).pose.position.x, 1);
     EXPECT_EQ(world.command(0, {Verb::Forward, 1}), 2);
 }
 
@@ -79,7 +79,7 @@ TEST(Change, ANewSensorReadsAtOnce) {
     world.change(scene(kRoom, kRobot + kLaser));
     EXPECT_EQ(world.reading(0).time, milliseconds(700));
     EXPECT_EQ(world.reading(0).seq, 1);
-    EXPECT_EQ(world.reading(0).scan.ranges.size(), 3U);
+    EXPECT_EQ(world.reading(0).scan().ranges.size(), 3U);
     ASSERT_EQ(world.read().size(), 1U);
     run(world, 1);
     EXPECT_TRUE(world.read().empty());
@@ -93,7 +93,7 @@ TEST(Change, ASensorOnARobotIsWhereThatIs) {
     world.command(0, {Verb::Forward, 2});
     run(world, 100);
     world.change(scene(kRoom, "robot id=r0 at=-2,-2\n" + kRobot + "laser id=l1 on=r1\n"));
-    EXPECT_NEAR(world.reading(0).sensor.pose.position.x, 2, 1e-12);
+    EXPECT_NEAR(world.reading(0).pose.position.x, 2, 1e-12);
 }
 
 TEST(Change, AFailedOneLeavesTheWorldAsItWas) {
@@ -148,11 +148,11 @@ TEST(Change, ARestartBeginsAnewAtThisTime) {
 TEST(Change, ASensorOnAPersonGoesAlong) {
     const std::string carried = "human id=h1 at=1,1 heading=90\nlaser id=l1 on=h1 at=0.2,0,1\n";
     World world(shared(scene(kRoom, carried)), kStep);
-    const Pose3 before = world.reading(0).sensor.pose;
+    const Pose3 before = world.reading(0).pose;
     world.change(scene(kRoom, carried + kRobot));
-    EXPECT_NEAR(world.reading(0).sensor.pose.position.x, before.position.x, 1e-12);
-    EXPECT_NEAR(world.reading(0).sensor.pose.position.y, before.position.y, 1e-12);
-    EXPECT_NEAR(world.reading(0).sensor.pose.heading.degrees(), before.heading.degrees(), 1e-12);
+    EXPECT_NEAR(world.reading(0).pose.position.x, before.position.x, 1e-12);
+    EXPECT_NEAR(world.reading(0).pose.position.y, before.position.y, 1e-12);
+    EXPECT_NEAR(world.reading(0).pose.heading.degrees(), before.heading.degrees(), 1e-12);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::vector<Person> peopleOf(const Scene& scene) {
         const Record& record = scene.records[placed.record];
         if (record.keyword() != "human") continue;
         people.push_back({scene.ids[placed.record], placed.pose.position.onFloor(),
-                          humanRadius(record.number("height"))});
+                          humanRadius(record.number("height")), placed.pose.heading});
     }
     return people;
 }

@@ -24,6 +24,7 @@ struct Person {
     std::string_view id;
     Point2 place;
     double radius = 0;  ///< humanRadius
+    Angle heading = {};
 };
 
 /// The people of a scene, in its order. The scene must outlive them.

@@ -256,9 +256,10 @@ void Recorder::Data::appendRobots(const World& world) {
 }
 
 void Recorder::Data::appendScans(const World& world) {
-    for (const std::size_t laser : world.read()) {
-        const SensorReading& reading = world.reading(laser);
-        appendScanLine(scans.pending, reading.sensor, reading.scan);
+    for (const std::size_t i : world.read()) {
+        const SensorReading& reading = world.reading(i);
+        if (const auto* scan = std::get_if<Scan>(&reading.value))
+            appendScanLine(scans.pending, *world.sensors()[i].sensor(), *scan);
         // One step of many lasers may be more than should be held.
         if (scans.pending.size() > kMaxPending) scans.flush();
     }

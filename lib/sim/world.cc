@@ -12,8 +12,8 @@
 #include "base/number.h"
 #include "sim/change.h"
 #include "sim/collision.h"
-#include "sim/lasers.h"
 #include "sim/motion.h"
+#include "sim/sensors.h"
 
 namespace ispace {
 
@@ -63,6 +63,7 @@ struct World::Data {
         const std::vector<PlacedRobot>& robots = scene->robots;
         return mover < robots.size() ? robots[mover].id : people[mover - robots.size()].id;
     }
+    [[nodiscard]] Movers where() const { return {motions, standing}; }
     void propose(std::size_t robot);
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t robot);
     void settle();
@@ -88,8 +89,8 @@ struct World::Data {
     std::vector<Move> moves;  // of robots, then of people, who stay
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
-    LaserReader lasers;
-    std::map<std::string_view, std::size_t> laser_index;
+    SensorReader sensors;
+    std::map<std::string_view, std::size_t> sensor_index;
 
     std::vector<CommandEnd> ends;
     std::vector<Collision> collisions;
@@ -108,8 +109,8 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length)
       movers(scene->robots.size()),
       moves(scene->robots.size() + people.size()),
       traffic(scene->robots, people, order, seconds(length)),
-      lasers(*scene),
-      laser_index(indexById(lasers.lasers())) {
+      sensors(*scene),
+      sensor_index(indexById(sensors.sensors())) {
     checkStart(*scene, people, obstacles);
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const PlacedRobot& robot = scene->robots[i];
@@ -122,7 +123,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length)
         moves[i].radius = robot.model.radius;
     }
     for (std::size_t i = 0; i < people.size(); ++i) {
-        standing[i].pose.position = people[i].place;
+        standing[i].pose = {people[i].place, wrapped(people[i].heading)};
         Move& move = moves[motions.size() + i];
         move.from = &standing[i];
         move.radius = people[i].radius;
@@ -191,7 +192,7 @@ void World::Data::apply() {
         Motion& motion = motions[robot];
         if (moves[robot].to.motion.pose != motion.pose) {
             moved = true;
-            lasers.robotsMoved();
+            sensors.moved();
         }
         motion = moves[robot].to.motion;
         if (movers[robot].running == 0) continue;
@@ -243,15 +244,15 @@ std::unique_ptr<World::Data> World::Data::next(
             after->end(i, Outcome::Stopped);
         }
     }
-    after->lasers.follow(lasers, stayers);
-    after->lasers.read(time, after->motions);
+    after->sensors.follow(sensors, stayers);
+    after->sensors.read(time, after->where());
     return after;
 }
 
 World::World(std::shared_ptr<const Scene> scene, SimTime step)
     : data_(std::make_unique<Data>(std::move(scene), step)) {
     assert(kShortestStep <= step && step <= kLongestStep);
-    data_->lasers.read(data_->time, data_->motions);
+    data_->sensors.read(data_->time, data_->where());
 }
 
 World::World(const Scene& scene, SimTime step)
@@ -267,17 +268,17 @@ std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
 std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
-std::span<const Sensor> World::lasers() const { return data_->lasers.lasers(); }
+std::span<const RunSensor> World::sensors() const { return data_->sensors.sensors(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
-std::span<const std::size_t> World::read() const { return data_->lasers.latest(); }
+std::span<const std::size_t> World::read() const { return data_->sensors.latest(); }
 
 std::optional<std::size_t> World::robotNamed(std::string_view id) const {
     return find(data_->robot_index, id);
 }
 
-std::optional<std::size_t> World::laserNamed(std::string_view id) const {
-    return find(data_->laser_index, id);
+std::optional<std::size_t> World::sensorNamed(std::string_view id) const {
+    return find(data_->sensor_index, id);
 }
 
 RobotStatus World::status(std::size_t robot) const {
@@ -290,9 +291,18 @@ RobotStatus World::status(std::size_t robot) const {
             .stall = data_->movers[robot].stall};
 }
 
-const SensorReading& World::reading(std::size_t laser) const {
-    return data_->lasers.reading(laser);
+const SensorReading& World::reading(std::size_t sensor) const {
+    return data_->sensors.reading(sensor);
 }
+
+void World::want(std::size_t sensor, bool wants) { data_->sensors.want(sensor, wants); }
+
+const SensorReading& World::take(std::size_t sensor) {
+    data_->sensors.take(sensor, data_->time, data_->where());
+    return reading(sensor);
+}
+
+const FloorSensors& World::floorSensors() const { return data_->sensors.floor(); }
 
 std::string World::refusal(std::size_t robot, const Command& command) const {
     const auto& [id, model, pose, place] = data_->scene->robots[robot];
@@ -337,7 +347,7 @@ void World::step() {
     for (std::size_t i = 0; i < data.motions.size(); ++i) data.propose(i);
     data.settle();
     data.apply();
-    data.lasers.read(data.time, data.motions);
+    data.sensors.read(data.time, data.where());
 }
 
 }  // namespace ispace

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "layout/scene.h"
-#include "sense/scan.h"
 #include "sim/command.h"
+#include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
@@ -43,15 +43,6 @@ struct Collision {
     std::optional<std::size_t> other;  ///< the robot it ran into; nothing: a person or an element
     std::string_view into;             ///< id of that robot, person or element
     SimTime time{};
-};
-
-/// The latest scan of a laser. `scan.time` is the time of its step; `scan.frame` counts periods
-/// from 0.
-struct SensorReading {
-    SimTime time{};
-    std::int64_t seq = 0;
-    Sensor sensor;  ///< with its pose at that time
-    Scan scan;
 };
 
 /// Robots and sensors in an environment, in fixed steps.
@@ -87,14 +78,23 @@ class World {
 
     /// What is in it, as of the last change. Views of its ids last until the next one.
     [[nodiscard]] const Scene& scene() const;
-    /// Robots and lasers keep the order of the scene.
+    /// In the order of the scene.
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
-    [[nodiscard]] std::span<const Sensor> lasers() const;
     [[nodiscard]] std::optional<std::size_t> robotNamed(std::string_view id) const;
-    [[nodiscard]] std::optional<std::size_t> laserNamed(std::string_view id) const;
+    /// What is read, as it starts: sensors in the order of the scene, then mats, then gates.
+    [[nodiscard]] std::span<const RunSensor> sensors() const;
+    [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
     [[nodiscard]] RobotStatus status(std::size_t robot) const;
-    [[nodiscard]] const SensorReading& reading(std::size_t laser) const;
+    /// The newest one; of a heavy sensor that nobody wants the one that was taken last, if any.
+    [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
+    /// Depth frames and pictures are read when due only as long as somebody wants them: counts who
+    /// does. Nothing for other sensors, which are always read.
+    void want(std::size_t sensor, bool wants);
+    /// reading(), after reading a heavy sensor now if it was not in its newest period.
+    const SensorReading& take(std::size_t sensor);
+    /// Mats and gates as they are after the last step, whatever their rates.
+    [[nodiscard]] const FloorSensors& floorSensors() const;
 
     /// Why this robot cannot do it ("r1 goes at most 1.6 m/s"), or "".
     [[nodiscard]] std::string refusal(std::size_t robot, const Command& command) const;
@@ -126,7 +126,7 @@ class World {
     [[nodiscard]] std::span<const CommandEnd> ends() const;
     /// Cancelled moves of the last step, in the order of the robots' ids: each began to stall.
     [[nodiscard]] std::span<const Collision> collisions() const;
-    /// Lasers read in the last step (before the first step: all), ascending.
+    /// Sensors read in the last step (before the first step: all that are not heavy), ascending.
     [[nodiscard]] std::span<const std::size_t> read() const;
 
   private:

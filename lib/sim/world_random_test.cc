@@ -163,7 +163,7 @@ std::vector<double> trace(const Scene& room, int threads) {
         }
         for (const CommandEnd& end : world.ends()) seen.push_back(end.id);
         for (const std::size_t laser : world.read()) {
-            const auto& ranges = world.reading(laser).scan.ranges;
+            const auto& ranges = world.reading(laser).scan().ranges;
             seen.insert(seen.end(), ranges.begin(), ranges.end());
         }
     }

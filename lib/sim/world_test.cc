@@ -35,7 +35,7 @@ TEST(World, BeginsAtTheScene) {
     ASSERT_EQ(world.robots().size(), 2U);
     EXPECT_EQ(world.robotNamed("a"), 1U);
     EXPECT_EQ(world.robotNamed("c"), std::nullopt);
-    EXPECT_EQ(world.laserNamed("a"), std::nullopt);
+    EXPECT_EQ(world.sensorNamed("a"), std::nullopt);
     EXPECT_EQ(world.status(0).pose.heading, Angle::degrees(-90));
     EXPECT_EQ(world.status(0).pose.position, (Point2{1, 1}));
     EXPECT_FALSE(world.status(0).stall);

@@ -56,7 +56,7 @@ void verify(const Scene& scene, const World& world) {
     std::size_t returns = 0;
     for (std::size_t i = 0; i < scene.robots.size(); ++i) {
         way += distance(world.status(i).pose.position, scene.robots[i].pose.position);
-        for (const float range : world.reading(i).scan.ranges)
+        for (const float range : world.reading(i).scan().ranges)
             if (range < 8) ++returns;
     }
     const auto count = static_cast<double>(scene.robots.size());

@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
         raceOfWorld([](const ispace::World& world) { (void)world.status(0); });
     } else if (kind == "scans") {
         raceOfWorld([](const ispace::World& world) {
-            if (world.reading(0).scan.ranges[1] < 0) std::abort();
+            if (world.reading(0).scan().ranges[1] < 0) std::abort();
         });
     } else if (kind == "none") {
         return orderedTasks() ? 0 : 1;

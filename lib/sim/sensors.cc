@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/sensors.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "sense/sensors.h"
+#include "sensor/kind.h"
+
+namespace ispace {
+
+namespace {
+
+int frameOf(std::int64_t number) {
+    constexpr std::int64_t kLast = std::numeric_limits<int>::max();
+    return static_cast<int>(std::min(number, kLast));
+}
+
+/// A pose on a carrier, in the carrier's frame.
+Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
+    const Vec2 way = pose.position.onFloor() - carrier.position;
+    const Vec2 along = unitVector(carrier.heading);
+    return {{dot(way, along), cross(along, way), pose.position.z},
+            pose.heading - carrier.heading,
+            pose.tilt,
+            pose.roll};
+}
+
+}  // namespace
+
+SensorReader::SensorReader(const Scene& scene)
+    : scene_(&scene), floor_(scene), worlds_(scene.environment) {
+    addSensors();
+    const std::size_t count = sensors_.size();
+    due_.resize(count);
+    wanted_.resize(count);
+    readings_.resize(count);
+    casters_.resize(count);
+    latest_.reserve(count);
+    bool has_cameras = false;
+    for (std::size_t i = 0; i < count; ++i) {
+        periods_.emplace_back(sensors_[i].rate());
+        is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
+        has_cameras = has_cameras || sensors_[i].model<Camera>() != nullptr;
+        const Sensor* const sensor = sensors_[i].sensor();
+        if (sensor == nullptr) continue;
+        readings_[i].pose = sensor->pose;
+        if (sensor->is<Ranger>()) readings_[i].value = DepthFrame();
+        if (sensor->is<Camera>()) readings_[i].value = Photo();
+        const auto* laser = sensors_[i].model<Laser>();
+        if (laser == nullptr) continue;
+        worlds_.prepare(sensor->pose);
+        if (laser->sweep != SweepAxis::None) worlds_.prepareMesh();
+        casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), ReadingOptions());
+    }
+    if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, PhotoOptions());
+    for (const Placed& placed : scene.placed)
+        if (scene.records[placed.record].keyword() == "human")
+            people_starts_.push_back(
+                {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
+    // Robots first, as they move; people behind them.
+    places_ = bodiesOf(scene);
+}
+
+void SensorReader::addSensors() {
+    for (const Sensor& sensor : scene_->sensors) {
+        if (!kindOf(sensor.model).is_read) continue;
+        sensors_.push_back({sensor.id, sensor});
+        if (sensor.is<Receiver>()) receivers_.push_back(sensor);
+        if (sensor.is<Tag>()) tags_.push_back(sensor);
+    }
+    for (std::size_t i = 0; i < floor_.mats().size(); ++i)
+        sensors_.push_back({floor_.matIds()[i], floor_.mats()[i]});
+    for (std::size_t i = 0; i < floor_.gates().size(); ++i)
+        sensors_.push_back({floor_.gateIds()[i], floor_.gates()[i]});
+}
+
+void SensorReader::follow(const SensorReader& before,
+                          const std::unordered_set<std::string_view>& stayers) {
+    std::unordered_map<std::string_view, std::size_t> old;
+    for (std::size_t i = 0; i < before.sensors_.size(); ++i) old.emplace(before.sensors_[i].id, i);
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        const auto found = old.find(sensors_[i].id);
+        if (found == old.end()) continue;
+        wanted_[i] = before.wanted_[found->second];
+        if (!stayers.contains(found->first)) continue;
+        const Sensor* const sensor = sensors_[i].sensor();
+        const Sensor* const was = before.sensors_[found->second].sensor();
+        if (sensor != nullptr && was != nullptr && !sensor->mount && !sensor->person &&
+            sensor->pose != was->pose)
+            continue;
+        readings_[i] = before.readings_[found->second];
+        due_[i] = before.due_[found->second];
+        // Of every step, where the reading is of a period.
+        if (std::holds_alternative<Gate>(sensors_[i].what))
+            floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
+    }
+}
+
+void SensorReader::jumped() {
+    moved_ = true;
+    floor_.forgetPlaces();
+}
+
+void SensorReader::read(SimTime time, const Movers& movers) {
+    floor_.follow(movers.robots, movers.people);
+    latest_.clear();
+    for (std::size_t i = 0; i < due_.size(); ++i) {
+        if (due_[i] <= time && (is_heavy_[i] == 0 || wanted_[i] > 0)) latest_.push_back(i);
+    }
+    if (latest_.empty()) return;
+    readLatest(time, movers);
+}
+
+void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
+    if (due_[sensor] > time) return;
+    const auto others = std::exchange(latest_, {sensor});
+    readLatest(time, movers);
+    // Read in this step like the others.
+    latest_.insert(latest_.begin(), others.begin(), others.end());
+    std::sort(latest_.begin(), latest_.end());
+}
+
+void SensorReader::readLatest(SimTime time, const Movers& movers) {
+    update(time, movers);
+    tbb::parallel_for(std::size_t{0}, latest_.size(),
+                      [&](std::size_t k) { measure(latest_[k], time); });
+}
+
+Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
+    if (sensor.mount)
+        return mountedPose(movers.robots[sensor.mount->robot].pose,
+                           sensor.mount->robot_from_sensor);
+    if (!sensor.person) return sensor.pose;
+    const Pose2 &start = people_starts_[*sensor.person], &pose = movers.people[*sensor.person].pose;
+    return pose == start ? sensor.pose : mountedPose(pose, localPose(start, sensor.pose));
+}
+
+/// All that does not depend on rays: times, poses, bodies.
+void SensorReader::update(SimTime time, const Movers& movers) {
+    bool hears = false, pictures = false;
+    for (const std::size_t i : latest_) {
+        SensorReading& reading = readings_[i];
+        reading.time = time;
+        reading.seq = periods_[i].newest(time);
+        due_[i] = periods_[i].begin(reading.seq + 1);
+        const Sensor* const sensor = sensors_[i].sensor();
+        if (sensor == nullptr) continue;
+        if (sensor->mount || sensor->person) reading.pose = poseOf(*sensor, movers);
+        if (const auto* laser = std::get_if<Laser>(&sensor->model)) {
+            if (laser->sweep != SweepAxis::None)
+                reading.pose = sweptPose(*laser, poseOf(*sensor, movers),
+                                         static_cast<double>(reading.seq % laser->scans()));
+        } else if (sensor->is<Ranger>()) {
+            worlds_.prepareMesh();
+        } else if (sensor->is<Camera>()) {
+            pictures = true;
+        } else {
+            hears = true;
+        }
+    }
+    updateBodies(movers);
+    if (pictures) movePictures(movers);
+    if (!hears) return;
+    worlds_.prepareMesh(Surfaces::Solid);
+    std::size_t receiver = 0, tag = 0;
+    for (const RunSensor& sensor : sensors_) {
+        if (sensor.model<Receiver>() != nullptr)
+            receivers_[receiver++].pose = poseOf(*sensor.sensor(), movers);
+        if (sensor.model<Tag>() != nullptr) tags_[tag++].pose = poseOf(*sensor.sensor(), movers);
+    }
+}
+
+void SensorReader::updateBodies(const Movers& movers) {
+    if (!std::exchange(moved_, false)) return;
+    pictures_moved_ = true;
+    const auto& robots = movers.robots;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        places_[i] =
+            robotBody(scene_->robots[i].model, robots[i].pose, static_cast<std::uint32_t>(i));
+    }
+    bodies_.rebuild(places_);
+}
+
+void SensorReader::movePictures(const Movers& movers) {
+    if (!std::exchange(pictures_moved_, false)) return;
+    std::vector<Pose3> poses;
+    std::size_t person = 0;
+    for (const Placed& placed : scene_->placed) {
+        const std::string& keyword = scene_->records[placed.record].keyword();
+        Pose3 pose = placed.pose;
+        if (sensorKind(keyword) != nullptr) {
+            pose = poseOf(scene_->sensors[placed.index], movers);
+        } else if (keyword == "robot" || keyword == "human") {
+            const Motion& motion =
+                keyword == "robot" ? movers.robots[placed.index] : movers.people[person++];
+            pose.position.x = motion.pose.position.x;
+            pose.position.y = motion.pose.position.y;
+            pose.heading = motion.pose.heading;
+        }
+        poses.push_back(pose);
+    }
+    photographer_->moveTo(poses);
+}
+
+void SensorReader::measure(std::size_t sensor, SimTime time) {
+    const RunSensor& placed = sensors_[sensor];
+    if (placed.sensor() != nullptr) {
+        std::visit([&](const auto& model) { measure(model, sensor, time); },
+                   placed.sensor()->model);
+        return;
+    }
+    if (std::holds_alternative<Gate>(placed.what))
+        readings_[sensor].value = floor_.gate(gateOf(sensor));
+    else
+        readings_[sensor].value = floor_.mat(matOf(sensor));
+}
+
+void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Scan& scan = std::get<Scan>(reading.value);
+    const std::int64_t scans = laser.scans();
+    scan.number = static_cast<int>(reading.seq % scans);
+    scan.pose = reading.pose;
+    casters_[sensor]->cast(scan);
+    scan.time = seconds(time);
+    scan.frame = frameOf(reading.seq / scans);
+}
+
+void SensorReader::measure(const Ranger& /*ranger*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    DepthFrame frame = castDepth(worlds_.mesh(), bodies_, *sensors_[sensor].sensor(), reading.pose,
+                                 frameOf(reading.seq), ReadingOptions());
+    frame.time = seconds(time);
+    reading.value = std::move(frame);
+}
+
+void SensorReader::measure(const Camera& /*camera*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Photo photo =
+        photographer_->take(*sensors_[sensor].sensor(), reading.pose, frameOf(reading.seq));
+    photo.time = seconds(time);
+    reading.value = std::move(photo);
+}
+
+void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Sensor tag = *sensors_[sensor].sensor();
+    tag.pose = reading.pose;
+    reading.value = castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, receivers_,
+                              frameOf(reading.seq), seconds(time), UltrasoundOptions());
+}
+
+void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, SimTime time) {
+    SensorReading& reading = readings_[sensor];
+    Sensor receiver = *sensors_[sensor].sensor();
+    receiver.pose = reading.pose;
+    Hearings hearings;
+    for (const Sensor& tag : tags_) {
+        const Burst burst =
+            castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
+                      frameOf(reading.seq), seconds(time), UltrasoundOptions());
+        hearings.tags.push_back(
+            {tag.id, burst.heard.empty() ? std::nullopt : std::optional(burst.heard.front().time)});
+    }
+    reading.value = std::move(hearings);
+}
+
+const MovingBodies& SensorReader::bodies(const Movers& movers) {
+    updateBodies(movers);
+    return bodies_;
+}
+
+const RayWorld& SensorReader::mesh(Surfaces surfaces) {
+    worlds_.prepareMesh(surfaces);
+    return worlds_.mesh(surfaces);
+}
+
+}  // namespace ispace

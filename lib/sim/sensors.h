@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/sim.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "layout/scene.h"
+#include "sense/photo.h"
+#include "sim/motion.h"
+#include "sim/periods.h"
+#include "sim/sensor_reading.h"
+#include "trace/moving_bodies.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+/// Robots and people as they are after a step, in the order of the scene.
+struct Movers {
+    std::span<const Motion> robots, people;
+};
+
+/// Reads the sensors of a world when they are due: in the first step at or after the beginning of
+/// a period, all at the moment of that step.
+class SensorReader {
+  public:
+    /// The scene must outlive it. \throws FormatError for a texture that cannot be read, if there
+    /// are cameras
+    explicit SensorReader(const Scene& scene);
+
+    /// After each step: follows those who move, and reads what is due, in parallel. Heavy sensors
+    /// that nobody wants are not read.
+    void read(SimTime time, const Movers& movers);
+    /// Before the first reading in another scene: those that stay as they are keep their last
+    /// reading, gates their counts, and heavy ones who wants them.
+    void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers);
+    /// Says that robots or people have moved.
+    void moved() { moved_ = true; }
+    /// They were put elsewhere, so nobody passed a gate on the way.
+    void jumped();
+
+    /// Sensors in the order of the scene, as they start; then mats, then gates.
+    [[nodiscard]] const std::vector<RunSensor>& sensors() const { return sensors_; }
+    [[nodiscard]] const SensorReading& reading(std::size_t sensor) const {
+        return readings_[sensor];
+    }
+    /// Those read last, ascending.
+    [[nodiscard]] std::span<const std::size_t> latest() const { return latest_; }
+    /// Counts who wants a heavy sensor's readings.
+    void want(std::size_t sensor, bool wants) { wanted_[sensor] += wants ? 1 : -1; }
+    /// Reads a heavy sensor now if it was not read in its newest period.
+    void take(std::size_t sensor, SimTime time, const Movers& movers);
+
+    [[nodiscard]] const FloorSensors& floor() const { return floor_; }
+    /// The bodies of robots and people where they are.
+    const MovingBodies& bodies(const Movers& movers);
+    /// What surrounds them, as light or sound meets it.
+    const RayWorld& mesh(Surfaces surfaces);
+
+  private:
+    void addSensors();
+    // Gates come last, mats before them.
+    [[nodiscard]] std::size_t gateOf(std::size_t sensor) const {
+        return sensor + floor_.gates().size() - sensors_.size();
+    }
+    [[nodiscard]] std::size_t matOf(std::size_t sensor) const {
+        return gateOf(sensor) + floor_.mats().size();
+    }
+    void readLatest(SimTime time, const Movers& movers);
+    void update(SimTime time, const Movers& movers);
+    void updateBodies(const Movers& movers);
+    void movePictures(const Movers& movers);
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Movers& movers) const;
+    void measure(std::size_t sensor, SimTime time);
+    void measure(const Laser& laser, std::size_t sensor, SimTime time);
+    void measure(const Ranger& ranger, std::size_t sensor, SimTime time);
+    void measure(const Camera& camera, std::size_t sensor, SimTime time);
+    void measure(const Tag& tag, std::size_t sensor, SimTime time);
+    void measure(const Receiver& receiver, std::size_t sensor, SimTime time);
+
+    const Scene* scene_;
+    FloorSensors floor_;
+    std::vector<RunSensor> sensors_;  // as they start
+    Worlds worlds_;
+    std::vector<Periods> periods_;
+    std::vector<SimTime> due_;
+    std::vector<int> wanted_;
+    std::vector<char> is_heavy_;
+    std::vector<SensorReading> readings_;
+    std::vector<std::optional<LaserCaster>> casters_;  // of lasers
+    std::vector<std::size_t> latest_;
+    // Those that hear, and those that are heard, where they are; made when one of them is read.
+    std::vector<Sensor> receivers_, tags_;
+    std::vector<Pose2> people_starts_;
+    std::unique_ptr<Photographer> photographer_;  // if there are cameras
+    bool moved_ = true;                           // since the bodies were made
+    bool pictures_moved_ = true;                  // since those of pictures were
+    std::vector<MovingBody> places_;
+    MovingBodies bodies_;
+};
+
+}  // namespace ispace
