@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "render/light_field.h"
 #include "render/light_tracer.h"
 #include "render/shading.h"
 #include "render/sight_tracer.h"
@@ -16,35 +17,6 @@
 namespace ispace {
 
 namespace {
-
-/// The light on what a pixel's centre shows.
-struct PixelLight {
-    std::array<float, 3> place{}, normal{};
-    Rgb direct{}, bounced{};
-    float depth = -1;  ///< below 0: there is nothing
-
-    [[nodiscard]] Rgb light() const {
-        return {direct[0] + bounced[0], direct[1] + bounced[1], direct[2] + bounced[2]};
-    }
-    /// True if a surface there goes on at another place: that then has the same light.
-    [[nodiscard]] bool reaches(const std::array<float, 3>& to,
-                               const std::array<float, 3>& facing) const {
-        if (depth < 0) return false;
-        float cosine = 0, height = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            cosine += normal[k] * facing[k];
-            height += normal[k] * (to[k] - place[k]);
-        }
-        return cosine > 0.9F && std::fabs(height) < 0.003F + 0.002F * depth;
-    }
-};
-
-std::array<float, 3> floats(Point3 p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-std::array<float, 3> floats(Vec3 v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 
 /// All that the threads of one picture share.
 struct Job {
@@ -57,7 +29,7 @@ struct Job {
     Shading shading;
     Rendering& out;
     std::vector<PixelPoint> samples;  ///< of each pixel, about its centre
-    std::vector<PixelLight> raw, smooth;
+    LightField field;
 
     Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
         Rendering& picture);
@@ -94,8 +66,7 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
         static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
     if (options.colors) {
         out.radiance.resize(pixels);
-        raw.resize(pixels);
-        smooth.resize(pixels);
+        field = LightField(out.columns, out.rows);
     }
     if (options.labels) out.labels.resize(pixels);
     if (options.depths) out.depths.resize(pixels);
@@ -128,15 +99,12 @@ class TileWorker {
             const SurfacePoint point = job_.shading.surface(tile_, lane);
             places_.set(lane, point.place, point.normal, point.lift);
             const double depth = length(point.place - tile_.origin(lane));
-            job_.raw[pixel] = {.place = floats(point.place),
-                               .normal = floats(point.normal),
-                               .depth = static_cast<float>(depth)};
+            job_.field.setPlace(pixel, {point.place, point.normal}, static_cast<float>(depth));
         });
         drawNumbers(column, row);
         lights_.gather(places_, draws_);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
-            job_.raw[pixel].direct = places_.direct[lane];
-            job_.raw[pixel].bounced = places_.bounced[lane];
+            job_.field.setLight(pixel, places_.direct[lane], places_.bounced[lane]);
         });
     }
 
@@ -210,27 +178,43 @@ class TileWorker {
     }
 
     void writeMeasures(int column, int row) {
-        const auto wide = static_cast<std::size_t>(std::min(kTile, job_.out.columns - column));
+        const bool has_labels = !job_.out.labels.empty(), has_depths = !job_.out.depths.empty();
+        if (has_labels) findLabels();
+        const int wide = std::min(kTile, job_.out.columns - column);
         const int high = std::min(kTile, job_.out.rows - row);
         for (int k = 0; k < high; ++k) {
             const std::size_t pixel = job_.pixel(column, row + k);
             const auto first = static_cast<std::size_t>(k) * kTile;
-            if (!job_.out.depths.empty())
-                std::copy_n(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
-            if (job_.out.labels.empty()) continue;
-            for (std::size_t i = 0; i < wide; ++i)
-                job_.out.labels[pixel + i] = tile_.meets(first + i) ? labelAt(first + i) : 0;
+            if (has_depths) copyRow(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
+            if (has_labels) copyRow(&labels_[first], wide, &job_.out.labels[pixel]);
         }
+    }
+
+    /// Whole rows of a tile are of a size that the compiler knows.
+    template <typename T>
+    static void copyRow(const T* from, int count, T* to) {
+        if (count == kTile)
+            std::copy_n(from, kTile, to);
+        else
+            std::copy_n(from, count, to);
+    }
+
+    /// Of all lanes. Most tiles show one triangle, whose label is then read once.
+    void findLabels() {
+        const bool is_one = tile_.is_one_triangle && !has_coverings_;
+        const std::uint16_t label = is_one ? labelAt(0) : std::uint16_t{0};
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            labels_[lane] = !tile_.meets(lane) ? std::uint16_t{0} : is_one ? label : labelAt(lane);
     }
 
     [[nodiscard]] std::uint16_t labelAt(std::size_t lane) const {
         const SurfaceKind kind = tile_.kind[lane];
         const SurfaceSet& set = kind == SurfaceKind::Solid ? solid_ : job_.scene.set(kind);
+        const std::uint16_t label = set.labels()[tile_.triangle[lane]];
+        if (label != 0 || !has_coverings_) return label;
         const Finish& finish = set.finish(tile_.triangle[lane]);
-        std::uint32_t label = finish.label;
-        if (label == 0 && has_coverings_)
-            label = job_.scene.finishAt(finish, tile_.place(lane)).label;
-        return static_cast<std::uint16_t>(std::min(label, 65535U));
+        return static_cast<std::uint16_t>(
+            std::min(job_.scene.finishAt(finish, tile_.place(lane)).label, 65535U));
     }
 
     /// By the pixel alone, whatever the threads.
@@ -260,17 +244,18 @@ class TileWorker {
 
     /// The light on a surface: that of the pixel or of one beside it, if it shows the same.
     Rgb lightAt(const SurfacePoint& point, std::size_t pixel, PixelPoint at) {
-        const auto place = floats(point.place), normal = floats(point.normal);
+        const FacingPlace surface(point.place, point.normal);
+        if (job_.field.reaches(pixel, surface)) return job_.field.light(pixel);
         const auto columns = static_cast<std::size_t>(job_.out.columns);
         const std::size_t column = pixel % columns, row = pixel / columns;
         const int x = at.column < 0 ? -1 : 1, y = at.row < 0 ? -1 : 1;
-        const int order[9][2] = {{0, 0},  {x, 0},  {0, y},  {x, y},  {-x, 0},
+        const int order[8][2] = {{x, 0},  {0, y},  {x, y},  {-x, 0},
                                  {0, -y}, {x, -y}, {-x, y}, {-x, -y}};
         for (const auto& [dx, dy] : order) {
             const int i = static_cast<int>(column) + dx, j = static_cast<int>(row) + dy;
             if (i < 0 || j < 0 || i >= job_.out.columns || j >= job_.out.rows) continue;
-            const PixelLight& beside = job_.smooth[job_.pixel(i, j)];
-            if (beside.reaches(place, normal)) return beside.light();
+            const std::size_t beside = job_.pixel(i, j);
+            if (job_.field.reaches(beside, surface)) return job_.field.light(beside);
         }
         return lightAlone(point, column, row);
     }
@@ -306,59 +291,11 @@ class TileWorker {
     SightTile tile_;
     LitPlaces places_;
     std::vector<float> draws_;
+    std::array<std::uint16_t, kLanes> labels_{};
     int drawn_column_ = -1, drawn_row_ = -1;
     const SurfaceSet& solid_ = *job_.scene.still->solid;
     bool has_coverings_ = !job_.scene.still->coverings.empty();
 };
-
-/// The light about a pixel: the mean of what lies `step` and two steps aside, the outermost for
-/// half, so that each point of a tile's net counts the same (Keller and Heidrich, Interleaved
-/// Sampling, 2001), and then each tile about (Dammertz et al., Edge-Avoiding A-Trous Wavelet
-/// Transform, 2010).
-PixelLight meanLight(const Job& job, const std::vector<PixelLight>& lights, int column, int row,
-                     int step) {
-    PixelLight mean = lights[job.pixel(column, row)];
-    if (mean.depth < 0) return mean;
-    Rgb direct{}, bounced{};
-    float whole = 0;
-    for (int j = -2; j <= 2; ++j)
-        for (int i = -2; i <= 2; ++i) {
-            const int x = column + step * i, y = row + step * j;
-            if (x < 0 || y < 0 || x >= job.out.columns || y >= job.out.rows) continue;
-            const PixelLight& other = lights[job.pixel(x, y)];
-            if (other.depth < 0 || !mean.reaches(other.place, other.normal)) continue;
-            const float weight =
-                (std::abs(i) == 2 ? 0.5F : 1.0F) * (std::abs(j) == 2 ? 0.5F : 1.0F);
-            for (std::size_t k = 0; k < 3; ++k) {
-                direct[k] += weight * other.direct[k];
-                bounced[k] += weight * other.bounced[k];
-            }
-            whole += weight;
-        }
-    for (std::size_t k = 0; k < 3; ++k) {
-        mean.direct[k] = direct[k] / whole;
-        mean.bounced[k] = bounced[k] / whole;
-    }
-    return mean;
-}
-
-/// Shadows of lamps are smoothed within a tile, what surfaces throw back over several.
-void smoothLight(Job& job) {
-    std::vector<PixelLight> near(job.raw.size());
-    const auto for_each_pixel = [&job](auto work) {
-        tbb::parallel_for(0, job.out.rows, [&job, &work](int row) {
-            for (int column = 0; column < job.out.columns; ++column)
-                work(job.pixel(column, row), column, row);
-        });
-    };
-    for_each_pixel([&](std::size_t pixel, int column, int row) {
-        near[pixel] = meanLight(job, job.raw, column, row, 1);
-    });
-    for_each_pixel([&](std::size_t pixel, int column, int row) {
-        job.smooth[pixel] = meanLight(job, near, column, row, kTile);
-        job.smooth[pixel].direct = near[pixel].direct;
-    });
-}
 
 /// Calls work(worker, column, row) for each tile.
 template <typename Work>
@@ -387,7 +324,7 @@ Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
     }
     forEachTile(job,
                 [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
-    smoothLight(job);
+    job.field.smooth();
     forEachTile(job, [](TileWorker& worker, int column, int row) { worker.color(column, row); });
     return out;
 }

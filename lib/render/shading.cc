@@ -57,7 +57,10 @@ Vec3 Shading::normalAt(const SightTile& tile, std::size_t lane, Point3 place) co
 }
 
 SurfacePoint Shading::surface(const SightTile& tile, std::size_t lane) const {
-    if (!tile.meets(lane)) return ground(tile, lane);
+    return tile.meets(lane) ? met(tile, lane) : ground(tile, lane);
+}
+
+SurfacePoint Shading::met(const SightTile& tile, std::size_t lane) const {
     const SurfaceSet& set = scene_.set(tile.kind[lane]);
     SurfacePoint point;
     point.place = tile.place(lane);

@@ -37,6 +37,7 @@ class Shading {
     [[nodiscard]] Rgb lit(const SurfacePoint& point, const Rgb& light) const;
 
   private:
+    [[nodiscard]] SurfacePoint met(const SightTile& tile, std::size_t lane) const;
     [[nodiscard]] SurfacePoint ground(const SightTile& tile, std::size_t lane) const;
     [[nodiscard]] Vec3 normalAt(const SightTile& tile, std::size_t lane, Point3 place) const;
 

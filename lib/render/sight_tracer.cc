@@ -90,6 +90,22 @@ ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, Pix
     }
 }
 
+ISPACE_SIMD_CLONES void readHits(const RTCRayHit16& hits, SightTile& tile) {
+    const std::uint32_t triangle = hits.hit.primID[0], kind = hits.hit.geomID[0];
+    std::uint32_t other = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        tile.triangle[lane] = hits.hit.primID[lane];
+        tile.kind[lane] = static_cast<SurfaceKind>(hits.hit.geomID[lane]);
+        other |= (hits.hit.primID[lane] ^ triangle) | (hits.hit.geomID[lane] ^ kind);
+    }
+    tile.is_one_triangle = other == 0 && kind != RTC_INVALID_GEOMETRY_ID;
+}
+
+ISPACE_SIMD_CLONES void blacken(SightTile& tile) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        tile.multiples[lane] = simd::choose(tile.is_black[lane], kNoReturn, tile.multiples[lane]);
+}
+
 }  // namespace
 
 void SightTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
@@ -114,10 +130,7 @@ void SightTracer::trace(SightTile& tile) {
         for (const unsigned geometry : hits_.hit.geomID)
             is_careful |= geometry == static_cast<unsigned>(SurfaceKind::Body);
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        tile.triangle[lane] = hits_.hit.primID[lane];
-        tile.kind[lane] = static_cast<SurfaceKind>(hits_.hit.geomID[lane]);
-    }
+    readHits(hits_, tile);
     std::uint32_t care = ~0U >> (32 - kLanes);
     if (!is_careful) {
         const TriangleSet& set = solid.triangles();
@@ -128,8 +141,7 @@ void SightTracer::trace(SightTile& tile) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(care));
         tile.multiples[lane] = static_cast<float>(resolve(tile, lane));
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-        if (tile.is_black[lane]) tile.multiples[lane] = kNoReturn;
+    blacken(tile);
 }
 
 double SightTracer::resolve(const SightTile& tile, std::size_t lane) const {

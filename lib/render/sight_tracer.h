@@ -17,7 +17,8 @@ struct SightTile : RayPacket {
     std::array<bool, kLanes> is_black{};
     std::array<std::uint32_t, kLanes> triangle{};
     std::array<SurfaceKind, kLanes> kind{};
-    bool has_new_origins = true;  ///< since it was traced last
+    bool has_new_origins = true;   ///< since it was traced last
+    bool is_one_triangle = false;  ///< that all lanes meet, but for black ones
 
     SightTile() {
         reach.fill(kFarthest);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/surface_set.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -32,8 +33,12 @@ void FinishedSoup::add(const Mesh& mesh, Finish finish, Vec3 shift) {
 SurfaceSet::SurfaceSet(RTCDeviceTy* device, const FinishedSoup& soup, unsigned geometry_id)
     : triangles_(soup.triangles) {
     finishes_.reserve(triangles_.size());
-    for (std::size_t i = 0; i < triangles_.size(); ++i)
+    labels_.reserve(triangles_.size());
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
         finishes_.push_back(soup.finishes[triangles_.source(i)]);
+        labels_.push_back(
+            static_cast<std::uint16_t>(std::min(finishes_.back().label, std::uint32_t{65535})));
+    }
     scene_ = buildTriangles(device, triangles_, geometry_id, [device] { throwIfFailed(device); });
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "env/mesh.h"
@@ -38,11 +39,15 @@ class SurfaceSet {
     [[nodiscard]] bool empty() const { return triangles_.size() == 0; }
     [[nodiscard]] const TriangleSet& triangles() const { return triangles_; }
     [[nodiscard]] const Finish& finish(std::size_t triangle) const { return finishes_[triangle]; }
+    /// Labels of the triangles as pictures hold them: 65535 stands for all from there on. Kept
+    /// apart, since pictures of labels read nothing else of a finish.
+    [[nodiscard]] std::span<const std::uint16_t> labels() const { return labels_; }
     [[nodiscard]] RTCSceneTy* scene() const { return scene_.get(); }
 
   private:
     TriangleSet triangles_;
     std::vector<Finish> finishes_;  // of the set's triangles
+    std::vector<std::uint16_t> labels_;
     EmbreeTriangles scene_;
 };
 
