@@ -98,10 +98,22 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
              "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
 }
 
+/// The last word on a run: what it was expected to do.
+void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
+              const SceneInput& input) {
+    const std::vector<RunVerdict> verdicts = judge.verdicts();
+    if (!options.junit.empty())
+        writeAll(options.junit, junitXml(verdicts, baseName(input.environment_operand)));
+    if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
+    if (!verdicts.empty())
+        talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
+}
+
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
     claimOutput(options.port_file, "--port-file");
+    claimOutput(options.junit, "--junit");
     if (!options.record.empty())
         for (const std::string& file : Recorder::filesIn(options.record))
             claimOutput(file, "a file of --record");
@@ -112,6 +124,9 @@ void simrun(const SimrunCommand& command) {
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
     CollisionLog collisions(world, options.common);
     simulation.onStep([&collisions] { collisions.tell(); });
+    auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
+    judge.observe();
+    simulation.onStep([&judge] { judge.observe(); });
 
     checkRecord(options, world);
     Server server(simulation, options.listen, withinFileLimit(options.limits));
@@ -141,6 +156,7 @@ void simrun(const SimrunCommand& command) {
     progress->end();
     if (recorder) recorder->flush(world);
     report(simulation, options);
+    conclude(judge, options, input);
 }
 
 }  // namespace

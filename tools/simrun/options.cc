@@ -27,10 +27,12 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
           "output says where; TERM, INT and the request SHUTDOWN end the run.") {
     line_.operands(options_.operands, 2);
     declareRun();
+    declareJudgement();
     declareServer();
     addAnyEnvironmentOption(line_, options_.any_environment);
     addCommonOptions(line_, options_.common, "");
     line_.parse(argc, argv);
+    takeExpectations();
     options_.limits.shutdown = options_.shutdown.value_or(true);
 }
 
@@ -60,6 +62,25 @@ void SimrunCommand::declareRun() {
         "--record-limit", "SIZE",
         [&o](const std::string& text) { o.max_recorded = byteCount(text); },
         "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
+}
+
+void SimrunCommand::declareJudgement() {
+    SimrunOptions& o = options_;
+    line_.texts("--expect", "SENTENCE", expected_,
+                "exit with 3 unless the run does this, e.g. 'r1 within 0.4 of 2,1 before 60', "
+                "'no collision', 'h1 unseen at most 5' (see the manual)",
+                Enters::Nothing);
+    line_.file("--junit", "FILE", o.junit,
+               "write what became of the expectations there, as XML that CI servers read",
+               Enters::Nothing);
+}
+
+void SimrunCommand::takeExpectations() {
+    for (const std::string& text : expected_)
+        options_.expected.push_back(
+            ofOption("--expect", [&text] { return parseExpectation(text); }));
+    if (line_.given("--junit") && expected_.empty())
+        throw UsageError("--junit writes what became of expectations: give --expect");
 }
 
 void SimrunCommand::declareServer() {

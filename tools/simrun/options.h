@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "net/server.h"
+#include "sim/expect.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -22,7 +23,9 @@ struct SimrunOptions {
     std::string script;                                     ///< "" without; "-" is stdin
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
-    std::string port_file;                                  ///< "" without
+    std::vector<Expectation> expected;
+    std::string junit;      ///< file; "" without
+    std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<bool> shutdown;
     ServerLimits limits;
@@ -35,7 +38,11 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
 
   private:
     void declareRun();
+    void declareJudgement();
+    void takeExpectations();
     void declareServer();
+
+    std::vector<std::string> expected_;
 };
 
 }  // namespace ispace

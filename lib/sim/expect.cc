@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/expect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/zone.h"
+#include "geom/polygon.h"
+#include "sense/sensors.h"
+#include "sense/watch.h"
+
+namespace ispace {
+
+namespace {
+
+using State = Expectation::State;
+using When = Expectation::When;
+
+/// What is seen of somebody at a step.
+struct Observation {
+    bool holds = false;          ///< the state, as the expectation has it
+    double measure = 0;          ///< metres, sensors or m/s, by the state
+    std::string_view into = {};  ///< of a collision
+};
+
+/// One expectation about one robot or person.
+struct Trial {
+    std::size_t expectation = 0;
+    std::string id;
+    std::optional<std::size_t> mover;  // its index; nothing while it is not there
+    std::optional<SimTime> since;      // when the state began to hold
+    std::optional<SimTime> decided;    // when the verdict was clear
+    bool is_met = false;
+    bool was_observed = false;                                 // within the window
+    double nearest = std::numeric_limits<double>::infinity();  // it came, metres
+    SimTime nearest_time{}, longest{};                         // longest: that the state held
+    std::string reason;                                        // why it is not met
+};
+
+std::string at(SimTime time) { return " at t=" + formatMilliseconds(time); }
+
+std::string rounded(double value) { return formatDouble(roundSignificant(value, 4)); }
+
+std::vector<std::string> namesOf(const World& world) {
+    std::vector<std::string> names;
+    for (const PlacedRobot& robot : world.robots()) names.push_back(robot.id);
+    return names;
+}
+
+std::optional<std::size_t> moverNamed(const World& world, std::string_view id) {
+    return world.robotNamed(id);
+}
+
+UsageError unknown(const World& world, const std::string& id) {
+    return UsageError("no robot or person is " + excerpt(id) + didYouMean(id, namesOf(world)));
+}
+
+/// "is not within 0.4 m of h1", "is seen by 0 sensors".
+std::string stateText(const Expectation& expectation, const Observation& seen) {
+    const std::string is = seen.holds == expectation.is_negated ? "was not " : "was ";
+    switch (expectation.state) {
+        case State::Collision:
+            return "ran into " + std::string(seen.into);
+        case State::Near:
+            return "was " + rounded(seen.measure) + " m away";
+        case State::InZone:
+            return is + "in zone " + expectation.name;
+        case State::Seen:
+            return "was seen by " + formatDouble(seen.measure) +
+                   (seen.measure == 1 ? " sensor" : " sensors");
+        case State::Stalled:
+            return is + "stalled";
+        case State::Still:
+        case State::Faster:
+        case State::Slower:
+            return "went at " + rounded(seen.measure) + " m/s";
+    }
+    return {};
+}
+
+/// The state was observed; decides what can be decided.
+void decide(Trial& trial, const Expectation& expectation, const Observation& seen, SimTime now) {
+    const auto settle = [&](bool is_met, const std::string& reason) {
+        trial.decided = now;
+        trial.is_met = is_met;
+        if (!is_met) trial.reason = trial.id + ' ' + reason;
+    };
+    if (trial.since) trial.longest = std::max(trial.longest, now - *trial.since);
+    const SimTime since = trial.since.value_or(now);
+    if (!seen.holds)
+        trial.since.reset();
+    else if (!trial.since)
+        trial.since = now;
+    switch (expectation.when) {
+        case When::Once:
+            if (seen.holds) settle(true, "");
+            break;
+        case When::Always:
+            if (!seen.holds) settle(false, stateText(expectation, seen) + at(now));
+            break;
+        case When::Never:
+            if (seen.holds) settle(false, stateText(expectation, seen) + at(now));
+            break;
+        case When::AtLeast:
+            if (trial.longest >= expectation.span || (seen.holds && expectation.span == SimTime(0)))
+                settle(true, "");
+            break;
+        case When::AtMost:
+            if (trial.longest > expectation.span)
+                settle(false, "was so for more than " + formatSimTime(expectation.span) +
+                                  " s from t=" + formatMilliseconds(since));
+            break;
+    }
+}
+
+/// Of what was not decided earlier.
+bool holdsAtTheEnd(const Trial& trial, const Expectation& expectation) {
+    switch (expectation.when) {
+        case When::Once:
+            return false;
+        case When::AtLeast:
+            return trial.longest >= expectation.span;
+        case When::AtMost:
+            return trial.longest <= expectation.span;
+        case When::Always:
+        case When::Never:
+            return true;
+    }
+    return false;
+}
+
+/// The run, or the window, has ended.
+void close(Trial& trial, const Expectation& expectation, SimTime now) {
+    const bool is_over = now >= expectation.before;  // the window, not the run alone
+    trial.decided = std::min(now, expectation.before);
+    trial.is_met = trial.was_observed && holdsAtTheEnd(trial, expectation);
+    if (trial.is_met) return;
+    const std::string end = is_over ? "" : "; the run ended" + at(now);
+    if (!trial.was_observed)
+        trial.reason = trial.id + " was not there in time" + end;
+    else if (expectation.when == When::AtLeast)
+        trial.reason = trial.id + " was so for " + formatMilliseconds(trial.longest) +
+                       " s at the longest" + end;
+    else if (std::isfinite(trial.nearest))
+        trial.reason = trial.id + " came no nearer than " + rounded(trial.nearest) +
+                       " m (t=" + formatMilliseconds(trial.nearest_time) + ')' + end;
+    else
+        trial.reason = trial.id + " was never so" + end;
+}
+
+}  // namespace
+
+struct ExpectationJudge::Data {
+    Data(const World& simulated, std::vector<Expectation> list);
+
+    void addTrials(std::size_t expectation);
+    void checkTarget(const Expectation& expectation);
+    void find();
+    [[nodiscard]] std::optional<Point2> placeOf(const Expectation& expectation) const;
+    [[nodiscard]] Observation look(const Trial& trial) const;
+    [[nodiscard]] Observation lookForCollision(std::string_view id) const;
+    [[nodiscard]] bool collided(std::size_t mover) const;
+    [[nodiscard]] std::size_t seenBy(std::size_t mover) const;
+    void observe(Trial& trial);
+
+    const World* world;
+    std::vector<Expectation> expectations;
+    std::vector<Polygon> zones;  // of the expectations; empty without
+    std::vector<Trial> trials;
+    std::optional<Watch> watch;
+    std::vector<Pose2> robots;  // where they are, for the watch
+    std::int64_t changes = 0;   // of the world, when everything was found
+};
+
+ExpectationJudge::Data::Data(const World& simulated, std::vector<Expectation> list)
+    : world(&simulated), expectations(std::move(list)) {
+    for (std::size_t i = 0; i < expectations.size(); ++i) {
+        try {
+            addTrials(i);
+            checkTarget(expectations[i]);
+        } catch (const UsageError& error) {
+            throw UsageError(excerpt(expectations[i].text) + ": " + error.what());
+        }
+    }
+    find();
+}
+
+void ExpectationJudge::Data::addTrials(std::size_t expectation) {
+    const std::string& subject = expectations[expectation].subject;
+    const std::size_t before = trials.size();
+    for (const std::string& name : namesOf(*world)) {
+        if (!isSelected(name, {subject})) continue;
+        Trial& trial = trials.emplace_back();
+        trial.expectation = expectation;
+        trial.id = name;
+    }
+    if (trials.size() == before && subject != "*") throw unknown(*world, subject);
+}
+
+void ExpectationJudge::Data::checkTarget(const Expectation& expectation) {
+    zones.emplace_back();
+    if (expectation.state == State::InZone)
+        zones.back() = readZone(expectation.name, world->scene().environment).outline;
+    if (expectation.state == State::Near && !expectation.place &&
+        !moverNamed(*world, expectation.name))
+        throw unknown(*world, expectation.name);
+}
+
+/// Everybody in the world as it is since its last change.
+void ExpectationJudge::Data::find() {
+    changes = world->changes();
+    for (Trial& trial : trials) trial.mover = moverNamed(*world, trial.id);
+    const bool is_watched =
+        std::any_of(expectations.begin(), expectations.end(),
+                    [](const Expectation& each) { return each.state == State::Seen; });
+    if (is_watched) watch.emplace(world->scene());
+}
+
+std::optional<Point2> ExpectationJudge::Data::placeOf(const Expectation& expectation) const {
+    if (expectation.place) return expectation.place;
+    const auto other = moverNamed(*world, expectation.name);
+    if (!other) return std::nullopt;
+    return world->status(*other).pose.position;
+}
+
+Observation ExpectationJudge::Data::lookForCollision(std::string_view id) const {
+    for (const Collision& collision : world->collisions()) {
+        const std::string& who = world->robots()[collision.robot].id;
+        if (who == id) return {.holds = true, .into = collision.into};
+        if (collision.into == id) return {.holds = true, .into = who};
+    }
+    return {};
+}
+
+bool ExpectationJudge::Data::collided(std::size_t mover) const {
+    const auto collisions = world->collisions();
+    return std::any_of(collisions.begin(), collisions.end(),
+                       [mover](const Collision& each) { return each.robot == mover; });
+}
+
+std::size_t ExpectationJudge::Data::seenBy(std::size_t mover) const {
+    return watch->seenBy({robots[mover].position, static_cast<std::uint32_t>(mover)},
+                         {.robots = robots});
+}
+
+/// \pre somebody has this id
+Observation ExpectationJudge::Data::look(const Trial& trial) const {
+    const Expectation& expectation = expectations[trial.expectation];
+    const RobotStatus status = world->status(*trial.mover);
+    const double speed = std::abs(status.speed);
+    switch (expectation.state) {
+        case State::Collision:
+            return lookForCollision(trial.id);
+        case State::Stalled:
+            // A command given since the step may have cleared the flag.
+            return {.holds = status.stall || collided(*trial.mover)};
+        case State::Still:
+            return {.holds = speed == 0 && status.rotspeed == Angle(), .measure = speed};
+        case State::Faster:
+            return {.holds = speed > expectation.amount, .measure = speed};
+        case State::Slower:
+            return {.holds = speed < expectation.amount, .measure = speed};
+        case State::InZone:
+            return {.holds =
+                        locate(zones[trial.expectation], status.pose.position) != Side::Outside};
+        case State::Seen: {
+            const auto count = static_cast<double>(seenBy(*trial.mover));
+            return {.holds = count >= expectation.amount, .measure = count};
+        }
+        case State::Near:
+            break;
+    }
+    const auto place = placeOf(expectation);
+    const double away =
+        place ? distance(*place, status.pose.position) : std::numeric_limits<double>::infinity();
+    return {.holds = away <= expectation.amount, .measure = away};
+}
+
+void ExpectationJudge::Data::observe(Trial& trial) {
+    const Expectation& expectation = expectations[trial.expectation];
+    const SimTime now = world->time();
+    if (now < expectation.after) return;
+    if (now > expectation.before) {
+        if (trial.since) trial.longest = std::max(trial.longest, expectation.before - *trial.since);
+        close(trial, expectation, now);
+        return;
+    }
+    if (!trial.mover) return;
+    trial.was_observed = true;
+    Observation seen = look(trial);
+    seen.holds = seen.holds != expectation.is_negated;
+    if (expectation.state == State::Near && !expectation.is_negated &&
+        seen.measure < trial.nearest) {
+        trial.nearest = seen.measure;
+        trial.nearest_time = now;
+    }
+    decide(trial, expectation, seen, now);
+}
+
+ExpectationJudge::ExpectationJudge(const World& world, std::vector<Expectation> expectations)
+    : data_(std::make_unique<Data>(world, std::move(expectations))) {}
+ExpectationJudge::~ExpectationJudge() = default;
+ExpectationJudge::ExpectationJudge(ExpectationJudge&&) noexcept = default;
+ExpectationJudge& ExpectationJudge::operator=(ExpectationJudge&&) noexcept = default;
+
+void ExpectationJudge::observe() {
+    Data& data = *data_;
+    if (data.world->changes() != data.changes) data.find();
+    if (data.watch) {
+        data.robots.resize(data.world->robots().size());
+        for (std::size_t i = 0; i < data.robots.size(); ++i)
+            data.robots[i] = data.world->status(i).pose;
+    }
+    for (Trial& trial : data.trials)
+        if (!trial.decided) data.observe(trial);
+}
+
+std::vector<RunVerdict> ExpectationJudge::verdicts() const {
+    std::vector<RunVerdict> verdicts;
+    for (const Expectation& expectation : data_->expectations)
+        verdicts.push_back({.expectation = expectation.text, .is_met = true});
+    for (Trial trial : data_->trials) {
+        if (!trial.decided)
+            close(trial, data_->expectations[trial.expectation], data_->world->time());
+        RunVerdict& verdict = verdicts[trial.expectation];
+        // The first failure tells; else the last success.
+        if (!trial.is_met && (verdict.is_met || *trial.decided < verdict.time)) {
+            verdict.is_met = false;
+            verdict.time = *trial.decided;
+            verdict.reason = trial.reason;
+        } else if (trial.is_met && verdict.is_met) {
+            verdict.time = std::max(verdict.time, *trial.decided);
+        }
+    }
+    return verdicts;
+}
+
+std::string unmetText(const std::vector<RunVerdict>& verdicts) {
+    std::string text;
+    for (const RunVerdict& verdict : verdicts)
+        if (!verdict.is_met)
+            text.append(text.empty() ? "" : "; ")
+                .append("expected `" + verdict.expectation + "`: " + verdict.reason);
+    return text;
+}
+
+}  // namespace ispace

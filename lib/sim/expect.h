@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geom/point.h"
+#include "sim/sim_time.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// What a run is expected to do, as one sentence says it:
+///
+///     no collision|stall [of SUBJECT] [WINDOW]
+///     SUBJECT [not] STATE [WHEN] [WINDOW]
+///
+/// SUBJECT is the id of a robot or a person, or a glob (`r*`) whose every match is meant. WINDOW is
+/// `after T`, `before T` or both, ends included. STATE and WHEN are:
+///
+///     within D of X,Y | within D of ID | in zone ZONE | seen [by N] | unseen
+///     stalled | still | faster than V | slower than V
+///
+///     once (the default) | always | never | for at least D | at most D
+///
+/// `always` and `never` may also stand before the state. A state that holds at a step lasts until
+/// the next one. `for at least` wants it to last so long without a break; `at most` wants no time
+/// without a break to be longer. `seen by N` is by N sensors or more, see Watch.
+struct Expectation {
+    enum class State { Collision, Stalled, Still, Near, InZone, Seen, Faster, Slower };
+    enum class When { Once, Always, Never, AtLeast, AtMost };
+
+    std::string text;  ///< as it was given
+    std::string subject = "*";
+    State state = State::Collision;
+    bool is_negated = false;      ///< the state counts where it does not hold
+    double amount = 0;            ///< metres, m/s, or sensors
+    std::optional<Point2> place;  ///< Near: of it,
+    std::string name;             ///< or of who has this id; InZone: the zone
+    When when = When::Once;
+    SimTime span{};  ///< AtLeast, AtMost
+    SimTime after{};
+    SimTime before = SimTime::max();
+};
+
+/// \throws UsageError saying what was wanted where
+Expectation parseExpectation(std::string_view text);
+
+/// What became of an expectation.
+struct RunVerdict {
+    std::string expectation;
+    bool is_met = false;
+    SimTime time{};           ///< when that was clear
+    std::string reason = {};  ///< why it is not met: "r1 was 1.2 m away at t=4.500, never nearer"
+};
+
+/// Judges a run by what is expected of it. The same run gets the same verdicts, however fast it is
+/// and whoever drives it.
+class ExpectationJudge {
+  public:
+    /// The world must outlive it. \throws UsageError for subjects and zones that it does not have
+    ExpectationJudge(const World& world, std::vector<Expectation> expectations);
+    ~ExpectationJudge();
+    ExpectationJudge(ExpectationJudge&&) noexcept;
+    ExpectationJudge& operator=(ExpectationJudge&&) noexcept;
+
+    /// Looks at the world: once before the first step and after every one.
+    void observe();
+    /// In the order of the expectations, as if the run ended now.
+    [[nodiscard]] std::vector<RunVerdict> verdicts() const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// What is not met, a line each, for messages; "" if all is.
+std::string unmetText(const std::vector<RunVerdict>& verdicts);
+
+/// The verdicts in the XML that CI servers read as JUnit's: a testsuite with a testcase for each
+/// expectation, its time that of the verdict in simulated seconds, and a failure where it is not
+/// met. \param suite its name, e.g. that of the environment
+std::string junitXml(const std::vector<RunVerdict>& verdicts, const std::string& suite);
+
+}  // namespace ispace
