@@ -95,9 +95,10 @@ class ViewDrawer {
         how.labels = !highlighted_.empty();
         how.depths = true;
         how.hidden = standpoint_.hidden;
+        how.light = options_.light;
         if (standpoint_.looks_in) {
             how.background = Rgb{1, 1, 1};
-            how.light = Illumination::Lamps;
+            if (how.light == Illumination::Auto) how.light = Illumination::Lamps;
         }
         picture_ = renderInBands(RenderScene(scene_, what), standpoint_.eye->viewpoint(), how);
     }
@@ -162,7 +163,8 @@ class ViewDrawer {
     /// The rendered picture at its size.
     [[nodiscard]] Image finished() const {
         constexpr double kPaper = 1.15;  // a floor looks dull beside white
-        std::vector<std::uint8_t> bytes = toSrgb8(picture_, standpoint_.looks_in ? kPaper : 1);
+        std::vector<std::uint8_t> bytes =
+            toSrgb8(picture_, options_.exposure * (standpoint_.looks_in ? kPaper : 1));
         if (standpoint_.looks_in)  // paper
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
                 if (!std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1})
@@ -337,10 +339,12 @@ Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
 std::string standpointWarning(const ViewSpec& spec, const Scene& scene) {
     if (spec.mode != ViewMode::FirstPerson && spec.mode != ViewMode::Omni) return "";
     const Point3 place{spec.at->x, spec.at->y, spec.z.value_or(kEyeHeight)};
+    if (place.z < 0) return spec.name + ": the viewer is below the floor";
     if (BurialTest(scene.environment).isBuried(place))
         return spec.name + ": the viewer stands inside something solid";
-    if (scene.environment.indoor().locate(*spec.at) == Side::Outside)
-        return spec.name + ": the viewer stands outside the room";
+    const Side side = scene.environment.indoor().locate(*spec.at);
+    if (side == Side::Outside) return spec.name + ": the viewer stands outside the room";
+    if (side == Side::Boundary) return spec.name + ": the viewer stands on the line of a wall";
     return "";
 }
 

@@ -6,6 +6,7 @@
 
 #include "draw/picture.h"
 #include "layout/scene.h"
+#include "render/render.h"
 #include "view/eye.h"
 
 namespace ispace {
@@ -22,6 +23,9 @@ struct ViewOptions {
     std::vector<std::string> highlight = {};  ///< ids of records that stand out
     bool labels = true;                       ///< ids beside sensors and robots, dots for cameras
     int samples = 16;                         ///< of each pixel, see RenderOptions
+    /// Auto: lamps for those who look in from outside, else as RenderOptions has it.
+    Illumination light = Illumination::Auto;
+    double exposure = 1;  ///< factor of brightness
     /// Where other pictures are taken from: red points in those to scale (thesis, section 3.3.1).
     std::vector<Point3> viewers = {};
     std::vector<std::vector<Point2>> ways = {};  ///< that robots have gone
@@ -32,8 +36,8 @@ struct ViewOptions {
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options);
 
-/// What the user may not have meant, a phrase: the viewer is outside the room, or inside something
-/// solid; "" if all is well.
+/// What the user may not have meant, a phrase: the viewer is below the floor, on the line of a
+/// wall, outside the room, or inside something solid; "" if all is well.
 std::string standpointWarning(const ViewSpec& spec, const Scene& scene);
 
 /// The scene with a robot elsewhere, and with it what it carries. \pre it has that robot

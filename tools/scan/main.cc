@@ -117,6 +117,7 @@ void scan(const ScanCommand& command) {
     std::vector<std::string> files = filesOf(input);
     const Sensors sensors =
         moves ? sensorForPoses(options, scene, devices, files) : placedSensors(options, input);
+    command.checkSensors(sensors.read);
     if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     warn(options.common, "scan", format->warnings());

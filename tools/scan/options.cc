@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan/options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -115,8 +116,8 @@ void ScanCommand::declarePictures() {
                 "by default",
                 Enters::History);
     line_.choice("--light", light_, {"auto", "lamps", "sky"},
-                 "pictures of cameras: lamps under the ceiling, or sun and sky (default auto: "
-                 "lamps where there is a ceiling)",
+                 "pictures and views: lamps under the ceiling, or sun and sky (default auto: "
+                 "lamps where there is a ceiling, and for views from outside)",
                  Enters::History);
     constexpr double kMaxStops = 20;
     line_.parsed(
@@ -124,7 +125,7 @@ void ScanCommand::declarePictures() {
         [&photo](const std::string& text) {
             photo.exposure = std::exp2(numberWithin(text, -kMaxStops, kMaxStops));
         },
-        "pictures of cameras: stops brighter, negative darker (default 0: a white wall in full "
+        "pictures and views: stops brighter, negative darker (default 0: a white wall in full "
         "light is white)",
         Enters::History);
     line_.switchFlag("--sensor-bodies", "--no-sensor-bodies", sensor_bodies_,
@@ -171,10 +172,26 @@ void ScanCommand::check() {
     }
 }
 
+void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
+    const auto reads = [&read](auto is_one) {
+        return std::any_of(read.begin(), read.end(), is_one);
+    };
+    if (!reads([](const Sensor& sensor) { return sensor.is<Camera>(); }))
+        for (const char* name :
+             {"--samples", "--light", "--exposure", "--sensor-bodies", "--layers", "--color"})
+            if (line_.given(name))
+                throw UsageError(std::string(name) +
+                                 " is for pictures of cameras, and no camera is read");
+    const bool has_depths =
+        options_.format == "png" && reads([](const Sensor& sensor) { return sensor.is<Ranger>(); });
+    if (line_.given("--color") && !has_depths)
+        throw UsageError("--color is for depth pictures of rangers, and none is written");
+}
+
 void ScanCommand::checkViews() const {
     const ScanToolOptions& o = options_;
-    for (const char* name : {"--select", "--poses", "--model", "--motion", "--noise", "--light",
-                             "--exposure", "--sensor-bodies", "--layers"})
+    for (const char* name :
+         {"--select", "--poses", "--model", "--motion", "--noise", "--sensor-bodies", "--layers"})
         if (line_.given(name))
             throw UsageError(std::string(name) + " is about readings, and --view takes none");
     if (o.format != "png" && o.format != "jpeg")

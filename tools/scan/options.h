@@ -41,6 +41,9 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     /// Opens no file. \throws UsageError, TextRequested
     ScanCommand(int argc, const char* const* argv);
 
+    /// Options that say nothing about any of the sensors read are mistakes. \throws UsageError
+    void checkSensors(const std::vector<Sensor>& read) const;
+
   private:
     void declare();
     void declarePictures();

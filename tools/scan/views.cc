@@ -100,7 +100,8 @@ class PictureFiles {
                 writeFile(set_->fileOf(views[i].name, frame, ending()), image);
             else
                 images.push_back(std::move(image));
-            names.push_back(views[i].id.empty() ? views[i].name : views[i].id);
+            // A camera's picture is the camera's (thesis, fig. 3.15).
+            names.push_back(views[i].mode == ViewMode::Camera ? views[i].id : views[i].name);
         }
         if (!set_) writeFile(output_, sheet.draw(images, names));
     }
@@ -214,6 +215,8 @@ void takeViews(const ScanCommand& command) {
             drawing.ways = run->waysUntil(time);
         }
         drawing.samples = options.photo.samples;
+        drawing.light = options.photo.light;
+        drawing.exposure = options.photo.exposure;
         drawing.viewers = viewersOf(views, scene);
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
