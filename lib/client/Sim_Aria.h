@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// ARIA's classes for robots of simrun: a program that drives a Pioneer changes its include,
+///
+///     #include "Sim_Aria.h"     // instead of "Aria.h" or "Aria/Aria.h"
+///
+/// or, unchanged, is compiled with the folder aria/ in its include path, where both names lead
+/// here. C++11, headers and -pthread alone. Then
+///
+///     simrun room.env robots.3dm --listen 127.0.0.1:7001 &
+///     ISPACE_SIMRUN=127.0.0.1:7001 ISPACE_ROBOT=r1 ./program
+///
+/// Units and rounding are ARIA's: mm, degrees, speeds in whole mm/s and degrees/s, cycles of 100
+/// ms. Time is the room's (sim_aria/clock.h): with `--clock real:20` all goes twenty times as fast,
+/// and with
+/// `--clock step` the world advances while the program sleeps, the same way each time.
+///
+/// There are the classes of a program that drives by itself: Aria, ArRobot, ArPose, ArSonarDevice,
+/// ArSerialConnection, ArTcpConnection, ArSimpleConnector, ArRobotConnector, ArArgumentParser,
+/// ArSignalHandler, ArCommands, ArUtil, ArMath, ArTime, ArLog and functors. Actions, lasers of ARIA
+/// and ArNetworking are not there.
+#ifndef SIM_ARIA_H
+#define SIM_ARIA_H
+
+#include <sim_aria/commands.h>
+#include <sim_aria/connection.h>
+#include <sim_aria/connector.h>
+#include <sim_aria/math.h>
+#include <sim_aria/process.h>
+#include <sim_aria/range_device.h>
+#include <sim_aria/robot.h>
+#include <sim_aria/util.h>
+
+#endif  // SIM_ARIA_H
