@@ -98,6 +98,42 @@ std::vector<Polygon> legs(double height) {
             ellipse({0, kLegPlace * height}, diameter, diameter, {})};
 }
 
+/// How far ahead a swinging limb gets per metre below its joint.
+double slopeOf(Angle swing) { return std::tan(swing.radians()); }
+
+/// Swings the vertices from `first` on about a joint at height `joint`: those on the left forward,
+/// those on the right back.
+void shear(Mesh& mesh, std::size_t first, double joint, double slope) {
+    if (slope == 0) return;
+    for (std::size_t i = first; i < mesh.vertices.size(); ++i) {
+        Point3& p = mesh.vertices[i];
+        p.x += (p.y > 0 ? slope : -slope) * (joint - p.z);
+    }
+}
+
+/// A limb that hangs from its top, in pieces if it swings.
+void addLimb(std::vector<Upright>& parts, const Upright& limb, double slope) {
+    constexpr int kPieces = 4;
+    if (slope == 0) return parts.push_back(limb);
+    const auto add = [&](double low, double high) {
+        Upright piece = limb;
+        piece.bottom = low;
+        piece.top = high;
+        piece.center.x += slope * (limb.top - (low + high) / 2);
+        parts.push_back(piece);
+    };
+    double low = limb.bottom;
+    int left = kPieces;
+    if (low == 0 && 2 * kScanHeight < limb.top) {
+        add(0, 2 * kScanHeight);
+        low = 2 * kScanHeight;
+        --left;
+    }
+    const double each = (limb.top - low) / left;
+    for (int i = 0; i < left; ++i)
+        add(low + i * each, i + 1 == left ? limb.top : low + (i + 1) * each);
+}
+
 }  // namespace
 
 std::vector<Mesh> bodyOf(const Scene& scene, const Placed& placed) {
@@ -131,17 +167,20 @@ Mesh robotMesh(const RobotModel& model) {
     return mesh;
 }
 
-std::vector<Mesh> humanBodyOf(double height) {
-    const double h = height;
+std::vector<Mesh> humanBodyOf(double height, Angle swing) {
+    const double h = height, slope = slopeOf(swing);
     Mesh skin = meshOf(Material::Skin), cloth = uprights(Material::Cloth, legs(h), 0, kHip * h);
+    shear(cloth, 0, kHip * h, slope);
     addBall(skin, {0, 0, (1 - kHead) * h}, kHead * h);
     addBox(cloth, {-kBodyDepth / 2 * h, -kBodyWidth / 2 * h, kHip * h},
            {kBodyDepth / 2 * h, kBodyWidth / 2 * h, kShoulder * h});
     for (const double side : {-1.0, 1.0}) {
         const double near = side * kBodyWidth / 2 * h, far = side * (kBodyWidth / 2 + kArm) * h;
         const auto add = [&](Mesh& mesh, double low, double high) {
+            const std::size_t first = mesh.vertices.size();
             addBox(mesh, {-kArm / 2 * h, std::min(near, far), low * h},
                    {kArm / 2 * h, std::max(near, far), high * h});
+            shear(mesh, first, kShoulder * h, -slope);
         };
         add(cloth, kWrist, kShoulder);
         add(skin, kFingers, kWrist);
@@ -149,17 +188,26 @@ std::vector<Mesh> humanBodyOf(double height) {
     return {std::move(skin), std::move(cloth)};
 }
 
-std::vector<Upright> humanUprights(double height) {
-    const double h = height;
+double strideOf(double height) {
+    return 4 * kHip * height * std::tan(Angle::degrees(kMaxSwingDegrees).radians());
+}
+
+std::vector<Upright> humanUprights(double height, Angle swing) {
+    const double h = height, slope = slopeOf(swing);
     std::vector<Upright> parts;
-    const auto box = [&](double y, double half_length, double half_width, double low, double high) {
-        parts.push_back({{0, y}, half_length, half_width, 0, low * h, high * h});
-    };
+    parts.reserve(16);
     for (const double side : {-1.0, 1.0}) {
-        parts.push_back({{0, side * kLegPlace * h}, 0, 0, kLeg * h, 0, kHip * h});
-        box(side * (kBodyWidth + kArm) / 2 * h, kArm / 2 * h, kArm / 2 * h, kFingers, kShoulder);
+        addLimb(parts, {{0, side * kLegPlace * h}, 0, 0, kLeg * h, 0, kHip * h}, side * slope);
+        addLimb(parts,
+                {{0, side * (kBodyWidth + kArm) / 2 * h},
+                 kArm / 2 * h,
+                 kArm / 2 * h,
+                 0,
+                 kFingers * h,
+                 kShoulder * h},
+                -side * slope);
     }
-    box(0, kBodyDepth / 2 * h, kBodyWidth / 2 * h, kHip, kShoulder);
+    parts.push_back({{}, kBodyDepth / 2 * h, kBodyWidth / 2 * h, 0, kHip * h, kShoulder * h});
     parts.push_back({{0, 0}, 0, 0, kHead * h, kShoulder * h, h});
     return parts;
 }

@@ -30,7 +30,16 @@ Mesh robotMesh(const RobotModel& model);
 /// A person as in the thesis (fig. 5.10): a ball for the head, boxes for body and arms, legs as
 /// upright cylinders, so that a level laser at kScanHeight meets two circles. Facing +x, standing
 /// on the floor at the origin; proportions do not change with `height`.
-std::vector<Mesh> humanBodyOf(double height);
+///
+/// Walking, the left leg is ahead of the hip by the angle `swing` and the right one behind it; arms
+/// swing the other way. Limbs are sheared, not turned: a level cut keeps its shape and the feet
+/// stay on the floor.
+std::vector<Mesh> humanBodyOf(double height, Angle swing = {});
+
+/// How far limbs swing at most (thesis 5.3.1), and how long a stride, two steps, is with that: the
+/// feet stay where they are put down.
+constexpr double kMaxSwingDegrees = 15;
+double strideOf(double height);
 
 /// An upright box or cylinder, as part of something that stands on the floor.
 struct Upright {
@@ -39,8 +48,9 @@ struct Upright {
     double radius = 0;                       ///< of a cylinder; 0: a box
     double bottom = 0, top = 0;
 };
-/// humanBodyOf() as rays see it: its boxes and cylinders, the head as a cylinder around it.
-std::vector<Upright> humanUprights(double height);
+/// humanBodyOf() as rays see it: its boxes and cylinders, the head as a cylinder around it. Limbs
+/// that swing are piles of a few pieces, the lowest of a leg with its middle at kScanHeight.
+std::vector<Upright> humanUprights(double height, Angle swing = {});
 
 /// What a level laser at kScanHeight meets of a person of that height, in the person's frame.
 std::vector<Polygon> legCircles(double height);

@@ -162,6 +162,38 @@ TEST(BodyOf, LegsAreTwoCirclesAtScanningHeight) {
     EXPECT_TRUE(legCircles(0.2).empty()) << "a doll's legs end below";
 }
 
+TEST(BodyOf, LimbsSwingAboutTheirJointsAndFeetStayOnTheFloor) {
+    const Angle swing = Angle::degrees(15);
+    const double ahead = std::tan(swing.radians());
+    for (const Mesh& mesh : humanBodyOf(1.7, swing)) expectSolid(mesh, "human");
+    const Box3 box = boundsOf(humanBodyOf(1.7, swing));
+    EXPECT_EQ(box.low.z, 0);
+    EXPECT_NEAR(box.high.z, 1.7, 1e-12);
+    EXPECT_NEAR(box.high.x, 0.48 * 1.7 * ahead + 0.035 * 1.7, 1e-3);
+    // A level cut keeps the circles, moved: the left one ahead.
+    Body body;
+    body.meshes = humanBodyOf(1.7, swing);
+    Slice slice;
+    cutMeshes(body, kScanHeight, slice);
+    ASSERT_EQ(slice.solids.size(), 2U);
+    for (const Polygon& solid : slice.solids) {
+        const Box2 leg = bounds(solid);
+        const double side = leg.low.y > 0 ? 1 : -1;
+        EXPECT_NEAR((leg.low.x + leg.high.x) / 2, side * (0.48 * 1.7 - kScanHeight) * ahead, 1e-9);
+        EXPECT_NEAR(signedArea(solid), signedArea(legCircles(1.7)[0]), 1e-9);
+    }
+    // What rays see is there, too: the cylinder at scanning height is the same circle.
+    int legs = 0;
+    for (const Upright& part : humanUprights(1.7, swing)) {
+        if (part.radius == 0 || part.bottom > kScanHeight || part.top < kScanHeight) continue;
+        ++legs;
+        const double side = part.center.y > 0 ? 1 : -1;
+        EXPECT_NEAR(part.center.x, side * (0.48 * 1.7 - kScanHeight) * ahead, 1e-9);
+    }
+    EXPECT_EQ(legs, 2);
+    EXPECT_EQ(humanUprights(1.7).size(), 6U) << "who stands is as simple as can be";
+}
+
 TEST(BodyOf, NothingForWhatHasNone) {
     const Scene made = scene("ispace size=8,6\n");
     Placed wrong;

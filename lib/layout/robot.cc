@@ -45,6 +45,32 @@ void applySpeed(const SpeedKeys& keys, double& speed, double& greatest, const Re
     findings.add(record.finding(keys.speed, std::move(message)));
 }
 
+void applyNoise(MotionNoise& noise, const Record& record) {
+    const auto apply = [&](std::string_view key, std::array<double, 4>& alphas) {
+        if (!record.has(key)) return;
+        const Tuple& values = record.tuple(key);
+        std::copy(values.begin(), values.end(), alphas.begin());
+    };
+    apply("motion_noise", noise.motion);
+    apply("odometry_noise", noise.odometry);
+    if (!record.has("start_noise")) return;
+    const Tuple& start = record.tuple("start_noise");
+    noise.start_place = start[0];
+    noise.start_heading = Angle::degrees(start.size() > 1 ? start[1] : 0);
+}
+
+void applyDrive(RobotModel& model, const Record& record, Diagnostics& findings) {
+    if (record.has("drive")) {
+        model.drive = record.text("drive") == "omni" ? Drive::Omni : Drive::Differential;
+        model.max_sidespeed = model.drive == Drive::Omni ? model.max_speed : 0;
+    }
+    if (!record.has("max_sidespeed")) return;
+    model.max_sidespeed = record.number("max_sidespeed");
+    if (model.drive == Drive::Omni) return;
+    findings.add(
+        record.finding("max_sidespeed", "only drive=omni goes sideways: say so, or leave it out"));
+}
+
 }  // namespace
 
 RobotModel withParameters(RobotModel base, const Record& record) {
@@ -57,12 +83,24 @@ RobotModel withParameters(RobotModel base, const Record& record) {
     base.max_rotspeed = Angle::degrees(greatest_turn);
     if (record.has("accel")) base.accel = record.number("accel");
     if (record.has("rotaccel")) base.rotaccel = record.angle("rotaccel");
+    applyDrive(base, record, findings);
+    applyNoise(base.noise, record);
     findings.throwIfAny();
     return base;
 }
 
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices) {
     return parametersOf<RobotModel>(record, deviceOf(record, devices));
+}
+
+Course courseOf(const Record& record) {
+    Course course;
+    if (record.has("path"))
+        for (const Tuple& place : record.list("path")) course.path.push_back({place[0], place[1]});
+    course.loop = record.flag("loop");
+    course.pause = record.number("pause");
+    course.wander = record.text("walk") == "wander";
+    return course;
 }
 
 Pose2 floorPoseOf(const Record& record) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "geom/pose.h"
 #include "layout/devices.h"
@@ -9,8 +11,24 @@
 
 namespace ispace {
 
-/// A robot with two driven wheels. Its frame has the origin on the floor at the centre of rotation
-/// and x forward. The bare robot, without model, turns in a circle of 0.3 m as the thesis' does and
+/// What a robot's wheels let it do.
+enum class Drive {
+    Differential,  ///< drive along the heading and turn
+    Omni           ///< sideways, too, at the same time
+};
+
+/// How a robot's motion and odometry stray, see lib/sim/motion_noise.h. All zero: not at all.
+struct MotionNoise {
+    /// Thrun's alpha 1 to 4 of the true motion against what the wheels do, and of what the robot
+    /// counts.
+    std::array<double, 4> motion{}, odometry{};
+    double start_place = 0;  ///< standard deviation of x and of y at the start, metres
+    Angle start_heading;     ///< standard deviation of the heading at the start
+    friend bool operator==(const MotionNoise&, const MotionNoise&) = default;
+};
+
+/// A robot on wheels. Its frame has the origin on the floor at the centre of rotation and x
+/// forward. The bare robot, without model, turns in a circle of 0.3 m as the thesis' does and
 /// moves like a Pioneer.
 struct RobotModel {
     std::string model;    ///< "" for the bare robot
@@ -25,7 +43,19 @@ struct RobotModel {
     Angle max_rotspeed = Angle::degrees(300);  ///< a second, either way
     double accel = 0.3;                        ///< m/s^2, speeding up and braking
     Angle rotaccel = Angle::degrees(100);      ///< a second a second
+    Drive drive = Drive::Differential;
+    double max_sidespeed = 0;  ///< m/s, to either side; 0 but for Drive::Omni
+    MotionNoise noise;
     friend bool operator==(const RobotModel&, const RobotModel&) = default;
+};
+
+/// Where a robot or a person goes without being told.
+struct Course {
+    std::vector<Point2> path;  ///< places to go to, one after another
+    bool loop = false;         ///< from the last place to the first, again and again
+    double pause = 0;          ///< seconds to stay at each place
+    bool wander = false;       ///< wherever the way is free; with a path once that has ended
+    friend bool operator==(const Course&, const Course&) = default;
 };
 
 /// A robot where it starts.
@@ -34,6 +64,17 @@ struct PlacedRobot {
     RobotModel model;
     Pose2 pose;   ///< of the centre of rotation
     Place place;  ///< of its record, for messages
+    Course course = {};
+};
+
+/// A person where she starts.
+struct PlacedPerson {
+    std::string id;
+    double height = 1.7;
+    double speed = 1.2;  ///< m/s, when walking
+    Pose2 pose;
+    Place place;  ///< of the record, for messages
+    Course course = {};
 };
 
 /// Parameters of a `robot` record: its explicit keys, else its model's, else the bare robot's.
@@ -42,9 +83,13 @@ struct PlacedRobot {
 RobotModel robotOf(const Record& record, const DeviceCatalogue& devices);
 
 /// `base` with the parameters written in a record in place of its own; the model stays. A written
-/// max_speed below the speed of `base` lowers that; the same holds for the turn.
+/// max_speed below the speed of `base` lowers that; the same holds for the turn. One that becomes
+/// omnidirectional goes sideways as fast as forward unless told otherwise.
 /// \throws FormatError as robotOf
 RobotModel withParameters(RobotModel base, const Record& record);
+
+/// Keys of a `robot` or `human` record that say where it goes by itself.
+Course courseOf(const Record& record);
 
 /// Pose of a `robot` record, or of any other with `at` and `heading`; without `at` at 0,0.
 Pose2 floorPoseOf(const Record& record);

@@ -100,6 +100,7 @@ struct Placements {
     std::vector<Sensor> sensors;
     std::vector<PendingSensor> pending;
     std::vector<PlacedRobot> robots;
+    std::vector<PlacedPerson> people;
     std::vector<Placed> placed;
 };
 
@@ -135,7 +136,13 @@ class Resolver {
             RobotModel model = robotOf(record, devices_);
             const Pose2 pose = floorPoseOf(record);
             out_.placed.push_back({i, onFloor(pose), out_.robots.size()});
-            out_.robots.push_back({ids_[i], std::move(model), pose, record.place()});
+            out_.robots.push_back(
+                {ids_[i], std::move(model), pose, record.place(), courseOf(record)});
+        } else if (record.keyword() == "human") {
+            const Pose2 pose = floorPoseOf(record);
+            out_.placed.push_back({i, onFloor(pose), out_.people.size()});
+            out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
+                                   record.place(), courseOf(record)});
         } else {
             out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }
@@ -225,6 +232,7 @@ Scene makeScene(const Document& environment, const Document* layout,
             .sensors = std::move(placements.sensors),
             .pending = std::move(placements.pending),
             .robots = std::move(placements.robots),
+            .people = std::move(placements.people),
             .placed = std::move(placements.placed)};
 }
 

@@ -28,7 +28,8 @@ struct PendingSensor {
 struct Placed {
     std::size_t record = 0;  ///< index in Scene::records
     Pose3 pose;              ///< in the world, where it starts; on the floor but for sensors
-    std::size_t index = 0;   ///< of a sensor in Scene::sensors, of a robot in Scene::robots
+    /// Of a sensor in Scene::sensors, of a robot in Scene::robots, of a person in Scene::people.
+    std::size_t index = 0;
     std::optional<Mount> mount = {};  ///< of a sensor on a robot
 };
 
@@ -43,6 +44,7 @@ struct Scene {
     std::vector<Sensor> sensors;         ///< with a place, or on what has one, in order
     std::vector<PendingSensor> pending;  ///< those without a place that arrange can place, in order
     std::vector<PlacedRobot> robots;     ///< in order
+    std::vector<PlacedPerson> people;    ///< in order
     std::vector<Placed> placed;          ///< all of them and everything else with a place, in order
 };
 

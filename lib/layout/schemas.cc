@@ -18,6 +18,30 @@ namespace {
 /// second).
 constexpr double kLargest = 100, kFastest = 1000, kFastestTurn = 1e5;
 
+/// How motion and odometry stray with simrun --noise.
+void addStrayKeys(std::vector<KeySpec>& keys) {
+    constexpr double kMost = 100;
+    const auto alphas = [&](std::string name, std::string help) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::Tuple,
+                        .help = std::move(help),
+                        .min_count = 4,
+                        .max_count = 4,
+                        .lower = 0,
+                        .upper = kMost});
+    };
+    alphas("motion_noise", "alpha 1 to 4 of what the robot does against what its wheels do");
+    alphas("odometry_noise", "alpha 1 to 4 of what the robot counts against what its wheels do");
+    keys.push_back({.name = "start_noise",
+                    .type = KeyType::Tuple,
+                    .help = "standard deviation of x and y in metres, and of the heading in "
+                            "degrees, at the start",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kMost});
+}
+
 /// Parameters that a model gives too; none has a default, as its absence means "as the model".
 /// Speeds are lengths and angles a second, with the suffixes of those.
 void addRobotParameters(std::vector<KeySpec>& keys) {
@@ -53,6 +77,15 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                                "speeding up and braking, metres a second a second", kFastest));
     keys.push_back(positiveKey("rotaccel", Unit::Angle,
                                "the same for turning, degrees a second a second", kFastestTurn));
+    keys.push_back({.name = "drive",
+                    .type = KeyType::Choice,
+                    .help = "two driven wheels, or omnidirectional: sideways, too",
+                    .choices = {"differential", "omni"}});
+    keys.push_back(positiveKey("max_sidespeed", Unit::Length,
+                               "greatest speed to a side with drive=omni, metres a second; "
+                               "without it max_speed",
+                               kFastest));
+    addStrayKeys(keys);
 }
 
 /// A key of a fixed place on the floor, 0,0 without it.
@@ -80,9 +113,22 @@ void addCourse(std::vector<KeySpec>& keys) {
                     .lower = -kFarthest,
                     .upper = kFarthest,
                     .role = Role::Course});
+    keys.push_back({.name = "loop",
+                    .type = KeyType::Flag,
+                    .help = "from the last place of path to the first, again and again",
+                    .default_value = false});
+    KeySpec pause{.name = "pause",
+                  .type = KeyType::Number,
+                  .unit = Unit::Time,
+                  .help = "to stay at each place of path",
+                  .default_value = 0.0,
+                  .lower = 0,
+                  .upper = 1e6};
+    keys.push_back(std::move(pause));
     keys.push_back({.name = "walk",
                     .type = KeyType::Choice,
-                    .help = "stand until a client drives it, or wander about",
+                    .help = "stand until a client drives it, or wander about; after path, if both "
+                            "are given",
                     .default_value = "stand",
                     .choices = {"stand", "wander"}});
 }
@@ -90,7 +136,7 @@ void addCourse(std::vector<KeySpec>& keys) {
 Schema robotSchema() {
     Schema schema{.keyword = "robot",
                   .type = RecordType::Placement,
-                  .help = "a robot with two driven wheels; bare: a cylinder of radius 0.3",
+                  .help = "a robot on wheels; bare: a cylinder of radius 0.3",
                   .keys = {}};
     schema.keys.push_back(idKey());
     schema.keys.push_back(modelKey());

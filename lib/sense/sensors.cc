@@ -87,9 +87,10 @@ MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t o
     return body;
 }
 
-std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner) {
+std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
+                                    Angle swing) {
     std::vector<MovingBody> bodies;
-    for (const Upright& part : humanUprights(height))
+    for (const Upright& part : humanUprights(height, swing))
         bodies.push_back({.pose = {pose * part.center, pose.heading},
                           .half_length = part.half_length,
                           .half_width = part.half_width,
@@ -107,11 +108,8 @@ std::vector<MovingBody> bodiesOf(const Scene& scene) {
         bodies.push_back(
             robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
     std::uint32_t owner = kFirstPerson;
-    for (const Placed& placed : scene.placed) {
-        const Record& record = scene.records[placed.record];
-        if (record.keyword() != "human") continue;
-        const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
-        const std::vector<MovingBody> parts = humanBodies(record.number("height"), pose, owner++);
+    for (const PlacedPerson& person : scene.people) {
+        const std::vector<MovingBody> parts = humanBodies(person.height, person.pose, owner++);
         bodies.insert(bodies.end(), parts.begin(), parts.end());
     }
     return bodies;

@@ -44,7 +44,8 @@ constexpr std::uint32_t kFirstPerson = 1U << 31U;
 std::uint32_t carrierOf(const Sensor& sensor);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
-/// A person's legs, trunk, arms and head.
-std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner);
+/// A person's legs, trunk, arms and head; `swing` as of humanBodyOf.
+std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
+                                    Angle swing = {});
 
 }  // namespace ispace

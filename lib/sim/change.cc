@@ -75,6 +75,7 @@ void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayer
         if (record.keyword() == "robot") {
             next.robots[placed.index].pose = pose;
         } else {
+            next.people[placed.index].pose = pose;
             people_before.push_back(start);
             people.push_back(pose);
         }

@@ -3,28 +3,18 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "geom/predicates.h"
-#include "layout/bodies.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
-
-std::vector<Person> peopleOf(const Scene& scene) {
-    std::vector<Person> people;
-    for (const Placed& placed : scene.placed) {
-        const Record& record = scene.records[placed.record];
-        if (record.keyword() != "human") continue;
-        people.push_back({scene.ids[placed.record], placed.pose.position.onFloor(),
-                          humanRadius(record.number("height")), placed.pose.heading});
-    }
-    return people;
-}
 
 namespace {
 
@@ -161,23 +151,22 @@ bool collides(const Move& move, const Move& other, bool other_moves) {
     return false;
 }
 
-std::vector<std::size_t> settlingOrder(std::span<const PlacedRobot> robots) {
-    std::vector<std::size_t> order(robots.size());
+std::vector<std::size_t> settlingOrder(std::span<const Mover> movers) {
+    std::vector<std::size_t> order(movers.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return robots[i].id < robots[j].id; });
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+        return std::tie(movers[i].is_person, movers[i].id) <
+               std::tie(movers[j].is_person, movers[j].id);
+    });
     return order;
 }
 
-Traffic::Traffic(std::span<const PlacedRobot> robots, std::span<const Person> people,
-                 std::span<const std::size_t> order, double duration)
-    : rank_(robots.size() + people.size()), places_(rank_.size()) {
-    // Robots get their own ranks below; people are settled after all of them.
-    std::iota(rank_.begin(), rank_.end(), std::size_t{0});
+Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration)
+    : rank_(movers.size()), places_(movers.size()) {
     for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = k;
-    for (const PlacedRobot& robot : robots)
-        reach_ = std::max(reach_, robot.model.radius + robot.model.max_speed * duration);
-    for (const Person& person : people) reach_ = std::max(reach_, person.radius);
+    for (const auto& [id, model, pose, course, place, is_person] : movers)
+        reach_ = std::max(
+            reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration);
 }
 
 void Traffic::rebuild(std::span<const Move> moves) {
@@ -185,17 +174,17 @@ void Traffic::rebuild(std::span<const Move> moves) {
     grid_.rebuild(places_, reach_);
 }
 
-std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t robot) const {
-    const Move& move = moves[robot];
+std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover) const {
+    const Move& move = moves[mover];
     Box2 box;
     box.add(move.start());
     box.add(move.end());
     const Vec2 margin{move.radius + move.to.bulge, move.radius + move.to.bulge};
     box = {box.low - margin, box.high + margin};
-    const std::size_t rank = rank_[robot];
+    const std::size_t rank = rank_[mover];
     std::optional<std::size_t> first;
     grid_.forEachNear(box, [&](std::size_t other) {
-        if (other == robot || (first && rank_[*first] < rank_[other])) return;
+        if (other == mover || (first && rank_[*first] < rank_[other])) return;
         if (collides(move, moves[other], rank_[other] < rank)) first = other;
     });
     return first;
@@ -203,95 +192,80 @@ std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t
 
 namespace {
 
-struct Disc {
-    Point2 place;
-    double radius;
-};
-
-/// Finds who stands in whom: of robots those before them in the scene, and people.
+/// Finds who stands in whom.
 class Neighbours {
   public:
-    Neighbours(std::span<const PlacedRobot> robots, std::span<const Person> people)
-        : robots_(robots.size()) {
+    explicit Neighbours(std::span<const Mover> movers) : movers_(movers) {
         double reach = 0;
         std::vector<Point2> places;
-        const auto add = [&](Point2 place, double radius) {
-            discs_.push_back({place, radius});
-            places.push_back(place);
-            reach = std::max(reach, radius);
-        };
-        for (const PlacedRobot& robot : robots) add(robot.pose.position, robot.model.radius);
-        for (const Person& person : people) add(person.place, person.radius);
+        places.reserve(movers.size());
+        for (const Mover& mover : movers) {
+            places.push_back(mover.pose.position);
+            reach = std::max(reach, mover.model.radius);
+        }
         grid_.rebuild(places, reach);
     }
 
-    /// The first robot that robot `i` stands in.
-    [[nodiscard]] std::optional<std::size_t> robotBefore(std::size_t i) const {
-        return firstOver(i, 0, i);
-    }
-    /// The first person, counted behind the robots.
-    [[nodiscard]] std::optional<std::size_t> person(std::size_t i) const {
-        return firstOver(i, robots_, discs_.size());
-    }
-    [[nodiscard]] double apart(std::size_t i, std::size_t j) const {
-        return distance(discs_[i].place, discs_[j].place);
-    }
-
-  private:
+    /// The first of movers `begin` to `end` that mover `i` stands in.
     [[nodiscard]] std::optional<std::size_t> firstOver(std::size_t i, std::size_t begin,
                                                        std::size_t end) const {
-        const auto& [place, radius] = discs_[i];
+        const double radius = movers_[i].model.radius;
+        const Point2 place = movers_[i].pose.position;
         const Vec2 margin{radius, radius};
         std::size_t first = end;
         grid_.forEachNear({place - margin, place + margin}, [&](std::size_t other) {
             if (other >= begin && other < first &&
-                apart(i, other) < discs_[i].radius + discs_[other].radius - kTouch)
+                apart(i, other) < radius + movers_[other].model.radius - kTouch)
                 first = other;
         });
         return first < end ? std::optional(first) : std::nullopt;
     }
+    [[nodiscard]] double apart(std::size_t i, std::size_t j) const {
+        return distance(movers_[i].pose.position, movers_[j].pose.position);
+    }
 
-    std::size_t robots_;
-    std::vector<Disc> discs_;
+  private:
+    std::span<const Mover> movers_;
     FloorGrid grid_;
 };
 
 }  // namespace
 
-ObstacleSets obstaclesOf(const Scene& scene) {
+ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers) {
     ObstacleSets sets;
-    for (const PlacedRobot& robot : scene.robots) {
-        const double height = robot.model.height;
-        if (!sets.contains(height))
-            sets.emplace(height, Obstacles(scene.environment.band(0, height)));
+    for (const Mover& mover : movers) {
+        const double height = mover.model.height;
+        if (!sets.contains(height)) sets.emplace(height, Obstacles(environment.band(0, height)));
     }
     return sets;
 }
 
-void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles) {
+void checkStart(const Environment& environment, std::span<const Mover> movers,
+                const ObstacleSets& obstacles) {
     Diagnostics findings;
-    const Neighbours neighbours(scene.robots, people);
+    const Neighbours neighbours(movers);
     const auto distance_text = [&](std::size_t i, std::size_t other) {
         return "overlap: their centres are " + formatFixed(neighbours.apart(i, other), 3) +
                " m apart, less than their radii together";
     };
+    std::size_t robots = 0;
+    while (robots < movers.size() && !movers[robots].is_person) ++robots;
     // Full findings end it: robots on one heap would be looked at in pairs.
-    for (std::size_t i = 0; i < scene.robots.size() && !findings.full(); ++i) {
-        const PlacedRobot& robot = scene.robots[i];
+    for (std::size_t i = 0; i < robots && !findings.full(); ++i) {
+        const Mover& robot = movers[i];
         const std::string name = "robot " + robot.id;
         const Obstacles& things = obstacles.at(robot.model.height);
         if (const auto element = things.overlap(robot.pose.position, robot.model.radius)) {
-            findings.add(robot.place.finding(
-                name + " stands in " + scene.environment.elements()[*element].id +
-                " (its radius is " + formatDouble(robot.model.radius) + " m)"));
+            findings.add(
+                robot.place.finding(name + " stands in " + environment.elements()[*element].id +
+                                    " (its radius is " + formatDouble(robot.model.radius) + " m)"));
         }
-        if (const auto other = neighbours.robotBefore(i))
-            findings.add(robot.place.finding("robots " + scene.robots[*other].id + " and " +
-                                             robot.id + ' ' + distance_text(i, *other)));
-        if (const auto other = neighbours.person(i))
-            findings.add(robot.place.finding(name + " and human " +
-                                             std::string(people[*other - scene.robots.size()].id) +
+        if (const auto other = neighbours.firstOver(i, 0, i))
+            findings.add(robot.place.finding("robots " + movers[*other].id + " and " + robot.id +
                                              ' ' + distance_text(i, *other)));
+        if (const auto other = neighbours.firstOver(i, robots, movers.size()))
+            findings.add(robot.place.finding(name + " and human " + movers[*other].id + ' ' +
+                                             distance_text(i, *other)));
     }
     findings.throwIfAny();
 }

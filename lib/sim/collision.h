@@ -9,26 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include "env/environment.h"
 #include "env/point_location.h"
 #include "env/slice.h"
 #include "geom/spatial_index.h"
-#include "layout/robot.h"
-#include "layout/scene.h"
 #include "sim/motion.h"
+#include "sim/people.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
-
-/// A person as an obstacle: a circle on the floor that no robot may enter.
-struct Person {
-    std::string_view id;
-    Point2 place;
-    double radius = 0;  ///< humanRadius
-    Angle heading = {};
-};
-
-/// The people of a scene, in its order. The scene must outlive them.
-std::vector<Person> peopleOf(const Scene& scene);
 
 /// Metres by which circles may overlap things: touching is allowed, and this absorbs rounding.
 constexpr double kTouch = 1e-9;
@@ -66,7 +55,7 @@ class Obstacles {
     SegmentGrid grid_;
 };
 
-/// A robot's proposed step.
+/// A robot's or a person's proposed step.
 struct Move {
     const Motion* from = nullptr;
     const MotionLimits* limits = nullptr;
@@ -91,25 +80,31 @@ std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles
 /// True if the move runs into another robot, which moves at the same time or stays at its start.
 bool collides(const Move& move, const Move& other, bool other_moves);
 
-/// Indices of the robots in the order in which their moves are settled: by the bytes of their ids.
-std::vector<std::size_t> settlingOrder(std::span<const PlacedRobot> robots);
+/// Indices of the movers in the order in which their moves are settled: robots, then people, each
+/// by the bytes of their ids.
+std::vector<std::size_t> settlingOrder(std::span<const Mover> movers);
 
-/// Finds the robots and people that a move runs into. Robots are numbered first, then people.
+/// Finds the robots and people that a move runs into.
 ///
 /// A move is tested against the moves settled before it, and against all others where they stand:
 /// whatever these do later, no two ever overlap.
 class Traffic {
   public:
     /// `order` as of settlingOrder; a step takes `duration` seconds.
-    Traffic(std::span<const PlacedRobot> robots, std::span<const Person> people,
-            std::span<const std::size_t> order, double duration);
+    Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration);
 
     /// Indexes the places at which the moves begin.
     void rebuild(std::span<const Move> moves);
-    /// The first one, in the order of settling, that this robot's move runs into.
+    /// The first one, in the order of settling, that this mover's move runs into.
     /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,
-                                                 std::size_t robot) const;
+                                                 std::size_t mover) const;
+    /// Calls visit(index) for everybody who may stand or come within `reach` of p in a step.
+    template <typename Visit>
+    void forEachNear(Point2 p, double reach, Visit visit) const {
+        const Vec2 margin{reach, reach};
+        grid_.forEachNear({p - margin, p + margin}, visit);
+    }
 
   private:
     std::vector<std::size_t> rank_;  // in the order of settling
@@ -118,12 +113,13 @@ class Traffic {
     FloorGrid grid_;
 };
 
-/// Obstacles by height of the robots.
+/// Obstacles by height of the movers.
 using ObstacleSets = std::map<double, Obstacles>;
-ObstacleSets obstaclesOf(const Scene& scene);
+ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers);
 
 /// \throws FormatError with all findings if a robot stands in something, in another robot or in a
-///         person
-void checkStart(const Scene& scene, std::span<const Person> people, const ObstacleSets& obstacles);
+///         person. People may stand in things, like one who sits on a chair: they can only get out.
+void checkStart(const Environment& environment, std::span<const Mover> movers,
+                const ObstacleSets& obstacles);
 
 }  // namespace ispace

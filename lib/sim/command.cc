@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,6 +21,8 @@ namespace {
 /// A slip of a digit, not a way to go; it also keeps poses within what doubles resolve.
 constexpr double kFarthest = 1e6;
 
+constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
+
 struct VerbFacts {
     Verb verb;
     std::string_view name;
@@ -30,14 +33,16 @@ struct VerbFacts {
 };
 
 /// In the order of Verb.
-constexpr std::array<VerbFacts, 7> kVerbs = {{
+constexpr std::array<VerbFacts, 9> kVerbs = {{
     {Verb::Forward, "FORWARD", "distance", "metres", "BACKWARD", "FORWARD 1.5"},
     {Verb::Backward, "BACKWARD", "distance", "metres", "FORWARD", "BACKWARD 1.5"},
     {Verb::Left, "LEFT", "angle", "degrees", "RIGHT", "LEFT 90"},
     {Verb::Right, "RIGHT", "angle", "degrees", "LEFT", "RIGHT 90"},
     {Verb::Speed, "SPEED", "speed", "metres a second", "", "SPEED 0.3"},
     {Verb::Rotspeed, "ROTSPEED", "rotspeed", "degrees a second", "", "ROTSPEED 30"},
+    {Verb::Sidespeed, "SIDESPEED", "speed", "metres a second", "", "SIDESPEED 0.3"},
     {Verb::Stop, "STOP", "", "", "", "STOP"},
+    {Verb::Path, "PATH", "length", "", "", kPathExample},
 }};
 
 const VerbFacts& factsOf(Verb verb) { return kVerbs[static_cast<std::size_t>(verb)]; }
@@ -90,9 +95,75 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
     return {Command{facts.verb, *value + 0.0}, {}};
 }
 
+ParsedCommand refusePath(std::string message) {
+    return refuse(CommandError::Kind::Syntax, join({message, ", like ", kPathExample}));
+}
+
+/// "1,0;1,2". Nothing if it is something else.
+std::optional<std::vector<Point2>> parsePlaces(std::string_view text) {
+    std::vector<Point2> places;
+    while (true) {
+        const std::size_t end = std::min(text.find(';'), text.size());
+        const std::string_view place = text.substr(0, end);
+        const std::size_t comma = place.find(',');
+        if (comma == std::string_view::npos) return std::nullopt;
+        const auto x = parseDouble(place.substr(0, comma)),
+                   y = parseDouble(place.substr(comma + 1));
+        if (!x || !y) return std::nullopt;
+        places.push_back({*x, *y});
+        if (end == text.size()) return places;
+        text.remove_prefix(end + 1);
+    }
+}
+
+/// A key of PATH. Returns what is wrong with it, or "".
+std::string applyPathKey(std::string_view text, Command& command) {
+    const std::size_t sign = std::min(text.find('='), text.size());
+    const std::string_view key = text.substr(0, sign);
+    const std::string_view value = text.substr(std::min(sign + 1, text.size()));
+    const auto number = parseDouble(value);
+    if (key == "loop" && (value == "yes" || value == "no")) {
+        command.course.loop = value == "yes";
+    } else if (key == "speed" && number && *number > 0) {
+        command.speed = *number;
+    } else if (key == "pause" && number && *number >= 0) {
+        command.course.pause = std::min(*number, kFarthest);
+    } else {
+        return join(
+            {"PATH takes speed= in metres a second above 0, pause= in seconds and "
+             "loop=yes|no, found ",
+             excerpt(text)});
+    }
+    return "";
+}
+
+ParsedCommand parsePath(std::span<const Piece> words) {
+    const auto places = words.empty() ? std::nullopt : parsePlaces(words.front().text);
+    if (!places) {
+        const std::string found = words.empty() ? "" : ", found " + excerpt(words.front().text);
+        return refusePath("PATH wants places x,y;x,y in metres" + found);
+    }
+    for (const Point2 p : *places)
+        if (!(std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest))
+            return refuse(CommandError::Kind::Range,
+                          join({"PATH goes at most ", formatDouble(kFarthest), " metres"}));
+    Command command = pathCommand({.path = *places});
+    for (const Piece& word : words.subspan(1))
+        if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
+            return refusePath(std::move(wrong));
+    return {std::move(command), {}};
+}
+
 }  // namespace
 
-bool comesToAnEnd(Verb verb) { return !factsOf(verb).opposite.empty(); }
+Command pathCommand(Course course, double speed) {
+    double length = 0;
+    for (std::size_t i = 1; i < course.path.size(); ++i)
+        length += distance(course.path[i - 1], course.path[i]);
+    return {Verb::Path, length, std::move(course), speed};
+}
+
+bool comesToAnEnd(Verb verb) { return !factsOf(verb).opposite.empty() || verb == Verb::Path; }
 
 std::string_view nameOf(Verb verb) { return factsOf(verb).name; }
 
@@ -111,6 +182,7 @@ ParsedCommand parseCommand(std::string_view text) {
         return refuse(CommandError::Kind::Syntax, "no command, wanted one like FORWARD 1.5");
     const auto verb = verbNamed(words.front().text);
     if (!verb) return refuse(CommandError::Kind::Unknown, unknownCommand(words.front().text));
+    if (*verb == Verb::Path) return parsePath(std::span(words).subspan(1));
     const VerbFacts& facts = factsOf(*verb);
     const std::size_t wanted = facts.value_name.empty() ? 1 : 2;
     if (words.size() < wanted) {
@@ -133,8 +205,8 @@ namespace {
 class ScriptReader {
   public:
     ScriptReader(const std::string& file, const World& world) : file_(&file), world_(&world) {
-        names_.reserve(world.robots().size());
-        for (const PlacedRobot& robot : world.robots()) names_.push_back(robot.id);
+        names_.reserve(world.movers().size());
+        for (const Mover& mover : world.movers()) names_.push_back(mover.id);
     }
 
     /// \param line without its comment
@@ -147,7 +219,7 @@ class ScriptReader {
         findings_.add({*file_, line_, column, std::move(message)});
     }
     std::optional<SimTime> readTime(const Piece& word);
-    std::optional<std::size_t> readRobot(const Piece& word);
+    std::optional<std::size_t> readMover(const Piece& word);
     /// \param text of the command, which begins at `words`
     std::optional<Command> readCommand(std::string_view text, std::span<const Piece> words,
                                        std::optional<std::size_t> robot);
@@ -169,13 +241,13 @@ std::optional<SimTime> ScriptReader::readTime(const Piece& word) {
     return time;
 }
 
-std::optional<std::size_t> ScriptReader::readRobot(const Piece& word) {
-    const auto robot = world_->robotNamed(word.text);
-    if (!robot)
+std::optional<std::size_t> ScriptReader::readMover(const Piece& word) {
+    const auto mover = world_->moverNamed(word.text);
+    if (!mover)
         finding(word.column,
-                "unknown robot " + excerpt(word.text) +
+                "unknown robot or person " + excerpt(word.text) +
                     (names_.empty() ? ": the scene has none" : didYouMean(word.text, names_)));
-    return robot;
+    return mover;
 }
 
 std::optional<Command> ScriptReader::readCommand(std::string_view text,
@@ -209,7 +281,7 @@ void ScriptReader::read(std::string_view line, int number) {
                                            "2.5 r1 FORWARD 1");
         return;
     }
-    const auto robot = readRobot(words[1]);
+    const auto robot = readMover(words[1]);
     const auto begin = static_cast<std::size_t>(words[2].column) - 1;
     const auto command =
         readCommand(line.substr(begin), std::span<const Piece>(words).subspan(2), robot);

@@ -16,8 +16,8 @@ namespace {
 
 using Kind = CommandError::Kind;
 
-constexpr Verb kAll[] = {Verb::Forward, Verb::Backward, Verb::Left, Verb::Right,
-                         Verb::Speed,   Verb::Rotspeed, Verb::Stop};
+constexpr Verb kAll[] = {Verb::Forward,  Verb::Backward,  Verb::Left, Verb::Right, Verb::Speed,
+                         Verb::Rotspeed, Verb::Sidespeed, Verb::Stop, Verb::Path};
 
 void expectRefused(std::string_view text, Kind kind, std::string_view message) {
     const ParsedCommand parsed = parseCommand(text);
@@ -37,8 +37,9 @@ TEST(Verb, NamesReadBack) {
     EXPECT_EQ(valueNameOf(Verb::Stop), "");
 }
 
-TEST(Verb, FourOfThemComeToAnEnd) {
-    for (const Verb verb : kAll) EXPECT_EQ(comesToAnEnd(verb), verb <= Verb::Right) << nameOf(verb);
+TEST(Verb, SomeComeToAnEnd) {
+    for (const Verb verb : kAll)
+        EXPECT_EQ(comesToAnEnd(verb), verb <= Verb::Right || verb == Verb::Path) << nameOf(verb);
 }
 
 TEST(ParseCommand, TakesAVerbAndItsValue) {
@@ -66,7 +67,7 @@ TEST(ParseCommand, HelpsWithUnknownOnes) {
     expectRefused("Stop", Kind::Unknown, "unknown command `Stop`, did you mean `STOP`?");
     expectRefused("JUMP 1", Kind::Unknown,
                   "unknown command `JUMP`, wanted one of FORWARD BACKWARD LEFT RIGHT SPEED "
-                  "ROTSPEED STOP");
+                  "ROTSPEED SIDESPEED STOP PATH");
     expectRefused("FORWARD1.5", Kind::Unknown,
                   "unknown command `FORWARD1.5`, did you mean `FORWARD`?");
 }
@@ -210,12 +211,12 @@ TEST_F(ScriptTest, NamesBadTimes) {
 
 TEST_F(ScriptTest, NamesUnknownRobots) {
     EXPECT_EQ(errors("0 r3 STOP\n"),
-              "run.txt:1:3: error: unknown robot `r3`, did you mean `r1`?\n");
-    EXPECT_EQ(errors("0 turtle STOP\n"), "run.txt:1:3: error: unknown robot `turtle`\n");
+              "run.txt:1:3: error: unknown robot or person `r3`, did you mean `r1`?\n");
+    EXPECT_EQ(errors("0 turtle STOP\n"), "run.txt:1:3: error: unknown robot or person `turtle`\n");
     const Scene empty = testing::scene(kRoom);
     const World world(empty, milliseconds(5));
     EXPECT_EQ(findings([&] { return readScript("0 r1 STOP\n", "-", world); }),
-              "stdin:1:3: error: unknown robot `r1`: the scene has none\n");
+              "stdin:1:3: error: unknown robot or person `r1`: the scene has none\n");
 }
 
 TEST_F(ScriptTest, NamesWhatIsMissing) {
@@ -248,9 +249,9 @@ TEST_F(ScriptTest, ReportsAllFindingsTogether) {
     EXPECT_EQ(errors("x r9 fly\n0 r1 STOP\n0 r1\n"),
               "run.txt:1:1: error: `x` is no time, wanted seconds from the start of the run, like "
               "2.5 or 500ms\n"
-              "run.txt:1:3: error: unknown robot `r9`, did you mean `r1`?\n"
+              "run.txt:1:3: error: unknown robot or person `r9`, did you mean `r1`?\n"
               "run.txt:1:6: error: unknown command `fly`, wanted one of FORWARD BACKWARD LEFT "
-              "RIGHT SPEED ROTSPEED STOP\n"
+              "RIGHT SPEED ROTSPEED SIDESPEED STOP PATH\n"
               "run.txt:3:3: error: a command is missing, wanted TIME ROBOT COMMAND, like 2.5 r1 "
               "FORWARD 1\n");
     std::string many;

@@ -181,9 +181,14 @@ class Run {
 
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
 
-/// Displacement while speed and rate of turning (radians) change, in a frame that faces along the
+/// A speed along the heading and one to its left, each with its acceleration.
+struct Velocity {
+    Vec2 speed, accel;
+};
+
+/// Displacement while speeds and rate of turning (radians) change, in a frame that faces along the
 /// heading of the start.
-Vec2 quadrature(double speed, double accel, double rate, double rate_accel, double time) {
+Vec2 quadrature(const Velocity& velocity, double rate, double rate_accel, double time) {
     constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0,
                                               0.5384693101056831, 0.9061798459386640};
     constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
@@ -197,35 +202,47 @@ Vec2 quadrature(double speed, double accel, double rate, double rate_accel, doub
     for (double piece = 0; piece < pieces; ++piece) {
         for (std::size_t i = 0; i < kNodes.size(); ++i) {
             const double t = half * (2 * piece + 1 + kNodes[i]);
-            const double weight = half * kWeights[i] * (speed + accel * t);
+            const double weight = half * kWeights[i];
             const double angle = t * (rate + rate_accel * t / 2);
-            sum = sum + weight * Vec2{std::cos(angle), std::sin(angle)};
+            const Vec2 along{std::cos(angle), std::sin(angle)};
+            sum = sum + weight * (velocity.speed.x + velocity.accel.x * t) * along;
+            if (velocity.speed.y != 0 || velocity.accel.y != 0)
+                sum =
+                    sum + weight * (velocity.speed.y + velocity.accel.y * t) * perpendicular(along);
         }
     }
     return sum;
 }
 
-Vec2 displacement(Angle heading, const Run& drive, const Run& turn, double time) {
-    if (drive.speed() == 0 && drive.accel() == 0) return {};
-    const bool constant = drive.accel() == 0 && turn.accel() == 0;
-    if (constant || (turn.speed() == 0 && turn.accel() == 0)) {
+bool rests(const Run& run) { return run.speed() == 0 && run.accel() == 0; }
+
+Vec2 displacement(Angle heading, const Run& drive, const Run& side, const Run& turn, double time) {
+    if (rests(drive) && rests(side)) return {};
+    const bool constant = drive.accel() == 0 && side.accel() == 0 && turn.accel() == 0;
+    if (constant || rests(turn)) {
         // Along the heading in the middle of an arc; a straight way is an arc of no turn.
         const Angle half = Angle::degrees(turn.way(time) / 2);
-        return drive.way(time) * sinc(half.radians()) * unitVector(heading + half);
+        const Vec2 along = unitVector(heading + half);
+        const Vec2 ahead = drive.way(time) * sinc(half.radians()) * along;
+        if (rests(side)) return ahead;
+        return ahead + side.way(time) * sinc(half.radians()) * perpendicular(along);
     }
-    const Vec2 local =
-        quadrature(drive.speed(), drive.accel(), Angle::degrees(turn.speed()).radians(),
-                   Angle::degrees(turn.accel()).radians(), time);
+    const Velocity velocity{{drive.speed(), side.speed()}, {drive.accel(), side.accel()}};
+    const Vec2 local = quadrature(velocity, Angle::degrees(turn.speed()).radians(),
+                                  Angle::degrees(turn.accel()).radians(), time);
     const Vec2 forward = unitVector(heading);
     return local.x * forward + local.y * perpendicular(forward);
 }
 
-void setDeviation(Advance& to, const Run& drive, const Run& turn, double duration) {
+void setDeviation(Advance& to, const Run& drive, const Run& side, const Run& turn,
+                  double duration) {
     // A motion whose acceleration is at most a strays from an even one by at most a T^2 / 8.
     const double rate = Angle::degrees(turn.fastest()).radians();
-    const double accel = drive.hardest() + drive.fastest() * rate;
+    const double accel =
+        drive.hardest() + side.hardest() + (drive.fastest() + side.fastest()) * rate;
     to.lag = std::min(accel * duration * duration / 8, to.path);
-    const bool straight = rate == 0 && !drive.reverses();
+    const bool one_way = drive.path() == 0 || side.path() == 0;
+    const bool straight = rate == 0 && one_way && !drive.reverses() && !side.reverses();
     to.bulge = straight ? 0 : std::min(to.lag, to.path / 2);
 }
 
@@ -235,7 +252,8 @@ MotionLimits limitsOf(const RobotModel& model, double friction) {
     const double share = 1 - friction;
     return {{share * model.speed, share * model.max_speed, share * model.accel},
             {share * model.rotspeed.degrees(), share * model.max_rotspeed.degrees(),
-             share * model.rotaccel.degrees()}};
+             share * model.rotaccel.degrees()},
+            {share * model.max_sidespeed, share * model.max_sidespeed, share * model.accel}};
 }
 
 void Motion::command(const Command& command) {
@@ -243,13 +261,13 @@ void Motion::command(const Command& command) {
         return axis.goal.kind == AxisGoal::Kind::Speed ? axis.goal : AxisGoal{};
     };
     const auto turn_by = [&](double degrees) {
-        drive.goal = {};
+        drive.goal = side.goal = {};
         turn.goal = {AxisGoal::Kind::Distance, degrees};
         turn_end = wrapped(pose.heading + Angle::degrees(degrees));
     };
     const auto drive_by = [&](double metres) {
         drive.goal = {AxisGoal::Kind::Distance, metres};
-        turn.goal = {};
+        turn.goal = side.goal = {};
     };
     switch (command.verb) {
         case Verb::Forward:
@@ -262,52 +280,63 @@ void Motion::command(const Command& command) {
             return turn_by(-command.value);
         case Verb::Speed:
             turn.goal = speed_of(turn);
+            side.goal = speed_of(side);
             drive.goal = {AxisGoal::Kind::Speed, command.value};
             return;
         case Verb::Rotspeed:
             drive.goal = speed_of(drive);
+            side.goal = speed_of(side);
             turn.goal = {AxisGoal::Kind::Speed, command.value};
             return;
+        case Verb::Sidespeed:
+            drive.goal = speed_of(drive);
+            turn.goal = speed_of(turn);
+            side.goal = {AxisGoal::Kind::Speed, command.value};
+            return;
         case Verb::Stop:
-            drive.goal = turn.goal = {};
+        case Verb::Path:
+            drive.goal = turn.goal = side.goal = {};
             return;
     }
 }
 
 bool Motion::arrived() const {
     const auto rests = [](const Axis& axis) { return axis.speed == 0 && axis.goal.value == 0; };
-    return rests(drive) && rests(turn);
+    return rests(drive) && rests(turn) && rests(side);
 }
 
-void Motion::halt() { drive = turn = {}; }
+void Motion::halt() { drive = turn = side = {}; }
 
 Advance advance(const Motion& from, const MotionLimits& limits, const double duration) {
     Advance to{.motion = from};
     if (!(limits.drive.accel > 0 && limits.turn.accel > 0)) {
         to.motion.drive = {.goal = from.drive.goal};
         to.motion.turn = {.goal = from.turn.goal};
+        to.motion.side = {.goal = from.side.goal};
         return to;
     }
-    Run drive(from.drive, limits.drive), turn(from.turn, limits.turn);
+    Run drive(from.drive, limits.drive), turn(from.turn, limits.turn), side(from.side, limits.side);
     Pose2& pose = to.motion.pose;
     double left = duration;
     while (left > 0) {
-        const double time = std::min({left, drive.rest(), turn.rest()});
-        pose.position = pose.position + displacement(pose.heading, drive, turn, time);
+        const double time = std::min({left, drive.rest(), turn.rest(), side.rest()});
+        pose.position = pose.position + displacement(pose.heading, drive, side, turn, time);
         pose.heading = pose.heading + Angle::degrees(turn.way(time));
         drive.pass(time);
         turn.pass(time);
+        side.pass(time);
         left -= time;
     }
     to.motion.drive = drive.after(from.drive);
     to.motion.turn = turn.after(from.turn);
+    to.motion.side = side.after(from.side);
     const bool turned = from.turn.goal.kind == AxisGoal::Kind::Distance && turn.atGoal();
     if (turned)
         pose.heading = from.turn_end;
     else if (std::abs(pose.heading.degrees()) >= 180)  // as a rule it is not: a remainder is dear
         pose.heading = wrapped(pose.heading);
-    to.path = drive.path();
-    setDeviation(to, drive, turn, duration);
+    to.path = drive.path() + side.path();
+    setDeviation(to, drive, side, turn, duration);
     return to;
 }
 

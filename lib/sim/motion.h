@@ -39,9 +39,9 @@ struct AxisLimits {
     double accel = 0;  ///< of speeding up and braking
 };
 
-/// What a robot can do where it stands.
+/// What a robot or a person can do where it stands.
 struct MotionLimits {
-    AxisLimits drive, turn;
+    AxisLimits drive, turn, side;
 };
 
 /// The model's limits, each times (1 - friction).
@@ -63,17 +63,19 @@ struct Axis {
     double accel = 0;  ///< at the end of the last step
 };
 
-/// State of a robot in motion: a unicycle that drives along its heading and turns about its centre
-/// of rotation.
+/// State of a robot or a person in motion: a unicycle that drives along its heading and turns about
+/// its centre of rotation. Who is omnidirectional moves sideways at the same time.
 struct Motion {
     Pose2 pose;      ///< heading within (-180, 180]
     Axis drive;      ///< metres
     Axis turn;       ///< degrees, counter-clockwise
+    Axis side;       ///< metres, to the left
     Angle turn_end;  ///< the heading at which a turn of given angle ends
 
-    /// Sets the goals of a command. Speed and Rotspeed keep the speed the other one has set.
+    /// Sets the goals of a command. Speed, Rotspeed and Sidespeed keep the speeds that the others
+    /// have set. Path brings all to rest: who walks it sets the goals, see route.h.
     void command(const Command& command);
-    /// Both axes at rest and no distance left.
+    /// All axes at rest and no distance left.
     [[nodiscard]] bool arrived() const;
     /// At rest at once, without a goal.
     void halt();
@@ -82,12 +84,12 @@ struct Motion {
 /// Result of a motion, and how far it strayed from an even motion along its chord.
 struct Advance {
     Motion motion;
-    double path = 0;   ///< length of the path travelled
+    double path = 0;   ///< length of the path travelled; sideways at the same time: at most
     double bulge = 0;  ///< upper bound of its distance from the chord
     double lag = 0;    ///< upper bound of its distance from an even motion along the chord
 };
 
-/// Where a robot is after `duration` seconds.
+/// Where a robot or a person is after `duration` seconds.
 ///
 /// Each axis reaches its goal in the least time, with accelerations that are constant between the
 /// moments where it starts to brake or reaches a speed; these may lie anywhere within the duration.

@@ -62,8 +62,6 @@ SensorReader::SensorReader(const Scene& scene)
         if (scene.records[placed.record].keyword() == "human")
             people_starts_.push_back(
                 {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
-    // Robots first, as they move; people behind them.
-    places_ = bodiesOf(scene);
 }
 
 void SensorReader::addSensors() {
@@ -178,10 +176,15 @@ void SensorReader::update(SimTime time, const Movers& movers) {
 void SensorReader::updateBodies(const Movers& movers) {
     if (!std::exchange(moved_, false)) return;
     pictures_moved_ = true;
-    const auto& robots = movers.robots;
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-        places_[i] =
-            robotBody(scene_->robots[i].model, robots[i].pose, static_cast<std::uint32_t>(i));
+    places_.clear();
+    for (std::size_t i = 0; i < movers.robots.size(); ++i)
+        places_.push_back(robotBody(scene_->robots[i].model, movers.robots[i].pose,
+                                    static_cast<std::uint32_t>(i)));
+    for (std::size_t i = 0; i < movers.people.size(); ++i) {
+        const auto parts =
+            humanBodies(scene_->people[i].height, movers.people[i].pose,
+                        kFirstPerson + static_cast<std::uint32_t>(i), movers.swings[i]);
+        places_.insert(places_.end(), parts.begin(), parts.end());
     }
     bodies_.rebuild(places_);
 }

@@ -23,6 +23,7 @@ namespace ispace {
 /// Robots and people as they are after a step, in the order of the scene.
 struct Movers {
     std::span<const Motion> robots, people;
+    std::span<const Angle> swings;  ///< of the people's limbs, see humanBodyOf
 };
 
 /// Reads the sensors of a world when they are due: in the first step at or after the beginning of

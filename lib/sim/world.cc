@@ -27,8 +27,8 @@ constexpr std::size_t kMaxEnds = 4096;
 /// when it has gone as far.
 constexpr double kLookout = 1;
 
-/// What a robot is besides its motion.
-struct Mover {
+/// What somebody is besides the motion.
+struct MoverState {
     const Obstacles* obstacles = nullptr;
     MotionLimits limits;
     double clearance = 0;  // it may go at least as far before it meets an obstacle
@@ -53,40 +53,43 @@ std::optional<std::size_t> find(const std::map<std::string_view, std::size_t>& i
 }  // namespace
 
 struct World::Data {
-    Data(std::shared_ptr<const Scene> room, SimTime step_length);
+    Data(std::shared_ptr<const Scene> room, SimTime step_length, const RunOptions& run);
 
     [[nodiscard]] const std::vector<Element>& elements() const {
         return scene->environment.elements();
     }
-    /// Id of a robot, or of a person behind the robots.
-    [[nodiscard]] std::string_view idOf(std::size_t mover) const {
-        const std::vector<PlacedRobot>& robots = scene->robots;
-        return mover < robots.size() ? robots[mover].id : people[mover - robots.size()].id;
+    [[nodiscard]] Movers where() const {
+        const std::span<const Motion> all(motions);
+        const std::size_t robots = scene->robots.size();
+        return {all.first(robots), all.subspan(robots), swings};
     }
-    [[nodiscard]] Movers where() const { return {motions, standing}; }
-    void propose(std::size_t robot);
-    [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t robot);
+    void propose(std::size_t mover);
+    [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
     void settle();
     void collide(const Collision& collision);
     void apply();
-    void end(std::size_t robot, Outcome outcome);
+    void walk(std::size_t mover);
+    void keepGait(std::size_t mover, const Data& before, std::size_t old);
+    void end(std::size_t mover, Outcome outcome);
     [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
     [[nodiscard]] std::unique_ptr<Data> next(
         Scene scene, const std::unordered_set<std::string_view>& stayers) const;
 
     std::shared_ptr<const Scene> scene;
+    RunOptions options;
     SimTime step_length, time{};
     std::int64_t steps = 0, changes = 0;
 
-    std::map<std::string_view, std::size_t> robot_index;
-    std::vector<Person> people;
+    std::vector<Mover> movers;
+    std::map<std::string_view, std::size_t> mover_index;
     ObstacleSets obstacles;
     FrictionMap friction;
     std::vector<std::size_t> order;  // in which moves are settled
     std::vector<Motion> motions;
-    std::vector<Motion> standing;  // of people
-    std::vector<Mover> movers;
-    std::vector<Move> moves;  // of robots, then of people, who stay
+    std::vector<MoverState> states;
+    std::vector<Gait> gaits;    // of people
+    std::vector<Angle> swings;  // of their limbs
+    std::vector<Move> moves;
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
     SensorReader sensors;
@@ -96,70 +99,63 @@ struct World::Data {
     std::vector<Collision> collisions;
 };
 
-World::Data::Data(std::shared_ptr<const Scene> room, SimTime length)
+World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOptions& run)
     : scene(std::move(room)),
+      options(run),
       step_length(length),
-      robot_index(indexById(scene->robots)),
-      people(peopleOf(*scene)),
-      obstacles(obstaclesOf(*scene)),
+      movers(moversOf(*scene)),
+      mover_index(indexById(movers)),
+      obstacles(obstaclesOf(scene->environment, movers)),
       friction(scene->environment),
-      order(settlingOrder(scene->robots)),
-      motions(scene->robots.size()),
-      standing(people.size()),
-      movers(scene->robots.size()),
-      moves(scene->robots.size() + people.size()),
-      traffic(scene->robots, people, order, seconds(length)),
+      order(settlingOrder(movers)),
+      motions(movers.size()),
+      states(movers.size()),
+      gaits(scene->people.size()),
+      swings(scene->people.size()),
+      moves(movers.size()),
+      traffic(movers, order, seconds(length)),
       sensors(*scene),
       sensor_index(indexById(sensors.sensors())) {
-    checkStart(*scene, people, obstacles);
+    checkStart(scene->environment, movers, obstacles);
     for (std::size_t i = 0; i < motions.size(); ++i) {
-        const PlacedRobot& robot = scene->robots[i];
-        motions[i].pose = {robot.pose.position, wrapped(robot.pose.heading)};
-        movers[i].obstacles = &obstacles.at(robot.model.height);
-        movers[i].limits = limitsOf(robot.model, 0);
+        const auto& [id, model, pose, course, place, is_person] = movers[i];
+        motions[i].pose = {pose.position, wrapped(pose.heading)};
+        states[i].obstacles = &obstacles.at(model.height);
+        states[i].limits = limitsOf(model, 0);
         moves[i].from = &motions[i];
-        moves[i].limits = &movers[i].limits;
+        moves[i].limits = &states[i].limits;
         moves[i].duration = seconds(length);
-        moves[i].radius = robot.model.radius;
-    }
-    for (std::size_t i = 0; i < people.size(); ++i) {
-        standing[i].pose = {people[i].place, wrapped(people[i].heading)};
-        Move& move = moves[motions.size() + i];
-        move.from = &standing[i];
-        move.radius = people[i].radius;
-        move.to = {.motion = standing[i]};
+        moves[i].radius = model.radius;
     }
 }
 
-/// Independent of all other robots.
-void World::Data::propose(std::size_t robot) {
-    Move& move = moves[robot];
-    const Motion& motion = motions[robot];
-    movers[robot].blocked.reset();
+/// Independent of all others.
+void World::Data::propose(std::size_t mover) {
+    Move& move = moves[mover];
+    const Motion& motion = motions[mover];
+    states[mover].blocked.reset();
     if (motion.arrived()) {
         move.to = {.motion = motion};
         return;
     }
-    if (!friction.empty()) {
-        movers[robot].limits =
-            limitsOf(scene->robots[robot].model, friction.at(motion.pose.position));
-    }
-    move.to = advance(motion, movers[robot].limits, move.duration);
-    movers[robot].blocked = elementAhead(robot);
+    if (!friction.empty())
+        states[mover].limits = limitsOf(movers[mover].model, friction.at(motion.pose.position));
+    move.to = advance(motion, states[mover].limits, move.duration);
+    states[mover].blocked = elementAhead(mover);
 }
 
-std::optional<std::size_t> World::Data::elementAhead(std::size_t robot) {
-    const Move& move = moves[robot];
-    Mover& mover = movers[robot];
+std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
+    const Move& move = moves[mover];
+    MoverState& state = states[mover];
     if (move.to.path == 0) return std::nullopt;
-    if (mover.clearance < move.to.path) {
+    if (state.clearance < move.to.path) {
         const double around = move.radius + kLookout;
-        mover.clearance = mover.obstacles->nearest(move.start(), around) - move.radius - kTouch;
-        if (mover.clearance < move.to.path) {
-            if (const auto element = collides(move, *mover.obstacles)) return element;
+        state.clearance = state.obstacles->nearest(move.start(), around) - move.radius - kTouch;
+        if (state.clearance < move.to.path) {
+            if (const auto element = collides(move, *state.obstacles)) return element;
         }
     }
-    mover.clearance -= move.to.path;
+    state.clearance -= move.to.path;
     return std::nullopt;
 }
 
@@ -170,54 +166,66 @@ void World::Data::settle() {
     if (!any) return;
     if (moved) traffic.rebuild(moves);
     moved = false;
-    for (const std::size_t robot : order) {
-        if (moves[robot].to.path == 0) continue;
-        if (movers[robot].blocked) {
-            collide({robot, std::nullopt, elements()[*movers[robot].blocked].id, time});
-        } else if (const auto other = traffic.hit(moves, robot)) {
-            const bool is_robot = *other < motions.size();
-            collide({robot, is_robot ? other : std::nullopt, idOf(*other), time});
+    for (const std::size_t mover : order) {
+        if (moves[mover].to.path == 0) continue;
+        if (states[mover].blocked) {
+            collide({mover, std::nullopt, elements()[*states[mover].blocked].id, time});
+        } else if (const auto other = traffic.hit(moves, mover)) {
+            collide({mover, other, movers[*other].id, time});
         }
     }
 }
 
 void World::Data::collide(const Collision& collision) {
     moves[collision.robot].cancel();
-    movers[collision.robot].stall = true;
+    states[collision.robot].stall = true;
     collisions.push_back(collision);
 }
 
 void World::Data::apply() {
-    for (const std::size_t robot : order) {
-        Motion& motion = motions[robot];
-        if (moves[robot].to.motion.pose != motion.pose) {
+    for (const std::size_t mover : order) {
+        Motion& motion = motions[mover];
+        if (moves[mover].to.motion.pose != motion.pose) {
             moved = true;
             sensors.moved();
         }
-        motion = moves[robot].to.motion;
-        if (movers[robot].running == 0) continue;
-        if (movers[robot].stall) {
-            end(robot, Outcome::Stall);
+        motion = moves[mover].to.motion;
+        if (movers[mover].is_person) walk(mover);
+        if (states[mover].running == 0) continue;
+        if (states[mover].stall) {
+            end(mover, Outcome::Stall);
         } else if (motion.arrived()) {
-            end(robot, Outcome::Done);
+            end(mover, Outcome::Done);
             motion.halt();
         }
     }
 }
 
-void World::Data::end(std::size_t robot, Outcome outcome) {
-    ends.push_back({robot, std::exchange(movers[robot].running, 0), outcome, time});
+void World::Data::walk(std::size_t mover) {
+    const std::size_t person = mover - scene->robots.size();
+    const Motion& motion = motions[mover];
+    const double speed = std::hypot(motion.drive.speed, motion.side.speed);
+    const double path = moves[mover].to.path;
+    gaits[person].walk(movers[mover].model.height, motion.drive.speed < 0 ? -path : path, speed);
+    swings[person] = gaits[person].swing(speed);
+}
+
+void World::Data::keepGait(std::size_t mover, const Data& before, std::size_t old) {
+    if (!movers[mover].is_person || !before.movers[old].is_person) return;
+    const std::size_t person = mover - scene->robots.size();
+    const std::size_t was = old - before.scene->robots.size();
+    gaits[person] = before.gaits[was];
+    swings[person] = before.swings[was];
+}
+
+void World::Data::end(std::size_t mover, Outcome outcome) {
+    ends.push_back({mover, std::exchange(states[mover].running, 0), outcome, time});
 }
 
 /// Of robots and people, by id.
 std::unordered_map<std::string_view, Pose2> World::Data::places() const {
     std::unordered_map<std::string_view, Pose2> places;
-    for (std::size_t i = 0; i < motions.size(); ++i)
-        places.emplace(scene->robots[i].id, motions[i].pose);
-    for (const Placed& placed : scene->placed) {
-        const Point3 p = placed.pose.position;
-        places.try_emplace(scene->ids[placed.record], Pose2{{p.x, p.y}, placed.pose.heading});
-    }
+    for (std::size_t i = 0; i < motions.size(); ++i) places.emplace(movers[i].id, motions[i].pose);
     return places;
 }
 
@@ -225,22 +233,23 @@ std::unordered_map<std::string_view, Pose2> World::Data::places() const {
 /// clients know them by.
 std::unique_ptr<World::Data> World::Data::next(
     Scene next_scene, const std::unordered_set<std::string_view>& stayers) const {
-    auto after =
-        std::make_unique<Data>(std::make_shared<const Scene>(std::move(next_scene)), step_length);
+    auto after = std::make_unique<Data>(std::make_shared<const Scene>(std::move(next_scene)),
+                                        step_length, options);
     after->time = time;
     after->steps = steps;
     after->changes = changes + 1;
     for (std::size_t i = 0; i < after->motions.size(); ++i) {
-        const std::string& id = after->scene->robots[i].id;
-        const auto old = find(robot_index, id);
+        const std::string& id = after->movers[i].id;
+        const auto old = find(mover_index, id);
         if (!old) continue;
-        Mover& mover = after->movers[i];
-        mover.ids = movers[*old].ids;
-        mover.running = movers[*old].running;
+        MoverState& state = after->states[i];
+        state.ids = states[*old].ids;
+        state.running = states[*old].running;
         if (stayers.contains(id)) {
-            mover.stall = movers[*old].stall;
+            state.stall = states[*old].stall;
             after->motions[i] = motions[*old];
-        } else if (mover.running != 0) {
+            after->keepGait(i, *this, *old);
+        } else if (state.running != 0) {
             after->end(i, Outcome::Stopped);
         }
     }
@@ -249,14 +258,14 @@ std::unique_ptr<World::Data> World::Data::next(
     return after;
 }
 
-World::World(std::shared_ptr<const Scene> scene, SimTime step)
-    : data_(std::make_unique<Data>(std::move(scene), step)) {
+World::World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options)
+    : data_(std::make_unique<Data>(std::move(scene), step, options)) {
     assert(kShortestStep <= step && step <= kLongestStep);
     data_->sensors.read(data_->time, data_->where());
 }
 
-World::World(const Scene& scene, SimTime step)
-    : World(std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene), step) {}
+World::World(const Scene& scene, SimTime step, const RunOptions& options)
+    : World(std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene), step, options) {}
 
 World::~World() = default;
 World::World(World&&) noexcept = default;
@@ -267,28 +276,43 @@ const Scene& World::scene() const { return *data_->scene; }
 std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
 std::int64_t World::steps() const { return data_->steps; }
+std::span<const Mover> World::movers() const { return data_->movers; }
 std::span<const PlacedRobot> World::robots() const { return data_->scene->robots; }
+std::span<const PlacedPerson> World::people() const { return data_->scene->people; }
 std::span<const RunSensor> World::sensors() const { return data_->sensors.sensors(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
 std::span<const std::size_t> World::read() const { return data_->sensors.latest(); }
 
+std::optional<std::size_t> World::moverNamed(std::string_view id) const {
+    return find(data_->mover_index, id);
+}
+
 std::optional<std::size_t> World::robotNamed(std::string_view id) const {
-    return find(data_->robot_index, id);
+    const auto mover = moverNamed(id);
+    return mover && !data_->movers[*mover].is_person ? mover : std::nullopt;
+}
+
+std::optional<std::size_t> World::personNamed(std::string_view id) const {
+    const auto mover = moverNamed(id);
+    return mover && data_->movers[*mover].is_person ? mover : std::nullopt;
 }
 
 std::optional<std::size_t> World::sensorNamed(std::string_view id) const {
     return find(data_->sensor_index, id);
 }
 
-RobotStatus World::status(std::size_t robot) const {
-    const Motion& motion = data_->motions[robot];
+RobotStatus World::status(std::size_t mover) const {
+    const Motion& motion = data_->motions[mover];
+    const std::size_t robots = data_->scene->robots.size();
     return {.pose = motion.pose,
             .speed = motion.drive.speed,
             .rotspeed = Angle::degrees(motion.turn.speed),
             .accel = motion.drive.accel,
             .rotaccel = Angle::degrees(motion.turn.accel),
-            .stall = data_->movers[robot].stall};
+            .stall = data_->states[mover].stall,
+            .sidespeed = motion.side.speed,
+            .phase = mover < robots ? 0 : data_->gaits[mover - robots].phase};
 }
 
 const SensorReading& World::reading(std::size_t sensor) const {
@@ -304,11 +328,20 @@ const SensorReading& World::take(std::size_t sensor) {
 
 const FloorSensors& World::floorSensors() const { return data_->sensors.floor(); }
 
-std::string World::refusal(std::size_t robot, const Command& command) const {
-    const auto& [id, model, pose, place] = data_->scene->robots[robot];
+std::string World::refusal(std::size_t mover, const Command& command) const {
+    const auto& [id, model, pose, course, place, is_person] = data_->movers[mover];
     const double value = command.value;
+    const auto goes_at_most = [&, &who = id](double most) {
+        return who + " goes at most " + formatDouble(most) + " m/s";
+    };
     if (command.verb == Verb::Speed && !(std::abs(value) <= model.max_speed))
-        return id + " goes at most " + formatDouble(model.max_speed) + " m/s";
+        return goes_at_most(model.max_speed);
+    if (command.verb == Verb::Path) return "paths are not followed yet";
+    if (command.verb == Verb::Path && !(command.speed <= model.max_speed))
+        return goes_at_most(model.max_speed);
+    if (command.verb == Verb::Sidespeed && !(std::abs(value) <= model.max_sidespeed))
+        return model.drive == Drive::Omni ? goes_at_most(model.max_sidespeed) + " sideways"
+                                          : id + " does not go sideways: its drive is not omni";
     if (command.verb == Verb::Rotspeed && !(std::abs(value) <= model.max_rotspeed.degrees()))
         return id + " turns at most " + formatDouble(model.max_rotspeed.degrees()) + " deg/s";
     if (comesToAnEnd(command.verb) && !(std::isfinite(value) && value >= 0))
@@ -316,18 +349,18 @@ std::string World::refusal(std::size_t robot, const Command& command) const {
     return "";
 }
 
-int World::command(std::size_t robot, const Command& command) {
-    assert(refusal(robot, command).empty());
+int World::command(std::size_t mover, const Command& command) {
+    assert(refusal(mover, command).empty());
     Data& data = *data_;
-    Mover& mover = data.movers[robot];
-    if (mover.running != 0) {
+    MoverState& state = data.states[mover];
+    if (state.running != 0) {
         if (data.ends.size() >= kMaxEnds + data.movers.size()) data.ends.erase(data.ends.begin());
-        data.end(robot, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
+        data.end(mover, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
     }
-    mover.stall = false;
-    data.motions[robot].command(command);
-    if (comesToAnEnd(command.verb)) mover.running = ++mover.ids;
-    return mover.running;
+    state.stall = false;
+    data.motions[mover].command(command);
+    if (comesToAnEnd(command.verb)) state.running = ++state.ids;
+    return state.running;
 }
 
 void World::change(Scene scene) {

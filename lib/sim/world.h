@@ -11,19 +11,22 @@
 
 #include "layout/scene.h"
 #include "sim/command.h"
+#include "sim/people.h"
 #include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
 
-/// State of a robot at one moment, with its true pose.
+/// State of a robot or a person at one moment, with the true pose.
 struct RobotStatus {
-    Pose2 pose;          ///< heading within (-180, 180]
-    double speed = 0;    ///< m/s, forward
-    Angle rotspeed;      ///< a second, counter-clockwise
-    double accel = 0;    ///< m/s^2 at the end of the last step
-    Angle rotaccel;      ///< a second a second
-    bool stall = false;  ///< it ran into something; stays until the next motion command
+    Pose2 pose;            ///< heading within (-180, 180]
+    double speed = 0;      ///< m/s, forward
+    Angle rotspeed;        ///< a second, counter-clockwise
+    double accel = 0;      ///< m/s^2 at the end of the last step
+    Angle rotaccel;        ///< a second a second
+    bool stall = false;    ///< it ran into something; stays until the next motion command
+    double sidespeed = 0;  ///< m/s, to the left
+    double phase = 0;      ///< of a person's gait, see Gait
 };
 
 /// How a command ended.
@@ -31,25 +34,34 @@ enum class Outcome { Done, Stall, Replaced, Stopped };
 
 /// The end of a command with an id.
 struct CommandEnd {
-    std::size_t robot = 0;
+    std::size_t robot = 0;  ///< or person: an index of World::movers()
     int id = 0;
     Outcome outcome = Outcome::Done;
     SimTime time{};
 };
 
-/// A robot ran into something and its step was cancelled.
+/// A robot or a person ran into something, and the step was cancelled.
 struct Collision {
-    std::size_t robot = 0;
-    std::optional<std::size_t> other;  ///< the robot it ran into; nothing: a person or an element
+    std::size_t robot = 0;             ///< or person: an index of World::movers()
+    std::optional<std::size_t> other;  ///< the mover it ran into; nothing: an element
     std::string_view into;             ///< id of that robot, person or element
     SimTime time{};
 };
 
-/// Robots and sensors in an environment, in fixed steps.
+/// What a run is besides its scene.
+struct RunOptions {
+    std::uint64_t seed = 0;  ///< of all that is random
+    bool noise = false;      ///< motion, odometry and starts stray as the robots' records say
+};
+
+/// Robots, people and sensors in an environment, in fixed steps.
 ///
-/// In a step from t to t + dt every robot proposes a move from its state at t and its command.
-/// Moves are settled in the order of the robots' ids; one that would run into the environment,
-/// another robot or a person is cancelled. Then sensors due at t + dt are read. Commands take
+/// Robots and people are movers with indices of one range: robots first, in the order of the scene,
+/// so that a robot's index is the same in robots() and movers(); people behind them.
+///
+/// In a step from t to t + dt everybody proposes a move from the state at t and the command.
+/// Moves are settled in the order of ids, robots first; one that would run into the environment,
+/// a robot or a person is cancelled. Then sensors due at t + dt are read. Commands take
 /// effect when given, between steps. The same commands between the same steps give the same world,
 /// for any number of threads.
 ///
@@ -65,9 +77,9 @@ class World {
     /// \throws FormatError with all findings if a robot stands in something, in another robot or in
     ///         a person
     /// \pre kShortestStep <= step <= kLongestStep
-    World(std::shared_ptr<const Scene> scene, SimTime step);
+    World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options = {});
     /// The same with a scene that must outlive the world.
-    World(const Scene& scene, SimTime step);
+    World(const Scene& scene, SimTime step, const RunOptions& options = {});
     ~World();
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
@@ -78,14 +90,20 @@ class World {
 
     /// What is in it, as of the last change. Views of its ids last until the next one.
     [[nodiscard]] const Scene& scene() const;
-    /// In the order of the scene.
+    /// Robots and people, then robots or people alone, in the order of the scene.
+    [[nodiscard]] std::span<const Mover> movers() const;
     [[nodiscard]] std::span<const PlacedRobot> robots() const;
+    /// The first of them is mover robots().size().
+    [[nodiscard]] std::span<const PlacedPerson> people() const;
+    /// Indices of movers(), of robots or people alone in the other two.
+    [[nodiscard]] std::optional<std::size_t> moverNamed(std::string_view id) const;
     [[nodiscard]] std::optional<std::size_t> robotNamed(std::string_view id) const;
+    [[nodiscard]] std::optional<std::size_t> personNamed(std::string_view id) const;
     /// What is read, as it starts: sensors in the order of the scene, then mats, then gates.
     [[nodiscard]] std::span<const RunSensor> sensors() const;
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
-    [[nodiscard]] RobotStatus status(std::size_t robot) const;
+    [[nodiscard]] RobotStatus status(std::size_t mover) const;
     /// The newest one; of a heavy sensor that nobody wants the one that was taken last, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
     /// Depth frames and pictures are read when due only as long as somebody wants them: counts who
@@ -96,12 +114,12 @@ class World {
     /// Mats and gates as they are after the last step, whatever their rates.
     [[nodiscard]] const FloorSensors& floorSensors() const;
 
-    /// Why this robot cannot do it ("r1 goes at most 1.6 m/s"), or "".
-    [[nodiscard]] std::string refusal(std::size_t robot, const Command& command) const;
-    /// Gives a command; the running one ends as Replaced, or Stopped by Stop. Speed and Rotspeed
-    /// keep the goal set by the other. \returns for a command that comes to an end its id, counting
-    /// from 1 for each robot; else 0. \pre refusal() is empty
-    int command(std::size_t robot, const Command& command);
+    /// Why this robot or person cannot do it ("r1 goes at most 1.6 m/s"), or "".
+    [[nodiscard]] std::string refusal(std::size_t mover, const Command& command) const;
+    /// Gives a command; the running one ends as Replaced, or Stopped by Stop. Speed, Rotspeed and
+    /// Sidespeed keep the goals set by the others. \returns for a command that comes to an end its
+    /// id, counting from 1 for each mover; else 0. \pre refusal() is empty
+    int command(std::size_t mover, const Command& command);
 
     void step();
 
@@ -119,12 +137,13 @@ class World {
     [[nodiscard]] std::int64_t changes() const;
 
     /// Commands that ended in the last step or since, in order; step() starts the list anew. Those
-    /// of one step are in the order of the robots' ids. A robot never reuses an id, so a reader
-    /// looks for the robot and id it waits for: after step() anywhere in the list, after its own
+    /// of one step are in the order in which moves are settled. Nobody reuses an id, so a reader
+    /// looks for the mover and id it waits for: after step() anywhere in the list, after its own
     /// command() at the end. Of those ended by commands since the last step only the newest few
     /// thousand are kept.
     [[nodiscard]] std::span<const CommandEnd> ends() const;
-    /// Cancelled moves of the last step, in the order of the robots' ids: each began to stall.
+    /// Cancelled moves of the last step, in the order in which they were settled: each began to
+    /// stall.
     [[nodiscard]] std::span<const Collision> collisions() const;
     /// Sensors read in the last step (before the first step: all that are not heavy), ascending.
     [[nodiscard]] std::span<const std::size_t> read() const;

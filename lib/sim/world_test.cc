@@ -216,7 +216,7 @@ TEST(World, PeopleStallRobotsAsThingsDo) {
         EXPECT_GT(world.status(0).pose.position.x, 0.4 - 0.5 * ispace::seconds(step) - 1e-9);
         EXPECT_EQ(world.status(0).speed, 0);
         ASSERT_EQ(world.collisions().size(), 1U);
-        EXPECT_EQ(world.collisions()[0].other, std::nullopt);
+        EXPECT_EQ(world.collisions()[0].other, world.personNamed("ann"));
         EXPECT_EQ(world.collisions()[0].into, "ann");
         ASSERT_EQ(world.ends().size(), 1U);
         EXPECT_EQ(world.ends()[0].id, id);

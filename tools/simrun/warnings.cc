@@ -17,7 +17,7 @@ constexpr const char* kTool = "simrun";
 
 std::string textOf(const World& world, const Collision& collision) {
     const Point2 place = world.status(collision.robot).pose.position;
-    return "t=" + formatMilliseconds(collision.time) + ' ' + world.robots()[collision.robot].id +
+    return "t=" + formatMilliseconds(collision.time) + ' ' + world.movers()[collision.robot].id +
            " at " + formatFixed(place.x, 3) + ',' + formatFixed(place.y, 3) + " ran into " +
            std::string(collision.into);
 }
