@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/run_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+/// Columns, the needed ones first and in this order; others may be anywhere behind them or missing.
+constexpr std::array<std::string_view, 11> kColumns = {
+    "t",     "id",           "x",     "y",    "heading_deg", "speed", "rotspeed_deg",
+    "accel", "rotaccel_deg", "stall", "phase"};
+constexpr std::size_t kNeeded = 5;
+enum Column { kTime, kId, kX, kY, kHeading, kSpeed, kRotspeed, kAccel, kRotaccel, kStall, kPhase };
+
+constexpr std::size_t kLongestLine = 4096;
+
+/// Lines of a file or a text, read piece by piece. One without its end is none.
+class LineSource {
+  public:
+    explicit LineSource(std::optional<InputFile> file, std::string text)
+        : file_(std::move(file)), bytes_(std::move(text)) {}
+
+    std::optional<std::string_view> next() {
+        for (;;) {
+            const std::size_t end = bytes_.find('\n', searched_);
+            if (end != std::string::npos) {
+                std::string_view line(bytes_.data() + begin_, end - begin_);
+                if (line.ends_with('\r')) line.remove_suffix(1);
+                begin_ = searched_ = end + 1;
+                ++number_;
+                return line;
+            }
+            is_too_long_ = bytes_.size() - begin_ > kLongestLine;
+            if (is_too_long_ || !file_) return std::nullopt;
+            bytes_.erase(0, std::exchange(begin_, 0));
+            searched_ = bytes_.size();
+            if (!file_->read(bytes_)) file_.reset();
+        }
+    }
+    [[nodiscard]] int number() const { return number_; }
+    /// At the end: the last line lacks its own.
+    [[nodiscard]] bool isCut() const { return begin_ < bytes_.size(); }
+    [[nodiscard]] bool isTooLong() const { return is_too_long_; }
+
+  private:
+    std::optional<InputFile> file_;
+    std::string bytes_;
+    std::size_t begin_ = 0, searched_ = 0;  // of the rest; where no line ends before
+    int number_ = 0;
+    bool is_too_long_ = false;
+};
+
+void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
+    fields.clear();
+    for (;;) {
+        const std::size_t comma = line.find(',');
+        fields.push_back(line.substr(0, comma));
+        if (comma == std::string_view::npos) return;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+/// The moments of one file.
+class MomentFile {
+  public:
+    /// Members are added to `who`, which outlives it.
+    MomentFile(std::string name, LineSource lines, bool is_people, std::vector<RunMember>& who)
+        : name_(std::move(name)), lines_(std::move(lines)), is_people_(is_people), who_(&who) {
+        readHeader();
+        readLine();
+    }
+
+    /// Where the next moment begins; nothing at the end.
+    [[nodiscard]] std::optional<double> upcoming() const {
+        return row_ ? std::optional(row_->time) : std::nullopt;
+    }
+    /// Appends its states. False if it is the last one and not whole. \pre there is one
+    bool read(std::vector<RunState>& states);
+
+    [[nodiscard]] bool isCut() const { return is_cut_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw FormatError({name_, lines_.number(), 0, what});
+    }
+
+  private:
+    struct Row {
+        double time = 0;
+        RunState state;
+    };
+
+    void readHeader();
+    void readLine();
+    [[nodiscard]] double number(Column column) const;
+    std::size_t indexOf(std::string_view id);
+
+    std::string name_;
+    LineSource lines_;
+    bool is_people_;
+    std::vector<RunMember>* who_;
+    std::unordered_map<std::string, std::size_t> index_;
+    std::array<std::size_t, kColumns.size()> place_{};  // of each column; npos: it is missing
+    std::size_t columns_ = 0;
+    std::vector<std::string_view> fields_;
+    std::optional<Row> row_;  // read ahead
+    std::unordered_map<std::size_t, double> latest_;
+    std::size_t count_ = 0;  // of the last moment
+    bool is_cut_ = false;
+};
+
+void MomentFile::readHeader() {
+    constexpr auto kMissing = std::string_view::npos;
+    std::optional<std::string_view> line;
+    do {
+        line = lines_.next();
+    } while (line && (line->empty() || line->front() == '#'));
+    if (line) splitFields(*line, fields_);
+    if (!line || fields_.size() < kNeeded ||
+        !std::equal(kColumns.begin(), kColumns.begin() + kNeeded, fields_.begin()))
+        fail(
+            "no record of a run: wanted the columns t,id,x,y,heading_deg,…, as `simrun --record` "
+            "writes");
+    columns_ = fields_.size();
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+        const auto found = std::find(fields_.begin(), fields_.end(), kColumns[i]);
+        place_[i] =
+            found == fields_.end() ? kMissing : static_cast<std::size_t>(found - fields_.begin());
+    }
+}
+
+double MomentFile::number(Column column) const {
+    if (place_[column] == std::string_view::npos) return 0;
+    const std::string_view text = fields_[place_[column]];
+    const auto value = parseDouble(text);
+    if (!value) fail(std::string(kColumns[column]) + " is " + excerpt(text) + ", wanted a number");
+    return *value;
+}
+
+std::size_t MomentFile::indexOf(std::string_view id) {
+    const auto [found, is_new] = index_.try_emplace(std::string(id), who_->size());
+    if (is_new) who_->push_back({std::string(id), is_people_});
+    return found->second;
+}
+
+void MomentFile::readLine() {
+    std::optional<std::string_view> line;
+    do {
+        line = lines_.next();
+    } while (line && line->empty());
+    const std::optional<Row> before = std::exchange(row_, std::nullopt);
+    if (!line) {
+        if (lines_.isTooLong()) fail("a line is longer than 4096 bytes");
+        is_cut_ = is_cut_ || lines_.isCut();
+        return;
+    }
+    splitFields(*line, fields_);
+    if (fields_.size() != columns_)
+        fail("has " + std::to_string(fields_.size()) + " columns, wanted " +
+             std::to_string(columns_) + ": " + excerpt(*line));
+    Row row;
+    row.time = number(kTime);
+    constexpr double kLongest = 4e9;  // seconds: a hundred years
+    if (row.time < 0 || row.time > kLongest) fail("t is out of bounds: " + excerpt(fields_[0]));
+    if (before && row.time < before->time) fail("time runs backwards");
+    row.state.who = indexOf(fields_[place_[kId]]);
+    row.state.pose = {{number(kX), number(kY)}, Angle::degrees(number(kHeading))};
+    row.state.speed = number(kSpeed);
+    row.state.rotspeed = Angle::degrees(number(kRotspeed));
+    row.state.accel = number(kAccel);
+    row.state.rotaccel = Angle::degrees(number(kRotaccel));
+    row.state.is_stalled = number(kStall) != 0;
+    row.state.phase = number(kPhase);
+    row_ = row;
+}
+
+bool MomentFile::read(std::vector<RunState>& states) {
+    const double time = row_->time;
+    std::size_t count = 0;
+    for (; row_ && row_->time == time; ++count) {
+        const auto [latest, is_new] = latest_.try_emplace(row_->state.who, time);
+        if (!is_new && latest->second == time)
+            fail((*who_)[row_->state.who].id + " is there twice at t=" + formatDouble(time));
+        latest->second = time;
+        states.push_back(row_->state);
+        readLine();
+    }
+    const bool is_whole = row_ || count >= count_;
+    is_cut_ = is_cut_ || !is_whole;
+    count_ = count;
+    return is_whole;
+}
+
+bool exists(const std::string& file) { return std::filesystem::exists(file); }
+
+}  // namespace
+
+RunFiles::RunFiles(const std::string& folder) {
+    const auto inFolder = [&folder](const char* file) {
+        return (std::filesystem::path(folder) / file).string();
+    };
+    robots = inFolder("robots.csv");
+    people = inFolder("people.csv");
+    info = inFolder("info.csv");
+    scene = inFolder("scene.env");
+}
+
+struct RunReader::Data {
+    void add(const std::string& name, LineSource lines, bool is_people) {
+        files.emplace_back(name, std::move(lines), is_people, who);
+        if (files.size() > 1 && !files.front().upcoming()) files.erase(files.begin());
+        if (files.size() > 1 && !files.back().upcoming()) files.pop_back();
+    }
+
+    std::string name;
+    std::vector<RunMember> who;
+    std::vector<MomentFile> files;
+    std::vector<RunState> states;
+    double time = 0;
+    bool is_cut = false;
+};
+
+RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {
+    const RunFiles files(folder);
+    data_->name = files.robots;
+    data_->add(files.robots, LineSource(InputFile(files.robots), ""), false);
+    if (exists(files.people))
+        data_->add(files.people, LineSource(InputFile(files.people), ""), true);
+}
+
+RunReader::RunReader(std::string robots, std::string people) : data_(std::make_unique<Data>()) {
+    data_->name = "robots.csv";
+    data_->add("robots.csv", LineSource({}, std::move(robots)), false);
+    if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
+}
+
+RunReader::~RunReader() = default;
+RunReader::RunReader(RunReader&&) noexcept = default;
+RunReader& RunReader::operator=(RunReader&&) noexcept = default;
+
+bool RunReader::next() {
+    Data& data = *data_;
+    const bool is_over = std::any_of(data.files.begin(), data.files.end(),
+                                     [](const MomentFile& file) { return !file.upcoming(); });
+    for (const MomentFile& file : data.files)
+        // One of the files of a killed run may be behind the other.
+        data.is_cut = data.is_cut || file.isCut() || (is_over && file.upcoming());
+    if (is_over) return false;
+    const double time = *data.files.front().upcoming();
+    std::vector<RunState> states;
+    for (MomentFile& file : data.files) {
+        if (*file.upcoming() != time)
+            file.fail("the moment t=" + formatDouble(*file.upcoming()) + " is none of " +
+                      data.name + ", which goes on at t=" + formatDouble(time));
+        if (!file.read(states)) {
+            data.is_cut = true;
+            return false;
+        }
+    }
+    data.states = std::move(states);
+    data.time = time;
+    return true;
+}
+
+double RunReader::time() const { return data_->time; }
+std::span<const RunState> RunReader::states() const { return data_->states; }
+const std::vector<RunMember>& RunReader::who() const { return data_->who; }
+bool RunReader::isCut() const { return data_->is_cut; }
+const std::string& RunReader::name() const { return data_->name; }
+
+std::optional<double> recordedStep(const std::string& folder) {
+    const std::string name = RunFiles(folder).info;
+    if (!exists(name)) return std::nullopt;
+    const std::string text = readAll(name);
+    if (text.empty()) return std::nullopt;
+    const std::string_view rest = std::string_view(text).substr(text.find('\n') + 1);
+    const auto step = parseDouble(rest.substr(0, rest.find(',')));
+    if (!text.starts_with("dt,") || !step || *step <= 0 || *step > 1)
+        throw FormatError({name, 2, 0,
+                           "no length of a step: wanted the columns dt,control_interval,steps, as "
+                           "`simrun --record` writes"});
+    return step;
+}
+
+}  // namespace ispace

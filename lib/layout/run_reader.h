@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geom/pose.h"
+
+namespace ispace {
+
+/// State of a robot or a person at a moment of a run.
+struct RunState {
+    std::size_t who = 0;  ///< index of RunReader::who()
+    Pose2 pose;
+    double speed = 0, accel = 0;  ///< m/s, m/s^2, forward
+    Angle rotspeed, rotaccel;     ///< a second, a second a second
+    bool is_stalled = false;
+    double phase = 0;  ///< of a person's gait
+};
+
+/// Somebody in a record.
+struct RunMember {
+    std::string id;
+    bool is_person = false;
+};
+
+/// Names of the files in a folder that `simrun --record` has written.
+struct RunFiles {
+    explicit RunFiles(const std::string& folder);
+    std::string robots, people, info, scene;
+};
+
+/// Reads the poses of a recorded run, one moment after another, whatever its size: robots.csv, and
+/// people.csv if there is one.
+///
+/// The record may still be growing, or its run may have been killed: a last line without its end,
+/// and a last moment at which some are missing, are left out.
+class RunReader {
+  public:
+    /// \throws std::system_error if robots.csv cannot be read, FormatError as next()
+    explicit RunReader(const std::string& folder);
+    /// The content of the files in their place; people may be empty. For tests.
+    RunReader(std::string robots, std::string people);
+    ~RunReader();
+    RunReader(RunReader&&) noexcept;
+    RunReader& operator=(RunReader&&) noexcept;
+
+    /// Reads the next moment; false at the end. \throws FormatError with the line: other columns,
+    /// no numbers, time that does not grow, somebody twice, moments of people that are none of
+    /// robots
+    bool next();
+    /// Of the moment that was read last, seconds.
+    [[nodiscard]] double time() const;
+    /// Who is there at it: robots in the order of their lines, then people.
+    [[nodiscard]] std::span<const RunState> states() const;
+    /// Everybody so far; indices stay.
+    [[nodiscard]] const std::vector<RunMember>& who() const;
+    /// True if an incomplete last moment was left out; known at the end.
+    [[nodiscard]] bool isCut() const;
+    /// The file of the robots, for messages.
+    [[nodiscard]] const std::string& name() const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// The length of a step by info.csv; nothing if the run was killed before it was written, or wrote
+/// none. \throws FormatError if it says something else
+std::optional<double> recordedStep(const std::string& folder);
+
+}  // namespace ispace

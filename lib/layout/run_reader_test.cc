@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/run_reader.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/test_damage.h"
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRobots =
+    "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n"
+    "0,r1,0,0,0,0,0,0,0,0\n0,r2,1,1,90,0,0,0,0,0\n"
+    "0.005,r1,0.5,0,10,0.3,20,0.1,5,0\n0.005,r2,1,1,90,0,0,0,0,1\n";
+constexpr const char* kPeople =
+    "t,id,x,y,heading_deg,speed,rotspeed_deg,phase\n0,h1,2,2,0,0,0,0\n0.005,h1,2.1,2,0,1,0,0.25\n";
+
+/// Reads to the end: the number of moments.
+int readAllOf(RunReader& reader) {
+    int moments = 0;
+    while (reader.next()) ++moments;
+    return moments;
+}
+
+int momentsOf(const std::string& robots, const std::string& people = "") {
+    RunReader reader(robots, people);
+    return readAllOf(reader);
+}
+
+TEST(RunReader, ReadsMomentsOfRobotsAndPeople) {
+    RunReader reader(kRobots, kPeople);
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.time(), 0);
+    ASSERT_EQ(reader.states().size(), 3U);
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.time(), 0.005);
+    const RunState& robot = reader.states()[0];
+    EXPECT_EQ(reader.who()[robot.who].id, "r1");
+    EXPECT_EQ(robot.pose, (Pose2{{0.5, 0}, Angle::degrees(10)}));
+    EXPECT_EQ(robot.speed, 0.3);
+    EXPECT_EQ(robot.rotspeed, Angle::degrees(20));
+    EXPECT_EQ(robot.accel, 0.1);
+    EXPECT_EQ(robot.rotaccel, Angle::degrees(5));
+    EXPECT_FALSE(robot.is_stalled);
+    EXPECT_TRUE(reader.states()[1].is_stalled);
+    const RunState& person = reader.states()[2];
+    EXPECT_EQ(reader.who()[person.who].id, "h1");
+    EXPECT_TRUE(reader.who()[person.who].is_person);
+    EXPECT_EQ(person.phase, 0.25);
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.isCut());
+}
+
+TEST(RunReader, ReadsRunsWithoutRobots) {
+    const std::string header = std::string(kRobots).substr(0, std::string(kRobots).find('\n') + 1);
+    EXPECT_EQ(momentsOf(header, kPeople), 2);
+    EXPECT_EQ(momentsOf(header), 0);
+    EXPECT_EQ(momentsOf(header, "t,id,x,y,heading_deg\n"), 0);
+    EXPECT_EQ(momentsOf(kRobots, "t,id,x,y,heading_deg\n"), 2);
+}
+
+TEST(RunReader, LeavesOutWhatAKilledRunLeftHalf) {
+    const std::string text = kRobots;
+    for (std::size_t length = text.find("0.005,r1"); length < text.size(); ++length) {
+        RunReader reader(text.substr(0, length), "");
+        EXPECT_EQ(readAllOf(reader), 1) << length;
+        EXPECT_EQ(reader.isCut(), length > text.find("0.005,r1")) << length;
+    }
+    const std::string people = kPeople;
+    RunReader reader(text, people.substr(0, people.find("0.005,h1")));
+    EXPECT_EQ(readAllOf(reader), 1);
+    EXPECT_TRUE(reader.isCut());
+}
+
+TEST(RunReader, SomeMayComeAndGo) {
+    RunReader reader(
+        "t,id,x,y,heading_deg\n0,a,0,0,0\n0,b,0,0,0\n1,a,0,0,0\n2,a,0,0,0\n2,c,1,1,1\n", "");
+    EXPECT_EQ(readAllOf(reader), 3);
+    EXPECT_EQ(reader.who().size(), 3U);
+}
+
+std::string errorOf(const std::string& robots, const std::string& people = "") {
+    return errorsOf([&] { momentsOf(robots, people); });
+}
+
+TEST(RunReader, NamesTheLineOfWhatIsWrong) {
+    const std::string header = "t,id,x,y,heading_deg\n";
+    EXPECT_EQ(errorOf("a,b\n"),
+              "robots.csv:1: error: no record of a run: wanted the columns t,id,x,y,heading_deg,…, "
+              "as `simrun --record` writes\n");
+    EXPECT_NE(errorOf(""), "no error");
+    EXPECT_EQ(errorOf(header + "0,r1,0,0\n"),
+              "robots.csv:2: error: has 4 columns, wanted 5: `0,r1,0,0`\n");
+    EXPECT_EQ(errorOf(header + "0,r1,0,nan,0\n"),
+              "robots.csv:2: error: y is `nan`, wanted a number\n");
+    EXPECT_EQ(errorOf(header + "1,r1,0,0,0\n0,r1,0,0,0\n"),
+              "robots.csv:3: error: time runs backwards\n");
+    EXPECT_EQ(errorOf(header + "1,r1,0,0,0\n1,r1,0,0,0\n"),
+              "robots.csv:3: error: r1 is there twice at t=1\n");
+    EXPECT_EQ(errorOf(header + "-1,r1,0,0,0\n"), "robots.csv:2: error: t is out of bounds: `-1`\n");
+    EXPECT_EQ(errorOf(header + std::string(5000, 'x')),
+              "robots.csv:1: error: a line is longer than 4096 bytes\n");
+    EXPECT_EQ(errorOf(header + "0,r1,0,0,0\n2,r1,0,0,0\n", header + "0,h1,0,0,0\n1,h1,0,0,0\n"),
+              "people.csv:3: error: the moment t=1 is none of robots.csv, which goes on at t=2\n");
+}
+
+TEST(RunReader, SurvivesDamage) {
+    surviveDamage(kRobots, [](const std::string& bytes) { momentsOf(bytes, kPeople); });
+    surviveDamage(kPeople, [](const std::string& bytes) { momentsOf(kRobots, bytes); });
+}
+
+TEST(RunReader, ReadsFoldersPieceByPiece) {
+    const fs::path folder = fs::path(::testing::TempDir()) / ("run" + std::to_string(::getpid()));
+    fs::create_directory(folder);
+    std::string text = "t,id,x,y,heading_deg\n";
+    constexpr int kMoments = 20000;
+    for (int i = 0; i < kMoments; ++i)
+        text += std::to_string(i) + ",r1," + std::to_string(i) + ".125,-0.25,30\n";
+    writeAll((folder / "robots.csv").string(), text);
+    RunReader reader(folder.string());
+    EXPECT_EQ(readAllOf(reader), kMoments);
+    EXPECT_EQ(reader.states()[0].pose.position.x, kMoments - 1 + 0.125);
+
+    EXPECT_EQ(recordedStep(folder.string()), std::nullopt);
+    writeAll((folder / "info.csv").string(), "dt,control_interval,steps\n0.005,0.005,2000\n");
+    EXPECT_EQ(recordedStep(folder.string()), 0.005);
+    for (const char* wrong : {"dt,control_interval,steps\n", "dt,x\n0,0\n", "a\n1\n"}) {
+        writeAll((folder / "info.csv").string(), wrong);
+        EXPECT_THROW(recordedStep(folder.string()), FormatError) << wrong;
+    }
+    fs::remove_all(folder);
+    EXPECT_THROW(RunReader{folder.string()}, std::system_error);
+}
+
+}  // namespace
+}  // namespace ispace
