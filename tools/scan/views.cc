@@ -192,9 +192,8 @@ void takeViews(const ScanCommand& command) {
     std::vector<std::string> files = filesOf(input);
     std::optional<RunRecord> run;
     if (!options.view.run.empty()) {
-        const std::string file = (std::filesystem::path(options.view.run) / "robots.csv").string();
-        run.emplace(readAll(file), file);
-        files.push_back(file);
+        run.emplace(RunReader(options.view.run));
+        files.push_back(RunFiles(options.view.run).robots);
     }
     const int frames = options.frames.value_or(1);
     const std::vector<ViewSpec>& views = options.view.views;
