@@ -50,6 +50,9 @@ std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search) {
 
 namespace {
 
+/// One in so many of a wall's places is at its one end, and as many at the other.
+constexpr int kWallEnds = 3;
+
 /// Adds the headings at an end of a wall, for the sensor that shall see around the corner.
 /// `turn` leads from the wall's normal to the neighbour's, on the side of the room.
 void addTurned(Site& site, Angle normal, Angle turn) {
@@ -67,7 +70,7 @@ Angle turnBetween(Angle normal, Angle next) {
     return turn >= Angle::degrees(180 - kSlack) ? turn - Angle::degrees(360) : turn;
 }
 
-/// Along the walls between the corners of a closed curve. \pre there are at least two
+/// Along the walls between the corners of a closed curve. \pre there are at least two corners
 void addWallSites(const Polygon& corners, double dist, int times, std::vector<Site>& sites) {
     const std::size_t n = corners.size();
     std::vector<Angle> normals;
@@ -76,15 +79,19 @@ void addWallSites(const Polygon& corners, double dist, int times, std::vector<Si
         const Vec2 inner = perpendicular(wall.b - wall.a);
         normals.push_back(directionOf(inner.x, inner.y));
     });
+    const int ends = std::max(1, times / kWallEnds);
     for (std::size_t i = 0; i < n; ++i) {
         const Point2 from = corners[i];
         const Vec2 along = corners[(i + 1) % n] - from;
         const Vec2 off = (dist / length(along)) * perpendicular(along);
         const Angle normal = normals[i];
-        for (int k = 0; k < times; ++k) {
-            Site site{from + ((k + 0.5) / times) * along + off, {normal}};
-            if (k == 0) addTurned(site, normal, -turnBetween(normals[(i + n - 1) % n], normal));
-            if (k + 1 == times) addTurned(site, normal, turnBetween(normal, normals[(i + 1) % n]));
+        const Angle to_last = -turnBetween(normals[(i + n - 1) % n], normal);
+        const Angle to_next = turnBetween(normal, normals[(i + 1) % n]);
+        for (int k = 1; k <= times; ++k) {
+            const double share = static_cast<double>(k) / (times + 1);
+            Site site{from + share * along + off, {normal}};
+            if (k <= ends) addTurned(site, normal, to_last);
+            if (times - k < ends) addTurned(site, normal, to_next);
             sites.push_back(std::move(site));
         }
     }

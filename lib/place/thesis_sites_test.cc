@@ -81,11 +81,37 @@ TEST(WallSites, OfASquareRoom) {
         return found == sites.end() ? Site() : *found;
     };
     // In the middle of a wall the normal alone; towards corners also across and along them.
-    expectHeadings(at({-0.5, -1.95}), {90});
-    expectHeadings(at({-1.5, -1.95}), {90, 45, 0});
-    expectHeadings(at({1.5, -1.95}), {90, 135, 180});
-    expectHeadings(at({1.95, 1.5}), {180, -135, -90});
-    expectHeadings(at({0.5, 1.95}), {-90});
+    expectHeadings(at({-0.4, -1.95}), {90});
+    expectHeadings(at({-1.2, -1.95}), {90, 45, 0});
+    expectHeadings(at({1.2, -1.95}), {90, 135, 180});
+    expectHeadings(at({1.95, 1.2}), {180, -135, -90});
+    expectHeadings(at({0.4, 1.95}), {-90});
+}
+
+std::size_t headingsOf(const std::vector<Site>& sites) {
+    std::size_t count = 0;
+    for (const Site& site : sites) count += site.headings.size();
+    return count;
+}
+
+TEST(WallSites, HaveAsManyHeadingsAsTheThesisHadTimeFor) {
+    constexpr double kBeamsPerSecond = 320, kBeams = 181;
+    const auto seconds = [](const std::vector<Site>& sites) {
+        return static_cast<double>(headingsOf(sites)) * kBeams / kBeamsPerSecond;
+    };
+    // Table 4.1, 1 min 50 s; table 5.2, 1 min 10 s.
+    EXPECT_NEAR(seconds(wallSites(roomOf("ispace size=8,8\n"), kScanHeight, 0.05, 21)), 110, 5);
+    const Environment five =
+        roomOf("fence path=-2.5,-1.35;1,-1.35;1,1.5;-1.5,1.5;-2.5,0.5 closed=yes\n");
+    EXPECT_NEAR(seconds(wallSites(five, kScanHeight, 0.05, 11)), 70, 5);
+}
+
+TEST(WallSites, OfOneOrTwoPlacesEachAreAtAnEnd) {
+    const Environment room = roomOf("ispace size=4,4\n");
+    const auto middle = wallSites(room, kScanHeight, 0.05, 1);
+    ASSERT_EQ(middle.size(), 4U);
+    for (const Site& site : middle) EXPECT_EQ(site.headings.size(), 5U);
+    EXPECT_EQ(headingsOf(wallSites(room, kScanHeight, 0.05, 2)), 8U * 3U);
 }
 
 TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
@@ -94,7 +120,7 @@ TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
     ASSERT_EQ(sites.size(), 12U);
     // The wall from (7, 1) to (1, 1) ends where the room goes on to the north.
     const auto found = std::find_if(sites.begin(), sites.end(), [](const Site& site) {
-        return distance(site.place, {2.5, 0.9}) < 1e-9;
+        return distance(site.place, {3, 0.9}) < 1e-9;
     });
     ASSERT_NE(found, sites.end());
     expectHeadings(*found, {-90, -135, 180});
@@ -164,7 +190,7 @@ TEST(WallSites, AreOnBothSidesOfWallsWithinTheRoom) {
     // The walls above and below in two halves each; both sides of both pieces of the wall.
     ASSERT_EQ(sites.size(), (2U + 4U + 4U) * 2U);
     const auto found = std::find_if(sites.begin(), sites.end(), [](const Site& site) {
-        return distance(site.place, {-0.1, 0.375}) < 1e-9;
+        return distance(site.place, {-0.1, 2.0 / 3}) < 1e-9;
     });
     ASSERT_NE(found, sites.end());
     // Its own side, and around its end at the door, towards the door first.

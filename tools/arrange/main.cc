@@ -162,6 +162,24 @@ std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
            "`coverage` draws (-o map.png)";
 }
 
+/// Section 4.4.5 of the thesis; "" where it does not apply.
+std::string hintAlongWalls(const Work& work) {
+    constexpr double kSlack = 1e-9;  // degrees
+    const bool has_headings = work.how.headings.has_value();
+    if (work.how.strategy != Strategy::Wall || has_headings || work.how.mount.on == MountOn::Frame)
+        return "";
+    for (const SensorGroup& group : work.groups) {
+        const auto* laser = std::get_if<Laser>(&group.model);
+        const double span = laser == nullptr ? 0 : laser->sweptSpan().degrees();
+        if (span > 180 + kSlack)
+            return "along walls " + formatDouble(roundSignificant(span - 180, 4)) + " of the " +
+                   formatDouble(roundSignificant(span, 4)) +
+                   " degrees of a laser's field of view face the wall: --strategy grid or random "
+                   "may cover more";
+    }
+    return "";
+}
+
 /// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
 void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
                    const Arrangement& arrangement) {
@@ -178,6 +196,8 @@ void arrangeSensors(const ArrangeCommand& command) {
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
     const Work work = read(options);
+    if (const std::string hint = hintAlongWalls(work); !hint.empty())
+        warn(options.common, "arrange", hint);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
         mustBeWritable(*file);
