@@ -189,6 +189,43 @@ Environment makeEnvironment(const std::vector<Record>& records, const std::vecto
     return std::move(*environment);
 }
 
+/// True if all records of the room are the same, with the same ids and files.
+bool isSameRoom(const Scene& before, const std::vector<Record>& records,
+                const std::vector<std::string>& ids) {
+    const auto next = [](const std::vector<Record>& all, std::size_t i) {
+        while (i < all.size() && !all[i].schema().isEnvironment()) ++i;
+        return i;
+    };
+    std::size_t i = next(before.records, 0), j = next(records, 0);
+    while (i < before.records.size() && j < records.size()) {
+        const Record &was = before.records[i], &is = records[j];
+        if (before.ids[i] != ids[j] || was.mesh() != is.mesh() || !(was == is)) return false;
+        i = next(before.records, i + 1);
+        j = next(records, j + 1);
+    }
+    return i == before.records.size() && j == records.size();
+}
+
+Scene makeScene(std::vector<Record> records, const Scene* before, std::string digest,
+                const DeviceCatalogue& devices) {
+    std::erase_if(records, isMeta);
+    std::vector<std::string> ids = assignIds(records);
+    Diagnostics findings;
+    Placements placements = Resolver(records, ids, devices).resolve(findings);
+    const bool is_same = before != nullptr && isSameRoom(*before, records, ids);
+    if (is_same) findings.throwIfAny();
+    Environment room = is_same ? before->environment : makeEnvironment(records, ids, findings);
+    return {.records = std::move(records),
+            .ids = std::move(ids),
+            .environment = std::move(room),
+            .digest = std::move(digest),
+            .sensors = std::move(placements.sensors),
+            .pending = std::move(placements.pending),
+            .robots = std::move(placements.robots),
+            .people = std::move(placements.people),
+            .placed = std::move(placements.placed)};
+}
+
 }  // namespace
 
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
@@ -220,20 +257,11 @@ Scene makeScene(const Document& environment, const Document* layout,
     if (layout != nullptr) checkIds(layout->records);
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
-    std::erase_if(records, isMeta);
-    std::vector<std::string> ids = assignIds(records);
-    Diagnostics findings;
-    Placements placements = Resolver(records, ids, devices).resolve(findings);
-    Environment room = makeEnvironment(records, ids, findings);
-    return {.records = std::move(records),
-            .ids = std::move(ids),
-            .environment = std::move(room),
-            .digest = environmentDigest(environment.records),
-            .sensors = std::move(placements.sensors),
-            .pending = std::move(placements.pending),
-            .robots = std::move(placements.robots),
-            .people = std::move(placements.people),
-            .placed = std::move(placements.placed)};
+    return makeScene(std::move(records), nullptr, environmentDigest(environment.records), devices);
+}
+
+Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {
+    return makeScene(std::move(records), &before, before.digest, devices);
 }
 
 std::optional<EnvironmentReference> environmentReference(const Document& layout) {

@@ -67,6 +67,10 @@ std::vector<Record> joinRecords(const std::vector<Record>& environment,
 Scene makeScene(const Document& environment, const Document* layout,
                 const DeviceCatalogue& devices);
 
+/// The scene of changed records. The room of `before` is shared if none of its records differ; the
+/// digest stays. \throws FormatError as above
+Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices);
+
 /// What a LAYOUT says about its ENV, if it does.
 struct EnvironmentReference {
     std::string file;    ///< relative to the LAYOUT's folder; "" if not given

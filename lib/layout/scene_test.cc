@@ -34,6 +34,33 @@ TEST(MakeScene, EnvironmentAlone) {
     EXPECT_EQ(made.digest, environmentDigest(roomDocument(kRoom).records));
 }
 
+TEST(MakeScene, OfChangedRecordsSharesTheRoom) {
+    const Scene before = scene(kRoom, "laser id=l1 at=1,2\n");
+    const auto changed = [&](const std::string& room, const std::string& layout) {
+        return makeScene(scene(room, layout).records, before, devices());
+    };
+    const auto shares = [&](const Scene& made) {
+        return &made.environment.elements() == &before.environment.elements();
+    };
+    const Scene moved = changed(kRoom, "laser id=l1 at=3,2\nrobot id=r1 at=1,1\n");
+    EXPECT_TRUE(shares(moved));
+    EXPECT_EQ(moved.sensors[0].pose.position.x, 3);
+    EXPECT_EQ(moved.robots.size(), 1U);
+    EXPECT_EQ(moved.digest, before.digest);
+    EXPECT_TRUE(shares(changed(kRoom, "")));
+    EXPECT_FALSE(shares(changed(kRoom + "desk id=e at=7,4\n", "")));
+    EXPECT_FALSE(shares(changed("ispace id=room at=4,3 size=8,6\ndesk at=2,2\n", "")));
+    EXPECT_FALSE(
+        shares(changed("ispace id=room at=4,3 size=8,6\ndesk at=2,2.1\ndesk id=d at=5,4\n", "")));
+    EXPECT_FALSE(
+        shares(changed("ispace id=room at=4,3 size=8,6\ndesk at=2,2\ndesk id=f at=5,4\n", "")));
+    EXPECT_EQ(findings([&] {
+                  const Document bad = layoutDocument("laser id=l1 on=nobody\n");
+                  makeScene(joinRecords(before.records, bad.records), before, devices());
+              }),
+              "room.3dm:2:16: error: `on`: nothing has the id `nobody`\n");
+}
+
 TEST(MakeScene, PicturesDoNotCountInTheDigest) {
     const auto digest = [](const std::string& cube) {
         return scene("ispace size=4,4\ncube " + cube + "\n").digest;

@@ -5,7 +5,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "layout/robot.h"
 #include "record/record.h"
 #include "sensor/kind.h"
 #include "sensor/sensor.h"
@@ -68,17 +67,16 @@ void keepInPlace(Scene& next, const std::unordered_set<std::string_view>& stayer
         const Record& record = next.records[placed.record];
         if (!isMover(record)) continue;
         const std::string& id = next.ids[placed.record];
-        const Pose2 start = floorPoseOf(record);
+        const bool is_robot = record.keyword() == "robot";
+        Pose2& start = is_robot ? next.robots[placed.index].pose : next.people[placed.index].pose;
         const Pose2 pose = stayers.contains(id) ? places.at(id) : start;
         placed.pose.position = {pose.position.x, pose.position.y, 0};
         placed.pose.heading = pose.heading;
-        if (record.keyword() == "robot") {
-            next.robots[placed.index].pose = pose;
-        } else {
-            next.people[placed.index].pose = pose;
+        if (!is_robot) {
             people_before.push_back(start);
             people.push_back(pose);
         }
+        start = pose;
     }
     for (Placed& placed : next.placed) {
         if (sensorKind(next.records[placed.record].keyword()) == nullptr) continue;

@@ -49,10 +49,13 @@ Clock parseClock(const std::string& text) {
 Simulation::Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                        std::optional<SimTime> until)
     : world_(&world),
+      events_(world),
       script_(std::move(script)),
       clock_(clock),
       until_(std::min(until.value_or(kLongestTime), kLongestTime)),
       paused_(clock.kind == Clock::Kind::Step) {
+    if (!script_.empty())
+        for (const Mover& mover : world.movers()) scripted_.push_back(mover.id);
     endIfReached();
     if (!finished_) giveScripted();
 }
@@ -83,12 +86,18 @@ void Simulation::endIfReached() {
 }
 
 void Simulation::giveScripted() {
-    for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_)
-        world_->command(script_[next_].robot, script_[next_].command);
+    for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_) {
+        const TimedCommand& timed = script_[next_];
+        const auto mover = world_->changes() == 0 ? std::optional(timed.robot)
+                                                  : world_->moverNamed(scripted_[timed.robot]);
+        if (mover && world_->refusal(*mover, timed.command).empty())
+            world_->command(*mover, timed.command);
+    }
 }
 
 void Simulation::step() {
     world_->step();
+    events_.stepped();
     // Before the next commands: one of motion would wipe out the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
     endIfReached();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/command.h"
+#include "sim/events.h"
 #include "sim/recorder.h"
 #include "sim/world.h"
 
@@ -34,14 +35,18 @@ Clock parseClock(const std::string& text);
 class Simulation {
   public:
     /// The last step is the first one that ends at `until` or later; without it a run ends at
-    /// kLongestTime. Later commands of the script are never given. \pre the script is in order of
-    /// time
+    /// kLongestTime. Later commands of the script are never given, nor are those to robots that the
+    /// world has lost since, or that cannot do them any more. \pre the script is in order of time
     Simulation(World& world, std::vector<TimedCommand> script, Clock clock,
                std::optional<SimTime> until);
 
     [[nodiscard]] World& world() { return *world_; }
     [[nodiscard]] const World& world() const { return *world_; }
     [[nodiscard]] const Clock& clock() const { return clock_; }
+
+    /// What happened; looked for after every step, before it is recorded.
+    [[nodiscard]] EventLog& events() { return events_; }
+    [[nodiscard]] const EventLog& events() const { return events_; }
 
     /// Adds an observer, called after every step once it is recorded and the script's commands for
     /// the next one are given. It must stay valid until the last step.
@@ -90,8 +95,10 @@ class Simulation {
     [[nodiscard]] bool isDue(WallTime now) const;
 
     World* world_;
+    EventLog events_;
     std::vector<TimedCommand> script_;
-    std::size_t next_ = 0;  // of script_
+    std::vector<std::string> scripted_;  // ids of those whom the script commands, as it has indices
+    std::size_t next_ = 0;               // of script_
     Recorder* recorder_ = nullptr;
     Clock clock_;
     SimTime until_;

@@ -363,8 +363,9 @@ int World::command(std::size_t mover, const Command& command) {
     return state.running;
 }
 
-void World::change(Scene scene) {
-    const auto stayers = stayersOf(*data_->scene, scene);
+void World::change(Scene scene, std::span<const std::string> placed) {
+    auto stayers = stayersOf(*data_->scene, scene);
+    for (const std::string& id : placed) stayers.erase(id);
     keepInPlace(scene, stayers, data_->places());
     data_ = data_->next(std::move(scene), stayers);
 }

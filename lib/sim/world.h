@@ -127,9 +127,9 @@ class World {
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,
     /// which puts them there at rest; sensors keep their last reading, and new ones take their
     /// first. Indices are those of the new scene. Time goes on. Commands of robots that are gone
-    /// do not end.
+    /// do not end. \param placed ids of those who are put where their record says in any case
     /// \throws FormatError as the constructor does; the world is then as it was
-    void change(Scene scene);
+    void change(Scene scene, std::span<const std::string> placed = {});
     /// The same, but everything starts anew where the scene has it; running commands are Stopped.
     /// A robot's ids of commands go on all the same.
     void restart(Scene scene);

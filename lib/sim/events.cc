@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/events.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <deque>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "base/number.h"
+#include "env/body.h"
+#include "sense/sensors.h"
+#include "sense/watch.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+namespace {
+
+/// Kept for readers that are behind: at least those of the last step, and so many.
+constexpr std::size_t kKept = 16384;
+
+/// Who is seen is found out at the first step of each such interval.
+constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
+
+constexpr std::array<std::string_view, kEventKinds> kNames = {
+    "collision", "stall", "enter", "leave", "mat", "gate", "seen", "lost", "mark", "change"};
+
+bool isIn(const Box2& box, Point2 p) {
+    return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
+}
+
+/// `text` as a field of a table: quoted where a comma, a quote or a new line is in it.
+void appendField(std::string& out, std::string_view text) {
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+        out += text;
+        return;
+    }
+    out += '"';
+    for (const char c : text) {
+        if (c == '"') out += '"';
+        out += c;
+    }
+    out += '"';
+}
+
+}  // namespace
+
+std::string_view nameOf(EventKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+std::optional<EventKind> eventKindNamed(std::string_view name) {
+    const auto found = std::find(kNames.begin(), kNames.end(), name);
+    if (found == kNames.end()) return std::nullopt;
+    return static_cast<EventKind>(found - kNames.begin());
+}
+
+EventKinds allEventKinds() {
+    EventKinds kinds;
+    for (std::size_t i = 0; i < kEventKinds; ++i) kinds.insert(static_cast<EventKind>(i));
+    return kinds;
+}
+
+std::string_view eventTableHead() { return "t,kind,id,other,x,y,value,text\n"; }
+
+void appendEventRow(std::string& out, const Event& event) {
+    out.append(formatSimTime(event.time)).append(",").append(nameOf(event.kind));
+    out.append(",").append(event.id).append(",").append(event.other);  // words: nothing to quote
+    out += ',';
+    if (event.place) appendDouble(out, event.place->x);
+    out += ',';
+    if (event.place) appendDouble(out, event.place->y);
+    out += ',';
+    const bool has_value = event.kind == EventKind::Mat || event.kind == EventKind::Gate ||
+                           event.kind == EventKind::Seen;
+    if (has_value) out += std::to_string(event.value);
+    out += ',';
+    appendField(out, event.text);
+    out += '\n';
+}
+
+struct EventLog::Data {
+    explicit Data(const World& watched) : world(&watched) {}
+
+    void put(Event event) {
+        event.time = world->time();
+        events.push_back(std::move(event));
+    }
+    void forget();
+    void readScene();
+    void tellCollisions();
+    void tellZones();
+    void tellMats();
+    void tellGates();
+    void tellSight();
+    [[nodiscard]] bool wants(EventKind kind) const {
+        return wanted[static_cast<std::size_t>(kind)] > 0;
+    }
+
+    const World* world;
+    std::array<int, kEventKinds> wanted{};
+    std::deque<Event> events;
+    std::int64_t dropped = 0;
+    std::int64_t changes = -1;  // of the world when its scene was read
+
+    struct Zone {
+        std::string id;
+        Polygon outline;
+        Box2 box;
+    };
+    std::vector<Zone> zones;
+    struct Walker {
+        std::string id;
+        std::optional<Point2> place;  // where it was looked at
+        std::vector<bool> in;         // of the zones
+        bool is_seen = false;
+    };
+    std::vector<Walker> walkers;                         // as World::movers()
+    std::map<std::string, std::vector<std::string>> on;  // who was on each mat
+    std::optional<Watch> watch;                          // once sight is asked for
+    std::int64_t look = -1;                              // the last one
+};
+
+/// Drops what is old, but nothing of the last step.
+void EventLog::Data::forget() {
+    while (events.size() > kKept) {
+        events.pop_front();
+        ++dropped;
+    }
+}
+
+/// Who and what there is; what is known of them stays.
+void EventLog::Data::readScene() {
+    if (changes == world->changes()) return;
+    changes = world->changes();
+    std::unordered_map<std::string, std::set<std::string>> in;
+    std::unordered_set<std::string> seen;
+    for (const Walker& walker : walkers) {
+        for (std::size_t i = 0; i < zones.size(); ++i)
+            if (walker.in[i]) in[walker.id].insert(zones[i].id);
+        if (walker.is_seen) seen.insert(walker.id);
+    }
+    watch.reset();
+    zones.clear();
+    for (const Element& element : world->scene().environment.elements()) {
+        if (element.record.keyword() != "zone") continue;
+        zones.push_back({element.id, zoneOutline(element.record), {}});
+        for (const Point2 corner : zones.back().outline) zones.back().box.add(corner);
+    }
+    walkers.clear();
+    for (const Mover& mover : world->movers())
+        walkers.push_back({mover.id, std::nullopt, std::vector<bool>(zones.size()), false});
+    for (Walker& walker : walkers) {
+        walker.is_seen = seen.contains(walker.id);
+        const auto known = in.find(walker.id);
+        if (known == in.end()) continue;
+        for (std::size_t i = 0; i < zones.size(); ++i)
+            walker.in[i] = known->second.contains(zones[i].id);
+    }
+}
+
+void EventLog::Data::tellCollisions() {
+    for (const EventKind kind : {EventKind::Collision, EventKind::Stall}) {
+        if (!wants(kind)) continue;
+        for (const Collision& collision : world->collisions()) {
+            Event event{.kind = kind, .id = walkers[collision.robot].id};
+            if (kind == EventKind::Collision) {
+                event.other = collision.into;
+                event.place = world->status(collision.robot).pose.position;
+            } else if (!world->status(collision.robot).stall) {
+                continue;
+            }
+            put(std::move(event));
+        }
+    }
+}
+
+void EventLog::Data::tellZones() {
+    if (!wants(EventKind::Enter) && !wants(EventKind::Leave)) return;
+    std::vector<Event> left;
+    for (std::size_t i = 0; i < walkers.size(); ++i) {
+        Walker& walker = walkers[i];
+        const Point2 place = world->status(i).pose.position;
+        if (walker.place == place) continue;
+        walker.place = place;
+        for (std::size_t k = 0; k < zones.size(); ++k) {
+            const bool is_in =
+                isIn(zones[k].box, place) && locate(zones[k].outline, place) != Side::Outside;
+            if (is_in == walker.in[k]) continue;
+            walker.in[k] = is_in;
+            Event event{.kind = is_in ? EventKind::Enter : EventKind::Leave,
+                        .id = walker.id,
+                        .other = zones[k].id,
+                        .place = place};
+            if (!wants(event.kind)) continue;
+            if (is_in)
+                put(std::move(event));
+            else
+                left.push_back(std::move(event));
+        }
+    }
+    for (Event& event : left) put(std::move(event));
+}
+
+void EventLog::Data::tellMats() {
+    if (!wants(EventKind::Mat)) return;
+    const FloorSensors& floor = world->floorSensors();
+    const auto tell = [this](const std::string& mat, const std::vector<std::string>& who,
+                             const std::vector<std::string>& others, int value) {
+        for (const std::string& id : who)
+            if (std::find(others.begin(), others.end(), id) == others.end())
+                put({.kind = EventKind::Mat, .id = mat, .other = id, .value = value});
+    };
+    for (std::size_t i = 0; i < floor.mats().size(); ++i) {
+        const std::string& mat = floor.matIds()[i];
+        std::vector<std::string>& before = on[mat];
+        const std::vector<std::string>& now = floor.mat(i).on;
+        if (before == now) continue;
+        tell(mat, now, before, 1);
+        tell(mat, before, now, 0);
+        before = now;
+    }
+}
+
+void EventLog::Data::tellGates() {
+    if (!wants(EventKind::Gate)) return;
+    const FloorSensors& floor = world->floorSensors();
+    for (const Passage& passage : floor.passages())
+        put({.kind = EventKind::Gate,
+             .id = floor.gateIds()[passage.gate],
+             .other = std::string(passage.who),
+             .value = passage.in ? 1 : 0});
+}
+
+void EventLog::Data::tellSight() {
+    if (!wants(EventKind::Seen) && !wants(EventKind::Lost)) return;
+    const std::int64_t now = world->time() / kLookEvery;
+    if (std::exchange(look, now) == now) return;
+    if (!watch) watch.emplace(world->scene());
+    std::vector<Pose2> poses(walkers.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = world->status(i).pose;
+    const std::span<const Pose2> all(poses);
+    const std::size_t robots = world->robots().size();
+    const WatchMoment moment{.robots = all.first(robots), .people = all.subspan(robots)};
+    std::vector<std::size_t> counts(walkers.size());
+    tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t i) {
+        const auto owner = static_cast<std::uint32_t>(i < robots ? i : kFirstPerson + (i - robots));
+        counts[i] = watch->seenBy({poses[i].position, owner}, moment);
+    });
+    for (const EventKind kind : {EventKind::Seen, EventKind::Lost})
+        for (std::size_t i = 0; i < walkers.size(); ++i) {
+            const bool comes = kind == EventKind::Seen;
+            if (walkers[i].is_seen == comes || (counts[i] > 0) != comes) continue;
+            walkers[i].is_seen = comes;
+            if (wants(kind))
+                put({.kind = kind, .id = walkers[i].id, .value = static_cast<int>(counts[i])});
+        }
+}
+
+EventLog::EventLog(const World& world) : data_(std::make_unique<Data>(world)) {}
+EventLog::~EventLog() = default;
+EventLog::EventLog(EventLog&&) noexcept = default;
+EventLog& EventLog::operator=(EventLog&&) noexcept = default;
+
+void EventLog::want(const EventKinds& kinds) {
+    for (const EventKind kind : kinds) ++data_->wanted[static_cast<std::size_t>(kind)];
+}
+
+void EventLog::unwant(const EventKinds& kinds) {
+    for (const EventKind kind : kinds) {
+        assert(data_->wants(kind));
+        --data_->wanted[static_cast<std::size_t>(kind)];
+    }
+    // Whoever wants them again begins anew.
+    const auto neither = [this](EventKind one, EventKind other) {
+        return !data_->wants(one) && !data_->wants(other);
+    };
+    if (neither(EventKind::Enter, EventKind::Leave))
+        for (Data::Walker& walker : data_->walkers) {
+            walker.in.assign(walker.in.size(), false);
+            walker.place.reset();
+        }
+    if (neither(EventKind::Seen, EventKind::Lost)) {
+        for (Data::Walker& walker : data_->walkers) walker.is_seen = false;
+        data_->watch.reset();
+        data_->look = -1;
+    }
+    if (!data_->wants(EventKind::Mat)) data_->on.clear();
+}
+
+void EventLog::stepped() {
+    const bool any = std::any_of(data_->wanted.begin(), data_->wanted.end(),
+                                 [](int count) { return count > 0; });
+    if (!any) return;
+    data_->forget();
+    data_->readScene();
+    data_->tellCollisions();
+    data_->tellZones();
+    data_->tellMats();
+    data_->tellGates();
+    data_->tellSight();
+}
+
+void EventLog::add(EventKind kind, std::string text) {
+    assert(kind == EventKind::Mark || kind == EventKind::Change);
+    data_->forget();
+    data_->put({.kind = kind, .text = std::move(text)});
+}
+
+std::int64_t EventLog::next() const {
+    return data_->dropped + static_cast<std::int64_t>(data_->events.size());
+}
+
+std::int64_t EventLog::first() const { return data_->dropped; }
+
+const Event& EventLog::at(std::int64_t number) const {
+    return data_->events[static_cast<std::size_t>(number - data_->dropped)];
+}
+
+}  // namespace ispace

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/world_editor.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/test_source.h"
+
+namespace ispace {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::findings;
+
+const std::string kRoom = "ispace id=room size=8,6\n";
+const std::string kRobots =
+    "robot id=r1 model=pioneer-2dx at=0,0\nrobot id=r2 at=2,2 heading=90\nlaser id=l1 on=r1\n";
+
+struct Edited {
+    Edited()
+        : world(std::make_shared<const Scene>(testing::scene(kRoom, kRobots)), milliseconds(100)),
+          simulation(world, {}, {Clock::Kind::Step, 1}, std::nullopt),
+          editor(simulation,
+                 std::make_shared<testing::TextSource>(
+                     std::map<std::string, std::string>{{"hall.env", "ispace size=20,20\n"},
+                                                        {"hall.3dm", "robot id=r1 at=9,9\n"},
+                                                        {"bad.3dm", "robot id=r1 at=10,0\n"}})) {}
+    void edit(Edit::Kind kind, const std::string& text) {
+        const std::vector<Edit> edits = {parseEdit(kind, text)};
+        editor.adopt(editor.edited(edits), edits);
+    }
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i) world.step();
+    }
+    World world;
+    Simulation simulation;
+    WorldEditor editor;
+};
+
+TEST(WorldEditor, Adds) {
+    Edited it;
+    it.edit(Edit::Kind::Add, "robot at=-2,-2");
+    it.edit(Edit::Kind::Add, "human id=h at=-2,2");
+    ASSERT_EQ(it.world.robots().size(), 3U);
+    EXPECT_EQ(it.world.robots()[2].id, "robot1");
+    EXPECT_EQ(it.world.scene().ids.back(), "h");
+    EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "robot id=h at=3,0"); }),
+              "error: --add robot id=h at=3,0: the id `h` is taken\n");
+    EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "cube at=0,0 size=1"); }),
+              "room.3dm:2:1: error: robot r1 stands in cube1 (its radius is 0.25 m)\n");
+    EXPECT_EQ(it.world.changes(), 2);
+    EXPECT_EQ(it.world.scene().ids.back(), "h");
+}
+
+TEST(WorldEditor, SetsAPlaceOfARobotOnTheWay) {
+    Edited it;
+    it.world.command(0, {Verb::Left, 90});
+    it.run(30);
+    it.world.command(0, {Verb::Forward, 1});
+    it.run(60);
+    EXPECT_NEAR(it.world.status(0).pose.position.y, 1, 1e-9);
+    // Only what is set changes.
+    it.edit(Edit::Kind::Set, "r1.heading=0");
+    EXPECT_NEAR(it.world.status(0).pose.position.y, 1, 1e-9);
+    EXPECT_EQ(it.world.status(0).pose.heading.degrees(), 0);
+    it.edit(Edit::Kind::Set, "r1.heading=45");
+    it.edit(Edit::Kind::Set, "r1.at=0,0");
+    EXPECT_EQ(it.world.status(0).pose.position, (Point2{0, 0}));
+    EXPECT_EQ(it.world.status(0).pose.heading.degrees(), 45);
+    // Its record says so already, and it is put there all the same.
+    it.world.command(0, {Verb::Forward, 1});
+    it.run(60);
+    it.edit(Edit::Kind::Set, "r1.at=0,0");
+    EXPECT_EQ(it.world.status(0).pose.position, (Point2{0, 0}));
+    // Others stay in their way.
+    it.world.command(1, {Verb::Backward, 1});
+    it.run(60);
+    it.edit(Edit::Kind::Set, "r1.max_speed=0.4");
+    EXPECT_NEAR(it.world.status(1).pose.position.y, 1, 1e-9);
+}
+
+TEST(WorldEditor, DeletesWhatNothingNeeds) {
+    Edited it;
+    EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Delete, "r1"); }),
+              "error: --delete r1: `l1` has `on=r1`; delete it, too, or set that anew\n");
+    const std::vector<Edit> edits = {parseEdit(Edit::Kind::Delete, "l1"),
+                                     parseEdit(Edit::Kind::Delete, "r1")};
+    it.editor.adopt(it.editor.edited(edits), edits);
+    ASSERT_EQ(it.world.robots().size(), 1U);
+    EXPECT_TRUE(it.world.sensors().empty());
+    EXPECT_FALSE(it.editor.finds(edits[0]));
+    EXPECT_TRUE(it.editor.finds(parseEdit(Edit::Kind::Delete, "r*")));
+}
+
+TEST(WorldEditor, ResetsToTheBeginning) {
+    Edited it;
+    it.world.command(0, {Verb::Forward, 1});
+    it.run(20);
+    it.edit(Edit::Kind::Add, "robot at=-2,-2");
+    it.edit(Edit::Kind::Set, "r1.at=1,1");
+    it.editor.reset();
+    ASSERT_EQ(it.world.robots().size(), 2U);
+    EXPECT_EQ(it.world.status(0).pose.position, (Point2{0, 0}));
+    EXPECT_EQ(it.world.time(), milliseconds(2000));
+}
+
+TEST(WorldEditor, LoadsAnotherScene) {
+    Edited it;
+    it.run(5);
+    EXPECT_NE(findings([&] { it.editor.load("missing.env", ""); }), "");
+    EXPECT_NE(findings([&] { it.editor.load("hall.env", "bad.3dm"); }), "");
+    EXPECT_EQ(it.world.changes(), 0);
+    it.editor.load("hall.env", "hall.3dm");
+    ASSERT_EQ(it.world.robots().size(), 1U);
+    EXPECT_EQ(it.world.status(0).pose.position, (Point2{9, 9}));
+    EXPECT_EQ(it.world.time(), milliseconds(500));
+    it.edit(Edit::Kind::Set, "r1.at=1,1");
+    it.editor.reset();
+    EXPECT_EQ(it.world.status(0).pose.position, (Point2{9, 9}));
+}
+
+TEST(WorldEditor, FilesAreTheSourcesBusiness) {
+    Edited it;
+    EXPECT_NE(findings([&] {
+                  it.edit(Edit::Kind::Add, "cube at=3,0 size=1 texture=/etc/motd");
+              }).find("files are out of reach"),
+              std::string::npos);
+    it.edit(Edit::Kind::Add, "cube id=c at=3,0 size=1");
+    EXPECT_NE(findings([&] {
+                  it.edit(Edit::Kind::Set, "c.texture=a.png");
+              }).find("files are out of reach"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace
