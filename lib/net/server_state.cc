@@ -2,10 +2,6 @@
 #include "net/server_state.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -84,13 +80,19 @@ void ServerState::release(std::size_t robot) {
     simulation_->world().command(robot, {Verb::Stop, 0});
 }
 
-std::shared_ptr<const std::string> ServerState::scan(std::size_t laser, bool stream, bool binary) {
-    const World& world = simulation_->world();
-    const SensorReading& reading = world.reading(laser);
-    Text& text = texts_[laser][(stream ? 1U : 0U) + (binary ? 2U : 0U)];
-    if (text.seq == reading.seq && text.bytes) return text.bytes;
-    auto bytes = counted(scanText(world.sensors()[laser], reading, stream, binary));
-    keep(text, reading.seq, bytes);
+std::shared_ptr<const std::string> ServerState::scan(std::size_t sensor, const ReplyForm& form) {
+    World& world = simulation_->world();
+    const SensorReading& reading = world.take(sensor);
+    std::vector<Text>& forms = texts_[sensor];
+    auto text = std::find_if(forms.begin(), forms.end(),
+                             [&form](const Text& known) { return known.form == form; });
+    if (text == forms.end()) {
+        forms.push_back({form, -1, nullptr});
+        text = forms.end() - 1;
+    }
+    if (text->seq == reading.seq && text->bytes) return text->bytes;
+    auto bytes = counted(scanText(world.sensors()[sensor], reading, form));
+    keep(*text, reading.seq, bytes);
     return bytes;
 }
 
@@ -106,81 +108,14 @@ std::shared_ptr<const std::string> ServerState::counted(std::string text) const 
 void ServerState::keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes) {
     const auto size_of = [](const Text& kept) { return kept.bytes ? kept.bytes->size() : 0; };
     kept_ += bytes->size() - size_of(text);
-    text = {seq, std::move(bytes)};
+    text.seq = seq;
+    text.bytes = std::move(bytes);
     if (kept_ <= limits_.unread / 2) return;
-    // Many big lasers in every form: what nobody asks for again need not stay.
+    // Many big readings in every form: what nobody asks for again need not stay.
     kept_ = size_of(text);
     for (auto& forms : texts_)
         for (Text& other : forms)
-            if (&other != &text) other = {};
-}
-
-namespace {
-
-void appendHead(std::string& out, const RunSensor& sensor, const SensorReading& reading,
-                bool stream) {
-    const Laser& laser = *sensor.model<Laser>();
-    out.append("SCAN ").append(sensor.id);
-    out.append(" t=").append(formatMilliseconds(reading.time));
-    out.append(" seq=").append(std::to_string(reading.seq));
-    out.append(" angle_min=").append(formatDouble(laser.first.degrees()));
-    out.append(" angle_max=").append(formatDouble(laser.last().degrees()));
-    out.append(" step=").append(formatDouble(laser.step.degrees()));
-    out.append(" n=").append(std::to_string(reading.scan().ranges.size()));
-    if (stream) out += " stream=1";
-}
-
-void appendLittleEndian(std::string& out, float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((bits >> shift) & 0xffu);
-}
-
-}  // namespace
-
-void appendRange(std::string& out, float range) {
-    if (std::isinf(range)) {
-        out += '-';
-        return;
-    }
-    // A float times 1000 is exact in a double, so rounding it half to even is what a correctly
-    // rounded conversion to three decimals does.
-    constexpr double kMax = 1e9;
-    const double value = range;
-    if (!(value >= 0 && value < kMax)) {
-        out += formatFixed(value, 3);
-        return;
-    }
-    const auto millimetres = std::llrint(value * 1000);
-    std::array<char, 24> digits;
-    char* const end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), millimetres / 1000).ptr;
-    const auto rest = static_cast<int>(millimetres % 1000);
-    end[0] = '.';
-    end[1] = static_cast<char>('0' + rest / 100);
-    end[2] = static_cast<char>('0' + rest / 10 % 10);
-    end[3] = static_cast<char>('0' + rest % 10);
-    out.append(digits.data(), end + 4);
-}
-
-std::string scanText(const RunSensor& sensor, const SensorReading& reading, bool stream,
-                     bool binary) {
-    const auto& ranges = reading.scan().ranges;
-    constexpr std::size_t kHead = 192, kTextRange = sizeof "12.345,", kBinaryRange = 4;
-    std::string out;
-    out.reserve(kHead + ranges.size() * (binary ? kBinaryRange : kTextRange));
-    appendHead(out, sensor, reading, stream);
-    if (binary) {
-        out.append(" bytes=").append(std::to_string(ranges.size() * kBinaryRange)).append("\n");
-        for (const float range : ranges) appendLittleEndian(out, range);
-        return out;
-    }
-    out += " r=";
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-        if (i > 0) out += ',';
-        appendRange(out, ranges[i]);
-    }
-    out += '\n';
-    return out;
+            if (&other != &text) other.bytes = nullptr;
 }
 
 }  // namespace ispace

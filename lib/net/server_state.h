@@ -2,7 +2,6 @@
 // Private to lib/net: what the sessions of a server share.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "net/sensor_text.h"
 #include "net/server.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
@@ -105,13 +105,15 @@ class ServerState {
     /// Of all clients together.
     [[nodiscard]] TokenBucket& pauses() { return pauses_; }
 
-    /// The newest scan of a laser as scanText writes it; all readers share one string.
-    std::shared_ptr<const std::string> scan(std::size_t laser, bool stream, bool binary);
+    /// The newest reading of a sensor as scanText writes it, of a heavy one taken now if need be;
+    /// all readers share one string. \throws FormatError as scanText does
+    std::shared_ptr<const std::string> scan(std::size_t sensor, const ReplyForm& form);
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
   private:
     struct Text {
+        ReplyForm form;
         std::int64_t seq = -1;
         std::shared_ptr<const std::string> bytes;
     };
@@ -123,19 +125,10 @@ class ServerState {
     StepQueue steps_;
     std::vector<bool> held_;
     TokenBucket pauses_;
-    std::vector<std::array<Text, 4>> texts_;  // of each laser, by stream and binary
-    std::size_t kept_ = 0;                    // bytes in texts_
+    std::vector<std::vector<Text>> texts_;  // of each sensor, in every form that was asked for
+    std::size_t kept_ = 0;                  // bytes in texts_
     // Bytes of all texts that somebody has; it outlives them.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
 };
-
-/// Appends a range as replies have it: three decimals as formatFixed writes them, `-` for no
-/// return.
-void appendRange(std::string& out, float range);
-
-/// A reading as a SCAN line with its newline; `stream` marks one sent unasked. Binary: the line has
-/// bytes=N in place of r=, and N bytes of little-endian float32 follow, +inf for no return.
-std::string scanText(const RunSensor& sensor, const SensorReading& reading, bool stream,
-                     bool binary);
 
 }  // namespace ispace

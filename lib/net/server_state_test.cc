@@ -121,10 +121,10 @@ SensorReading reading() {
 }
 
 TEST(ScanText, Line) {
-    EXPECT_EQ(scanText(sensor(), reading(), false, false),
+    EXPECT_EQ(scanText(sensor(), reading(), {.stream = false, .binary = false}),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 "
               "r=1.250,-,4.000\n");
-    EXPECT_EQ(scanText(sensor(), reading(), true, false),
+    EXPECT_EQ(scanText(sensor(), reading(), {.stream = true, .binary = false}),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 stream=1 "
               "r=1.250,-,4.000\n");
 }
@@ -133,9 +133,9 @@ TEST(ScanText, BinaryIsLittleEndian) {
     using namespace std::string_literals;
     const std::string bytes = "\0\0\xa0\x3f\0\0\x80\x7f\0\0\x80\x40"s;
     EXPECT_EQ(
-        scanText(sensor(), reading(), false, true),
+        scanText(sensor(), reading(), {.stream = false, .binary = true}),
         "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 bytes=12\n" + bytes);
-    EXPECT_EQ(scanText(sensor(), reading(), true, true),
+    EXPECT_EQ(scanText(sensor(), reading(), {.stream = true, .binary = true}),
               "SCAN l1 t=12.300 seq=123 angle_min=-0.5 angle_max=0 step=0.25 n=3 stream=1 "
               "bytes=12\n" +
                   bytes);

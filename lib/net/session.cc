@@ -8,6 +8,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "net/request_parts.h"
 #include "net/server_state.h"
 #include "sim/command.h"
 
@@ -29,21 +30,6 @@ std::string_view nameOf(Outcome outcome) {
     return "";
 }
 
-/// "no robot `r9`" with what may have been meant, or what there is.
-std::string unknownThing(std::string_view kind, std::string_view id,
-                         const std::vector<std::string>& known, std::string_view where = "") {
-    constexpr std::size_t kFew = 12, kMany = 256;
-    std::string out = "no ";
-    out.append(kind).append(" ").append(excerpt(id)).append(where);
-    if (known.empty()) return out.append(": there is none");
-    // Among thousands of names one is always near, and it would take long to find.
-    if (known.size() <= kMany) {
-        if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
-    }
-    if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
-    return out.append("; there is ").append(joined(known, ", "));
-}
-
 }  // namespace
 
 /// What can be asked for. A verb may have several rows with different roles.
@@ -62,6 +48,7 @@ std::span<const Session::Request> Session::requests() {
     static constexpr auto kRequests = std::to_array<Request>({
         {"ROBOT", "id", Role::None, 1, 1, &C::takeRobot},
         {"LASER", "id", Role::None, 1, 1, &C::takeLaser},
+        {"SENSOR", "id", Role::None, 1, 1, &C::takeSensor},
         {"WORLD", "", Role::None, 0, 0, &C::takeWorld},
         {"FORWARD", "m", Role::Robot, 0, kAny, &C::command},
         {"BACKWARD", "m", Role::Robot, 0, kAny, &C::command},
@@ -76,6 +63,11 @@ std::span<const Session::Request> Session::requests() {
         {"STREAM", "[every=k]", Role::Laser, 0, 1, &C::stream},
         {"STOP", "", Role::Laser, 0, 0, &C::stopStream},
         {"BINARY", "on|off", Role::Laser, 1, 1, &C::binary},
+        {"SCAN", "", Role::Sensor, 0, 0, &C::scan},
+        {"STREAM", "[every=k]", Role::Sensor, 0, 1, &C::stream},
+        {"STOP", "", Role::Sensor, 0, 0, &C::stopStream},
+        {"BINARY", "on|off", Role::Sensor, 1, 1, &C::binary},
+        {"FORMAT", "name", Role::Sensor, 1, 1, &C::format},
         {"LIST", "", Role::World, 0, 0, &C::list},
         {"TIME", "", Role::World, 0, 0, &C::time},
         {"POSES", "", Role::World, 0, 0, &C::poses},
@@ -133,11 +125,7 @@ void Session::tooLong(std::size_t limit) {
 
 void Session::stepped() {
     tellEnds();
-    if (every_ > 0) {
-        const std::int64_t seq = world().reading(subject_).seq;
-        if (seq != seq_ && seq % every_ == 0) scan_ = state_->scan(subject_, true, binary_);
-        seq_ = seq;
-    }
+    if (every_ > 0) streamSensor();
     if (steps_) {
         state_->steps().settle();
         if (steps_->over) answerStep();
@@ -157,6 +145,8 @@ std::string Session::roleText() const {
             return "the role ROBOT " + world().robots()[subject_].id;
         case Role::Laser:
             return "the role LASER " + world().sensors()[subject_].id;
+        case Role::Sensor:
+            return "the role SENSOR " + world().sensors()[subject_].id;
         case Role::World:
             return "the role WORLD";
     }
@@ -178,10 +168,11 @@ void Session::refuse(std::string_view verb, bool first) {
         verbs.emplace_back(request.verb);
         if (request.verb != verb) continue;
         if (!roles.empty()) roles += " or ";
-        roles += request.role == Role::Robot   ? "ROBOT"
-                 : request.role == Role::Laser ? "LASER"
-                 : request.role == Role::World ? "WORLD"
-                                               : "";
+        roles += request.role == Role::Robot    ? "ROBOT"
+                 : request.role == Role::Laser  ? "LASER"
+                 : request.role == Role::Sensor ? "SENSOR"
+                 : request.role == Role::World  ? "WORLD"
+                                                : "";
     }
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
         const std::string hint = didYouMean(upperCase(verb), verbs);
@@ -190,7 +181,8 @@ void Session::refuse(std::string_view verb, bool first) {
                            " HELP lists what there is",
                            first ? "; a first line that is no request ends the connection" : ""});
     }
-    if (role_ == Role::None) return error(405, {"take a role first: ROBOT id, LASER id or WORLD"});
+    if (role_ == Role::None)
+        return error(405, {"take a role first: ROBOT id, LASER id, SENSOR id or WORLD"});
     if (roles.empty())
         return error(405, {"this connection has ", roleText(), ": open another one for ", verb});
     error(405, {verb, " is for the role ", roles, ", this connection has ", roleText(),
@@ -224,19 +216,6 @@ void Session::answerStep() {
     steps_.reset();
 }
 
-/// A scan that was due before a request is sent before its answer.
-void Session::sendPendingScan() {
-    if (scan_) out_ += *takeScan();
-}
-
-std::string Session::unknownLaser(std::string_view id) const {
-    std::vector<std::string> known;
-    for (const RunSensor& sensor : world().sensors())
-        if (sensor.model<Laser>() != nullptr && (role_ != Role::Robot || sensor.isOn(subject_)))
-            known.push_back(sensor.id);
-    return unknownThing("laser", id, known, role_ == Role::Robot ? " on this robot" : "");
-}
-
 void Session::takeRobot(Words words) {
     const auto robot = world().robotNamed(words[1]);
     if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
@@ -248,23 +227,6 @@ void Session::takeRobot(Words words) {
     out_.append("OK ROBOT ").append(words[1]);
     out_.append(" model=").append(model.model.empty() ? "-" : model.model);
     out_.append(" radius=").append(formatDouble(model.radius)).append("\n");
-}
-
-void Session::takeLaser(Words words) {
-    const auto found = world().sensorNamed(words[1]);
-    const Laser* const model = found ? world().sensors()[*found].model<Laser>() : nullptr;
-    if (model == nullptr) return error(404, {unknownLaser(words[1])});
-    role_ = Role::Laser;
-    subject_ = *found;
-    const Laser& laser = *model;
-    out_.append("OK LASER ").append(words[1]);
-    out_.append(" angle_min=").append(formatDouble(laser.first.degrees()));
-    out_.append(" angle_max=").append(formatDouble(laser.last().degrees()));
-    out_.append(" step=").append(formatDouble(laser.step.degrees()));
-    out_.append(" n=").append(std::to_string(laser.beams));
-    out_.append(" range_min=").append(formatDouble(laser.min_range));
-    out_.append(" range_max=").append(formatDouble(laser.max_range));
-    out_.append(" rate=").append(formatDouble(laser.rate)).append("\n");
 }
 
 void Session::takeWorld(Words /*words*/) {

@@ -49,19 +49,19 @@ class Session {
     /// Takes what is to be sent, in order.
     std::string take() { return std::exchange(out_, {}); }
     /// Takes the newest scan of a stream, to be sent after everything else; null if there is none.
-    std::shared_ptr<const std::string> takeScan() { return std::exchange(scan_, nullptr); }
+    std::shared_ptr<const std::string> takeScan();
     /// Bytes of that scan.
     [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
 
   private:
-    enum class Role { None, Robot, Laser, World };
+    enum class Role { None, Robot, Laser, Sensor, World };
     using Words = std::span<const std::string_view>;  // a request, the verb first
     struct Request;
     static std::span<const Request> requests();
 
     [[nodiscard]] World& world() const { return state_->simulation().world(); }
     [[nodiscard]] std::string roleText() const;
-    [[nodiscard]] std::string unknownLaser(std::string_view id) const;
+    [[nodiscard]] std::string unknownSensor(std::string_view kind, std::string_view id) const;
     void error(int code, std::initializer_list<std::string_view> text);
     void refuse(std::string_view verb, bool first);
     bool mayAskFor(std::string_view verb);
@@ -72,6 +72,9 @@ class Session {
 
     void takeRobot(Words words);
     void takeLaser(Words words);
+    void takeSensor(Words words);
+    void format(Words words);
+    void streamSensor();
     void takeWorld(Words words);
     void help(Words words);
     void quit(Words words);
@@ -97,7 +100,8 @@ class Session {
     std::vector<int> running_;  // commands whose end is still to be told
     // The stream: every how many scans (0: none), the last one considered, the one to be sent.
     std::int64_t every_ = 0, seq_ = 0;
-    bool binary_ = false;
+    ReplyForm form_;
+    bool is_stale_ = false;  // there is a newer one than that to be sent
     std::shared_ptr<const std::string> scan_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
     TokenBucket pauses_, spare_pauses_;

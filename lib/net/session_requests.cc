@@ -5,15 +5,13 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "net/request_parts.h"
 #include "net/server_state.h"
 #include "net/session.h"
 
 namespace ispace {
 
 namespace {
-
-/// Far more than anybody waits for; sums of them stay far from overflow.
-constexpr std::int64_t kMaxCount = 1'000'000'000;
 
 std::string measured(double value) { return formatFixed(value, 3); }
 
@@ -22,29 +20,6 @@ std::string headingText(Angle heading) {
     std::string text = measured(heading.degrees());
     if (text == "-180.000") text.erase(0, 1);
     return text;
-}
-
-/// A whole number from 1 to kMaxCount, or what is wrong with it.
-struct Count {
-    std::int64_t value = 0;
-    int code = 0;  // of the error; 0: none
-    std::string message;
-};
-
-Count parseCount(std::string_view text, std::string_view what) {
-    const auto value = parseInteger(text);
-    std::string found = ", found ";
-    found += excerpt(text);
-    std::string message(what);
-    // Too many digits for an integer are a number all the same.
-    const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
-    if (!is_whole || text.empty())
-        return {0, 400, message.append(" is a whole number").append(found)};
-    if (!value || *value < 1 || *value > kMaxCount) {
-        message.append(" is from 1 to ").append(std::to_string(kMaxCount)).append(found);
-        return {0, 416, message};
-    }
-    return {*value, 0, ""};
 }
 
 }  // namespace
@@ -84,53 +59,6 @@ void Session::status(Words /*words*/) {
     out_.append(" accel=").append(formatDouble(status.accel));
     out_.append(" rotaccel=").append(formatDouble(status.rotaccel.degrees()));
     out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
-}
-
-void Session::scanOfRobot(Words words) {
-    const auto laser = world().sensorNamed(words[1]);
-    if (!laser || world().sensors()[*laser].model<Laser>() == nullptr)
-        return error(404, {unknownLaser(words[1])});
-    if (!world().sensors()[*laser].isOn(subject_))
-        return error(404, {"laser ", words[1], " is not on this robot: open another connection ",
-                           "and take the role LASER ", words[1]});
-    out_ += *state_->scan(*laser, false, false);
-}
-
-// The role LASER.
-
-void Session::scan(Words /*words*/) {
-    sendPendingScan();
-    out_ += *state_->scan(subject_, false, binary_);
-}
-
-void Session::stream(Words words) {
-    std::int64_t every = 1;
-    if (words.size() > 1) {
-        constexpr std::string_view kKey = "every=";
-        if (!words[1].starts_with(kKey))
-            return error(400, {"unexpected ", excerpt(words[1]), " behind STREAM [every=k]"});
-        const Count count = parseCount(words[1].substr(kKey.size()), "every");
-        if (count.code != 0) return error(count.code, {count.message});
-        every = count.value;
-    }
-    sendPendingScan();
-    if (every_ == 0) seq_ = world().reading(subject_).seq;
-    every_ = every;
-    out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
-}
-
-void Session::stopStream(Words /*words*/) {
-    sendPendingScan();
-    every_ = 0;
-    out_ += "OK STOP\n";
-}
-
-void Session::binary(Words words) {
-    if (words[1] != "on" && words[1] != "off")
-        return error(400, {"BINARY is on or off, found ", excerpt(words[1])});
-    sendPendingScan();
-    binary_ = words[1] == "on";
-    out_.append("OK BINARY ").append(words[1]).append("\n");
 }
 
 // The role WORLD.

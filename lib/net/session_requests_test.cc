@@ -129,7 +129,7 @@ TEST(Session, RobotReadsItsOwnLasers) {
               "ERR 404 laser l1 is not on this robot: open another connection and take the role "
               "LASER l1\n");
     EXPECT_EQ(talk.ask(robot, "SCAN l7"),
-              "ERR 404 no laser `l7` on this robot, did you mean `l2`?\n");
+              "ERR 404 no sensor `l7` on this robot, did you mean `l2`?\n");
     EXPECT_EQ(talk.ask(robot, "SCAN"), "ERR 400 SCAN wants an argument: SCAN id\n");
 }
 
@@ -226,8 +226,8 @@ TEST(Session, ReadersShareOneText) {
     const auto scan = first.takeScan();
     ASSERT_NE(scan, nullptr);
     EXPECT_EQ(scan, second.takeScan());
-    EXPECT_EQ(scan, talk.state.scan(0, true, false));
-    EXPECT_NE(scan, talk.state.scan(0, false, false));
+    EXPECT_EQ(scan, talk.state.scan(0, {.stream = true}));
+    EXPECT_NE(scan, talk.state.scan(0, {}));
     talk.step(1);
     EXPECT_NE(scan, first.takeScan());
 }

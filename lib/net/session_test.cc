@@ -90,7 +90,7 @@ TEST(Session, Errors405SayWhatToDo) {
     Session& nobody = talk.client();
     for (const char* request : {"FORWARD 1", "SCAN", "LIST", "STATUS x", "STEP -1"})
         EXPECT_EQ(talk.ask(nobody, request),
-                  "ERR 405 take a role first: ROBOT id, LASER id or WORLD\n");
+                  "ERR 405 take a role first: ROBOT id, LASER id, SENSOR id or WORLD\n");
     Session& robot = talk.client("ROBOT r1");
     EXPECT_EQ(talk.ask(robot, "LIST"),
               "ERR 405 LIST is for the role WORLD, this connection has the role ROBOT r1: open "
@@ -101,7 +101,8 @@ TEST(Session, Errors405SayWhatToDo) {
               "another one\n");
     Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.ask(world, "SCAN"),
-              "ERR 405 SCAN is for the role ROBOT or LASER, this connection has the role WORLD: "
+              "ERR 405 SCAN is for the role ROBOT or LASER or SENSOR, this connection has the role "
+              "WORLD: "
               "open another one\n");
 }
 
@@ -118,7 +119,7 @@ TEST(Session, UnknownRequests) {
               "ERR 400 unknown request `ISPACE`; HELP lists what there is\n");
     // Of later versions.
     for (const char* request :
-         {"RESET", "SET r1.at=1,1", "ADD cube", "DELETE r1", "EVENTS", "SENSOR c1", "TOKEN x"})
+         {"RESET", "SET r1.at=1,1", "ADD cube", "DELETE r1", "EVENTS", "TOKEN x"})
         EXPECT_EQ(talk.ask(client, request).substr(0, 24), "ERR 400 unknown request ") << request;
 }
 
@@ -144,7 +145,7 @@ TEST(Session, BlankLinesAreNoRequests) {
 TEST(Session, Help) {
     Talk talk;
     EXPECT_EQ(talk.ask(talk.client(), "HELP"),
-              "OK HELP ROBOT id | LASER id | WORLD | HELP | QUIT\n");
+              "OK HELP ROBOT id | LASER id | SENSOR id | WORLD | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("ROBOT r1"), "HELP"),
               "OK HELP FORWARD m | BACKWARD m | LEFT deg | RIGHT deg | SPEED m/s | ROTSPEED deg/s "
               "| STOP | STATUS | SCAN id | HELP | QUIT\n");

@@ -49,7 +49,8 @@ struct Talk {
         run();
     }
     std::string scan(std::size_t laser, bool stream, bool binary) {
-        return scanText(room.world.sensors()[laser], room.world.reading(laser), stream, binary);
+        return scanText(room.world.sensors()[laser], room.world.reading(laser),
+                        {.stream = stream, .binary = binary});
     }
 
     TestWorld room;

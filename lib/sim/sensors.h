@@ -52,6 +52,10 @@ class SensorReader {
     }
     /// Those read last, ascending.
     [[nodiscard]] std::span<const std::size_t> latest() const { return latest_; }
+    /// The newest period; readings of heavy sensors may be of earlier ones.
+    [[nodiscard]] std::int64_t period(std::size_t sensor, SimTime time) const {
+        return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
+    }
     /// Counts who wants a heavy sensor's readings.
     void want(std::size_t sensor, bool wants) { wanted_[sensor] += wants ? 1 : -1; }
     /// Reads a heavy sensor now if it was not read in its newest period.

@@ -319,6 +319,10 @@ const SensorReading& World::reading(std::size_t sensor) const {
     return data_->sensors.reading(sensor);
 }
 
+std::int64_t World::period(std::size_t sensor) const {
+    return data_->sensors.period(sensor, data_->time);
+}
+
 void World::want(std::size_t sensor, bool wants) { data_->sensors.want(sensor, wants); }
 
 const SensorReading& World::take(std::size_t sensor) {

@@ -106,6 +106,8 @@ class World {
     [[nodiscard]] RobotStatus status(std::size_t mover) const;
     /// The newest one; of a heavy sensor that nobody wants the one that was taken last, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
+    /// Number of the newest period of a sensor: that of its reading, unless it is heavy.
+    [[nodiscard]] std::int64_t period(std::size_t sensor) const;
     /// Depth frames and pictures are read when due only as long as somebody wants them: counts who
     /// does. Nothing for other sensors, which are always read.
     void want(std::size_t sensor, bool wants);

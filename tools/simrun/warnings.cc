@@ -3,10 +3,10 @@
 
 #include <string>
 #include <string_view>
-#include <variant>
 
 #include "base/number.h"
 #include "layout/scene.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -33,14 +33,15 @@ void CollisionLog::tell() {
 }
 
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {
-    for (const PendingSensor& sensor : scene.pending)
-        if (std::holds_alternative<Laser>(sensor.model))
-            warn(options, kTool,
-                 sensor.id +
-                     " has no place and is left out: give it `at` or `on`, or let arrange "
-                     "place it");
-    constexpr std::string_view kKinds[] = {"ranger", "camera", "ultrasound", "tag", "mat", "gate"};
-    std::vector<std::string> phrases = leftOut(scene, kKinds, "simulated");
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        const SensorKind* const kind = sensorKind(record.keyword());
+        if (kind == nullptr || !kind->is_read || record.has("at") || record.has("on")) continue;
+        warn(options, kTool,
+             scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
+                 (kind->is_arranged ? ", or let arrange place it" : ""));
+    }
+    std::vector<std::string> phrases;
     for (const char* key : {"path", "walk"}) {
         std::vector<std::string> ids;
         for (std::size_t i = 0; i < scene.records.size(); ++i) {

@@ -21,7 +21,7 @@ class CollisionLog {
     int count_ = 0;
 };
 
-/// Says what takes no part: lasers without a place, and what is not simulated yet.
+/// Says what takes no part: sensors without a place, and what is not simulated yet.
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options);
 
 }  // namespace ispace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/request_parts.h"
+
+#include "base/message.h"
+#include "base/number.h"
+#include "net/server_state.h"
+
+namespace ispace {
+
+namespace {
+
+/// Far more than anybody waits for; sums of them stay far from overflow.
+constexpr std::int64_t kMaxCount = 1'000'000'000;
+
+}  // namespace
+
+Count parseCount(std::string_view text, std::string_view what) {
+    const auto value = parseInteger(text);
+    std::string found = ", found ";
+    found += excerpt(text);
+    std::string message(what);
+    // Too many digits for an integer are a number all the same.
+    const bool is_whole = value || text.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!is_whole || text.empty())
+        return {0, 400, message.append(" is a whole number").append(found)};
+    if (!value || *value < 1 || *value > kMaxCount) {
+        message.append(" is from 1 to ").append(std::to_string(kMaxCount)).append(found);
+        return {0, 416, message};
+    }
+    return {*value, 0, ""};
+}
+
+std::string unknownThing(std::string_view kind, std::string_view id,
+                         const std::vector<std::string>& known, std::string_view where) {
+    constexpr std::size_t kFew = 12, kMany = 256;
+    std::string out = "no ";
+    out.append(kind).append(" ").append(excerpt(id)).append(where);
+    if (known.empty()) return out.append(": there is none");
+    // Among thousands of names one is always near, and it would take long to find.
+    if (known.size() <= kMany) {
+        if (const std::string hint = didYouMean(id, known); !hint.empty()) return out.append(hint);
+    }
+    if (known.size() > kFew) return out.append("; LIST of the role WORLD names all");
+    return out.append("; there is ").append(joined(known, ", "));
+}
+
+}  // namespace ispace

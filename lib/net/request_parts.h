@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/net: what requests of several roles have in common.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ispace {
+
+/// A whole number from 1 to a thousand million, or what is wrong with it.
+struct Count {
+    std::int64_t value = 0;
+    int code = 0;  ///< of the error; 0: none
+    std::string message;
+};
+/// `what` begins the message: "every", "the number of steps".
+Count parseCount(std::string_view text, std::string_view what);
+
+/// "no robot `r9`" with what may have been meant, or what there is.
+std::string unknownThing(std::string_view kind, std::string_view id,
+                         const std::vector<std::string>& known, std::string_view where = "");
+
+}  // namespace ispace

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The roles LASER and SENSOR, and the sensors of a robot.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "net/request_parts.h"
+#include "net/sensor_text.h"
+#include "net/session.h"
+#include "raster/encode.h"
+
+namespace ispace {
+
+namespace {
+
+/// What a reply has where the client has not chosen.
+ReplyForm defaultForm(const RunSensor& sensor) {
+    const auto formats = formatsOf(sensor);
+    if (formats.empty()) return {};
+    return {.stream = false, .binary = true, .format = formats.front()};
+}
+
+}  // namespace
+
+std::string Session::unknownSensor(std::string_view kind, std::string_view id) const {
+    std::vector<std::string> known;
+    for (const RunSensor& sensor : world().sensors()) {
+        if (role_ == Role::Robot && !sensor.isOn(subject_)) continue;
+        if (kind != "laser" || sensor.model<Laser>() != nullptr) known.push_back(sensor.id);
+    }
+    return unknownThing(kind, id, known, role_ == Role::Robot ? " on this robot" : "");
+}
+
+void Session::takeLaser(Words words) {
+    const auto found = world().sensorNamed(words[1]);
+    const Laser* const laser = found ? world().sensors()[*found].model<Laser>() : nullptr;
+    if (laser == nullptr) return error(404, {unknownSensor("laser", words[1])});
+    role_ = Role::Laser;
+    subject_ = *found;
+    form_ = {};
+    out_.append("OK LASER ").append(words[1]).append(laserFigures(*laser)).append("\n");
+}
+
+void Session::takeSensor(Words words) {
+    const auto found = world().sensorNamed(words[1]);
+    if (!found) return error(404, {unknownSensor("sensor", words[1])});
+    role_ = Role::Sensor;
+    subject_ = *found;
+    const RunSensor& sensor = world().sensors()[subject_];
+    form_ = defaultForm(sensor);
+    out_.append("OK SENSOR ").append(words[1]).append(sensorFigures(sensor)).append("\n");
+}
+
+void Session::scanOfRobot(Words words) {
+    const auto found = world().sensorNamed(words[1]);
+    if (!found) return error(404, {unknownSensor("sensor", words[1])});
+    const RunSensor& sensor = world().sensors()[*found];
+    if (!sensor.isOn(subject_))
+        return error(404, {sensor.keyword(), " ", words[1],
+                           " is not on this robot: open another connection and take the role ",
+                           sensor.model<Laser>() != nullptr ? "LASER " : "SENSOR ", words[1]});
+    ReplyForm form = defaultForm(sensor);
+    form.binary = false;
+    out_ += *state_->scan(*found, form);
+}
+
+void Session::scan(Words /*words*/) {
+    sendPendingScan();
+    out_ += *state_->scan(subject_, form_);
+}
+
+void Session::stream(Words words) {
+    std::int64_t every = 1;
+    if (words.size() > 1) {
+        constexpr std::string_view kKey = "every=";
+        if (!words[1].starts_with(kKey))
+            return error(400, {"unexpected ", excerpt(words[1]), " behind STREAM [every=k]"});
+        const Count count = parseCount(words[1].substr(kKey.size()), "every");
+        if (count.code != 0) return error(count.code, {count.message});
+        every = count.value;
+    }
+    sendPendingScan();
+    if (every_ == 0) seq_ = world().period(subject_);
+    every_ = every;
+    out_.append("OK STREAM every=").append(std::to_string(every)).append("\n");
+}
+
+/// Looks whether a new reading is to be sent. A heavy one is not even taken while the one before it
+/// waits for a slow reader.
+void Session::streamSensor() {
+    const std::int64_t seq = world().period(subject_);
+    if (seq != seq_ && seq % every_ == 0) {
+        ReplyForm form = form_;
+        form.stream = true;
+        if (scan_ && world().sensors()[subject_].isHeavy())
+            is_stale_ = true;
+        else
+            scan_ = state_->scan(subject_, form);
+    }
+    seq_ = seq;
+}
+
+std::shared_ptr<const std::string> Session::takeScan() {
+    if (scan_ && is_stale_) {
+        ReplyForm form = form_;
+        form.stream = true;
+        scan_ = state_->scan(subject_, form);
+    }
+    is_stale_ = false;
+    return std::exchange(scan_, nullptr);
+}
+
+/// A scan that was due before a request is sent before its answer.
+void Session::sendPendingScan() {
+    if (scan_) out_ += *takeScan();
+}
+
+void Session::stopStream(Words /*words*/) {
+    sendPendingScan();
+    every_ = 0;
+    out_ += "OK STOP\n";
+}
+
+void Session::binary(Words words) {
+    if (words[1] != "on" && words[1] != "off")
+        return error(400, {"BINARY is on or off, found ", excerpt(words[1])});
+    const RunSensor& sensor = world().sensors()[subject_];
+    if (words[1] == "on" && !hasBytes(sensor))
+        return error(400, {"readings of ", sensor.id, " are lines of text alone"});
+    sendPendingScan();
+    form_.binary = words[1] == "on";
+    out_.append("OK BINARY ").append(words[1]).append("\n");
+}
+
+void Session::format(Words words) {
+    const RunSensor& sensor = world().sensors()[subject_];
+    const auto formats = formatsOf(sensor);
+    if (formats.empty()) return error(400, {"readings of ", sensor.id, " have one format alone"});
+    const auto found = std::find_if(formats.begin(), formats.end(),
+                                    [&](FrameFormat format) { return nameOf(format) == words[1]; });
+    if (found == formats.end()) {
+        std::vector<std::string> names;
+        for (const FrameFormat format : formats) names.emplace_back(nameOf(format));
+        const std::string hint = didYouMean(words[1], names);
+        return error(400,
+                     {"a ", sensor.keyword(), " has no format ", excerpt(words[1]),
+                      hint.empty() ? ", it has " : hint, hint.empty() ? joined(names, ", ") : ""});
+    }
+    if (*found == FrameFormat::Jpeg) {
+        // Better told now than with the first picture.
+        try {
+            static_cast<void>(jpegOfRgb(1, 1, std::vector<std::uint8_t>(3)));
+        } catch (const FormatError& missing) {
+            return error(400, {missing.what()});
+        }
+    }
+    sendPendingScan();
+    form_.format = *found;
+    out_.append("OK FORMAT ").append(words[1]).append("\n");
+}
+
+}  // namespace ispace

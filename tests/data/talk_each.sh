@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# talk_each.sh SIMRUN-ARGUMENT… <SESSIONS: what clients are answered one after another by a world that
+# waits for steps; a blank line ends a session. Pictures are left out.
+simrun "$@" --clock step --port-file port >announced &
+server=$!
+tries=0
+until [ -s port ] || [ $((tries += 1)) -gt 600 ]; do sleep 0.05; done
+requests=
+while IFS= read -r line; do
+    if [ -n "$line" ]; then
+        requests="$requests$line
+"
+        continue
+    fi
+    printf '%s' "$requests" | nc -N 127.0.0.1 "$(cat port)" | sed '1d;s/base64=.*/base64=.../'
+    requests=
+done
+kill -TERM $server
+wait $server
+status=$?
+rm -f port announced
+exit $status
