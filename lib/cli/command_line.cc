@@ -232,7 +232,6 @@ auto takeQuantity(Number& variable, Unit unit, double lowest, double highest) {
     return [&variable, unit, lowest, highest](const std::string& text) {
         const bool is_time = unit == Unit::Time;
         KeySpec key;
-        key.name = is_time ? "time" : "length";
         key.unit = unit;
         const double value = std::get<double>(parseValue(key, text));
         if (value < lowest || value > highest)

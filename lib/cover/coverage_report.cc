@@ -261,10 +261,10 @@ std::string metricTable(const CoverageReport& report) {
     for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
         rows.push_back(row(classText(i), report.densities.indoor[i], percent));
     if (report.parallax)
-        rows.push_back(row("by " + std::to_string(report.parallax->cameras) + " cameras, axes " +
-                               formatDouble(roundSignificant(report.parallax->least.degrees())) +
-                               " degrees apart",
-                           report.parallax_coverage, percent));
+        rows.push_back(row(
+            "by " + std::to_string(report.parallax->cameras) + " cameras, axes at least " +
+                formatDouble(roundSignificant(report.parallax->least.degrees())) + " degrees apart",
+            report.parallax_coverage, percent));
     for (const ZoneMetrics& zone : report.zones) {
         if (zone.area > 0)
             rows.push_back(row("zone " + printable(zone.id), zone.coverage, percent));

@@ -136,6 +136,11 @@ class CalibrationReader {
         std::vector<double> d = find(names) ? matrix(names, 0) : std::vector<double>();
         while (!d.empty() && d.back() == 0) d.pop_back();
         const std::size_t most = lens == "pinhole" ? 5 : lens == "fisheye" ? 4 : 0;
+        if (const YAML::Node model = root_["distortion_model"];
+            d.size() > most && model && model.IsScalar() && model.Scalar() == "rational_polynomial")
+            fail(model,
+                 "rational_polynomial is not supported beyond its first 5 coefficients: calibrate "
+                 "with plumb_bob (OpenCV without CALIB_RATIONAL_MODEL)");
         if (d.size() > most)
             fail(find(names), "`distortion_coefficients`: number " + std::to_string(d.size()) +
                                   " is not 0, and a camera with projection=" + lens + " has " +
@@ -178,6 +183,9 @@ void applyCalibration(Record& camera, std::string_view yaml, const std::string& 
     std::string text(yaml);
     // OpenCV's first line, `%YAML:1.0`, is no directive of YAML.
     if (text.starts_with("%YAML:")) text[0] = '#';
+    if (text.starts_with("<?xml") || text.starts_with("<opencv_storage"))
+        throw FormatError(
+            Diagnostic{name, 0, 0, "XML is not read: save the calibration as .yaml or .yml"});
     try {
         const YAML::Node root = YAML::Load(text);
         if (!root.IsMap())

@@ -67,7 +67,7 @@ enum class Role {
 };
 
 struct KeySpec {
-    std::string name;
+    std::string name;  ///< empty: of an option, which messages name before what is wrong
     KeyType type = KeyType::Number;
     Unit unit = Unit::None;
     std::string help;                          ///< one phrase, for man page and messages

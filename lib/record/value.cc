@@ -310,7 +310,7 @@ double parseShareOf(const KeySpec& key, std::string_view text) {
 
 void refuseValue(const KeySpec& key, const std::string& what) {
     Diagnostic diagnostic;
-    diagnostic.message = '`' + key.name + "`: " + what;
+    diagnostic.message = key.name.empty() ? what : '`' + key.name + "`: " + what;
     throw FormatError(std::move(diagnostic));
 }
 

@@ -194,6 +194,12 @@ class OpticsReader {
             return;
         }
         const double focal = record_.number("focal");
+        constexpr double kLongest = 1;  // metres: likewise
+        if (focal > kLongest) {
+            findings_.add(record_.finding("focal", "a focal length of " + formatDouble(focal) +
+                                                       " m: is it " + formatDouble(focal) + "mm?"));
+            return;
+        }
         camera_.fx = camera_.fy = focal / size->x * camera_.columns;
         camera_.center();
     }
@@ -275,7 +281,7 @@ void addCameraKeys(std::vector<KeySpec>& keys) {
                     .upper = 1,
                     .lower_open = true});
     keys.push_back(
-        positiveKey("focal", Unit::Length, "focal length, such as 2.8mm; needs `sensor`", 1));
+        positiveKey("focal", Unit::Length, "focal length, such as 2.8mm; needs `sensor`", 1000));
     keys.push_back({.name = "sensor",
                     .type = KeyType::Text,
                     .help = "size of the image sensor: a format such as 1/2.8\", or width,height "

@@ -174,6 +174,7 @@ TEST(Camera, SaysWhatIsWrong) {
     EXPECT_NE(findingsOf("fov=180").find("less than 180 degrees"), std::string::npos);
     EXPECT_NE(findingsOf("focal=2.8mm").find("without the size of the image sensor"),
               std::string::npos);
+    EXPECT_NE(findingsOf("focal=2.8 sensor=5.37,3.02mm").find("is it 2.8mm?"), std::string::npos);
     EXPECT_NE(findingsOf("sensor=1/3\"").find("add `focal`"), std::string::npos);
     EXPECT_NE(findingsOf("focal=3mm sensor=big").find("wanted a format"), std::string::npos);
     EXPECT_NE(findingsOf("focal=3mm sensor=1/0\"").find("wanted a format"), std::string::npos);

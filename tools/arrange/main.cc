@@ -180,6 +180,16 @@ std::string hintAlongWalls(const Work& work) {
     return "";
 }
 
+/// Nothing hangs above the room.
+void warnOfHeights(const ArrangeToolOptions& options, const Work& work) {
+    const double top = work.input.scene.environment.height();
+    for (const double height : work.how.mount.heights)
+        if (height > top)
+            warn(options.common, "arrange",
+                 "--z " + formatDouble(height) + ": the room is " + formatDouble(top) +
+                     " m high, and nothing is there to mount a sensor on");
+}
+
 /// Where nothing is covered there is a reason, which is worth a word; and so are sensors too many.
 void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
                    const Arrangement& arrangement) {
@@ -201,6 +211,7 @@ void arrangeSensors(const ArrangeCommand& command) {
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
         mustBeWritable(*file);
+    warnOfHeights(options, work);
     int signal = 0;
     Arrangement arrangement;
     {
@@ -227,7 +238,15 @@ void arrangeSensors(const ArrangeCommand& command) {
              formatDouble(arrangement.cost));
     if (signal != 0) endBySignal(signal);
     warnOfNothing(options, work, arrangement);
-    if (!arrangement.is_reached) throw UnmetError(shortfallText(work.how, arrangement));
+    if (const std::string text = doubledText(arrangement); !text.empty())
+        warn(options.common, "arrange", text);
+    if (!arrangement.is_reached) {
+        std::string text = shortfallText(work.how, arrangement);
+        if (arrangement.candidate_bound <= 0)
+            if (const std::string reason = reasonOfDensity(work); !reason.empty())
+                text += "; " + reason;
+        throw UnmetError(text);
+    }
     if (arrangement.unplaced > 0)
         throw UnmetError(std::to_string(arrangement.unplaced) +
                          " of the sensors are not placed: there are " +

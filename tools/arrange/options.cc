@@ -20,9 +20,9 @@ namespace {
 constexpr int kMaxHeadings = 3600;
 
 /// Numbers of a unit, parted by commas.
-Tuple numbers(const char* name, const std::string& text, Unit unit, std::size_t least,
-              std::size_t most, double lower, double upper) {
-    const KeySpec key{.name = name,
+Tuple numbers(const std::string& text, Unit unit, std::size_t least, std::size_t most, double lower,
+              double upper) {
+    const KeySpec key{.name = "",  // the option is named anyway
                       .type = KeyType::Tuple,
                       .unit = unit,
                       .help = "",
@@ -40,7 +40,7 @@ CandidateDensity readDensity(const std::string& text, double lowest, double high
     if (std::count(text.begin(), text.end(), ',') != 2) throw UsageError(wanted);
     const auto headings = parseInteger(text.substr(last + 1));
     if (!headings || *headings < 1 || *headings > kMaxHeadings) throw UsageError(wanted);
-    const Tuple steps = numbers("steps", text.substr(0, last), Unit::Length, 2, 2, lowest, highest);
+    const Tuple steps = numbers(text.substr(0, last), Unit::Length, 2, 2, lowest, highest);
     return {steps[0], steps[1], static_cast<int>(*headings)};
 }
 
@@ -177,7 +177,7 @@ void ArrangeCommand::addMountOptions() {
     line_.parsed(
         "--z", "H[,H...]",
         [&mount](const std::string& text) {
-            mount.heights = numbers("H", text, Unit::Length, 1, 100, 0, 1000);
+            mount.heights = numbers(text, Unit::Length, 1, 100, 0, 1000);
         },
         "heights to choose from (default 0.15, or that of the mount; of cameras on walls 2.4)",
         Enters::History);
@@ -185,7 +185,7 @@ void ArrangeCommand::addMountOptions() {
         "--tilt", "DEG[,DEG...]",
         [&mount](const std::string& text) {
             mount.tilts.clear();
-            for (const double tilt : numbers("DEG", text, Unit::Angle, 1, 100, -90, 90))
+            for (const double tilt : numbers(text, Unit::Angle, 1, 100, -90, 90))
                 mount.tilts.push_back(Angle::degrees(tilt));
         },
         "tilts to choose from, for sensors without one of their own (default 0; of cameras "

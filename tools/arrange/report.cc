@@ -98,4 +98,17 @@ std::string idleText(const Arrangement& arrangement) {
     return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
 }
 
+std::string doubledText(const Arrangement& arrangement) {
+    const std::vector<ArrangedSensor>& sensors = arrangement.sensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        for (std::size_t k = i + 1; k < sensors.size(); ++k) {
+            const Point3 p = sensors[i].pose.position;
+            if (!(p == sensors[k].pose.position)) continue;
+            return printable(sensors[i].id) + " and " + printable(sensors[k].id) +
+                   " are at one place (" + formatDouble(p.x) + ", " + formatDouble(p.y) + ", " +
+                   formatDouble(p.z) + "): mount them side by side";
+        }
+    return "";
+}
+
 }  // namespace ispace

@@ -17,5 +17,8 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
 
 /// The sensors that could as well be left out, as a sentence without end; "" if there are none.
 std::string idleText(const Arrangement& arrangement);
+/// Which sensors are at one place, where only one can be mounted; "" if none are. The search allows
+/// it: what it proves then holds all the more for places of their own.
+std::string doubledText(const Arrangement& arrangement);
 
 }  // namespace ispace
