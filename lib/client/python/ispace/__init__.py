@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drive the robots and people of simrun, read its sensors, and run the filters of ispace.
+
+::
+
+    import ispace
+
+    with ispace.simrun("ispace.env", "ispace.3dm", clock="real:20") as run:
+        with run.robot("r1") as robot, run.laser("l1") as laser:
+            robot.wait(robot.forward(0.5))
+            print(robot.status().pose, min(laser.scan().ranges))
+
+    report = ispace.coverage("room.env", ispace.arrange("room.env", sensor="urg-04lx:3"))
+    print(report.coverage.exact)
+
+Robot and Person drive, LaserSensor, Camera and their kin read, World has the clock, changes and events; each
+is a connection of its own to a running simrun, by its address ``"127.0.0.1:7001"``. Units are those of the
+protocol: metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise. What goes
+wrong is an Error with the server's text. The standard library is enough; arrays are numpy's where it is
+installed.
+"""
+
+from ._connection import Address, Connection
+from ._message import Fields, Message, Pose, Pose3
+from ._version import __version__
+from .errors import (
+    ConnectionFailed,
+    Error,
+    ProtocolError,
+    Refused,
+    RequirementMissed,
+    Timeout,
+    ToolError,
+)
+from .filters import Layout, Object, Record, arrange, coverage, info, scan
+from .movers import End, Motion, Odometry, Person, Robot, Status
+from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
+from .sensors import (
+    Camera,
+    CloudSensor,
+    Gate,
+    LaserSensor,
+    Mat,
+    Ranger,
+    Sensor,
+    Tag,
+    Ultrasound,
+)
+from .server import Simrun, simrun
+from .world import Event, World
+
+__all__ = [
+    "Address",
+    "Burst",
+    "Camera",
+    "Cloud",
+    "CloudSensor",
+    "Connection",
+    "ConnectionFailed",
+    "Depths",
+    "End",
+    "Error",
+    "Event",
+    "Fields",
+    "Fix",
+    "Gate",
+    "LaserSensor",
+    "Layout",
+    "Load",
+    "Mat",
+    "Message",
+    "Motion",
+    "Object",
+    "Odometry",
+    "Passages",
+    "Person",
+    "Picture",
+    "Pose",
+    "Pose3",
+    "ProtocolError",
+    "Ranger",
+    "Reading",
+    "Record",
+    "Refused",
+    "RequirementMissed",
+    "Robot",
+    "Scan",
+    "Sensor",
+    "Simrun",
+    "Status",
+    "Tag",
+    "Timeout",
+    "ToolError",
+    "Ultrasound",
+    "World",
+    "__version__",
+    "arrange",
+    "coverage",
+    "info",
+    "scan",
+    "simrun",
+]

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A dialogue with the server."""
+
+from __future__ import annotations
+
+import math
+import select
+import socket
+import time
+from collections import deque
+from typing import Any, Deque, Optional, Tuple, Union
+
+from ._message import Message, parse_message
+from .errors import ConnectionFailed, Error, ProtocolError, Refused, Timeout
+
+#: ``"127.0.0.1:7001"``, a pair of host and port, or what has such an ``address`` (a Simrun).
+Address = Union[str, Tuple[str, int], Any]
+
+
+def host_and_port(address: Address) -> Tuple[str, int]:
+    """The host and port that an address stands for."""
+    address = getattr(address, "address", address)
+    if isinstance(address, tuple):
+        return str(address[0]), int(address[1])
+    host, colon, port = str(address).rpartition(":")
+    if not host or not colon or not port.isascii() or not port.isdigit() or not 0 < int(port) < 65536:
+        raise Error(f"`{address}` is no address, wanted HOST:PORT, like 127.0.0.1:7001")
+    return host.strip("[]"), int(port)
+
+
+class Connection:
+    """Requests, their answers, and what the server says of itself in between, kept until it is asked for.
+
+    One thread at a time may use it: open a connection for each robot and sensor. Times to wait are
+    seconds of wall time; infinity waits for ever.
+    """
+
+    _MOST_KEPT = 10000  # events and ends that nobody asks for
+    _MOST_SCANS = 64
+
+    def __init__(self, address: Address, timeout: float = 10, token: str = "") -> None:
+        host, port = host_and_port(address)
+        self.timeout = timeout  #: seconds to wait for each answer
+        try:
+            self._socket: Optional[socket.socket] = socket.create_connection((host, port), timeout)
+        except socket.timeout:
+            raise Timeout(f"{host}:{port} does not answer") from None
+        except OSError as error:
+            hint = " (is simrun running?)" if isinstance(error, ConnectionRefusedError) else ""
+            raise ConnectionFailed(f"{host}:{port}: {error.strerror or error}{hint}") from None
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket.setblocking(False)
+        self._buffer = bytearray()
+        self._searched = 0  # bytes of the buffer before this have no end of line
+        self._awaited = 0  # answers to requests that were sent
+        self._answers: Deque[Message] = deque()
+        self._ends: Deque[Message] = deque(maxlen=self._MOST_KEPT)
+        self._events: Deque[Message] = deque(maxlen=self._MOST_KEPT)
+        self._scans: Deque[Message] = deque(maxlen=self._MOST_SCANS)
+        try:
+            self._greet(f"{host}:{port}", token)
+        except BaseException:
+            self._drop()
+            raise
+
+    def ask(self, request: str, timeout: Optional[float] = None) -> Message:
+        """Sends one request and waits for its answer."""
+        if "\n" in request:
+            raise Error(f"a request is one line, found two in {request!r}")
+        end = time.monotonic() + (self.timeout if timeout is None else timeout)
+        self._send(request.encode() + b"\n", end)
+        self._awaited += 1
+        while not self._answers or self._awaited > 1:
+            if self._answers:  # of an earlier request whose caller did not wait for it
+                self._answers.popleft()
+                self._awaited -= 1
+            elif not self._take(end):
+                raise Timeout(f"no answer in time to {request}")
+        answer = self._answers.popleft()
+        self._awaited -= 1
+        if answer.word(0) == "ERR":
+            raise _refusal(answer)
+        return answer
+
+    def next_end(self, timeout: float) -> Optional[Message]:
+        """The next DONE or FAIL; None if none came in time."""
+        return self._next(self._ends, timeout)
+
+    def next_event(self, timeout: float) -> Optional[Message]:
+        """The next EVENT; None if none came in time."""
+        return self._next(self._events, timeout)
+
+    def next_scan(self, timeout: float) -> Optional[Message]:
+        """The next scan of a stream; None if none came in time."""
+        return self._next(self._scans, timeout)
+
+    def drop_scans(self) -> None:
+        """Forgets the scans of a stream that nobody has asked for."""
+        self._scans.clear()
+
+    def close(self) -> None:
+        """Says goodbye, so that what was held is free when this returns."""
+        if self._socket is None:
+            return
+        try:
+            if self._awaited == 0:
+                self.ask("QUIT", 1)
+        except Error:
+            pass  # gone already
+        self._drop()
+
+    def _greet(self, name: str, token: str) -> None:
+        greeting = self._read(time.monotonic() + self.timeout)
+        if greeting is None:
+            raise Timeout(f"no greeting from {name}")
+        if greeting.word(0) == "ERR":
+            raise _refusal(greeting)
+        if greeting.line != "ISPACE 1":
+            raise ProtocolError(f"{name} says `{greeting.line[:60]}`, wanted ISPACE 1")
+        if token:
+            self.ask("TOKEN " + token)
+
+    def _drop(self) -> None:
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+    def _next(self, queue: Deque[Message], timeout: float) -> Optional[Message]:
+        end = time.monotonic() + timeout
+        while not queue:
+            if not self._take(end):
+                return None
+        return queue.popleft()
+
+    def _take(self, end: float) -> bool:
+        """Takes one message to where it belongs; False if none came in time."""
+        message = self._read(end)
+        if message is None:
+            return False
+        kind = message.word(0)
+        if kind in ("DONE", "FAIL"):
+            self._ends.append(message)
+        elif kind == "EVENT":
+            self._events.append(message)
+        elif kind == "SCAN" and "stream" in message.fields:
+            self._scans.append(message)
+        elif kind in ("OK", "ERR", "SCAN"):
+            # The server speaks first only to close: of too many clients, of one without a role.
+            if self._awaited == 0 and kind == "ERR":
+                raise _refusal(message)
+            self._answers.append(message)
+        else:
+            raise ProtocolError(f"the server says `{message.line[:60]}`")
+        return True
+
+    def _read(self, end: float) -> Optional[Message]:
+        """A line and its bytes; None if they are not there in time (what came is kept)."""
+        while (newline := self._buffer.find(b"\n", self._searched)) < 0:
+            self._searched = len(self._buffer)
+            if not self._receive(end):
+                return None
+        self._searched = newline
+        line = self._buffer[:newline].decode("utf-8", "replace").removesuffix("\r")
+        message = parse_message(line)
+        count = 0
+        if message.word(0) == "SCAN" and "bytes" in message.fields:
+            count = message.fields.integer("bytes")
+        while len(self._buffer) < newline + 1 + count:
+            if not self._receive(end):
+                return None
+        if count:
+            message.data = bytes(self._buffer[newline + 1 : newline + 1 + count])
+        del self._buffer[: newline + 1 + count]
+        self._searched = 0
+        return message
+
+    def _open(self) -> socket.socket:
+        if self._socket is None:
+            raise ConnectionFailed("the connection is closed")
+        return self._socket
+
+    def _wait(self, end: float, write: bool) -> bool:
+        sock = self._open()
+        # As poll() has whole milliseconds, rounded up: a short wait is no busy one.
+        left = end - time.monotonic()
+        poll = select.poll()
+        poll.register(sock, select.POLLOUT if write else select.POLLIN)
+        return bool(poll.poll(None if left == math.inf else max(0, math.ceil(left * 1000))))
+
+    def _receive(self, end: float) -> bool:
+        while True:
+            try:
+                data = self._open().recv(1 << 18)
+            except BlockingIOError:
+                if not self._wait(end, False):
+                    return False
+                continue
+            except OSError as error:
+                raise ConnectionFailed(f"the server is gone: {error.strerror}") from None
+            if not data:
+                raise ConnectionFailed("the server has closed the connection")
+            self._buffer += data
+            return True
+
+    def _send(self, data: bytes, end: float) -> None:
+        while data:
+            try:
+                data = data[self._open().send(data) :]
+            except BlockingIOError:
+                if not self._wait(end, True):
+                    raise Timeout("the server takes no requests") from None
+            except OSError as error:
+                raise ConnectionFailed(f"the server is gone: {error.strerror}") from None
+
+
+def _refusal(message: Message) -> Error:
+    _, code, text = (message.line + "  ").split(" ", 2)
+    if not code.isdigit():
+        return ProtocolError(f"the server says {message.line}")
+    return Refused(int(code), text.strip())
+
+
+class Client:
+    """What all roles have in common: a connection, and ``with``."""
+
+    def __init__(self, role: str, address: Address, timeout: float, token: str) -> None:
+        self.connection = Connection(address, timeout, token)
+        try:
+            #: What the server said when the role was taken.
+            self.info = self._ask(role).fields
+        except BaseException:
+            self.connection.close()
+            raise
+
+    def _ask(self, request: str, timeout: Optional[float] = None) -> Message:
+        return self.connection.ask(request, timeout)
+
+    def close(self) -> None:
+        """Ends the connection; a robot or person brakes and is free for others."""
+        self.connection.close()
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()

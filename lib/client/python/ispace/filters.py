@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The filters envc, arrange, scan and coverage as functions.
+
+They run the tools: those of the folder in the variable ISPACE_BIN, else those in PATH. Rooms and layouts
+are names of files, or a Layout; options are those of the tool's manual, with ``_`` for ``-``::
+
+    coverage("room.env", layout, require=["40%", "free:50%"], density="identify")
+
+True stands for an option without value (False for its ``--no-`` form), a list for one that is repeated.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Sequence, Union
+
+from .errors import RequirementMissed, ToolError
+
+Option = Union[None, bool, int, float, str, os.PathLike[str], Sequence[Any]]
+
+
+class Object(Dict[str, Any]):
+    """An object of JSON, whose keys are attributes as well: ``report.coverage.exact``.
+
+    share/schemas says what they mean. Angles in JSON are in radians, and poses
+    ``[x, y, z, heading, tilt, roll]``.
+    """
+
+    def __getattr__(self, key: str) -> Any:
+        try:
+            return self[key]
+        except KeyError:
+            raise AttributeError(f"no `{key}` here, only {', '.join(self)}") from None
+
+
+def parse(text: str) -> Any:
+    """JSON, with Objects for its objects."""
+    return json.loads(text, object_hook=Object)
+
+
+@dataclass(frozen=True)
+class Record:
+    """One line of an environment or layout."""
+
+    keyword: str
+    keys: Dict[str, str]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What is placed in a room, as the text of a ``.3dm`` file."""
+
+    text: str
+
+    @property
+    def records(self) -> List[Record]:
+        """Its records, in order."""
+        return [_record(line) for line in self.text.splitlines() if line and line[0] != "#"]
+
+    @property
+    def result(self) -> Dict[str, str]:
+        """What arrange says of it: coverage, bound, strategy …; empty if it says nothing."""
+        for record in self.records:
+            if record.keyword == "result":
+                return record.keys
+        return {}
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.text)
+
+
+Room = Union[str, os.PathLike[str]]
+Placed = Union[None, str, os.PathLike[str], Layout]
+
+
+def coverage(room: Room, layout: Placed = None, **options: Option) -> Object:
+    """What the sensors of a layout cover: the report of ``coverage --json``.
+
+    Raises RequirementMissed, with the report as ``product``, if ``require`` is not met.
+    """
+    report: Object = parse(_run("coverage", room, layout, {"json": True, **options}, parse))
+    return report
+
+
+def info(room: Room, **options: Option) -> Object:
+    """Limits, areas and counts of a room: the report of ``envc --info``."""
+    report: Object = parse(_run("envc", room, None, {"info": True, "json": True, **options}))
+    return report
+
+
+def arrange(room: Room, layout: Placed = None, **options: Option) -> Layout:
+    """Where sensors should stand: ``arrange("room.env", sensor="urg-04lx:3", optimize="exact")``.
+
+    The sensors of ``layout``, if there is one, are placed or kept as arrange(1) says.
+    """
+    return Layout(_run("arrange", room, layout, {"quiet": True, **options}, Layout))
+
+
+def scan(room: Room, layout: Placed = None, **options: Option) -> List[Object]:
+    """What the sensors read: the lines of ``scan``, less the one that describes them.
+
+    Each has ``sensor``, ``t`` and ``pose``, a laser ``ranges`` (None: no return).
+    """
+    lines = _run("scan", room, layout, {"to": "jsonl", **options}).splitlines()
+    return [parse(line) for line in lines[1:]]
+
+
+def tool(name: str) -> str:
+    """Where a tool is."""
+    folder = os.environ.get("ISPACE_BIN")
+    found = shutil.which(name, path=folder)
+    if found is None:
+        where = folder or "PATH"
+        raise ToolError(f"{name} is not in {where} (the variable ISPACE_BIN names a folder)", 127)
+    return found
+
+
+def arguments_of(options: Mapping[str, Option]) -> List[str]:
+    """Options as words of a command line."""
+    words: List[str] = []
+    for key, value in options.items():
+        name = key.rstrip("_").replace("_", "-")
+        option = f"-{name}" if len(name) == 1 else f"--{name}"
+        if value is None:
+            continue
+        if isinstance(value, bool):
+            words.append(option if value else f"--no-{name}")
+        elif isinstance(value, (list, tuple)):
+            for item in value:
+                words += [option, _word(item)]
+        else:
+            words += [option, _word(value)]
+    return words
+
+
+@contextlib.contextmanager
+def operands(room: Room, layout: Placed) -> Iterator[List[str]]:
+    """Names of files for a room and a layout, for as long as the context lasts."""
+    names = [os.fspath(room)]
+    if not isinstance(layout, Layout):
+        yield names + ([] if layout is None else [os.fspath(layout)])
+        return
+    with tempfile.TemporaryDirectory(prefix="ispace.") as folder:
+        path = os.path.join(folder, "layout.3dm")
+        layout.save(path)
+        yield names + [path]
+
+
+def last_line(text: str) -> str:
+    """What a tool says it died of."""
+    lines = text.strip().splitlines()
+    return lines[-1] if lines else "no message"
+
+
+def _word(value: Any) -> str:
+    return str(os.fspath(value)) if isinstance(value, os.PathLike) else str(value)
+
+
+def _record(line: str) -> Record:
+    keyword, *words = _words(line)
+    pairs = (word.partition("=") for word in words)
+    return Record(keyword, {key: value.strip('"') for key, _, value in pairs})
+
+
+def _words(line: str) -> List[str]:
+    """Between blanks, but for those within quotes."""
+    words, quoted = [""], False
+    for character in line:
+        quoted ^= character == '"'
+        if character in " \t" and not quoted:
+            words.append("")
+        else:
+            words[-1] += character
+    return [word for word in words if word]
+
+
+def _run(
+    name: str,
+    room: Room,
+    layout: Placed,
+    options: Mapping[str, Option],
+    product: Callable[[str], Any] = str,
+) -> str:
+    with operands(room, layout) as names:
+        command = [tool(name), *names, *arguments_of(options)]
+        done = subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    out = done.stdout.decode()
+    message = last_line(done.stderr.decode(errors="replace"))
+    if done.returncode == 3 and out:
+        raise RequirementMissed(message, product(out))
+    if done.returncode != 0:
+        raise ToolError(message, done.returncode)
+    return out

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Robots and people."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Dict, Iterable, List, Optional, Tuple
+
+from ._connection import Address, Client
+from ._message import Fields, Message, Pose, text_of
+from .errors import Timeout
+from .readings import Scan
+
+
+@dataclass(frozen=True)
+class Status:
+    """What a robot or person does: its true pose in the room."""
+
+    time: float  #: simulated seconds
+    pose: Pose  #: m, degrees
+    speed: float  #: m/s, negative backward
+    rotspeed: float  #: degrees/s, counter-clockwise
+    accel: float  #: m/s²
+    rotaccel: float  #: degrees/s²
+    stall: bool  #: it has run into something, and stands until its next motion
+    fields: Fields  #: all that the server says
+
+
+@dataclass(frozen=True)
+class Odometry:
+    """What a robot's wheels tell it, from (0, 0, 0) where it started.
+
+    It differs from Status.pose where the run has noise.
+    """
+
+    time: float
+    pose: Pose  #: m, degrees
+    speed: float  #: m/s
+    rotspeed: float  #: degrees/s
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion with an end: what forward(), left(), path() and their kin began."""
+
+    id: int
+    length: float = 0  #: of a path, m
+
+
+@dataclass(frozen=True)
+class End:
+    """How a motion ended."""
+
+    id: int
+    done: bool  #: it got where it was to go
+    reason: str  #: otherwise: stall, replaced or stopped
+    time: float  #: simulated seconds
+
+
+class Mover(Client):
+    """A robot or person that this client drives.
+
+    Only one client can; others are refused (409). When it is closed, or its program dies, the robot brakes
+    and is free. A motion replaces the one that runs.
+    """
+
+    def __init__(self, role: str, address: Address, id: str, timeout: float, token: str) -> None:
+        super().__init__(f"{role} {id}", address, timeout, token)
+        self.id = id
+        self._ended: Dict[int, End] = {}
+
+    def forward(self, metres: float) -> Motion:
+        """So far, at the model's own speed; not negative."""
+        return self._begin(f"FORWARD {text_of(metres)}")
+
+    def backward(self, metres: float) -> Motion:
+        return self._begin(f"BACKWARD {text_of(metres)}")
+
+    def left(self, degrees: float) -> Motion:
+        """On the spot, counter-clockwise; not negative."""
+        return self._begin(f"LEFT {text_of(degrees)}")
+
+    def right(self, degrees: float) -> Motion:
+        return self._begin(f"RIGHT {text_of(degrees)}")
+
+    def path(
+        self, points: Iterable[Tuple[float, float]], speed: Optional[float] = None, loop: bool = False
+    ) -> Motion:
+        """Along straight lines from where it stands, through points in m.
+
+        ``speed`` in m/s; with ``loop`` from the last point to the first, again and again.
+        """
+        request = "PATH " + ";".join(f"{text_of(x)},{text_of(y)}" for x, y in points)
+        if speed is not None:
+            request += f" speed={text_of(speed)}"
+        return self._begin(request + (" loop=yes" if loop else ""))
+
+    def speed(self, metres_per_second: float) -> None:
+        """A speed to keep, negative backward; leaves the rotation as it is."""
+        self._ask(f"SPEED {text_of(metres_per_second)}")
+
+    def rotspeed(self, degrees_per_second: float) -> None:
+        """A rotation to keep, counter-clockwise; leaves the speed as it is."""
+        self._ask(f"ROTSPEED {text_of(degrees_per_second)}")
+
+    def stop(self) -> None:
+        """Brakes."""
+        self._ask("STOP")
+
+    def status(self) -> Status:
+        fields = self._ask("STATUS").fields
+        return Status(
+            fields.number("t"),
+            fields.pose(),
+            fields.number("speed"),
+            fields.number("rotspeed"),
+            fields.number("accel"),
+            fields.number("rotaccel"),
+            fields.flag("stall"),
+            fields,
+        )
+
+    def wait(self, motion: Motion, timeout: float = math.inf) -> End:
+        """Waits for the end of a motion, for seconds of wall time; raises Timeout."""
+        end = time.monotonic() + timeout
+        while motion.id not in self._ended:
+            message = self.connection.next_end(max(0, end - time.monotonic()))
+            if message is None:
+                raise Timeout(f"{self.id} is still moving (motion {motion.id})")
+            self._keep(message)
+        return self._ended.pop(motion.id)
+
+    def ended(self, motion: Motion) -> bool:
+        """Whether a motion has ended, as far as the server has said; wait() then returns at once."""
+        while (message := self.connection.next_end(0)) is not None:
+            self._keep(message)
+        return motion.id in self._ended
+
+    def _begin(self, request: str) -> Motion:
+        fields = self._ask(request).fields
+        return Motion(fields.integer("id"), fields.number("length") if "length" in fields else 0)
+
+    def _keep(self, message: Message) -> None:
+        fields = message.fields
+        end = End(
+            fields.integer("id"),
+            message.word(0) == "DONE",
+            fields.get("reason", ""),
+            fields.number("t"),
+        )
+        self._ended[end.id] = end
+        if len(self._ended) > 10000:  # nobody may ever ask for most of them
+            del self._ended[min(self._ended)]
+
+
+class Robot(Mover):
+    """A robot (role ROBOT)."""
+
+    def __init__(self, address: Address, id: str, timeout: float = 10, token: str = "") -> None:
+        super().__init__("ROBOT", address, id, timeout, token)
+
+    def __enter__(self) -> Robot:
+        return self
+
+    def sidespeed(self, metres_per_second: float) -> None:
+        """A speed to the left to keep, of robots with an omnidirectional drive."""
+        self._ask(f"SIDESPEED {text_of(metres_per_second)}")
+
+    def scan(self, laser: str) -> Scan:
+        """The newest scan of a laser that rides on it."""
+        return Scan.from_message(self._ask(f"SCAN {laser}"))
+
+    def odometry(self) -> Odometry:
+        fields = self._ask("ODOMETRY").fields
+        return Odometry(
+            fields.number("t"), fields.pose(), fields.number("speed"), fields.number("rotspeed")
+        )
+
+    def sonar(self) -> List[float]:
+        """Ranges of its ring of sonars, m; infinity: no echo."""
+        return self._ask("SONAR").fields.numbers("r")
+
+    def bumpers(self) -> List[bool]:
+        """Which of its bumpers are pressed."""
+        return [value != 0 for value in self._ask("BUMPER").fields.numbers("hit")]
+
+
+class Person(Mover):
+    """A person, driven as a robot is (role PERSON)."""
+
+    def __init__(self, address: Address, id: str, timeout: float = 10, token: str = "") -> None:
+        super().__init__("PERSON", address, id, timeout, token)
+
+    def __enter__(self) -> Person:
+        return self

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What sensors read.
+
+Arrays are numpy's where numpy is installed, else of the standard library's ``array``.
+"""
+
+from __future__ import annotations
+
+import array
+import math
+import os
+import sys
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterator, List, Protocol, Tuple, Type, TypeVar, Union
+
+from ._message import Fields, Message, Pose3
+from .errors import ProtocolError
+
+try:
+    import numpy
+except ImportError:
+    numpy = None  # type: ignore[assignment]
+
+R = TypeVar("R", bound="Reading")
+
+
+class Floats(Protocol):
+    """An array of float32: numpy's or the standard library's."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: Any) -> Any: ...
+    def __iter__(self) -> Iterator[Any]: ...
+
+
+def _floats(values: Union[bytes, List[float]]) -> Floats:
+    if numpy is not None:
+        listed = isinstance(values, list)
+        read: Floats = numpy.array(values, "<f4") if listed else numpy.frombuffer(values, "<f4")
+        return read
+    result = array.array("f")
+    if isinstance(values, list):
+        result.extend(values)
+        return result
+    result.frombytes(values)
+    if sys.byteorder == "big":
+        result.byteswap()
+    return result
+
+
+def _millimetres(data: bytes) -> Floats:
+    """Metres of unsigned 16-bit millimetres, of which 0 is no return."""
+    if numpy is not None:
+        values = numpy.frombuffer(data, dtype="<u2")
+        metres = values.astype(numpy.float32) / numpy.float32(1000)
+        metres[values == 0] = numpy.inf
+        return metres  # type: ignore[no-any-return]
+    pairs = (data[i] | data[i + 1] << 8 for i in range(0, len(data) - 1, 2))
+    return array.array("f", [mm / 1000 if mm else math.inf for mm in pairs])
+
+
+@dataclass
+class Reading:
+    """What every reading has; of a sensor of any kind, as the server sent it."""
+
+    sensor: str  #: id
+    time: float  #: simulated seconds
+    seq: int  #: number of the reading; a gap shows what was missed
+    fields: Fields = field(repr=False)
+    data: bytes = field(repr=False)  #: bytes of the frame, if it has any
+
+    @classmethod
+    def from_message(cls: Type[R], message: Message) -> R:
+        fields = message.fields
+        reading = cls(
+            message.word(1), fields.number("t"), fields.integer("seq"), fields, message.data
+        )
+        reading._check()
+        return reading
+
+    def _check(self) -> None:
+        """Raises ProtocolError if the content is not there."""
+
+    @property
+    def pose(self) -> Pose3:
+        """Where the sensor was in the room; of readings with ``pose=``."""
+        numbers = self.fields.numbers("pose")
+        if len(numbers) != 6:
+            raise ProtocolError(f"a pose of {len(numbers)} numbers")
+        return Pose3(*numbers)
+
+
+@dataclass
+class Scan(Reading):
+    """One scan of a laser."""
+
+    def _check(self) -> None:
+        fields = self.fields
+        self.angle_min = fields.number("angle_min")  #: degrees, counter-clockwise from straight ahead
+        self.angle_max = fields.number("angle_max")
+        self.step = fields.number("step")
+        #: m; infinity: no return
+        self.ranges: Floats = _floats(fields.numbers("r") if "r" in fields else self.data)
+        if len(self.ranges) != fields.integer("n"):
+            raise ProtocolError(f"a scan of {self.sensor} has {len(self.ranges)} ranges, says n={fields['n']}")
+
+    def angle(self, k: int) -> float:
+        """Direction of beam k, degrees."""
+        return self.angle_min + k * self.step
+
+
+@dataclass
+class Picture(Reading):
+    """What a camera took, or a ranger's depths as a picture."""
+
+    def _check(self) -> None:
+        self.format = self.fields["format"]  #: png, jpeg or rgb (8 bits each, rows from the top)
+        self.width = self.fields.integer("width")
+        self.height = self.fields.integer("height")
+
+    @property
+    def pixels(self) -> Any:
+        """Of the format rgb: an array (height, width, 3) of uint8, or bytes without numpy."""
+        if self.format != "rgb":
+            raise ProtocolError(f"only rgb has pixels, this is {self.format}: format('rgb') before")
+        if numpy is None:
+            return self.data
+        return numpy.frombuffer(self.data, dtype=numpy.uint8).reshape(self.height, self.width, 3)
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes a PNG or JPEG as it came."""
+        with open(path, "wb") as file:
+            file.write(self.data)
+
+
+@dataclass
+class Depths(Reading):
+    """Depths of a ranger (formats depth32 and depth16), rows from the top."""
+
+    def _check(self) -> None:
+        self.width = self.fields.integer("width")
+        self.height = self.fields.integer("height")
+        form = self.fields["format"]
+        if form not in ("depth32", "depth16"):
+            raise ProtocolError(f"depths come as depth32 or depth16, found {form}")
+        read: Callable[[bytes], Floats] = _floats if form == "depth32" else _millimetres
+        values = read(self.data)
+        if len(values) != self.width * self.height:
+            raise ProtocolError(f"a frame of {self.sensor} is incomplete")
+        #: m; infinity: no return. (height, width) with numpy, else one row after the other.
+        self.depths: Any = values
+        if numpy is not None:
+            self.depths = values.reshape(self.height, self.width)  # type: ignore[attr-defined]
+
+    def at(self, column: int, row: int) -> float:
+        if numpy is not None:
+            return float(self.depths[row, column])
+        return float(self.depths[row * self.width + column])
+
+
+@dataclass
+class Cloud(Reading):
+    """Points that a ranger sees (format cloud), in its own frame: x ahead, y left, z up; m."""
+
+    def _check(self) -> None:
+        values = _floats(self.data)
+        #: An array (n, 3) with numpy, else a list of triples.
+        self.points: Any = None
+        if numpy is not None:
+            self.points = values.reshape(-1, 3)  # type: ignore[attr-defined]
+        else:
+            self.points = [tuple(values[i : i + 3]) for i in range(0, len(values) - 2, 3)]
+
+
+@dataclass
+class Burst(Reading):
+    """What an ultrasonic receiver heard of each tag."""
+
+    @property
+    def times_of_flight(self) -> List[Tuple[str, float]]:
+        """Tags and seconds; infinity: not heard."""
+        return list(zip(self.fields.list("tags"), self.fields.numbers("tof")))
+
+
+@dataclass
+class Fix(Reading):
+    """Where the receivers place a tag."""
+
+    def _check(self) -> None:
+        self.heard = self.fields.integer("heard")  #: receivers that heard it
+        self.solved = self.fields["x"] != "-"  #: False: too few, the rest is infinity
+        self.x, self.y, self.z, self.residual = map(self.fields.number, ("x", "y", "z", "residual"))
+
+
+@dataclass
+class Load(Reading):
+    """Who stands on a mat."""
+
+    @property
+    def on(self) -> List[str]:
+        """ids"""
+        names = self.fields.get("on", "-")
+        return [] if names in ("", "-") else names.split(",")
+
+
+@dataclass
+class Passages(Reading):
+    """Who has passed a gate, since the run began."""
+
+    def _check(self) -> None:
+        self.in_ = self.fields.integer("in")
+        self.out = self.fields.integer("out")
+        last = self.fields["last"]
+        self.last = "" if last == "-" else last  #: id of the last one; empty: nobody yet
+        self.way = self.fields.get("way", "")  #: its way, in or out

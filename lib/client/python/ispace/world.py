@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The simulated world and its clock."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Union
+
+from ._connection import Address, Client
+from ._message import Fields, Pose, number_of, split
+from .errors import ProtocolError
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened in the world."""
+
+    kind: str  #: collision, stall, enter, leave, mat, gate, seen, lost, mark, change
+    time: float  #: simulated seconds
+    fields: Fields  #: id=, into=, zone= and what else belongs to its kind
+
+
+class World(Client):
+    """The simulated world and its clock (role WORLD)."""
+
+    def __init__(self, address: Address, timeout: float = 10, token: str = "") -> None:
+        super().__init__("WORLD", address, timeout, token)
+        self.dt = self.info.number("dt")  #: length of a step, s
+        self.clock = self.info["clock"]  #: real, fast or step
+        #: Simulated seconds in a second of wall time; 1 unless the clock is real.
+        self.rate = self.info.number("rate") if "rate" in self.info else 1.0
+
+    def __enter__(self) -> World:
+        return self
+
+    def list(self) -> Dict[str, List[str]]:
+        """The ids of what is there, by what LIST calls it: robots, lasers, people, sensors …"""
+        return {key: split(value, ",") for key, value in self._ask("LIST").fields.items()}
+
+    def time(self) -> float:
+        """Simulated seconds since the run began."""
+        return self._ask("TIME").fields.number("t")
+
+    def steps(self) -> int:
+        return self._ask("TIME").fields.integer("steps")
+
+    def poses(self) -> Dict[str, Pose]:
+        """Where the robots and people are, m and degrees."""
+        poses = {}
+        for item in split(self._ask("POSES").fields["poses"], ";"):
+            id, *numbers = item.split(",")
+            if len(numbers) != 3:
+                raise ProtocolError(f"`{item}` is no pose")
+            poses[id] = Pose(*map(number_of, numbers))
+        return poses
+
+    def pause(self) -> None:
+        """Stops the clock, for all clients."""
+        self._ask("PAUSE")
+
+    def resume(self) -> None:
+        self._ask("RESUME")
+
+    def step(self, steps: int = 1, timeout: float = math.inf) -> int:
+        """Advances a paused world, or one with the clock ``step``, and waits until it has.
+
+        Returns how many steps were taken: fewer if somebody else pauses or the run ends.
+        """
+        return self._ask(f"STEP {steps}", timeout).fields.integer("n")
+
+    def advance(self, seconds: float, timeout: float = math.inf) -> None:
+        """Steps of so many simulated seconds in all, rounded to whole ones."""
+        steps = round(seconds / self.dt)
+        if steps > 0:
+            self.step(steps, timeout)
+
+    def shutdown(self) -> None:
+        """Ends the run."""
+        self._ask("SHUTDOWN")
+
+    def reset(self) -> None:
+        """Robots and people go back to where they started; time goes on."""
+        self._ask("RESET")
+
+    def set(self, id: str, key: str, value: str) -> None:
+        """Changes a key of a record: ``set("r1", "speed", "0.3")``."""
+        self._ask(f"SET {id}.{key}={value}")
+
+    def add(self, record: str) -> None:
+        """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``."""
+        self._ask(f"ADD {record}")
+
+    def remove(self, id: str) -> None:
+        self._ask(f"DELETE {id}")
+
+    def load(
+        self,
+        environment: Union[str, os.PathLike[str]],
+        layout: Union[None, str, os.PathLike[str]] = None,
+        timeout: float = 600,
+    ) -> None:
+        """Another room. Names of files as the server sees them; without ``layout`` there is none."""
+        names = [os.fspath(environment)] + ([] if layout is None else [os.fspath(layout)])
+        self._ask("LOAD " + " ".join(names), timeout)
+
+    def mark(self, text: str) -> None:
+        """Writes a line into the records and to all who follow events."""
+        self._ask(f"MARK {text}")
+
+    def follow(self, *kinds: str) -> None:
+        """Follow events of these kinds from now on, or of all."""
+        self._ask("EVENTS " + ",".join(kinds) if kinds else "EVENTS")
+
+    def unfollow(self) -> None:
+        self._ask("EVENTS off")
+
+    def next_event(self, timeout: float = math.inf) -> Optional[Event]:
+        """The next event; None if none came within seconds of wall time."""
+        message = self.connection.next_event(timeout)
+        if message is None:
+            return None
+        return Event(message.word(1), message.fields.number("t"), message.fields)
+
+    def events(self, timeout: float = math.inf) -> Iterator[Event]:
+        """Events as they come, until none comes for seconds of wall time."""
+        while (event := self.next_event(timeout)) is not None:
+            yield event

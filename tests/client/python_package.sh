@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The Python module as others get it: installed by CMake, and as a wheel, which is built without any
+# network; and its types.
+. "$(dirname "$0")/../pipelines/common.sh"
+
+python=/usr/bin/python3
+[ -x "$python" ] || python=python3
+unset PYTHONPATH
+
+# check FOLDER: the module is there, with its types, and drives a robot.
+check() {
+    cat >use.py <<'END'
+import sys
+from pathlib import Path
+
+import ispace
+
+assert str(Path(ispace.__file__).parent.parent) == sys.argv[1], ispace.__file__
+assert (Path(ispace.__file__).parent / "py.typed").exists()
+with ispace.simrun(sys.argv[2] + "/square.env", sys.argv[2] + "/session.3dm", clock="step") as run:
+    with run.robot("r1") as robot, run.world() as world:
+        motion = robot.forward(0.25)
+        world.advance(5)
+        assert robot.wait(motion).done
+END
+    PYTHONPATH=$1 PYTHONDONTWRITEBYTECODE=1 "$python" -W error use.py "$1" "$data" || fail "not usable from $1"
+}
+
+cmake --install "$binary_dir" --prefix "$scratch/prefix" >log
+folder=$(find prefix -type d -name ispace -path '*dist-packages*')
+[ -n "$folder" ] || fail "not installed"
+check "$scratch/${folder%/ispace}"
+if find prefix -name '*.pyc' | grep .; then fail "compiled files are installed"; fi
+
+if command -v mypy >/dev/null; then
+    cp -r "$source_dir/lib/client/python" typed
+    (cd typed && mypy --no-incremental --cache-dir=/dev/null ispace) >types || fail "$(cat types)"
+else
+    echo "no mypy here: types are not checked"
+fi
+
+"$python" -c 'import pip, setuptools, wheel' 2>/dev/null || { echo "no pip, setuptools and wheel here: no wheel is built"; exit 0; }
+cp -r "$source_dir/lib/client/python" source
+"$python" -m pip wheel --quiet --no-index --no-deps --no-build-isolation -w wheels ./source 2>wheel.err ||
+    fail "no wheel: $(cat wheel.err)"
+version=$(sed -n 's/^project(ispace VERSION \([^ ]*\).*/\1/p' "$source_dir/CMakeLists.txt")
+[ "$(ls wheels)" = "ispace-$version-py3-none-any.whl" ] || fail "$(ls wheels)"
+"$python" -m zipfile -e wheels/*.whl unpacked
+check "$scratch/unpacked"

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Python module against running servers and tools, which ctest puts into PATH."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import ispace
+from ispace import _message, filters, readings
+
+SOURCE = Path(os.environ["ISPACE_SOURCE_DIR"])
+DATA = SOURCE / "tests" / "data"
+SCENES = SOURCE / "share" / "scenes"
+
+
+class Lines(unittest.TestCase):
+    def test_numbers(self):
+        self.assertEqual(_message.number_of("12.300"), 12.3)
+        self.assertEqual(_message.number_of("-"), math.inf)
+        with self.assertRaises(ispace.ProtocolError):
+            _message.number_of("1,5")
+        self.assertEqual([_message.text_of(v) for v in (0.3, -90, 1e-9, 2.0)], ["0.3", "-90", "1e-09", "2"])
+        with self.assertRaises(ispace.Error):
+            _message.text_of(math.nan)
+
+    def test_messages(self):
+        message = _message.parse_message("SCAN l1 t=12.300 seq=123 r=1.5,-,2")
+        self.assertEqual(message.words, ["SCAN", "l1"])
+        self.assertEqual(message.fields.numbers("r"), [1.5, math.inf, 2])
+        with self.assertRaisesRegex(ispace.ProtocolError, "has no `n`"):
+            message.fields.integer("n")
+        mark = _message.parse_message("EVENT mark t=1.500 text=the door = open")
+        self.assertEqual(mark.fields["text"], "the door = open")
+
+    def test_readings(self):
+        def read(kind, line, data=b""):
+            message = _message.parse_message(line)
+            message.data = message.data or data
+            return kind.from_message(message)
+
+        head = "SCAN k t=0 seq=3 pose=1,2,3,90,-10,0 width=2 height=1 "
+        mm = read(readings.Depths, head + "format=depth16 base64=3AUAAA==")
+        m = read(readings.Depths, head + "format=depth32 bytes=8", b"\0\0\xc0\x3f\0\0\x80\x7f")
+        for frame in (mm, m):
+            self.assertEqual((frame.at(0, 0), frame.at(1, 0)), (1.5, math.inf))
+        self.assertEqual(m.pose.heading, 90)
+        with self.assertRaises(ispace.ProtocolError):
+            read(readings.Depths, head + "format=depth16", b"ab")
+        picture = read(readings.Picture, head + "format=rgb bytes=6", b"abcdef")
+        if readings.numpy is not None:
+            self.assertEqual(picture.pixels.shape, (1, 2, 3))
+        cloud = read(readings.Cloud, "SCAN k t=0 seq=0 format=cloud", b"\0\0\x80\x3f" * 6)
+        self.assertEqual([tuple(point) for point in cloud.points], [(1, 1, 1)] * 2)
+        burst = read(readings.Burst, "SCAN u1 t=1 seq=2 tags=t1,t2 tof=0.012345,-")
+        self.assertEqual(burst.times_of_flight, [("t1", 0.012345), ("t2", math.inf)])
+        fix = read(readings.Fix, "SCAN t1 t=1 seq=2 heard=2 x=- y=- z=- residual=-")
+        self.assertFalse(fix.solved)
+        self.assertEqual(read(readings.Load, "SCAN m1 t=1 seq=2 n=2 on=h1,r1").on, ["h1", "r1"])
+        gate = read(readings.Passages, "SCAN g1 t=1 seq=2 in=3 out=2 last=- way=-")
+        self.assertEqual((gate.in_, gate.out, gate.last), (3, 2, ""))
+
+    def test_addresses(self):
+        from ispace._connection import host_and_port
+
+        self.assertEqual(host_and_port("[::1]:7001"), ("::1", 7001))
+        self.assertEqual(host_and_port(("localhost", 7001)), ("localhost", 7001))
+        for text in ("", "localhost", ":7001", "a:", "a:0", "a:65536", "a:7x"):
+            with self.assertRaises(ispace.Error, msg=text):
+                host_and_port(text)
+
+
+class Roles(unittest.TestCase):
+    """square.env, 4 m by 4 m, with session.3dm, which waits for steps of 5 ms."""
+
+    def setUp(self):
+        self.run_ = ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step", quiet=True)
+        self.addCleanup(self.run_.close)
+        self.world = self.run_.world()
+        self.addCleanup(self.world.close)
+
+    def test_robot(self):
+        with self.run_.robot("r1") as robot:
+            self.assertEqual(robot.info["model"], "pioneer-2dx")
+            ahead = robot.forward(0.5)
+            self.assertFalse(robot.ended(ahead))
+            with self.assertRaises(ispace.Timeout):
+                robot.wait(ahead, 0.01)
+            self.world.advance(5)
+            self.assertTrue(robot.ended(ahead))
+            self.assertTrue(robot.wait(ahead).done)
+            self.assertAlmostEqual(robot.status().pose.x, -0.5, delta=1e-3)
+            turn, other = robot.left(90), robot.right(45)
+            self.world.advance(5)
+            self.assertEqual(robot.wait(turn).reason, "replaced")
+            self.assertTrue(robot.wait(other).done)
+            robot.speed(0.25)
+            robot.rotspeed(-20)
+            self.world.advance(2)
+            status = robot.status()
+            self.assertEqual((status.speed, status.rotspeed, status.stall), (0.25, -20, False))
+            robot.stop()
+            self.world.advance(2)
+            self.assertEqual(robot.status().speed, 0)
+            self.assertEqual(len(robot.scan("l2").ranges), 3)
+
+    def test_refusals(self):
+        with self.run_.robot("r1") as robot:
+            with self.assertRaisesRegex(ispace.Refused, "held by another client") as caught:
+                self.run_.robot("r1")
+            self.assertEqual(caught.exception.code, 409)
+            with self.assertRaises(ispace.Refused):
+                robot.speed(50)
+            with self.assertRaises(ispace.Error):
+                robot.connection.ask("STATUS\nSTATUS")
+            self.assertEqual(robot.status().time, 0)
+        # Free as soon as close() returns.
+        self.run_.robot("r1").close()
+        with self.assertRaises(ispace.ConnectionFailed):
+            robot.status()
+
+    def test_laser(self):
+        with self.run_.laser("l1") as laser:
+            self.assertEqual(laser.rate, 10)
+            binary = laser.scan()
+            laser.binary(False)
+            text = laser.scan()
+            for a, b in zip(binary.ranges, text.ranges):
+                self.assertAlmostEqual(a, b, delta=5.1e-4)
+            self.assertEqual(text.angle(1), 0)
+            for binary in (True, False):
+                laser.binary(binary)
+                before = laser.scan().seq
+                laser.stream(every=2)
+                for i in range(3):
+                    self.world.advance(0.2)
+                    self.assertEqual(laser.next().seq, before + 2 * i + 2)
+                laser.stop()
+                with self.assertRaises(ispace.Timeout):
+                    laser.next(0.02)
+
+    def test_world(self):
+        self.assertEqual((self.world.clock, self.world.dt, self.world.rate), ("step", 0.005, 1))
+        self.assertEqual(self.world.list()["robots"], ["r1", "r2"])
+        self.assertEqual(self.world.step(300), 300)
+        self.assertEqual((self.world.time(), self.world.steps()), (1.5, 300))
+        self.assertEqual(self.world.poses()["r2"], (1, 1, 180))
+        with self.assertRaises(ispace.Timeout):
+            self.world.step(100000, timeout=0.001)
+        # The answer to STEP comes first, and is dropped.
+        self.assertEqual(self.world._ask("TIME", 60).fields.integer("steps"), 100300)
+
+    def test_shutdown(self):
+        self.world.shutdown()
+        self.assertEqual(self.run_.wait(60), 0)
+        with self.assertRaises(ispace.ConnectionFailed):
+            for _ in range(10):
+                self.world.time()
+        with self.assertRaisesRegex(ispace.ConnectionFailed, "is simrun running"):
+            ispace.World(self.run_.address)
+
+
+class Server(unittest.TestCase):
+    def test_stops_only_its_own(self):
+        with ispace.simrun(DATA / "square.env", DATA / "session.3dm") as one:
+            with ispace.simrun(DATA / "square.env", DATA / "session.3dm") as two:
+                self.assertNotEqual(one.address, two.address)
+            self.assertEqual(two.status, 0)
+            with one.world() as world:
+                self.assertGreaterEqual(world.time(), 0)
+        self.assertEqual(one.status, 0)
+
+    def test_a_loop_over_readings_ends_the_stream(self):
+        with ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="real:20", q=True) as run:
+            with run.laser("l1") as laser:
+                seen = []
+                for scan in laser.readings(every=2):
+                    seen.append(scan.seq)
+                    if len(seen) == 3:
+                        break
+                self.assertEqual([seq % 2 for seq in seen], [0, 0, 0])
+                with self.assertRaises(ispace.Timeout):
+                    laser.next(0.1)
+
+    def test_ends_with_an_exception(self):
+        with self.assertRaises(KeyError):
+            with ispace.simrun(DATA / "square.env") as run:
+                raise KeyError
+        self.assertEqual(run.status, 0)
+
+    def test_says_why_it_cannot_begin(self):
+        with self.assertRaisesRegex(ispace.ToolError, "missing.env.*No such file") as caught:
+            ispace.simrun("missing.env")
+        self.assertEqual(caught.exception.status, 1)
+        with self.assertRaises(ispace.ToolError) as caught:
+            ispace.simrun(DATA / "square.env", clock="sidereal")
+        self.assertEqual(caught.exception.status, 2)
+
+    def test_ends_by_itself(self):
+        run = ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="fast", until=2)
+        self.assertEqual(run.wait(60), 0)
+
+
+class Filters(unittest.TestCase):
+    def test_arrange_and_coverage(self):
+        layout = ispace.arrange(SCENES / "l-room.env", sensor="urg-04lx:2", strategy="grid", X=4, Y=4)
+        self.assertEqual([record.keyword for record in layout.records if "id" in record.keys], ["laser"] * 2)
+        report = ispace.coverage(SCENES / "l-room.env", layout)
+        share = float(layout.result["coverage"].rstrip("%")) / 100
+        self.assertAlmostEqual(report.coverage.grid, share, delta=0.02)
+        self.assertEqual([sensor.id for sensor in report.sensors], ["laser1", "laser2"])
+        with self.assertRaises(AttributeError):
+            report.nothing
+        with self.assertRaisesRegex(ispace.RequirementMissed, "below the required 99%") as caught:
+            ispace.coverage(SCENES / "l-room.env", layout, require=["10%", "99%"])
+        self.assertEqual(caught.exception.product.coverage, report.coverage)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "two.3dm"
+            layout.save(path)
+            self.assertEqual(ispace.coverage(SCENES / "l-room.env", path).coverage, report.coverage)
+
+    def test_info(self):
+        report = ispace.info(SCENES / "l-room.env")
+        self.assertEqual((report.indoor_area, report.counts.fence), (28, 1))
+        with self.assertRaisesRegex(ispace.ToolError, "missing.env"):
+            ispace.info("missing.env")
+
+    def test_scan(self):
+        scans = ispace.scan(SCENES / "ispace.env", SCENES / "ispace.3dm", select="l2", frames=2)
+        self.assertEqual([(scan.sensor, scan.frame) for scan in scans], [("l2", 0), ("l2", 1)])
+        self.assertEqual(len(scans[0].ranges), 181)
+
+    def test_options(self):
+        self.assertEqual(
+            filters.arguments_of({"grid_of": "beams", "progress": False, "o": "x", "json": True, "no": None, "set": [1, "b"]}),
+            ["--grid-of", "beams", "--no-progress", "-o", "x", "--json", "--set", "1", "--set", "b"],
+        )
+
+    def test_records_with_quotes(self):
+        layout = ispace.Layout('#3dm 1\nlaser id=l1 name="in the corner" at=1,2\n')
+        self.assertEqual(layout.records[0].keys, {"id": "l1", "name": "in the corner", "at": "1,2"})
+
+    def test_missing_tool(self):
+        saved = os.environ.get("ISPACE_BIN")
+        os.environ["ISPACE_BIN"] = "/nonexistent"
+        try:
+            with self.assertRaisesRegex(ispace.ToolError, "coverage is not in /nonexistent"):
+                ispace.coverage("room.env")
+        finally:
+            del os.environ["ISPACE_BIN"]
+            if saved is not None:
+                os.environ["ISPACE_BIN"] = saved
+
+
+class Package(unittest.TestCase):
+    def test_version_is_that_of_the_project(self):
+        text = (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
+        self.assertIn(f"project(ispace VERSION {ispace.__version__} ", text)
+
+    def test_works_without_numpy(self):
+        code = "import sys; sys.modules['numpy'] = None; import unittest; sys.argv[1:] = ['Lines', 'Roles.test_laser'];"
+        code += f"sys.path.insert(0, {str(Path(__file__).parent)!r}); unittest.main('python_test')"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_everything_public_is_documented_and_exported(self):
+        for name in ispace.__all__:
+            thing = getattr(ispace, name)
+            if isinstance(thing, type) or callable(thing):
+                self.assertTrue(getattr(thing, "__doc__", None) or name == "Address", name)
+
+
+if __name__ == "__main__":
+    unittest.main()
