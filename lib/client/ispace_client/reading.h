@@ -130,7 +130,8 @@ struct Depths : Reading {
     }
 };
 
-/// Points that a ranger sees (format cloud), in its own frame: x ahead, y left, z up; metres.
+/// A point for each pixel of a ranger (format cloud), in its own frame: x ahead, y left, z up;
+/// metres, NaN where there is none.
 struct Cloud : Reading {
     struct Point3 {
         float x = 0, y = 0, z = 0;

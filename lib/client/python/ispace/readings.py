@@ -159,7 +159,7 @@ class Depths(Reading):
 
 @dataclass
 class Cloud(Reading):
-    """Points that a ranger sees (format cloud), in its own frame: x ahead, y left, z up; m."""
+    """A point a pixel of a ranger (format cloud), in its own frame: x ahead, y left, z up; m; NaN: none."""
 
     def _check(self) -> None:
         values = _floats(self.data)
