@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <span>
@@ -62,6 +63,11 @@ Photo Photographer::take(const Sensor& sensor, const Pose3& pose, int frame) con
     photo.rgb = toSrgb8(picture, options.exposure);
     photo.labels = std::move(picture.labels);
     photo.depths = std::move(picture.depths);
+    // As coverage counts: in multiples of the lines of sight, both are depths or both distances.
+    const auto& camera = sensor.as<Camera>();
+    for (float& depth : photo.depths)
+        if (!(depth >= camera.min_range && depth <= camera.max_range))
+            depth = std::numeric_limits<float>::infinity();
     return photo;
 }
 

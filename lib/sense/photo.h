@@ -19,7 +19,7 @@ struct Photo {
     int frame = 0;
     Pose3 pose;
     std::vector<std::uint8_t> rgb;  ///< sRGB: red, green, blue of each pixel
-    /// As in Rendering; empty if not asked for.
+    /// As in Rendering; empty if not asked for. Depths out of the camera's range are +infinity.
     std::vector<std::uint16_t> labels;
     std::vector<float> depths;
 };

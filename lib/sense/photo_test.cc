@@ -57,6 +57,22 @@ TEST(Photo, CarriersAreNotInTheirPictures) {
     EXPECT_TRUE(seen("camera at=0,0,1" + down + "laser id=l at=0.2,0,0.5\n", "l"));
 }
 
+TEST(Photo, DepthsAreWithinTheRange) {
+    PhotoOptions options;
+    options.depths = true;
+    const Scene near = testing::scene(kRoom, kEye + " range=0.5,4.2\n");
+    const Scene far = testing::scene(kRoom, kEye + "\n");
+    const std::vector<float> cut = photoOf(near, options).depths,
+                             all = photoOf(far, options).depths;
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(cut[i], all[i] <= 4.2F ? all[i] : std::numeric_limits<float>::infinity());
+        lost += cut[i] != all[i] ? 1 : 0;
+    }
+    EXPECT_GT(lost, 0U);
+    EXPECT_LT(lost, all.size());
+}
+
 TEST(Photo, LabelsHaveATable) {
     const Scene scene = testing::scene(kRoom, kEye);
     PhotoOptions options;

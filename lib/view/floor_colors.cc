@@ -57,14 +57,30 @@ FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits(
 }
 
 void FloorColors::add(const std::vector<Polygon>& seen, const Color& color) {
-    Picture floor(columns_, rows_);
-    floor.pushView({scale_, {limits_.low.x, limits_.high.y}, {0, 0}});
+    Box2 box;
+    for (const Polygon& part : seen)
+        for (const Point2 p : part) box.add(p);
+    if (box.empty()) return;
+    // Only the pixels about it: there may be thousands of sensors.
+    const auto pixel = [this](double metres, int most) {
+        return std::clamp(static_cast<int>(std::floor(scale_ * metres)), 0, most);
+    };
+    const int left = pixel(box.low.x - limits_.low.x, columns_ - 1);
+    const int right = pixel(box.high.x - limits_.low.x, columns_ - 1) + 1;
+    const int top = pixel(limits_.high.y - box.high.y, rows_ - 1);
+    const int bottom = pixel(limits_.high.y - box.low.y, rows_ - 1) + 1;
+    Picture floor(right - left, bottom - top);
+    floor.pushView(
+        {scale_, {limits_.low.x + left / scale_, limits_.high.y - top / scale_}, {0, 0}});
     floor.area(seen, {Color{}});
     floor.pop();
     const Image image = decodePng(floor.write(PictureFormat::Png));
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto share = 1 - static_cast<float>(image.pixels[i] & 0xFFU) / 255;
-        Sum& sum = sums_[i];
+        const auto wide = static_cast<std::size_t>(image.width);
+        Sum& sum =
+            sums_[(static_cast<std::size_t>(top) + i / wide) * static_cast<std::size_t>(columns_) +
+                  static_cast<std::size_t>(left) + i % wide];
         sum.color[0] += share * static_cast<float>(color.red);
         sum.color[1] += share * static_cast<float>(color.green);
         sum.color[2] += share * static_cast<float>(color.blue);
