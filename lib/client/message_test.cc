@@ -117,10 +117,13 @@ TEST(ClientReading, EveryKindIsRead) {
     EXPECT_EQ(Load::from(parseMessage("SCAN m1 t=1 seq=2 n=2 on=h1,r1")).on.size(), 2U);
     EXPECT_TRUE(Load::from(parseMessage("SCAN m1 t=1 seq=2 n=0 on=")).on.empty());
     const Passages passages =
-        Passages::from(parseMessage("SCAN g1 t=1 seq=2 in=3 out=2 last=h1 way=in"));
+        Passages::from(parseMessage("SCAN g1 t=1 seq=2 in=3 out=2 last=h1 way=in broken=1"));
     EXPECT_EQ(passages.in, 3);
     EXPECT_EQ(passages.way, "in");
-    EXPECT_EQ(Passages::from(parseMessage("SCAN g1 t=1 seq=2 in=0 out=0 last=-")).last, "");
+    EXPECT_TRUE(passages.broken);
+    EXPECT_EQ(
+        Passages::from(parseMessage("SCAN g1 t=1 seq=2 in=0 out=0 last=- way=- broken=0")).last,
+        "");
 }
 
 }  // namespace

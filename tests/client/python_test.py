@@ -60,7 +60,7 @@ class Lines(unittest.TestCase):
         fix = read(readings.Fix, "SCAN t1 t=1 seq=2 heard=2 x=- y=- z=- residual=-")
         self.assertFalse(fix.solved)
         self.assertEqual(read(readings.Load, "SCAN m1 t=1 seq=2 n=2 on=h1,r1").on, ["h1", "r1"])
-        gate = read(readings.Passages, "SCAN g1 t=1 seq=2 in=3 out=2 last=- way=-")
+        gate = read(readings.Passages, "SCAN g1 t=1 seq=2 in=3 out=2 last=- way=- broken=0")
         self.assertEqual((gate.in_, gate.out, gate.last), (3, 2, ""))
 
     def test_addresses(self):
@@ -161,6 +161,64 @@ class Roles(unittest.TestCase):
                 self.world.time()
         with self.assertRaisesRegex(ispace.ConnectionFailed, "is simrun running"):
             ispace.World(self.run_.address)
+
+
+class Sensors(unittest.TestCase):
+    """A sensor of each kind in square.env; r1 drives past them, h1 stands."""
+
+    def setUp(self):
+        self.run_ = ispace.simrun(DATA / "square.env", DATA / "sensing.3dm", clock="step", quiet=True)
+        self.addCleanup(self.run_.close)
+
+    def test_every_kind(self):
+        at = self.run_.address
+        with self.run_.world() as world, self.run_.robot("r1") as robot:
+            with self.run_.sensor("l1") as sensor:
+                self.assertEqual(sensor.info["kind"], "laser")
+                self.assertEqual(sensor.scan().fields["n"], "3")
+            with ispace.Ranger(at, "d1") as ranger, ispace.CloudSensor(at, "d1") as cloud:
+                near = [ranger.scan().at(column, 1) for column in range(4)]
+                self.assertTrue(all(0.5 < distance < 5 for distance in near), near)
+                self.assertEqual(len(cloud.scan().points), 12)
+                ranger.format("depth16")
+                self.assertAlmostEqual(ranger.scan().at(1, 1), near[1], delta=1e-3)
+                ranger.binary(False)
+                self.assertAlmostEqual(ranger.scan().at(1, 1), near[1], delta=1e-3)
+            with ispace.Ultrasound(at, "u1") as receiver, ispace.Tag(at, "t1") as tag:
+                self.assertEqual([name for name, _ in receiver.scan().times_of_flight], ["t1", "t2"])
+                fix = tag.scan()
+                self.assertEqual((fix.heard, fix.solved), (4, True))
+                self.assertAlmostEqual(fix.x, -1, delta=0.01)
+            with ispace.Mat(at, "m1") as mat, ispace.Gate(at, "g1") as gate:
+                self.assertEqual(mat.scan().on, [])
+                self.assertEqual((gate.scan().last, gate.scan().way), ("", ""))
+                robot.forward(1.5)
+                world.advance(4)
+                self.assertEqual(mat.scan().on, ["r1"])
+                passed = gate.scan()
+                self.assertEqual((passed.in_, passed.out, passed.last, passed.way), (1, 0, "r1", "in"))
+                self.assertTrue(passed.broken)
+            self.assertEqual(robot.reading("d2", ispace.Depths).width, 3)
+            with self.assertRaisesRegex(ispace.Refused, "not on this robot"):
+                robot.reading("c1", ispace.Picture)
+
+    def test_camera_streams(self):
+        with self.run_.world() as world, self.run_.camera("c1") as camera:
+            first = camera.scan()
+            self.assertEqual((first.format, first.width, first.height), ("png", 8, 6))
+            self.assertEqual(first.pose[3:5], (45, -20))
+            camera.format("rgb")
+            camera.stream()
+            for i in range(1, 4):
+                world.advance(0.2)
+                picture = camera.next()
+                self.assertEqual((picture.seq, len(picture.data)), (i, 8 * 6 * 3))
+            camera.stop()
+            with tempfile.TemporaryDirectory() as folder:
+                first.save(Path(folder) / "first.png")
+                self.assertEqual((Path(folder) / "first.png").read_bytes(), first.data)
+            if readings.numpy is not None:
+                self.assertEqual(picture.pixels.shape, (6, 8, 3))
 
 
 class Server(unittest.TestCase):

@@ -97,7 +97,8 @@ struct Picture : Reading {
     }
 };
 
-/// Depths of a ranger (formats depth32 and depth16), rows from the top.
+/// Depths of a ranger (formats depth32 and depth16), rows from the top: along its axis, or, if its
+/// projection is spherical, distances.
 struct Depths : Reading {
     int width = 0, height = 0;
     std::vector<float> depths;  ///< m; infinity: no return
@@ -193,8 +194,7 @@ struct Load : Reading {
     static Load from(const Message& message) {
         Load load;
         static_cast<Reading&>(load) = Reading::from(message);
-        const std::string on = load.fields.text("on", "-");
-        if (on != "-") load.on = split(on, ',');
+        load.on = load.fields.list("on");
         return load;
     }
 };
@@ -202,8 +202,9 @@ struct Load : Reading {
 /// Who has passed a gate, since the run began.
 struct Passages : Reading {
     long in = 0, out = 0;
-    std::string last;  ///< id of the last one; empty: nobody yet
-    std::string way;   ///< its way, in or out
+    std::string last;     ///< id of the last one; empty: nobody yet
+    std::string way;      ///< its way, in or out
+    bool broken = false;  ///< something stands in the beam now
 
     static Passages from(const Message& message) {
         Passages passages;
@@ -212,7 +213,9 @@ struct Passages : Reading {
         passages.out = passages.fields.integer("out");
         passages.last = passages.fields.text("last");
         if (passages.last == "-") passages.last.clear();
-        passages.way = passages.fields.text("way", "");
+        passages.way = passages.fields.text("way");
+        if (passages.way == "-") passages.way.clear();
+        passages.broken = passages.fields.flag("broken");
         return passages;
     }
 };

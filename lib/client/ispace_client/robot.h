@@ -21,7 +21,13 @@ class Robot : public Mover {
     void sidespeed(double metres_per_second) { ask("SIDESPEED " + textOf(metres_per_second)); }
 
     /// The newest scan of a laser that rides on it.
-    Scan scan(const std::string& laser) { return Scan::from(ask("SCAN " + laser)); }
+    Scan scan(const std::string& laser) { return reading<Scan>(laser); }
+    /// The newest reading of a sensor that rides on it; T is Picture, Depths … or Reading of any
+    /// kind.
+    template <class T>
+    T reading(const std::string& sensor) {
+        return T::from(ask("SCAN " + sensor));
+    }
 
     Odometry odometry() {
         const Fields fields = ask("ODOMETRY").fields;

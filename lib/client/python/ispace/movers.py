@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Dict, Iterable, List, Optional, Tuple
+from typing import Dict, Iterable, List, Optional, Tuple, Type
 
 from ._connection import Address, Client
 from ._message import Fields, Message, Pose, text_of
 from .errors import Timeout
-from .readings import Scan
+from .readings import R, Scan
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,11 @@ class Robot(Mover):
 
     def scan(self, laser: str) -> Scan:
         """The newest scan of a laser that rides on it."""
-        return Scan.from_message(self._ask(f"SCAN {laser}"))
+        return self.reading(laser, Scan)
+
+    def reading(self, sensor: str, kind: Type[R]) -> R:
+        """The newest reading of a sensor that rides on it: ``robot.reading("c2", ispace.Picture)``."""
+        return kind.from_message(self._ask(f"SCAN {sensor}"))
 
     def odometry(self) -> Odometry:
         fields = self._ask("ODOMETRY").fields

@@ -134,7 +134,10 @@ class Picture(Reading):
 
 @dataclass
 class Depths(Reading):
-    """Depths of a ranger (formats depth32 and depth16), rows from the top."""
+    """Depths of a ranger (formats depth32 and depth16), rows from the top.
+
+    They are along its axis, or, if its projection is spherical, distances.
+    """
 
     def _check(self) -> None:
         self.width = self.fields.integer("width")
@@ -198,8 +201,7 @@ class Load(Reading):
     @property
     def on(self) -> List[str]:
         """ids"""
-        names = self.fields.get("on", "-")
-        return [] if names in ("", "-") else names.split(",")
+        return self.fields.list("on")
 
 
 @dataclass
@@ -211,4 +213,6 @@ class Passages(Reading):
         self.out = self.fields.integer("out")
         last = self.fields["last"]
         self.last = "" if last == "-" else last  #: id of the last one; empty: nobody yet
-        self.way = self.fields.get("way", "")  #: its way, in or out
+        way = self.fields["way"]
+        self.way = "" if way == "-" else way  #: its way, in or out
+        self.broken = self.fields.flag("broken")  #: something stands in the beam now

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The C++ client reads a sensor of each kind of a running simrun.
+#include <gtest/gtest.h>
+#include <ispace_client.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "test_server.h"
+
+namespace ispace {
+namespace client {
+namespace {
+
+std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+
+/// square.env with sensing.3dm: r1 drives past the sensors, h1 stands.
+class Sensors : public testing::Test {
+  protected:
+    TestServer server{{data("square.env"), data("sensing.3dm"), "--clock", "step", "-q"}};
+    World world{server.address()};
+    void simulate(double seconds) { world.step(std::lround(seconds / world.dt())); }
+};
+
+TEST_F(Sensors, ACameraTakesPictures) {
+    Camera camera(server.address(), "c1");
+    EXPECT_EQ(camera.info().text("kind"), "camera");
+    const Picture png = camera.scan();
+    EXPECT_EQ(png.format, "png");
+    EXPECT_EQ(png.width, 8);
+    EXPECT_EQ(png.data.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    EXPECT_EQ(png.pose().heading, 45);
+    EXPECT_EQ(png.pose().z, 1.5);
+    camera.binary(false);
+    EXPECT_EQ(camera.scan().data, png.data);
+    camera.format("rgb");
+    EXPECT_EQ(camera.scan().data.size(), 8U * 6 * 3);
+    camera.binary(true);
+    camera.stream();
+    for (long i = 1; i < 4; ++i) {
+        simulate(0.2);
+        const Picture picture = camera.next();
+        EXPECT_EQ(picture.seq, i);
+        EXPECT_EQ(picture.data.size(), 8U * 6 * 3);
+    }
+    EXPECT_THROW(camera.format("depth32"), Refused);
+}
+
+TEST_F(Sensors, ARangerReadsTheSameInEachFormat) {
+    Ranger ranger(server.address(), "d1");
+    const Depths metres = ranger.scan();
+    ASSERT_EQ(metres.depths.size(), 12U);
+    ranger.format("depth16");
+    const Depths millimetres = ranger.scan();
+    CloudSensor sensor(server.address(), "d1");
+    const Cloud cloud = sensor.scan();
+    ASSERT_EQ(cloud.points.size(), 12U);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const float distance = metres.at(column, row);
+            ASSERT_TRUE(std::isfinite(distance));
+            EXPECT_NEAR(millimetres.at(column, row), distance, 5.1e-4);
+            const Cloud::Point3 point = cloud.points[static_cast<std::size_t>(4 * row + column)];
+            EXPECT_NEAR(point.x, distance, 1e-6);  // along the axis
+        }
+    }
+}
+
+TEST_F(Sensors, TagsAreHeardAndPlaced) {
+    const Burst burst = Ultrasound(server.address(), "u1").scan();
+    EXPECT_EQ(burst.tags, std::vector<std::string>({"t1", "t2"}));
+    EXPECT_NEAR(burst.times_of_flight[0] * 340, std::hypot(std::hypot(2, 1), 1.7), 0.1);
+    Tag tag(server.address(), "t1");
+    EXPECT_TRUE(tag.scan().solved);
+    EXPECT_NEAR(tag.scan().x, -1, 0.01);
+    EXPECT_EQ(tag.scan().heard, 4);
+}
+
+TEST_F(Sensors, MatsAndGatesNoticeARobot) {
+    Mat mat(server.address(), "m1");
+    Gate gate(server.address(), "g1");
+    EXPECT_TRUE(mat.scan().on.empty());
+    EXPECT_EQ(gate.scan().last, "");
+    Robot robot(server.address(), "r1");
+    robot.forward(1.5);
+    simulate(4);
+    EXPECT_EQ(mat.scan().on, std::vector<std::string>({"r1"}));
+    const Passages passages = gate.scan();
+    EXPECT_EQ(passages.in, 1);
+    EXPECT_EQ(passages.last, "r1");
+    EXPECT_EQ(passages.way, "in");
+    EXPECT_TRUE(passages.broken);
+    EXPECT_EQ(robot.reading<Depths>("d2").depths.size(), 3U);
+    EXPECT_THROW(robot.reading<Picture>("c1"), Refused);
+}
+
+TEST_F(Sensors, AnyKindIsAReading) {
+    for (const char* id : {"l1", "c1", "d1", "u1", "t1", "m1", "g1"}) {
+        Sensor sensor(server.address(), id);
+        EXPECT_EQ(sensor.scan().sensor, id);
+        EXPECT_EQ(sensor.scan().seq, 0);
+    }
+    EXPECT_EQ(SensorOf<Scan>(server.address(), "l1").scan().ranges.size(), 3U);
+}
+
+}  // namespace
+}  // namespace client
+}  // namespace ispace
