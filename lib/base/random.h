@@ -18,7 +18,11 @@ enum class Purpose : std::uint32_t {
     Placement = 3,
     Candidates = 4,
     Light = 5,
-    Picture = 6
+    Picture = 6,
+    Wander = 7,
+    Motion = 8,
+    Odometry = 9,
+    Start = 10
 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.

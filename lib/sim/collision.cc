@@ -169,8 +169,8 @@ Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> ord
             reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration);
 }
 
-void Traffic::rebuild(std::span<const Move> moves) {
-    for (std::size_t i = 0; i < moves.size(); ++i) places_[i] = moves[i].start();
+void Traffic::rebuild(std::span<const Motion> motions) {
+    for (std::size_t i = 0; i < motions.size(); ++i) places_[i] = motions[i].pose.position;
     grid_.rebuild(places_, reach_);
 }
 

@@ -12,6 +12,7 @@
 #include "env/environment.h"
 #include "env/point_location.h"
 #include "env/slice.h"
+#include "geom/predicates.h"
 #include "geom/spatial_index.h"
 #include "sim/motion.h"
 #include "sim/people.h"
@@ -38,6 +39,16 @@ class Obstacles {
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
     /// Distance to the nearest line, at most `farthest`. The nearer the line, the cheaper.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
+    /// Calls visit(line, its distance) for the lines nearer than `reach`, for some more than once.
+    template <typename Visit>
+    void forEachWithin(Point2 p, double reach, Visit visit) const {
+        const auto look = [&](std::span<const std::uint32_t> cell) {
+            for (const std::uint32_t i : cell)
+                if (const double apart = ispace::distance(p, lines_[i]); apart < reach)
+                    visit(lines_[i], apart);
+        };
+        grid_.searchFrom(p, look, [&](double seen) { return seen >= reach; });
+    }
     /// True if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
     /// An element that stops a circle whose centre moves along the path: one it enters deeper than
@@ -93,8 +104,8 @@ class Traffic {
     /// `order` as of settlingOrder; a step takes `duration` seconds.
     Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration);
 
-    /// Indexes the places at which the moves begin.
-    void rebuild(std::span<const Move> moves);
+    /// Indexes where everybody is, which is where the moves begin.
+    void rebuild(std::span<const Motion> motions);
     /// The first one, in the order of settling, that this mover's move runs into.
     /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/world.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,6 +16,7 @@
 #include "sim/change.h"
 #include "sim/collision.h"
 #include "sim/motion.h"
+#include "sim/pilot.h"
 #include "sim/sensors.h"
 
 namespace ispace {
@@ -63,8 +67,10 @@ struct World::Data {
         const std::size_t robots = scene->robots.size();
         return {all.first(robots), all.subspan(robots), swings};
     }
-    void propose(std::size_t mover);
+    void proposeAll();
+    void propose(std::size_t mover, const Surroundings& around);
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
+    void setLimits(std::size_t mover);
     void settle();
     void collide(const Collision& collision);
     void apply();
@@ -89,6 +95,7 @@ struct World::Data {
     std::vector<MoverState> states;
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
+    std::vector<Pilot> pilots;
     std::vector<Move> moves;
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at
@@ -112,6 +119,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       states(movers.size()),
       gaits(scene->people.size()),
       swings(scene->people.size()),
+      pilots(movers.size()),
       moves(movers.size()),
       traffic(movers, order, seconds(length)),
       sensors(*scene),
@@ -122,6 +130,8 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
         motions[i].pose = {pose.position, wrapped(pose.heading)};
         states[i].obstacles = &obstacles.at(model.height);
         states[i].limits = limitsOf(model, 0);
+        pilots[i] = Pilot(movers[i], options.seed);
+        pilots[i].follow(course, model.speed, false);
         moves[i].from = &motions[i];
         moves[i].limits = &states[i].limits;
         moves[i].duration = seconds(length);
@@ -129,19 +139,42 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
     }
 }
 
-/// Independent of all others.
-void World::Data::propose(std::size_t mover) {
+void World::Data::proposeAll() {
+    if (std::exchange(moved, false)) traffic.rebuild(motions);
+    const Surroundings around{movers, motions, &traffic};
+    // Fewer are done before other threads have begun.
+    constexpr std::size_t kTogether = 64;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, movers.size(), kTogether),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              propose(i, around);
+                      });
+}
+
+/// Independent of all other proposals: of others only place and speed count, which stay.
+void World::Data::propose(std::size_t mover, const Surroundings& around) {
     Move& move = moves[mover];
-    const Motion& motion = motions[mover];
+    Motion& motion = motions[mover];
     states[mover].blocked.reset();
+    if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
+        pilots[mover].steer({&around, states[mover].obstacles, mover, states[mover].clearance, now,
+             step_length},
+                            motion);
     if (motion.arrived()) {
         move.to = {.motion = motion};
         return;
     }
-    if (!friction.empty())
-        states[mover].limits = limitsOf(movers[mover].model, friction.at(motion.pose.position));
+    setLimits(mover);
     move.to = advance(motion, states[mover].limits, move.duration);
     states[mover].blocked = elementAhead(mover);
+}
+
+void World::Data::setLimits(std::size_t mover) {
+    MotionLimits& limits = states[mover].limits;
+    const double rough = friction.at(motions[mover].pose.position);
+    if (!friction.empty()) limits = limitsOf(movers[mover].model, rough);
+    const double speed = pilots[mover].isOn() ? pilots[mover].speed() : movers[mover].model.speed;
+    limits.drive.top = (1 - rough) * speed;
 }
 
 std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
@@ -164,8 +197,6 @@ void World::Data::settle() {
     const bool any =
         std::any_of(moves.begin(), moves.end(), [](const Move& move) { return move.to.path > 0; });
     if (!any) return;
-    if (moved) traffic.rebuild(moves);
-    moved = false;
     for (const std::size_t mover : order) {
         if (moves[mover].to.path == 0) continue;
         if (states[mover].blocked) {
@@ -178,6 +209,7 @@ void World::Data::settle() {
 
 void World::Data::collide(const Collision& collision) {
     moves[collision.robot].cancel();
+    if (pilots[collision.robot].isOn()) return pilots[collision.robot].bumped();
     states[collision.robot].stall = true;
     collisions.push_back(collision);
 }
@@ -192,7 +224,12 @@ void World::Data::apply() {
         motion = moves[mover].to.motion;
         if (movers[mover].is_person) walk(mover);
         if (states[mover].running == 0) continue;
-        if (states[mover].stall) {
+        if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
+            continue;
+        } else if (pilot.state() != Pilot::State::Off) {
+            end(mover, pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Stall);
+            pilot.turnOff();
+        } else if (states[mover].stall) {
             end(mover, Outcome::Stall);
         } else if (motion.arrived()) {
             end(mover, Outcome::Done);
@@ -248,6 +285,7 @@ std::unique_ptr<World::Data> World::Data::next(
         if (stayers.contains(id)) {
             state.stall = states[*old].stall;
             after->motions[i] = motions[*old];
+            if (after->movers[i].course == movers[*old].course) after->pilots[i] = pilots[*old];
             after->keepGait(i, *this, *old);
         } else if (state.running != 0) {
             after->end(i, Outcome::Stopped);
@@ -340,7 +378,6 @@ std::string World::refusal(std::size_t mover, const Command& command) const {
     };
     if (command.verb == Verb::Speed && !(std::abs(value) <= model.max_speed))
         return goes_at_most(model.max_speed);
-    if (command.verb == Verb::Path) return "paths are not followed yet";
     if (command.verb == Verb::Path && !(command.speed <= model.max_speed))
         return goes_at_most(model.max_speed);
     if (command.verb == Verb::Sidespeed && !(std::abs(value) <= model.max_sidespeed))
@@ -363,6 +400,11 @@ int World::command(std::size_t mover, const Command& command) {
     }
     state.stall = false;
     data.motions[mover].command(command);
+    data.pilots[mover].turnOff();
+    if (command.verb == Verb::Path) {
+        const double speed = command.speed > 0 ? command.speed : data.movers[mover].model.speed;
+        data.pilots[mover].follow(command.course, speed, true);
+    }
     if (comesToAnEnd(command.verb)) state.running = ++state.ids;
     return state.running;
 }
@@ -382,7 +424,7 @@ void World::step() {
     data.collisions.clear();
     data.time += data.step_length;
     ++data.steps;
-    for (std::size_t i = 0; i < data.motions.size(); ++i) data.propose(i);
+    data.proposeAll();
     data.settle();
     data.apply();
     data.sensors.read(data.time, data.where());

@@ -41,17 +41,6 @@ void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {
              scene.ids[i] + " has no place and is left out: give it `at` or `on`" +
                  (kind->is_arranged ? ", or let arrange place it" : ""));
     }
-    std::vector<std::string> phrases;
-    for (const char* key : {"path", "walk"}) {
-        std::vector<std::string> ids;
-        for (std::size_t i = 0; i < scene.records.size(); ++i) {
-            const Record& record = scene.records[i];
-            const bool goes = record.keyword() == "robot" || record.keyword() == "human";
-            if (goes && record.has(key)) ids.push_back(scene.ids[i]);
-        }
-        if (!ids.empty()) phrases.push_back(leftOutText(key, "simulated", ids));
-    }
-    warn(options, kTool, phrases);
 }
 
 }  // namespace ispace

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robots and people who go by themselves: along paths, past each other, about.
+#include "sim/pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "layout/test_layout.h"
+#include "sim/world.h"
+
+namespace ispace {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::scene;
+
+constexpr const char* kRoom = "ispace size=12,8\n";
+/// 1.4 m wide along x, closed at its ends.
+constexpr const char* kCorridor = "ispace size=12,1.4\n";
+constexpr SimTime kStep = milliseconds(5);
+
+/// Steps until `done` holds; the time, or nothing if that takes longer than `most`.
+template <typename Done>
+std::optional<SimTime> timeUntil(World& world, SimTime most, Done done) {
+    while (world.time() < most) {
+        world.step();
+        if (done()) return world.time();
+    }
+    return std::nullopt;
+}
+
+bool isAt(const World& world, std::size_t mover, Point2 place, double within) {
+    return distance(world.status(mover).pose.position, place) <= within;
+}
+
+TEST(Pilot, ARobotComesToRestExactlyAtTheEnd) {
+    const Scene room = scene(kRoom, "robot id=r1 at=-3,0 path=0,0;0,2;-1,3\n");
+    World world(room, kStep);
+    bool corner = false;
+    ASSERT_TRUE(timeUntil(world, seconds(60), [&] {
+        corner = corner || isAt(world, 0, {0, 0}, Pilot::kArrive);
+        return isAt(world, 0, {-1, 3}, 1e-3) && world.status(0).speed == 0;
+    }));
+    EXPECT_TRUE(corner);
+    EXPECT_FALSE(world.status(0).stall);
+    const Pose2 pose = world.status(0).pose;
+    EXPECT_NEAR(distance(pose.position, Point2{-1, 3}), 0, 1e-6);
+    timeUntil(world, world.time() + seconds(2), [] { return false; });
+    EXPECT_EQ(world.status(0).pose, pose) << "and stays";
+}
+
+TEST(Pilot, APersonKeepsHerSpeedPastPlaces) {
+    const Scene room = scene(kRoom, "human id=ann at=-4,-2 speed=1 path=4,-2;4,2;-4,2\n");
+    World world(room, kStep);
+    const auto time = timeUntil(world, seconds(40), [&] { return isAt(world, 0, {-4, 2}, 0.011); });
+    ASSERT_TRUE(time);
+    // 20 m at a metre a second, with two corners.
+    EXPECT_GT(*time, milliseconds(19500));
+    EXPECT_LT(*time, milliseconds(23500));
+}
+
+TEST(Pilot, LoopsAndPauses) {
+    const Scene room =
+        scene(kRoom, "human id=ann at=0,0 speed=1 path=2,0;0,0 loop=yes pause=1.5\n");
+    World world(room, milliseconds(20));
+    int visits = 0;
+    SimTime rest{};
+    bool was_there = false;
+    for (int i = 0; i < 50 * 40; ++i) {
+        world.step();
+        const bool there = isAt(world, 0, {2, 0}, 0.02);
+        visits += there && !was_there ? 1 : 0;
+        was_there = there;
+        if (there && world.status(0).speed == 0) rest += world.stepLength();
+    }
+    // A round of 4 m with two pauses and turns takes some 9 s.
+    EXPECT_GE(visits, 4);
+    EXPECT_LE(visits, 6);
+    EXPECT_GT(rest, visits * milliseconds(1400));
+    EXPECT_LT(rest, visits * milliseconds(2600));
+}
+
+TEST(Pilot, ACommandedPathIsDone) {
+    const Scene room = scene(kRoom, "robot id=r1\nhuman id=ann at=0,2\n");
+    World world(room, kStep);
+    for (const std::size_t mover : {std::size_t{0}, std::size_t{1}}) {
+        const auto parsed = parseCommand("PATH 2,-1;3,1 speed=0.4");
+        ASSERT_TRUE(parsed.command);
+        EXPECT_EQ(parsed.command->speed, 0.4);
+        EXPECT_EQ(world.refusal(mover, *parsed.command), "");
+        EXPECT_EQ(world.command(mover, *parsed.command), 1);
+    }
+    std::vector<CommandEnd> ends;
+    timeUntil(world, seconds(60), [&] {
+        ends.insert(ends.end(), world.ends().begin(), world.ends().end());
+        return false;
+    });
+    ASSERT_EQ(ends.size(), 2U);
+    EXPECT_EQ(ends[0].outcome, Outcome::Done);
+    EXPECT_EQ(ends[1].outcome, Outcome::Stall) << "where the other one stands nobody gets";
+    EXPECT_TRUE(isAt(world, ends[0].robot, {3, 1}, 0.01));
+}
+
+TEST(Pilot, APathThroughAWallFails) {
+    const Scene room = scene(std::string(kRoom) + "wall from=1,-4 to=1,4\n", "robot id=r1\n");
+    World world(room, kStep);
+    world.command(0, pathCommand({.path = {{3, 0}}}));
+    std::vector<CommandEnd> ends;
+    const auto time = timeUntil(world, seconds(60), [&] {
+        ends.assign(world.ends().begin(), world.ends().end());
+        return !ends.empty();
+    });
+    ASSERT_TRUE(time);
+    EXPECT_EQ(ends[0].outcome, Outcome::Stall);
+    EXPECT_LE(world.status(0).pose.position.x, 0.7 + 1e-9);
+}
+
+TEST(Pilot, AStopEndsAPath) {
+    const Scene room = scene(kRoom, "robot id=r1\n");
+    World world(room, kStep);
+    const int id = world.command(0, pathCommand({.path = {{3, 0}}}));
+    timeUntil(world, seconds(2), [] { return false; });
+    world.command(0, {Verb::Stop, 0});
+    ASSERT_EQ(world.ends().size(), 1U);
+    EXPECT_EQ(world.ends()[0].id, id);
+    EXPECT_EQ(world.ends()[0].outcome, Outcome::Stopped);
+    timeUntil(world, seconds(6), [] { return false; });
+    EXPECT_LT(world.status(0).pose.position.x, 1.5);
+    EXPECT_EQ(world.status(0).speed, 0);
+}
+
+TEST(Pilot, DegeneratePathsHarmNobody) {
+    // To where it stands, twice the same place, into a wall, out of the room, round and round on
+    // the spot.
+    const Scene room = scene(kRoom,
+                             "robot id=r1 at=-3,0 path=-3,0\n"
+                             "robot id=r2 at=-3,2 path=-2,2;-2,2;-2,2;-1,2\n"
+                             "human id=h1 at=0,0 path=6,0;0,1\n"
+                             "human id=h2 at=0,2 path=50,50\n"
+                             "human id=h3 at=3,-2 path=3,-2 loop=yes\n");
+    World world(room, kStep);
+    timeUntil(world, seconds(60), [] { return false; });
+    EXPECT_TRUE(isAt(world, 0, {-3, 0}, 1e-9));
+    EXPECT_TRUE(isAt(world, 1, {-1, 2}, 0.01));
+    EXPECT_TRUE(isAt(world, *world.personNamed("h1"), {0, 1}, 0.02)) << "gave up the wall";
+    EXPECT_TRUE(isAt(world, *world.personNamed("h3"), {3, -2}, 1e-9));
+    for (std::size_t i = 0; i < world.movers().size(); ++i) {
+        const Point2 p = world.status(i).pose.position;
+        EXPECT_LE(std::abs(p.x), 6 - 0.25);
+        EXPECT_LE(std::abs(p.y), 4 - 0.25);
+    }
+}
+
+TEST(Pilot, WhoStartsInAThingMayLeaveIt) {
+    // She sits half on a table's edge.
+    const Scene room =
+        scene(std::string(kRoom) + "wall from=0,-1 to=0,1\n", "human id=ann at=0.2,0 path=3,0\n");
+    World world(room, kStep);
+    EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return isAt(world, 0, {3, 0}, 0.02); }));
+}
+
+TEST(Pilot, TwoWhoMeetInACorridorPass) {
+    const Scene room =
+        scene(kCorridor, "human id=ann at=-5,0 path=5,0\nhuman id=bob at=5,0 path=-5,0\n");
+    World world(room, kStep);
+    EXPECT_TRUE(timeUntil(world, seconds(30), [&] {
+        return isAt(world, 0, {5, 0}, 0.02) && isAt(world, 1, {-5, 0}, 0.02);
+    }));
+}
+
+TEST(Pilot, APersonStepsRoundARobot) {
+    const Scene room = scene(kRoom, "robot id=r1\nhuman id=ann at=-4,0 path=4,0\n");
+    World world(room, kStep);
+    const auto time = timeUntil(world, seconds(30), [&] { return isAt(world, 1, {4, 0}, 0.02); });
+    ASSERT_TRUE(time);
+    EXPECT_LT(*time, seconds(10)) << "8 m at 1.2 m/s, and a little round it";
+    EXPECT_FALSE(world.status(1).stall);
+}
+
+TEST(Pilot, SomebodyInACornerGetsOut) {
+    const Scene room = scene(kRoom, "human id=ann at=-5.7,-3.7 heading=225 walk=wander\n");
+    World world(room, kStep);
+    EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return !isAt(world, 0, {-5.7, -3.7}, 2); }));
+}
+
+TEST(Pilot, WanderersKeepMoving) {
+    std::string layout;
+    for (int i = 0; i < 6; ++i) {
+        const std::string x = std::to_string(i - 3);
+        layout += "robot id=r" + x + " at=" + x + ",-1 radius=0.2 walk=wander\n";
+        layout += "human id=h" + x + " at=" + x + ",1 walk=wander\n";
+    }
+    const Scene room = scene(kRoom, layout);
+    World world(room, milliseconds(10));
+    std::vector<double> path(world.movers().size());
+    std::vector<Point2> last(path.size());
+    for (std::size_t i = 0; i < path.size(); ++i) last[i] = world.movers()[i].pose.position;
+    while (world.time() < seconds(120)) {
+        world.step();
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const Point2 p = world.status(i).pose.position;
+            path[i] += distance(last[i], p);
+            last[i] = p;
+        }
+    }
+    for (std::size_t i = 0; i < path.size(); ++i)
+        EXPECT_GT(path[i], 0.3 * 120 * world.movers()[i].model.speed) << world.movers()[i].id;
+}
+
+TEST(Pilot, TheSeedDecidesHowTheyWander) {
+    const Scene room = scene(kRoom, "human id=ann walk=wander\nrobot id=r1 at=2,2 walk=wander\n");
+    const auto ends = [&](std::uint64_t seed) {
+        World world(room, kStep, {.seed = seed});
+        timeUntil(world, seconds(30), [] { return false; });
+        return std::pair(world.status(0).pose, world.status(1).pose);
+    };
+    EXPECT_EQ(ends(1), ends(1));
+    EXPECT_NE(ends(1), ends(2));
+}
+
+TEST(Pilot, LongStepsDoNoHarm) {
+    const Scene room =
+        scene(kRoom, "human id=ann at=-4,0 path=4,0;4,2\nrobot id=r1 at=0,3 walk=wander\n");
+    World world(room, seconds(1));
+    EXPECT_TRUE(timeUntil(world, seconds(60), [&] { return isAt(world, 1, {4, 2}, 0.02); }));
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/steering.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ispace {
+
+namespace {
+
+/// Metres that are kept between circles and things where there is room.
+constexpr double kGap = 0.05;
+/// Metres beyond which nobody is looked at.
+constexpr double kSight = 4;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+Vec2 velocityOf(const Motion& motion) {
+    if (motion.drive.speed == 0 && motion.side.speed == 0) return {};
+    const Vec2 ahead = unitVector(motion.pose.heading);
+    return motion.drive.speed * ahead + motion.side.speed * perpendicular(ahead);
+}
+
+}  // namespace
+
+Steering::Steering(const Surroundings& around, std::size_t mover, const Obstacles& obstacles,
+                   double clearance, double speed, double horizon)
+    : place_(around.motions[mover].pose.position),
+      radius_(around.movers[mover].model.radius),
+      speed_(speed),
+      horizon_(horizon) {
+    findNeighbours(around, mover);
+    findLines(obstacles, clearance);
+}
+
+void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
+    around.traffic->forEachNear(
+        place_, radius_ + std::min(kSight, 2 * speed_ * horizon_), [&](std::size_t other) {
+            if (other == mover) return;
+            const Motion& motion = around.motions[other];
+            const double reach = radius_ + around.movers[other].model.radius + kGap;
+            neighbours_.push_back({motion.pose.position - place_, velocityOf(motion), reach});
+        });
+}
+
+void Steering::findLines(const Obstacles& obstacles, double clearance) {
+    const double ahead = speed_ * horizon_ + kGap;
+    if (clearance > ahead) return;
+    obstacles.forEachWithin(place_, radius_ + ahead, [&](const Segment2& line, double apart) {
+        // A hair less, so that going along it is free.
+        constexpr double kHair = 1e-6;
+        lines_.push_back({line, std::min(radius_ + kGap, apart - kHair)});
+    });
+}
+
+double Steering::untilNeighbour(Vec2 velocity) const {
+    double least = kNever;
+    for (const auto& [offset, others, reach] : neighbours_) {
+        const Vec2 closing = velocity - others;
+        const double b = dot(offset, closing);
+        if (b <= 0) continue;  // they part
+        const double c = dot(offset, offset) - reach * reach;
+        if (c <= 0) return 0;
+        const double a = dot(closing, closing);
+        const double root = b * b - a * c;
+        if (root > 0) least = std::min(least, (b - std::sqrt(root)) / a);
+    }
+    return least;
+}
+
+/// Looks at `most` of the horizon.
+double Steering::untilLine(Vec2 velocity, double most) const {
+    constexpr double kLeast = 1.0 / 8;
+    if (lines_.empty()) return kNever;
+    for (double share = most; share >= kLeast; share /= 2) {
+        const Segment2 way{place_, place_ + share * horizon_ * velocity};
+        const bool is_free = std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+            return distance(way, line.line) < line.reach;
+        });
+        if (is_free) return share == most ? kNever : share * horizon_;
+    }
+    return 0;
+}
+
+double Steering::freeTime(Angle direction, double share) const {
+    const Vec2 velocity = speed_ * unitVector(direction);
+    const double time = std::min(horizon_, untilNeighbour(velocity));
+    return time == 0 ? 0 : std::min(time, untilLine(velocity, share));
+}
+
+FreeWay Steering::choose(Angle desired, double needed) const {
+    constexpr std::array<double, 11> kTurns = {0, -15, 15, -30, 30, -50, 50, -75, 75, -100, 100};
+    // Degrees of turning that a second of free way is worth.
+    constexpr double kWorth = 120, kAside = 0.25;
+    FreeWay best{desired, 0};
+    double best_worth = -kNever;
+    for (const double turn : kTurns) {
+        const Angle direction = desired + Angle::degrees(turn);
+        const double time = freeTime(direction, turn == 0 ? 1 : kAside);
+        if (time >= needed) return {direction, time};
+        const double worth = time - std::abs(turn) / kWorth;
+        if (worth > best_worth && (time > 0 || turn == 0)) {
+            best = {direction, time};
+            best_worth = worth;
+        }
+    }
+    return best;
+}
+
+}  // namespace ispace
