@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/sim: the state of a world, and what a step makes of it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "sim/collision.h"
+#include "sim/motion.h"
+#include "sim/people.h"
+#include "sim/pilot.h"
+#include "sim/sensors.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// What somebody is besides the motion.
+struct MoverState {
+    const Obstacles* obstacles = nullptr;
+    MotionLimits limits;
+    double clearance = 0;  // it may go at least as far before it meets an obstacle
+    int ids = 0;           // given so far
+    int running = 0;       // id of the command that comes to an end, or 0
+    bool stall = false;
+    std::optional<std::size_t> blocked;  // by an element of the environment
+};
+
+struct World::Data {
+    Data(std::shared_ptr<const Scene> room, SimTime step_length, const RunOptions& run);
+
+    [[nodiscard]] std::optional<std::size_t> moverNamed(std::string_view id) const {
+        const auto found = mover_index.find(id);
+        return found == mover_index.end() ? std::nullopt : std::optional(found->second);
+    }
+    [[nodiscard]] const std::vector<Element>& elements() const {
+        return scene->environment.elements();
+    }
+    [[nodiscard]] Movers where() const {
+        const std::span<const Motion> all(motions);
+        const std::size_t robots = scene->robots.size();
+        return {all.first(robots), all.subspan(robots), swings};
+    }
+    /// What a step does, in this order: proposals in parallel, settled one by one.
+    void proposeAll();
+    void settle();
+    void apply();
+
+    void propose(std::size_t mover, const Surroundings& around);
+    [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
+    void setLimits(std::size_t mover);
+    void collide(const Collision& collision);
+    void walk(std::size_t mover);
+    void keepGait(std::size_t mover, const Data& before, std::size_t old);
+    void end(std::size_t mover, Outcome outcome);
+    /// Of robots and people, by id.
+    [[nodiscard]] std::unordered_map<std::string_view, Pose2> places() const;
+    /// Another scene, with what goes on: of those who stay their motion, of the others what their
+    /// clients know them by.
+    [[nodiscard]] std::unique_ptr<Data> next(
+        Scene scene, const std::unordered_set<std::string_view>& stayers) const;
+
+    std::shared_ptr<const Scene> scene;
+    RunOptions options;
+    SimTime step_length, time{};
+    std::int64_t steps = 0, changes = 0;
+
+    std::vector<Mover> movers;
+    std::map<std::string_view, std::size_t> mover_index;
+    ObstacleSets obstacles;
+    FrictionMap friction;
+    std::vector<std::size_t> order;  // in which moves are settled
+    std::vector<Motion> motions;
+    std::vector<MoverState> states;
+    std::vector<Gait> gaits;    // of people
+    std::vector<Angle> swings;  // of their limbs
+    std::vector<Pilot> pilots;
+    std::vector<Move> moves;
+    Traffic traffic;
+    bool moved = true;  // since the traffic was looked at
+    SensorReader sensors;
+    std::map<std::string_view, std::size_t> sensor_index;
+
+    std::vector<CommandEnd> ends;
+    std::vector<Collision> collisions;
+};
+
+}  // namespace ispace
