@@ -57,6 +57,8 @@ TEST(ClientMessage, TakesLinesApart) {
 TEST(ClientMessage, TheTextOfAMarkGoesToTheEnd) {
     const Message message = parseMessage("EVENT mark t=1.500 text=the door = open");
     EXPECT_EQ(message.fields.text("text"), "the door = open");
+    const Message change = parseMessage("EVENT change t=1.500 what=SET r1.speed=0.2");
+    EXPECT_EQ(change.fields.text("what"), "SET r1.speed=0.2");
 }
 
 TEST(ClientMessage, DecodesBase64) {

@@ -35,6 +35,8 @@ class Lines(unittest.TestCase):
             message.fields.integer("n")
         mark = _message.parse_message("EVENT mark t=1.500 text=the door = open")
         self.assertEqual(mark.fields["text"], "the door = open")
+        change = _message.parse_message("EVENT change t=1.500 what=SET r1.speed=0.2 text=x")
+        self.assertEqual(dict(change.fields), {"t": "1.500", "what": "SET r1.speed=0.2 text=x"})
 
     def test_readings(self):
         def read(kind, line, data=b""):

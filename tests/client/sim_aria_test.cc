@@ -83,6 +83,8 @@ TEST_F(SimAria, SpeedsAreWholeAndClamped) {
     ArUtil::sleep(1000);
     EXPECT_EQ(robot.getVel(), 124);
     EXPECT_EQ(robot.getRotVel(), -20);
+    EXPECT_EQ(robot.getTransVelMax(), 1600);
+    EXPECT_EQ(robot.getRotVelMax(), 300);
     robot.setTransVelMax(80);
     robot.setVel(500);
     robot.setRotVelMax(10);

@@ -58,6 +58,7 @@ struct End {
 /// How to drive a path.
 struct PathOptions {
     double speed = 0;   ///< m/s; 0: as the robot or person does by itself
+    double pause = 0;   ///< s at each point
     bool loop = false;  ///< from the last point to the first, again and again
 };
 
@@ -88,6 +89,7 @@ class Mover {
         for (std::size_t i = 0; i < points.size(); ++i)
             request += (i > 0 ? ";" : "") + textOf(points[i].x) + "," + textOf(points[i].y);
         if (options.speed > 0) request += " speed=" + textOf(options.speed);
+        if (options.pause > 0) request += " pause=" + textOf(options.pause);
         if (options.loop) request += " loop=yes";
         return begin(request);
     }
@@ -95,6 +97,8 @@ class Mover {
     void speed(double metres_per_second) { ask("SPEED " + textOf(metres_per_second)); }
     /// A rotation to keep, degrees/s, counter-clockwise; leaves the speed as it is.
     void rotspeed(double degrees_per_second) { ask("ROTSPEED " + textOf(degrees_per_second)); }
+    /// A speed to the left to keep, m/s: of people, and of robots with an omnidirectional drive.
+    void sidespeed(double metres_per_second) { ask("SIDESPEED " + textOf(metres_per_second)); }
     /// Brakes.
     void stop() { ask("STOP"); }
 

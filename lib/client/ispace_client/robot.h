@@ -17,9 +17,6 @@ class Robot : public Mover {
     Robot(const Address& address, const std::string& id, const Options& options = Options())
         : Mover("ROBOT", address, id, options) {}
 
-    /// A speed to the left to keep, m/s: of robots with an omnidirectional drive.
-    void sidespeed(double metres_per_second) { ask("SIDESPEED " + textOf(metres_per_second)); }
-
     /// The newest scan of a laser that rides on it.
     Scan scan(const std::string& laser) { return reading<Scan>(laser); }
     /// The newest reading of a sensor that rides on it; T is Picture, Depths … or Reading of any

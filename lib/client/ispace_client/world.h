@@ -14,9 +14,11 @@ namespace client {
 
 /// Something that happened in the world.
 struct Event {
-    std::string kind;  ///< collision, stall, enter, leave, mat, gate, seen, lost, mark, change
-    double time = 0;   ///< simulated seconds
-    Fields fields;     ///< id=, into=, zone= and what else belongs to its kind
+    /// collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: so many (n=)
+    /// were dropped, as the client did not read them
+    std::string kind;
+    double time = 0;  ///< simulated seconds
+    Fields fields;    ///< id=, into=, zone= and what else belongs to its kind
 };
 
 /// The simulated world and its clock (role WORLD).
@@ -47,7 +49,10 @@ class World {
     /// Where the robots and people are, m and degrees.
     std::map<std::string, Pose> poses() {
         std::map<std::string, Pose> poses;
-        for (const std::string& item : split(ask("POSES").fields.text("poses"), ';')) {
+        const Fields fields = ask("POSES").fields;
+        std::vector<std::string> items = split(fields.text("poses"), ';');
+        for (const std::string& item : split(fields.text("people", ""), ';')) items.push_back(item);
+        for (const std::string& item : items) {
             const std::vector<std::string> parts = split(item, ',');
             if (parts.size() != 4) throw ProtocolError("`" + item + "` is no pose");
             Pose& pose = poses[parts[0]];
@@ -77,7 +82,8 @@ class World {
         ask("SET " + id + "." + key + "=" + value);
     }
     /// Adds a record, as in an environment or layout: add("cube id=b at=1,1 size=1,1,1").
-    void add(const std::string& record) { ask("ADD " + record); }
+    /// \return its id
+    std::string add(const std::string& record) { return ask("ADD " + record).fields.text("id"); }
     void remove(const std::string& id) { ask("DELETE " + id); }
     /// Another room. Names of files as the server sees them; without `layout` there is none.
     void load(const std::string& environment, const std::string& layout = "") {

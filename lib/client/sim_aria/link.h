@@ -44,9 +44,8 @@ class Link {
             }
         }
         if (!robot_) throw ispace::client::Error(server + " has no robot that is free");
-        const ispace::client::Fields& info = robot_->info();
-        if (info.has("max_speed")) max_vel_ = 1000 * info.number("max_speed");
-        if (info.has("max_rotspeed")) max_rot_vel_ = info.number("max_rotspeed");
+        max_vel_ = 1000 * limitOf("SPEED");
+        max_rot_vel_ = limitOf("ROTSPEED");
         start_ = odometry().pose;
         findSonars();
     }
@@ -103,6 +102,21 @@ class Link {
         }
     }
 
+    /// What the server says when it refuses far too much: "r1 goes at most 1.6 m/s".
+    double limitOf(const std::string& verb) {
+        const std::string before = " at most ";
+        try {
+            robot_->connection().ask(verb + " 1000000000");
+        } catch (const ispace::client::Refused& refused) {
+            const std::string text = refused.what();
+            const std::size_t found = text.find(before);
+            if (found == std::string::npos) throw;
+            const std::size_t begin = found + before.size();
+            return ispace::client::numberOf(text.substr(begin, text.find(' ', begin) - begin));
+        }
+        throw ispace::client::ProtocolError(id() + " has no limit of " + verb);
+    }
+
     void findSonars() {
         ispace::client::Fields answer;
         try {
@@ -122,7 +136,7 @@ class Link {
     std::unique_ptr<ispace::client::Robot> robot_;
     ispace::client::Pose start_;
     std::vector<ArPose> sonars_;
-    double max_vel_ = 1600, max_rot_vel_ = 300;
+    double max_vel_ = 0, max_rot_vel_ = 0;
 };
 
 }  // namespace sim_aria

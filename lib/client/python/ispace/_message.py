@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Dict, List, NamedTuple
 
@@ -92,17 +93,18 @@ class Message:
 
 
 def parse_message(line: str) -> Message:
-    """A line taken apart. ``text=``, in events, goes to the end of its line."""
+    """A line taken apart. ``text=`` and ``what=``, in events, go to the end of their line."""
     message = Message(line)
-    head, mark, text = line.partition(" text=")
+    ending = re.search(" (text|what)=", line)
+    head = line[: ending.start()] if ending else line
     for word in head.split(" "):
         key, equal, value = word.partition("=")
         if equal and message.words:
             message.fields[key] = value
         elif word:
             message.words.append(word)
-    if mark:
-        message.fields["text"] = text
+    if ending:
+        message.fields[ending.group(1)] = line[ending.end() :]
     if "base64" in message.fields:
         message.data = base64.b64decode(message.fields["base64"])
     return message

@@ -86,15 +86,22 @@ class Mover(Client):
         return self._begin(f"RIGHT {text_of(degrees)}")
 
     def path(
-        self, points: Iterable[Tuple[float, float]], speed: Optional[float] = None, loop: bool = False
+        self,
+        points: Iterable[Tuple[float, float]],
+        speed: Optional[float] = None,
+        pause: float = 0,
+        loop: bool = False,
     ) -> Motion:
         """Along straight lines from where it stands, through points in m.
 
-        ``speed`` in m/s; with ``loop`` from the last point to the first, again and again.
+        ``speed`` in m/s, ``pause`` in s at each point; with ``loop`` from the last point to the first, again
+        and again.
         """
         request = "PATH " + ";".join(f"{text_of(x)},{text_of(y)}" for x, y in points)
         if speed is not None:
             request += f" speed={text_of(speed)}"
+        if pause > 0:
+            request += f" pause={text_of(pause)}"
         return self._begin(request + (" loop=yes" if loop else ""))
 
     def speed(self, metres_per_second: float) -> None:
@@ -104,6 +111,10 @@ class Mover(Client):
     def rotspeed(self, degrees_per_second: float) -> None:
         """A rotation to keep, counter-clockwise; leaves the speed as it is."""
         self._ask(f"ROTSPEED {text_of(degrees_per_second)}")
+
+    def sidespeed(self, metres_per_second: float) -> None:
+        """A speed to the left to keep, of people, and of robots with an omnidirectional drive."""
+        self._ask(f"SIDESPEED {text_of(metres_per_second)}")
 
     def stop(self) -> None:
         """Brakes."""
@@ -163,10 +174,6 @@ class Robot(Mover):
 
     def __enter__(self) -> Robot:
         return self
-
-    def sidespeed(self, metres_per_second: float) -> None:
-        """A speed to the left to keep, of robots with an omnidirectional drive."""
-        self._ask(f"SIDESPEED {text_of(metres_per_second)}")
 
     def scan(self, laser: str) -> Scan:
         """The newest scan of a laser that rides on it."""

@@ -17,7 +17,9 @@ from .errors import ProtocolError
 class Event:
     """Something that happened in the world."""
 
-    kind: str  #: collision, stall, enter, leave, mat, gate, seen, lost, mark, change
+    #: collision, stall, enter, leave, mat, gate, seen, lost, mark, change; missed: so many (n=) were dropped,
+    #: as the client did not read them
+    kind: str
     time: float  #: simulated seconds
     fields: Fields  #: id=, into=, zone= and what else belongs to its kind
 
@@ -49,7 +51,8 @@ class World(Client):
     def poses(self) -> Dict[str, Pose]:
         """Where the robots and people are, m and degrees."""
         poses = {}
-        for item in split(self._ask("POSES").fields["poses"], ";"):
+        fields = self._ask("POSES").fields
+        for item in split(fields["poses"], ";") + split(fields.get("people", ""), ";"):
             id, *numbers = item.split(",")
             if len(numbers) != 3:
                 raise ProtocolError(f"`{item}` is no pose")
@@ -88,9 +91,9 @@ class World(Client):
         """Changes a key of a record: ``set("r1", "speed", "0.3")``."""
         self._ask(f"SET {id}.{key}={value}")
 
-    def add(self, record: str) -> None:
-        """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``."""
-        self._ask(f"ADD {record}")
+    def add(self, record: str) -> str:
+        """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``; its id."""
+        return self._ask(f"ADD {record}").fields["id"]
 
     def remove(self, id: str) -> None:
         self._ask(f"DELETE {id}")
