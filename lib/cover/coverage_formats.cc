@@ -9,13 +9,33 @@
 #include "env/level.h"
 #include "geom/boolean.h"
 #include "raster/contour.h"
+#include "sensor/camera.h"
 
 namespace ispace {
+
+namespace {
+
+bool hasDensities(const Coverage& coverage) { return !coverage.report.densities.indoor.empty(); }
+
+/// Of each cell how many of pixelDensities(), the coarsest first, some camera sees it with; empty
+/// without cameras.
+std::vector<std::size_t> classesOfCells(const Coverage& coverage) {
+    std::vector<std::size_t> reached;
+    if (!hasDensities(coverage)) return reached;
+    reached.resize(coverage.target.grid.size());
+    for (std::size_t i = 0; i < pixelDensities().size(); ++i)
+        cellsOfClass(coverage, i).forEach([&](std::size_t cell) { reached[cell] = i + 1; });
+    return reached;
+}
+
+}  // namespace
 
 std::string coverageCsv(const Coverage& coverage) {
     const Target& target = coverage.target;
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    std::string text = "column,row,x,y,indoor,free,seen\n";
+    const std::vector<std::size_t> classes = classesOfCells(coverage);
+    std::string text = "column,row,x,y,indoor,free,seen";
+    text += classes.empty() ? "\n" : ",density\n";
     const auto columns = static_cast<std::size_t>(target.grid.columns);
     for (std::size_t cell = 0; cell < target.grid.size(); ++cell) {
         const Point2 center = target.grid.center(cell);
@@ -29,6 +49,10 @@ std::string coverageCsv(const Coverage& coverage) {
         text += target.indoor.test(cell) ? ",1" : ",0";
         text += target.free.test(cell) ? ",1," : ",0,";
         text += std::to_string(times[cell]);
+        if (!classes.empty()) {
+            text += ',';
+            if (classes[cell] > 0) text += pixelDensities()[classes[cell] - 1].name;
+        }
         text += '\n';
     }
     return text;
@@ -91,6 +115,31 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
     return cellRegions(target.grid, cells);
 }
 
+/// Indoor floor that cameras see with the pixels of a class, by its index.
+std::vector<Region> withPixelsOf(const Coverage& coverage, std::size_t density_class) {
+    const std::uint64_t wanted = kIndoorMark | classMark(density_class);
+    if (!coverage.density_overlays.empty())
+        return coverage.density_overlays.front().regions(
+            [wanted](const LayerLabel& label) { return (label.marks & wanted) == wanted; });
+    CellSet cells = cellsOfClass(coverage, density_class);
+    cells &= coverage.target.indoor;
+    return cellRegions(coverage.target.grid, cells);
+}
+
+void writeDensities(FeatureWriter& out, const Coverage& coverage) {
+    if (!hasDensities(coverage)) return;
+    for (std::size_t i = 0; i < pixelDensities().size(); ++i) {
+        const std::vector<Region> pieces = withPixelsOf(coverage, i);
+        if (pieces.empty()) continue;
+        const PixelDensity& density = pixelDensities()[i];
+        out.begin("density-" + std::string(density.name), "density", "region")
+            .key("pixels_per_metre")
+            .value(density.pixels_per_metre);
+        out.json().key("area").value(roundSignificant(totalArea(pieces)));
+        out.endAsArea(pieces);
+    }
+}
+
 }  // namespace
 
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
@@ -117,6 +166,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.json().key("area").value(roundSignificant(totalArea(pieces)));
         out.endAsArea(pieces);
     }
+    writeDensities(out, coverage);
     for (const SensorView& view : coverage.sensors) {
         out.begin(view.id, view.kind->keyword, "placement");
         out.json().key("heading").value(roundSignificant(view.pose.heading.degrees()));

@@ -12,12 +12,14 @@
 namespace ispace {
 
 /// The cells as a table for other programs: `column,row,x,y,indoor,free,seen`, x and y of the
-/// middle, indoor and free 0 or 1, seen by how many; row by row, the lowest first.
+/// middle, indoor and free 0 or 1, seen by how many; row by row, the lowest first. With cameras
+/// there is `density`, too: the finest of pixelDensities() that one of them has there, or nothing.
 std::string coverageCsv(const Coverage& coverage);
 
 /// The plan as a GeoJSON FeatureCollection in metres of the plan: the indoor region and the free
 /// floor, the floor seen by exactly 1, 2, ... sensors (`keyword` "seen", with `sensors` and
-/// `area`), each sensor as a Point with `heading` and what it sees as an area (`keyword` "view"),
+/// `area`), that which cameras see with the pixels of each of pixelDensities() (`keyword` "density",
+/// with `pixels_per_metre` and `area`), each sensor as a Point with `heading` and what it sees as an area (`keyword` "view"),
 /// and the unseen pieces of the free floor as Points with `area`. Arcs are chords within
 /// kChordError; where regions are not known exactly, cells are outlined instead.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);

@@ -57,6 +57,31 @@ TEST(CoverageGeoJson, OutlinesCellsWhereRegionsAreNotKnown) {
     EXPECT_EQ(count(json, R"("keyword":"view")"), 1U);
 }
 
+/// From above: 500 pixels across are 4 m of floor, 125 pixels a metre.
+const char* const kFromAbove =
+    "ispace size=6,4\ncamera id=above at=0,0,4 tilt=-90 fx=500 pixels=500,500\n";
+
+TEST(CoverageCsv, NamesTheClassOfEachCell) {
+    const Scene scene = sceneOf(kFromAbove);
+    const std::string csv = coverageCsv(coverageOf(scene, 3, 1));
+    EXPECT_EQ(csv,
+              "column,row,x,y,indoor,free,seen,density\n"
+              "0,0,-2,0,1,1,1,recognise\n1,0,0,0,1,1,1,recognise\n2,0,2,0,1,1,1,recognise\n");
+    const std::string none = coverageCsv(coverageOf(scene, 6, 1));
+    EXPECT_EQ(none.substr(none.find('\n') + 1, 18), "0,0,-2.5,0,1,1,0,\n");
+}
+
+TEST(CoverageGeoJson, HasTheFloorOfEachClass) {
+    const Scene scene = sceneOf(kFromAbove);
+    const std::string json = coverageGeoJson(scene, coverageOf(scene, 60, 40));
+    for (
+        const char* part :
+        {R"("id":"density-detect","keyword":"density","type":"region","pixels_per_metre":25,"area":16)",
+         R"("id":"density-recognise","keyword":"density","type":"region","pixels_per_metre":125,"area":16)"})
+        EXPECT_EQ(count(json, part), 1U) << part << '\n' << json;
+    EXPECT_EQ(count(json, "density-identify"), 0U);
+}
+
 TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Scene scene = sceneOf(kHalfSeen);
     Worlds worlds(scene.environment);
