@@ -2,8 +2,6 @@
 #include "net/server.h"
 
 #include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 
 #include <algorithm>
 #include <atomic>
@@ -21,6 +19,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "net/acceptor.h"
 #include "net/connection.h"
 
 namespace ispace {
@@ -32,37 +31,20 @@ using std::chrono::steady_clock;
 
 /// Of the world, and of the clients, before it is the other's turn.
 constexpr auto kTurn = std::chrono::milliseconds(2);
-/// What the system may hold for a client: much of it would be scans that are no longer new.
-constexpr int kSendBuffer = 1 << 16;
 /// Connections beyond those served that get a last message.
 constexpr std::size_t kMaxLingering = 64;
-/// A peer that is gone without a word: asked after a minute of silence, given up after another.
-constexpr int kKeepIdle = 60, kKeepInterval = 10, kKeepCount = 6;
-constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kLastFlush = std::chrono::milliseconds(500);
-
-template <int kName>
-using TcpOption = asio::detail::socket_option::integer<IPPROTO_TCP, kName>;
-
-void prepare(tcp::socket& socket) {
-    error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-    socket.set_option(tcp::socket::keep_alive(true), ignored);
-    socket.set_option(TcpOption<TCP_KEEPIDLE>(kKeepIdle), ignored);
-    socket.set_option(TcpOption<TCP_KEEPINTVL>(kKeepInterval), ignored);
-    socket.set_option(TcpOption<TCP_KEEPCNT>(kKeepCount), ignored);
-    socket.non_blocking(true, ignored);
-}
 
 }  // namespace
 
 struct Server::Data {
-    Data(Simulation& the_simulation, const ServerLimits& the_limits)
-        : simulation(the_simulation), limits(the_limits), state(the_simulation, the_limits) {}
+    Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits)
+        : simulation(the_simulation),
+          limits(the_limits),
+          state(the_simulation, the_limits),
+          acceptor(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {}
     ~Data() { closeAll(); }
 
-    void accept();
     void welcome(tcp::socket socket);
     bool makeRoom();
     void stepped();
@@ -77,32 +59,15 @@ struct Server::Data {
     ServerLimits limits;
     ServerState state;
     asio::io_context io{1};  // one thread runs it
-    tcp::acceptor acceptor{io};
-    asio::steady_timer accept_pause{io}, alarm{io};
+    Acceptor acceptor;
+    asio::steady_timer alarm{io};
     asio::posix::stream_descriptor stopper{io};
     std::optional<WallTime> alarm_time;
-    tcp::endpoint local;
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
 };
 
-void Server::Data::accept() {
-    acceptor.async_accept([this](error_code error, tcp::socket socket) {
-        if (error == asio::error::operation_aborted) return;
-        if (!error) {
-            welcome(std::move(socket));
-            return accept();
-        }
-        // Out of descriptors, or a client that is gone already: it may go better in a while.
-        accept_pause.expires_after(kAcceptPause);
-        accept_pause.async_wait([this](error_code aborted) {
-            if (!aborted) accept();
-        });
-    });
-}
-
 void Server::Data::welcome(tcp::socket socket) {
-    prepare(socket);
     sweep();
     const bool full = serving >= limits.clients && !makeRoom();
     if (connections.size() >= limits.clients + kMaxLingering) {
@@ -195,8 +160,7 @@ void Server::Data::sweep() {
 
 void Server::Data::end() {
     error_code ignored;
-    acceptor.close(ignored);
-    accept_pause.cancel();
+    acceptor.close();
     stopper.close(ignored);
     for (const auto& connection : connections) connection->end();
     sweep();
@@ -214,32 +178,13 @@ void Server::Data::closeAll() {
 }
 
 Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits)
-    : data_(std::make_unique<Data>(simulation, limits)) {
-    try {
-        const tcp::endpoint wanted(asio::ip::make_address(endpoint.address), endpoint.port);
-        data_->acceptor.open(wanted.protocol());
-        data_->acceptor.set_option(tcp::acceptor::reuse_address(true));
-        data_->acceptor.bind(wanted);
-        data_->acceptor.listen();
-        data_->local = data_->acceptor.local_endpoint();
-    } catch (const boost::system::system_error& error) {
-        std::string where = "cannot listen on ";
-        where.append(endpoint.address).append(":").append(std::to_string(endpoint.port));
-        // Asio's own category knows no std::errc.
-        throw std::system_error(error.code().value(), std::system_category(), where);
-    }
-    data_->accept();
-}
+    : data_(std::make_unique<Data>(simulation, endpoint, limits)) {}
 
 Server::~Server() = default;
 
-std::string Server::address() const {
-    std::string out = data_->local.address().to_string();
-    if (data_->local.address().is_v6()) out.insert(0, 1, '[').append("]");
-    return out.append(":").append(std::to_string(port()));
-}
+std::string Server::address() const { return data_->acceptor.address(); }
 
-std::uint16_t Server::port() const { return data_->local.port(); }
+std::uint16_t Server::port() const { return data_->acceptor.port(); }
 
 std::size_t Server::clients() const { return data_->serving; }
 
