@@ -4,12 +4,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 namespace ispace {
 
 Color mixed(Color a, Color b, double share) {
     const auto mix = [share](double from, double to) { return from + share * (to - from); };
     return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), a.alpha};
+}
+
+std::string cssColor(Color color) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string out = "#";
+    const auto add = [&](double part) {
+        const auto value = static_cast<std::size_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255));
+        out += kDigits[value / 16];
+        out += kDigits[value % 16];
+    };
+    for (const double part : {color.red, color.green, color.blue}) add(part);
+    if (color.alpha < 1) add(color.alpha);
+    return out;
 }
 
 Color seriesColor(std::size_t index) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace ispace {
 
@@ -24,6 +25,9 @@ struct Color {
     }
     friend bool operator==(const Color&, const Color&) = default;
 };
+
+/// As style sheets have it: "#1f2328", with two more digits if it is translucent.
+std::string cssColor(Color color);
 
 /// Number of distinct colours of seriesColor().
 constexpr std::size_t kSeriesColors = 7;

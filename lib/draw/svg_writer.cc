@@ -284,15 +284,7 @@ class SvgWriter {
         out_.append(" ").append(name).append("=\"").append(value) += '"';
     }
     void color(std::string_view what, Color color) {
-        constexpr std::string_view kDigits = "0123456789abcdef";
-        out_.append(" ").append(what).append("=\"#");
-        for (const double part : {color.red, color.green, color.blue}) {
-            const auto value =
-                static_cast<std::size_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255));
-            out_ += kDigits[value / 16];
-            out_ += kDigits[value % 16];
-        }
-        out_ += '"';
+        attribute(what, cssColor(Color{color.red, color.green, color.blue}));
         if (color.alpha < 1) attribute(std::string(what) + "-opacity", number(color.alpha));
     }
     [[nodiscard]] std::string number(double value) const {
