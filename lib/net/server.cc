@@ -21,6 +21,7 @@
 #include "base/number.h"
 #include "net/acceptor.h"
 #include "net/connection.h"
+#include "net/web_server.h"
 
 namespace ispace {
 
@@ -65,6 +66,7 @@ struct Server::Data {
     std::optional<WallTime> alarm_time;
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
+    std::optional<WebServer> web;
 };
 
 void Server::Data::welcome(tcp::socket socket) {
@@ -107,6 +109,7 @@ bool Server::Data::makeRoom() {
 
 void Server::Data::stepped() {
     for (const auto& connection : connections) connection->stepped();
+    if (web) web->stepped();
 }
 
 /// Runs handlers that are ready, for one turn at most.
@@ -115,6 +118,7 @@ void Server::Data::serveClients() {
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
     for (const auto& connection : connections)
         if (connection->waiting()) connection->stepped();
+    if (web) web->serve();
     relieve();
     sweep();
 }
@@ -163,9 +167,10 @@ void Server::Data::end() {
     acceptor.close();
     stopper.close(ignored);
     for (const auto& connection : connections) connection->end();
+    if (web) web->end();
     sweep();
     const WallTime deadline = steady_clock::now() + kLastFlush;
-    while (!connections.empty() && steady_clock::now() < deadline) {
+    while ((!connections.empty() || (web && web->busy())) && steady_clock::now() < deadline) {
         io.run_one_until(deadline);
         sweep();
     }
@@ -174,6 +179,7 @@ void Server::Data::end() {
 
 void Server::Data::closeAll() {
     for (const auto& connection : connections) connection->close();
+    if (web) web->closeAll();
     sweep();
 }
 
@@ -185,6 +191,10 @@ Server::~Server() = default;
 std::string Server::address() const { return data_->acceptor.address(); }
 
 std::uint16_t Server::port() const { return data_->acceptor.port(); }
+
+std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title) {
+    return data_->web.emplace(data_->io, data_->state, endpoint, title).url();
+}
 
 std::size_t Server::clients() const { return data_->serving; }
 

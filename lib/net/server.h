@@ -66,6 +66,10 @@ class Server {
     /// "127.0.0.1:40123"
     [[nodiscard]] std::string address() const;
     [[nodiscard]] std::uint16_t port() const;
+    /// Shows the running world to browsers, too, at an endpoint of its own. Call at most once,
+    /// before run(). \param title of the page \returns "http://127.0.0.1:40124/"
+    /// \throws std::system_error naming the endpoint
+    std::string serveWeb(const Endpoint& endpoint, const std::string& title);
     /// Number of clients served now; callable from any thread.
     [[nodiscard]] std::size_t clients() const;
 

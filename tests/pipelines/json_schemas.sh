@@ -30,6 +30,15 @@ coverage "$data/square.env" "$data/half.3dm" --compare "$data/whole.3dm" --json 
 arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy grid -X 3 -Y 3 -q \
     --trace tried.jsonl -o best.3dm
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
+# What a browser gets.
+sed '$a mat id=under at=0,1\ngate id=way at=1,1\nhuman id=her at=1,-1' "$data/session.3dm" >web.3dm
+simrun "$data/square.env" web.3dm --any-environment -q --web 127.0.0.1:0 >web_begin.json &
+server=$!
+trap 'kill -9 "$server" 2>/dev/null || true; cleanup' EXIT
+for _ in $(seq 1000); do [ -s web_begin.json ] || sleep 0.02; done
+python3 "$source_dir/tests/web/web_client.py" "$(sed 's/.*"web":"\([^"]*\)".*/\1/' web_begin.json)" >web.jsonl
+kill "$server"
+wait "$server"
 exec 2>&3
 
 python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \

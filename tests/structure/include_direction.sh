@@ -26,7 +26,7 @@ violations() {
         layer("io", "plan"); layer("trace", "layout"); layer("render", "trace")
         layer("sense", "render")
         layer("cover", "sense plan"); layer("view", "cover")
-        layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim"); layer("client", "")
+        layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim plan"); layer("client", "")
         layer("cli", "place view net io")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \

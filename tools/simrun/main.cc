@@ -27,12 +27,14 @@ namespace {
 using namespace ispace;
 
 /// The first line of output: clients can connect now.
-void announce(const Server& server) {
+void announce(const Server& server, const std::string& web) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-simrun/1");
     json.key("listen").value(server.address());
     json.key("p2os").beginObject().endObject();
-    json.key("scip").beginObject().endObject().endObject();
+    json.key("scip").beginObject().endObject();
+    if (!web.empty()) json.key("web").value(web);
+    json.endObject();
     writeAll("-", json.take() + '\n');
     // Clients are not cut off because nobody reads the warnings any more.
     std::signal(SIGPIPE, SIG_IGN);
@@ -130,6 +132,9 @@ void simrun(const SimrunCommand& command) {
 
     checkRecord(options, world);
     Server server(simulation, options.listen, withinFileLimit(options.limits));
+    const bool is_file = input.environment_operand != "-";
+    const std::string title = is_file ? baseName(input.environment_operand) : "";
+    const std::string web = options.web ? server.serveWeb(*options.web, title) : "";
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -150,7 +155,7 @@ void simrun(const SimrunCommand& command) {
         simulation.recordWith(*recorder);
     }
     const auto progress = progressOf(simulation, options);
-    announce(server);
+    announce(server, web);
     if (port_file) port_file->commit();
     server.run();
     progress->end();

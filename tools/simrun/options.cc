@@ -89,6 +89,9 @@ void SimrunCommand::declareServer() {
     line_.parsed(
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
+    line_.parsed(
+        "--web", "ADDR:PORT", [&o](const std::string& text) { o.web = parseEndpoint(text); },
+        "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(

@@ -27,6 +27,7 @@ struct SimrunOptions {
     std::string junit;      ///< file; "" without
     std::string port_file;  ///< "" without
     Endpoint listen;
+    std::optional<Endpoint> web;
     std::optional<bool> shutdown;
     ServerLimits limits;
 };

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Driving: a connection with the role ROBOT or PERSON for each one that is driven, as long as it is
+// selected or on its way.
+import {Link, complaint, keysOf} from './link.js';
+
+const kSpeed = {robot: 0.5, person: 1.2}, kTurn = 45;  // of the arrow keys: m/s, degrees a second
+
+/** Degrees within (-180, 180]. */
+function turnTo(angle) {
+  const turn = angle % 360;
+  return turn > 180 ? turn - 360 : turn <= -180 ? turn + 360 : turn;
+}
+
+export class Driver {
+  /** tell(text, bad): says something to people; changed(): something is to be drawn anew */
+  constructor(mover, tell, changed) {
+    Object.assign(this, {mover, tell, changed});
+    this.keys = new Set();
+    this.speeds = '0,0';
+    this.link = new Link({line: line => this.event(line), close: () => { this.gone = true; this.goal = null; this.changed(); }});
+    this.ready = this.link.ask(`${mover.kind === 'person' ? 'PERSON' : 'ROBOT'} ${mover.id}`).then(answer => {
+      if (answer.startsWith('OK')) return true;
+      tell(`${mover.id}: ${complaint(answer)}`, true);
+      this.release();
+      return false;
+    });
+  }
+
+  /** Asks, once it has its role; null if it failed. */
+  async ask(request) {
+    if (!await this.ready || this.gone) return null;
+    const answer = await this.link.ask(request);
+    if (answer.startsWith('OK')) return answer;
+    this.tell(`${this.mover.id}: ${complaint(answer)}`, true);
+    return null;
+  }
+
+  /** Ends of commands. */
+  event(line) {
+    const {id, reason} = keysOf(line);
+    if (!this.command || id !== this.command.id) return;
+    const {tell} = this.command;
+    this.command = null;
+    tell(line.startsWith('DONE') ? 'done' : reason);
+  }
+
+  /** A command that comes to an end: how it ended. */
+  async run(request) {
+    const answer = await this.ask(request);
+    if (!answer) return 'refused';
+    return new Promise(tell => { this.command = {id: keysOf(answer).id, tell}; });
+  }
+
+  /** Goes straight to a place: a turn on the spot, then a run. */
+  async goTo(x, y) {
+    const goal = this.goal = {x, y}, {mover} = this;
+    this.changed();
+    const turn = turnTo(Math.atan2(y - mover.y, x - mover.x) * 180 / Math.PI - mover.heading);
+    let end = Math.abs(turn) < 0.05 ? 'done' : await this.run(`${turn > 0 ? 'LEFT' : 'RIGHT'} ${Math.abs(turn).toFixed(2)}`);
+    if (end === 'done' && this.goal === goal)
+      end = await this.run(`FORWARD ${Math.hypot(x - mover.x, y - mover.y).toFixed(3)}`);
+    if (this.goal !== goal) return;  // a newer one
+    this.goal = null;
+    this.tell(end === 'done' ? `${mover.id} has arrived` : `${mover.id} did not arrive: ${end}`, end !== 'done');
+    this.changed();
+  }
+
+  /** Keeps to the speeds of the arrow keys that are down. */
+  press(key, down) {
+    if (down) this.keys.add(key);
+    else this.keys.delete(key);
+    const held = name => this.keys.has(name) ? 1 : 0;
+    const speed = kSpeed[this.mover.kind] * (held('ArrowUp') - held('ArrowDown'));
+    const turn = kTurn * (held('ArrowLeft') - held('ArrowRight'));
+    const speeds = `${speed},${turn}`;
+    if (speeds === this.speeds) return;
+    this.speeds = speeds;
+    this.goal = null;
+    this.ask(`SPEED ${speed}`);
+    this.ask(`ROTSPEED ${turn}`);
+  }
+
+  stop() {
+    this.keys.clear();
+    this.speeds = '0,0';
+    this.goal = null;
+    this.ask('STOP');
+  }
+
+  /** True if it would leave somebody standing to let go now. */
+  get busy() { return Boolean(this.goal) || this.speeds !== '0,0'; }
+
+  /** Lets go: others may drive it. */
+  release() {
+    this.gone = true;
+    this.link.close();
+  }
+}

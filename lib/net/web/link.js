@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A WebSocket to simrun: lines of the Simulator TCP Protocol, and frames of the world's state.
+
+/** True for a line that answers a request; all others come by themselves. */
+function isAnswer(line) {
+  return /^(OK|ERR|SCAN)\b/.test(line) && !line.includes(' stream=1 ');
+}
+
+export class Link {
+  /** on: {open, close(code), line(text), json(object)}, all optional */
+  constructor(on = {}) {
+    this.on = on;
+    this.waiting = [];  // of each request without an answer, who wants it
+    this.socket = new WebSocket(`ws://${location.host}/ws`);
+    this.socket.onopen = () => this.on.open?.();
+    this.socket.onclose = event => {
+      for (const tell of this.waiting.splice(0)) tell('ERR 0 the connection is closed');
+      this.on.close?.(event.code);
+    };
+    this.socket.onmessage = event => this.receive(event.data);
+  }
+
+  receive(data) {
+    if (typeof data !== 'string') return;
+    if (data.startsWith('{')) return this.on.json?.(JSON.parse(data));
+    for (const line of data.split('\n')) {
+      if (line === '' || line.startsWith('ISPACE ')) continue;
+      if (isAnswer(line)) this.waiting.shift()?.(line);
+      else this.on.line?.(line);
+    }
+  }
+
+  /** The answer to a request, as it comes. */
+  ask(request) {
+    return new Promise(tell => {
+      if (this.socket.readyState > WebSocket.OPEN) return tell('ERR 0 the connection is closed');
+      this.waiting.push(tell);
+      this.send(request);
+    });
+  }
+
+  send(text) {
+    if (this.socket.readyState === WebSocket.OPEN) return this.socket.send(text);
+    this.socket.addEventListener('open', () => this.socket.send(text), {once: true});
+  }
+
+  close() { this.socket.close(1000); }
+}
+
+/** What an error says to people: without its number. */
+export function complaint(answer) { return answer.replace(/^ERR \d+ /, ''); }
+
+/** The keys of a line: {x: '1.000', …} */
+export function keysOf(line) {
+  return Object.fromEntries([...line.matchAll(/(\w+)=(\S+)/g)].map(match => [match[1], match[2]]));
+}

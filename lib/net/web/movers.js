@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What moves, and what it senses, drawn from the newest frame.
+
+const kRad = Math.PI / 180;
+const kTrail = 600;  // places
+const kTrailStep = 0.02;  // metres between them
+
+/** A row of a frame in metres and degrees. */
+function stateOf([x, y, heading, speed, rotspeed, stall, phase]) {
+  return {
+    x: x / 1000, y: y / 1000, heading: heading / 100, speed: speed / 1000, rotspeed: rotspeed / 100,
+    stall: stall === 1, phase: phase / 1000,
+  };
+}
+
+export class Movers {
+  constructor(scene) {
+    this.colors = scene.colors;
+    this.all = scene.movers;
+    this.sensors = scene.sensors;
+    const seers = scene.sensors.filter(sensor => sensor.view);
+    this.colorOf = new Map(seers.map(({id}, i) => [id, scene.colors.series[i % scene.colors.series.length]]));
+    this.scans = new Map();
+    this.floor = new Map();  // mats and gates
+    this.byId = new Map(this.all.map(mover => [mover.id, mover]));
+    for (const mover of this.all) mover.trail = [];
+  }
+
+  take(frame) {
+    frame.movers.forEach((row, i) => {
+      const mover = this.all[i];
+      if (!mover) return;
+      Object.assign(mover, stateOf(row));
+      const last = mover.trail.at(-1);
+      const step = last ? Math.hypot(mover.x - last[0], mover.y - last[1]) : Infinity;
+      if (step < kTrailStep) return;
+      if (step > 2 && last) mover.trail = [];  // put elsewhere
+      mover.trail.push([mover.x, mover.y]);
+      if (mover.trail.length > kTrail) mover.trail.shift();
+    });
+    if (frame.all) this.scans.clear();
+    for (const reading of frame.readings) {
+      if (reading.r) this.scans.set(reading.id, this.pathsOf(reading));
+      else this.floor.set(reading.id, reading);
+    }
+  }
+
+  /** A scan as an area seen and the places it hit, in metres. */
+  pathsOf({pose, first, step, max, r}) {
+    const [x, y] = [pose[0] / 1000, pose[1] / 1000];
+    const [heading, tilt, roll] = pose.slice(2).map(angle => angle / 100 * kRad);
+    const area = new Path2D(), hits = [];
+    const full = step * r.length >= 359.999;
+    if (!full) area.moveTo(x, y);
+    r.forEach((range, i) => {
+      // Rz(heading) Ry(-tilt) Rx(roll) applied to the beam, from above.
+      const bearing = (first + i * step) * kRad, length = range < 0 ? max : range / 1000;
+      const left = Math.sin(bearing) * Math.cos(roll);
+      const ahead = Math.cos(bearing) * Math.cos(tilt) - Math.sin(bearing) * Math.sin(roll) * Math.sin(tilt);
+      const px = x + length * (ahead * Math.cos(heading) - left * Math.sin(heading));
+      const py = y + length * (ahead * Math.sin(heading) + left * Math.cos(heading));
+      if (full && i === 0) area.moveTo(px, py);
+      else area.lineTo(px, py);
+      if (range >= 0) hits.push(px, py);
+    });
+    area.closePath();
+    return {area, hits};
+  }
+
+  draw(context, view, {scans, trails, names, selected}) {
+    this.drawFloorSensors(context, view);
+    if (scans) this.drawScans(context, view, selected);
+    if (trails) this.drawTrails(context, view, selected);
+    this.drawSensors(context, view);
+    for (const mover of this.all) {
+      if (mover.x === undefined) continue;
+      view.inMetres(context);
+      context.translate(mover.x, mover.y);
+      context.rotate(mover.heading * kRad);
+      if (mover.kind === 'robot') this.drawRobot(context, view, mover);
+      else this.drawPerson(context, view, mover);
+      if (mover === selected) this.ring(context, view, mover);
+    }
+    view.inPixels(context);
+    if (names) this.drawNames(context, view);
+  }
+
+  drawScans(context, view, selected) {
+    view.inMetres(context);
+    for (const [id, {area, hits}] of this.scans) {
+      const color = this.colorOf.get(id) ?? this.colors.sensor;
+      const sensor = this.sensors.find(other => other.id === id);
+      const strong = selected && sensor?.on !== undefined && this.all[sensor.on] === selected;
+      context.globalAlpha = strong ? 0.26 : 0.14;
+      context.fillStyle = color;
+      context.fill(area);
+      context.globalAlpha = strong ? 0.9 : 0.65;
+      const size = 2 / view.scale;
+      for (let i = 0; i < hits.length; i += 2) context.fillRect(hits[i] - size / 2, hits[i + 1] - size / 2, size, size);
+    }
+    context.globalAlpha = 1;
+  }
+
+  drawTrails(context, view, selected) {
+    view.inMetres(context);
+    context.lineWidth = 1.5 / view.scale;
+    for (const mover of this.all) {
+      if (mover.trail.length < 2) continue;
+      context.globalAlpha = mover === selected ? 0.9 : 0.4;
+      context.strokeStyle = this.colors[mover.kind];
+      context.beginPath();
+      for (const [x, y] of mover.trail) context.lineTo(x, y);
+      context.lineTo(mover.x, mover.y);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+  }
+
+  drawFloorSensors(context, view) {
+    for (const {id, kind, pose, size} of this.sensors) {
+      if (!size) continue;
+      const {on} = this.floor.get(id) ?? {};
+      view.inMetres(context);
+      context.translate(pose[0], pose[1]);
+      context.rotate(pose[2] * kRad);
+      context.lineWidth = 1.5 / view.scale;
+      context.strokeStyle = kind === 'mat' ? this.colors.mat : this.colors.sensor;
+      context.fillStyle = this.colors.mat + (on ? 'aa' : '33');
+      if (kind === 'gate') context.setLineDash([5 / view.scale, 4 / view.scale]);
+      else context.fillRect(-size[0] / 2, -size[1] / 2, size[0], size[1]);
+      context.strokeRect(-size[0] / 2, -size[1] / 2, size[0], size[1]);
+      context.setLineDash([]);
+    }
+  }
+
+  /** Those with a place of their own: a dot, and where they look. */
+  drawSensors(context, view) {
+    const radius = 4 / view.scale;
+    for (const {id, pose, on, view: span, size} of this.sensors) {
+      if (on !== undefined || size) continue;
+      view.inMetres(context);
+      context.translate(pose[0], pose[1]);
+      context.rotate(pose[2] * kRad);
+      context.fillStyle = context.strokeStyle = this.colorOf.get(id) ?? this.colors.sensor;
+      if (span) {
+        context.globalAlpha = 0.35;
+        context.beginPath();
+        context.moveTo(0, 0);
+        context.arc(0, 0, 5 * radius, span[0] * kRad, span[1] * kRad);
+        context.fill();
+        context.globalAlpha = 1;
+      }
+      context.beginPath();
+      context.arc(0, 0, radius, 0, 2 * Math.PI);
+      context.fill();
+      context.lineWidth = 1.5 / view.scale;
+      context.strokeStyle = '#fff';
+      context.stroke();
+    }
+  }
+
+  drawRobot(context, view, {length, width, center, radius, stall}) {
+    const least = 4 / view.scale;  // seen from afar it is a dot
+    context.fillStyle = this.colors.robot;
+    context.strokeStyle = stall ? '#d55e00' : '#fff';
+    context.lineWidth = (stall ? 3 : 1.2) / view.scale;
+    context.beginPath();
+    if (length > 0 && radius > least)
+      context.roundRect(center - length / 2, -width / 2, length, width, 0.18 * Math.min(length, width));
+    else
+      context.arc(0, 0, Math.max(radius, least), 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
+    const tip = length > 0 ? center + length / 2 : radius, size = Math.max(radius, least);
+    context.fillStyle = '#fff';
+    context.beginPath();
+    context.moveTo(0.85 * tip, 0);
+    context.lineTo(0.85 * tip - 0.5 * size, 0.32 * size);
+    context.lineTo(0.85 * tip - 0.5 * size, -0.32 * size);
+    context.fill();
+  }
+
+  /** Feet that step, shoulders, nose, head. */
+  drawPerson(context, view, {height, stall, speed, phase}) {
+    const tall = Math.max(height, 12 / view.scale);
+    const stride = Math.min(1, Math.abs(speed) / 0.5) * 0.13 * tall * Math.sin(2 * Math.PI * phase);
+    context.fillStyle = this.colors.ink;
+    for (const side of [1, -1]) {
+      context.beginPath();
+      context.ellipse(side * stride, side * 0.06 * tall, 0.07 * tall, 0.03 * tall, 0, 0, 2 * Math.PI);
+      context.fill();
+    }
+    context.fillStyle = this.colors.person;
+    context.strokeStyle = stall ? '#d55e00' : '#fff';
+    context.lineWidth = 1.2 / view.scale;
+    context.globalAlpha = 0.75;
+    context.beginPath();
+    context.ellipse(0, 0, 0.1 * tall, 0.25 * tall, 0, 0, 2 * Math.PI);
+    context.fill();
+    context.globalAlpha = 1;
+    context.stroke();
+    context.beginPath();
+    context.moveTo(0.12 * tall, 0);
+    context.lineTo(0.03 * tall, 0.045 * tall);
+    context.lineTo(0.03 * tall, -0.045 * tall);
+    context.fill();
+    context.beginPath();
+    context.arc(0, 0, 0.065 * tall, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
+  }
+
+  ring(context, view, {radius}) {
+    context.strokeStyle = '#0072b2';
+    context.lineWidth = 2.5 / view.scale;
+    context.beginPath();
+    context.arc(0, 0, Math.max(radius, 5 / view.scale) + 5 / view.scale, 0, 2 * Math.PI);
+    context.stroke();
+  }
+
+  drawNames(context, view) {
+    if (this.all.length > 200) return;
+    context.font = '600 12px system-ui, sans-serif';
+    context.textAlign = 'center';
+    context.lineWidth = 3;
+    context.lineJoin = 'round';
+    context.strokeStyle = '#fffdf8d9';
+    const write = (text, x, y, color) => {
+      context.strokeText(text, x, y);
+      context.fillStyle = color;
+      context.fillText(text, x, y);
+    };
+    for (const {id, kind, x, y, radius} of this.all) {
+      if (x === undefined) continue;
+      const [px, py] = view.toPage(x, y);
+      write(id, px, py + Math.max(radius * view.scale, 6) + 14, this.colors[kind]);
+    }
+    for (const {id, pose, on} of this.sensors) {
+      if (on !== undefined || this.sensors.length > 60) continue;
+      const [px, py] = view.toPage(pose[0], pose[1]);
+      const gate = this.floor.get(id);
+      write(gate?.in === undefined ? id : `${id} ${gate.in} in, ${gate.out} out`, px, py - 9, this.colors.faint);
+    }
+  }
+
+  /** Who is at a pixel; a finger's width counts. */
+  at(view, px, py) {
+    let best, least = Infinity;
+    for (const mover of this.all) {
+      if (mover.x === undefined) continue;
+      const [x, y] = view.toPage(mover.x, mover.y), away = Math.hypot(px - x, py - y);
+      if (away < least && away <= Math.max(14, mover.radius * view.scale + 4)) {
+        least = away;
+        best = mover;
+      }
+    }
+    return best;
+  }
+}

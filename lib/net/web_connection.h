@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/net, since it includes Asio.
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <memory>
+
+#include "net/server_state.h"
+#include "net/web_frames.h"
+#include "net/web_origin.h"
+
+namespace ispace {
+
+/// What the connections of one web server share.
+struct WebShare {
+    ServerState* state;
+    WebFrames* frames;
+    const WebOrigin* origin;
+};
+
+/// A browser's connection: requests of HTTP for the page's files, until one of them makes it a
+/// WebSocket. There each message is a request of the Simulator TCP Protocol (or several lines),
+/// answered by a Session as there, with one more: FRAME is answered by the next frame, a JSON
+/// object, as soon as it is newer than the last one; a new scene comes before it.
+///
+/// Nothing blocks, and what one connection takes of memory is bounded: one message each way,
+/// replies up to a limit, one frame. Handlers keep it alive until it is closed.
+class WebConnection {
+  public:
+    virtual ~WebConnection() = default;
+
+    /// Like those of Session.
+    virtual void stepped() = 0;
+    [[nodiscard]] virtual bool waiting() const = 0;
+    /// True if it is to get the next frame.
+    [[nodiscard]] virtual bool wantsFrame() const = 0;
+    /// Sends it the newest frame, if it has not got that.
+    virtual void offerFrame() = 0;
+    /// Closes it if the other side has not read for too long.
+    virtual void checkPatience(WallTime now) = 0;
+    /// True once it is a WebSocket.
+    [[nodiscard]] virtual bool isSocket() const = 0;
+    /// Ends what is under way, sends what is pending and closes.
+    virtual void end() = 0;
+    virtual void close() = 0;
+    [[nodiscard]] virtual bool closed() const = 0;
+};
+
+/// Serves a browser from now on.
+std::shared_ptr<WebConnection> serveBrowser(boost::asio::ip::tcp::socket socket,
+                                            const WebShare& share);
+
+}  // namespace ispace

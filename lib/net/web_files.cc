@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/web_files.h"
+
+#include <algorithm>
+#include <array>
+
+// The assembler copies the files into the program. They stand in lib/net/web, which CMake names.
+// NOLINTBEGIN(hicpp-no-assembler,cppcoreguidelines-macro-usage)
+#define ISPACE_WEB_FILE(symbol, file)                                                       \
+    asm(".pushsection .rodata\n" #symbol ":\n.incbin \"" ISPACE_WEB "/" file "\"\n" #symbol \
+        "End:\n.popsection\n");                                                             \
+    extern "C" const char symbol[], symbol##End[]
+// NOLINTEND(hicpp-no-assembler,cppcoreguidelines-macro-usage)
+
+ISPACE_WEB_FILE(kWebPage, "index.html");
+ISPACE_WEB_FILE(kWebStyle, "style.css");
+ISPACE_WEB_FILE(kWebIcon, "icon.svg");
+ISPACE_WEB_FILE(kWebMain, "main.js");
+ISPACE_WEB_FILE(kWebLink, "link.js");
+ISPACE_WEB_FILE(kWebView, "view.js");
+ISPACE_WEB_FILE(kWebPlan, "plan.js");
+ISPACE_WEB_FILE(kWebMovers, "movers.js");
+ISPACE_WEB_FILE(kWebDrive, "drive.js");
+
+namespace ispace {
+
+const WebFile* webFile(std::string_view path) {
+    const auto between = [](const char* begin, const char* end) {
+        return std::string_view(begin, static_cast<std::size_t>(end - begin));
+    };
+    constexpr std::string_view kScript = "text/javascript; charset=utf-8";
+    static const std::array<WebFile, 9> files = {{
+        {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
+        {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
+        {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
+        {"/main.js", kScript, between(kWebMain, kWebMainEnd)},
+        {"/link.js", kScript, between(kWebLink, kWebLinkEnd)},
+        {"/view.js", kScript, between(kWebView, kWebViewEnd)},
+        {"/plan.js", kScript, between(kWebPlan, kWebPlanEnd)},
+        {"/movers.js", kScript, between(kWebMovers, kWebMoversEnd)},
+        {"/drive.js", kScript, between(kWebDrive, kWebDriveEnd)},
+    }};
+    const auto* const found = std::find_if(files.begin(), files.end(),
+                                           [&](const WebFile& file) { return file.path == path; });
+    return found == files.end() ? nullptr : found;
+}
+
+}  // namespace ispace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/web_server.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+using boost::asio::ip::tcp;
+using std::chrono::steady_clock;
+
+/// A browser uses some six for files and one for each robot it drives.
+constexpr std::size_t kMaxConnections = 64;
+
+}  // namespace
+
+WebServer::WebServer(boost::asio::io_context& io, ServerState& state, const Endpoint& endpoint,
+                     std::string title)
+    : frames_(state.simulation(), std::move(title)),
+      acceptor_(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }),
+      origin_(acceptor_.host(), acceptor_.port()),
+      share_{&state, &frames_, &origin_},
+      alarm_(io) {}
+
+/// If all places are taken, the oldest connection goes that has not become a WebSocket.
+void WebServer::welcome(tcp::socket socket) {
+    sweep();
+    if (connections_.size() >= kMaxConnections) {
+        const auto oldest =
+            std::find_if(connections_.begin(), connections_.end(),
+                         [](const auto& connection) { return !connection->isSocket(); });
+        if (oldest == connections_.end()) return;
+        (*oldest)->close();
+        sweep();
+    }
+    connections_.push_back(serveBrowser(std::move(socket), share_));
+}
+
+void WebServer::stepped() {
+    for (const auto& connection : connections_) connection->stepped();
+}
+
+void WebServer::serve() {
+    const auto now = steady_clock::now();
+    bool wanted = false;
+    for (const auto& connection : connections_) {
+        if (connection->waiting()) connection->stepped();
+        connection->checkPatience(now);
+        wanted = wanted || connection->wantsFrame();
+    }
+    sweep();
+    if (!wanted) return;
+    frames_.look(now);
+    for (const auto& connection : connections_) connection->offerFrame();
+    if (alarm_time_ == frames_.nextLook()) return;
+    // Wakes the loop, which then comes here.
+    alarm_time_ = frames_.nextLook();
+    alarm_.expires_at(alarm_time_);
+    alarm_.async_wait([](boost::system::error_code) {});
+}
+
+void WebServer::sweep() {
+    std::erase_if(connections_, [](const auto& connection) { return connection->closed(); });
+}
+
+bool WebServer::busy() {
+    sweep();
+    return !connections_.empty();
+}
+
+void WebServer::end() {
+    acceptor_.close();
+    alarm_.cancel();
+    frames_.look(std::max(steady_clock::now(), frames_.nextLook()));
+    for (const auto& connection : connections_) connection->end();
+    sweep();
+}
+
+void WebServer::closeAll() {
+    for (const auto& connection : connections_) connection->close();
+    sweep();
+}
+
+}  // namespace ispace

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/web_server.h"
+
+#include <gtest/gtest.h>
+
+#include <list>
+#include <system_error>
+
+#include "net/test_client.h"
+#include "net/test_web.h"
+
+namespace ispace {
+namespace {
+
+using testing::Browser;
+using testing::WebRunning;
+
+bool has(std::string_view text, std::string_view piece) {
+    return text.find(piece) != std::string_view::npos;
+}
+
+TEST(WebServer, ServesItsPage) {
+    const WebRunning server;
+    Browser browser(server);
+    const auto page = browser.get("/");
+    EXPECT_EQ(page.result_int(), 200U);
+    EXPECT_EQ(page["Content-Type"], "text/html; charset=utf-8");
+    EXPECT_EQ(page["X-Content-Type-Options"], "nosniff");
+    EXPECT_TRUE(has(std::string(page["Content-Security-Policy"]), "default-src 'none'"));
+    EXPECT_TRUE(page.body().starts_with("<!doctype html>"));
+    for (const char* file : {"/style.css", "/icon.svg", "/main.js", "/link.js", "/view.js",
+                             "/plan.js", "/movers.js", "/drive.js"}) {
+        EXPECT_TRUE(has(page.body(), file) || has(browser.get("/main.js").body(), file)) << file;
+        EXPECT_EQ(browser.get(file).result_int(), 200U) << file;
+    }
+    EXPECT_EQ(browser.get("/main.js?again").result_int(), 200U);
+}
+
+TEST(WebServer, PageAsksNobodyElse) {
+    const WebRunning server;
+    Browser browser(server);
+    for (const char* file : {"/", "/style.css", "/main.js", "/link.js", "/view.js", "/plan.js",
+                             "/movers.js", "/drive.js"}) {
+        const std::string text = browser.get(file).body();
+        EXPECT_FALSE(has(text, "http://") || has(text, "https://") || has(text, "@import")) << file;
+    }
+}
+
+TEST(WebServer, RefusesWhatItDoesNotHave) {
+    const WebRunning server;
+    Browser browser(server);
+    EXPECT_EQ(browser.get("/../../etc/passwd").result_int(), 404U);
+    EXPECT_EQ(browser.get("/", {}, "DELETE").result_int(), 405U);
+    const auto head = browser.get("/", {}, "HEAD");
+    EXPECT_EQ(head.result_int(), 200U);
+    EXPECT_TRUE(head.body().empty());
+    EXPECT_EQ(Browser(server).get("/", {{"Content-Length", "5"}}).result_int(), 413U);
+    EXPECT_EQ(Browser(server).get("/", {{"X", std::string(9000, 'x')}}).result_int(), 431U);
+}
+
+TEST(WebServer, IsAskedByItsOwnName) {
+    const WebRunning server;
+    EXPECT_EQ(Browser(server).get("/", {{"Host", "evil.example"}}).result_int(), 403U);
+    EXPECT_EQ(Browser(server).tryToOpen({{"Host", "evil.example"}}), 403U);
+    EXPECT_EQ(Browser(server).tryToOpen({{"Origin", "http://evil.example"}}), 403U);
+    EXPECT_EQ(Browser(server).tryToOpen({{"Origin", "null"}}), 403U);
+    EXPECT_EQ(Browser(server).tryToOpen({}, "/"), 404U);
+    EXPECT_EQ(Browser(server).tryToOpen({{"Origin", "http://" + server.host()}}), 101U);
+    EXPECT_EQ(Browser(server).tryToOpen(), 101U) << "no browser";
+}
+
+TEST(WebServer, NamesThePortThatIsTaken) {
+    const WebRunning server;
+    testing::TestWorld room;
+    Server second(room.simulation, parseEndpoint("127.0.0.1:0"));
+    EXPECT_THROW(second.serveWeb(parseEndpoint(server.host()), ""), std::system_error);
+}
+
+TEST(WebSocket, AnswersTheProtocol) {
+    const WebRunning server;
+    Browser world(server), robot(server);
+    world.take("WORLD");
+    EXPECT_EQ(world.ask("TIME"), "OK TIME t=0.000 steps=0\n");
+    robot.take("ROBOT r2");
+    EXPECT_EQ(robot.ask("FORWARD 0.25"), "OK FORWARD id=1 distance=0.25\n");
+    EXPECT_EQ(world.ask("STEP 10"), "OK STEP n=10 t=1.000\n");
+    EXPECT_EQ(robot.receive(), "DONE id=1 t=1.000\n");
+    EXPECT_EQ(robot.ask("QUIT"), "OK QUIT\n");
+    EXPECT_EQ(robot.receive(), "close 1000");
+}
+
+TEST(WebSocket, SharesTheWorldWithOtherClients) {
+    const WebRunning server;
+    testing::Client client(server.port());
+    client.take("ROBOT r1");
+    Browser browser(server);
+    browser.take("");
+    EXPECT_TRUE(browser.ask("ROBOT r1").starts_with("ERR 409 "));
+    client.vanish();
+    while (!browser.ask("ROBOT r1").starts_with("OK ROBOT r1")) continue;
+}
+
+TEST(WebSocket, RequestsWaitForTheEndOfAStep) {
+    const WebRunning server;
+    Browser world(server);
+    world.take("WORLD");
+    world.send("STEP 2\nTIME");
+    world.send("QUIT");
+    std::string said;
+    for (std::string message; !message.starts_with("close"); said += message)
+        message = world.receive();
+    EXPECT_EQ(said, "OK STEP n=2 t=0.200\nOK TIME t=0.200 steps=2\nOK QUIT\nclose 1000");
+}
+
+TEST(WebSocket, BinaryScansAreNoText) {
+    const WebRunning server;
+    Browser laser(server);
+    laser.take("LASER l1");
+    EXPECT_TRUE(has(laser.ask("SCAN"), " r=-,7.000,-\n"));
+    EXPECT_TRUE(laser.isText());
+    laser.ask("BINARY on");
+    const std::string scan = laser.ask("SCAN");
+    EXPECT_TRUE(has(scan, " bytes=12\n"));
+    EXPECT_EQ(scan.size(), scan.find('\n') + 1 + 12);
+    EXPECT_FALSE(laser.isText());
+}
+
+TEST(WebSocket, SendsTheSceneOnceAndFramesThatAreNew) {
+    const WebRunning server;
+    Browser watcher(server), world(server);
+    watcher.take("");
+    const std::string scene = watcher.ask("FRAME");
+    EXPECT_TRUE(scene.starts_with("{\"schema\":\"ispace-web-scene/1\",\"scene\":0,")) << scene;
+    EXPECT_TRUE(has(scene, "\"title\":\"room.env\""));
+    const std::string first = watcher.receive();
+    EXPECT_TRUE(first.starts_with(
+        "{\"schema\":\"ispace-web-frame/1\",\"frame\":1,\"scene\":0,\"t\":0.000,\"steps\":0,"))
+        << first;
+    EXPECT_TRUE(has(first, "\"all\":true")) << first;
+    watcher.send("FRAME");  // nothing is new before the world takes a step
+    world.take("WORLD");
+    EXPECT_EQ(world.ask("STEP"), "OK STEP n=1 t=0.100\n");
+    const std::string second = watcher.receive();
+    EXPECT_TRUE(has(second, "\"frame\":2,")) << second;
+    EXPECT_TRUE(has(second, "\"t\":0.100")) << second;
+    EXPECT_TRUE(has(second, "\"all\":false")) << second;
+}
+
+TEST(WebSocket, SendsOnlyTheNewestFrame) {
+    const WebRunning server({Clock::Kind::Fast, 1});
+    Browser watcher(server);
+    watcher.take("");
+    watcher.ask("FRAME");
+    const auto numberOf = [](const std::string& frame) {
+        return std::stoi(frame.substr(frame.find("\"frame\":") + 8));
+    };
+    const int first = numberOf(watcher.receive());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    // Nobody asked: none was made.
+    EXPECT_LE(numberOf(watcher.ask("FRAME")), first + 2);
+}
+
+TEST(WebSocket, RefusesMessagesThatAreTooLong) {
+    const WebRunning server;
+    Browser browser(server);
+    browser.take("");
+    browser.send(std::string(4097, 'x'));
+    EXPECT_EQ(browser.receive(), "close 1009");
+    Browser other(server);
+    other.take("");
+    EXPECT_TRUE(other.ask(std::string(4096, 'x')).starts_with("ERR 400 ")) << "still there";
+}
+
+TEST(WebSocket, SaysGoodbyeAtTheEndOfTheRun) {
+    WebRunning server;
+    Browser robot(server);
+    robot.take("ROBOT r1");
+    robot.ask("FORWARD 1");
+    std::thread end([&] { server.stop(); });
+    EXPECT_TRUE(robot.receive().starts_with("FAIL id=1 reason=stopped"));
+    std::string last;
+    for (std::string message; !message.starts_with("close"); last = message)
+        message = robot.receive();
+    EXPECT_EQ(last, "close 1001");
+    end.join();
+}
+
+TEST(WebSocket, GarbageHarmsNobody) {
+    const WebRunning server;
+    for (const char* garbage : {"\0\xff\xfe\x80garbage\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
+                                "ISPACE\n\n", "\x16\x03\x01"}) {
+        Browser browser(server);
+        boost::asio::write(browser.raw(), boost::asio::buffer(std::string(garbage) + "\r\n\r\n"));
+    }
+    Browser cut(server);
+    cut.take("");
+    boost::asio::write(cut.raw(), boost::asio::buffer(std::string("\xff\xff\xff\xff", 4)));
+    EXPECT_TRUE(Browser(server).take("WORLD").ask("TIME").starts_with("OK TIME"));
+}
+
+/// Connections that ask for nothing give way.
+TEST(WebServer, HasPlaceForNewcomersAmongIdlers) {
+    const WebRunning server({Clock::Kind::Real, 1});
+    std::list<Browser> idlers;
+    for (int i = 0; i < 200; ++i) idlers.emplace_back(server);
+    EXPECT_EQ(Browser(server).get("/").result_int(), 200U);
+    EXPECT_TRUE(Browser(server).take("WORLD").ask("TIME").starts_with("OK TIME"));
+}
+
+TEST(WebServer, WhoNeverReadsHoldsNoMoreThanAFrame) {
+    const WebRunning server({Clock::Kind::Fast, 1});
+    Browser deaf(server), other(server);
+    deaf.take("LASER l1");
+    deaf.send("STREAM");
+    for (int i = 0; i < 2000; ++i) deaf.send("FRAME");
+    other.take("WORLD");
+    EXPECT_TRUE(other.ask("FRAME").starts_with("{\"schema\""));
+    EXPECT_TRUE(has(other.receive(), "\"frame\":"));
+    EXPECT_TRUE(other.ask("PAUSE").starts_with("OK PAUSE"));
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What people do on the page happens in the world: keys, drags, buttons, the pad of phones."""
+
+import socket
+import time
+
+from page import Page
+from running import Run, check, eventually, skip
+
+try:
+    from selenium.webdriver import ActionChains, Keys
+except ImportError:
+    skip("no selenium here (Debian: python3-selenium)")
+
+
+def ask(run, *requests):
+    """The answers of a connection of its own."""
+    with socket.create_connection(("127.0.0.1", run.port)) as client:
+        lines = client.makefile("rw", newline="\n")
+        lines.readline()
+        answers = []
+        for request in requests:
+            lines.write(request + "\n")
+            lines.flush()
+            answers.append(lines.readline().rstrip("\n"))
+        return answers
+
+
+def pose(run, mover):
+    """x and y as the server says them."""
+    poses = ask(run, "WORLD", "POSES")[1].split("poses=")[1].split()[0]
+    for row in poses.split(";"):
+        name, x, y = row.split(",")[:3]
+        if name == mover:
+            return float(x), float(y)
+
+
+def drives_by_keys(run, page):
+    page.select("r1")
+    page.part("map").click()  # on the floor: nothing is selected any more
+    page.select("r1")
+    start = pose(run, "r1")
+    actions = ActionChains(page.browser)
+    actions.key_down(Keys.ARROW_UP).perform()
+    eventually("r1 moves", lambda: pose(run, "r1")[0] > start[0] + 0.2)
+    check(page.facts()["speed"] > 0, "the page does not show its speed")
+    ActionChains(page.browser).key_up(Keys.ARROW_UP).perform()
+    eventually("r1 stops", lambda: page.facts()["speed"] == 0)
+    check(abs(page.facts()["x"] - pose(run, "r1")[0]) < 0.002, "the page shows another place")
+    heading = page.facts()["heading"]
+    ActionChains(page.browser).key_down(Keys.ARROW_LEFT).perform()
+    eventually("r1 turns left", lambda: page.facts()["heading"] > heading + 10)
+    ActionChains(page.browser).key_up(Keys.ARROW_LEFT).perform()
+    eventually("r1 turns no more", lambda: page.facts()["turn"] == 0)
+
+
+def holds_and_frees(run, page):
+    """Who is driven belongs to the page, until something else is selected."""
+    check(ask(run, "ROBOT r1")[0].startswith("ERR 409"), "r1 is free while the page drives it")
+    page.select("r2")
+    eventually("r1 is free", lambda: ask(run, "ROBOT r1")[0].startswith("OK ROBOT r1"))
+
+
+def follows(page):
+    page.select("r1")
+    page.click("follow")
+    width, height = page.map_size()
+    eventually("r1 is in the middle",
+               lambda: near(page.centers("#0072b2"), (width / 2, height / 2), 3))
+    return width, height
+
+
+def near(found, wanted, most):
+    return found and abs(found[0] - wanted[0]) <= most and abs(found[1] - wanted[1]) <= most
+
+
+def drags_a_goal(run, page):
+    """Followed, the robot is in the middle: from there its goal is dragged."""
+    follows(page)
+    x, y = pose(run, "r1")
+    ActionChains(page.browser).move_to_element(page.part("map")).click_and_hold().move_by_offset(
+        60, 20).move_by_offset(60, 20).release().perform()
+    eventually("r1 has arrived", lambda: "r1 has arrived" in page.log())
+    after = pose(run, "r1")
+    check(after[0] > x + 0.5 and after[1] < y - 0.1, f"from {x, y} it went to {after}")
+    width, height = page.map_size()
+    eventually("r1 is in the middle still",
+               lambda: near(page.centers("#0072b2"), (width / 2, height / 2), 3))
+
+
+def pauses(run, page):
+    page.click("run")
+    eventually("the page says so", lambda: page.text("pace") == "paused")
+    paused = page.time()
+    time.sleep(0.5)
+    check(page.time() == paused, "the clock goes on")
+    before = ask(run, "WORLD", "TIME")[1]
+    page.click("step")
+    eventually("a step is taken", lambda: ask(run, "WORLD", "TIME")[1] != before)
+    steps = [int(text.split("steps=")[1]) for text in (before, ask(run, "WORLD", "TIME")[1])]
+    check(steps[1] == steps[0] + 1, f"not one step: {steps}")
+    # By the keyboard alone.
+    page.part("map").send_keys(" ")
+    eventually("time goes on", lambda: page.time() > paused + 0.2)
+    check(page.text("run") == "Pause", "the button does not know")
+
+
+def zooms(page):
+    page.click("fit")
+    page.click("scans")
+    def walls():
+        return page.colors().get("#24292f", 0)
+    fit = walls()
+    for _ in range(3):
+        page.click("farther")
+    eventually("the room is smaller", lambda: walls() < 0.6 * fit)
+    page.click("fit")
+    eventually("all of it again", lambda: abs(walls() - fit) < 0.05 * fit)
+
+
+def drives_by_touch(run):
+    with Page(run.url, 400, 800, touch=True) as page:
+        page.select("r2")
+        before = pose(run, "r2")
+        forward = page.browser.find_element("css selector", "#pad button[data-key=ArrowUp]")
+        ActionChains(page.browser).click_and_hold(forward).perform()
+        eventually("r2 moves", lambda: not near(pose(run, "r2"), before, 0.1))
+        ActionChains(page.browser).release(forward).perform()
+        eventually("r2 stops", lambda: page.facts()["speed"] == 0)
+        page.screenshot("pad_400.png")
+
+
+def tells_the_end(run, page):
+    check(run.stop() == 0, "simrun did not end well")
+    eventually("the page says so", lambda: page.text("banner") == "The run has ended.")
+
+
+with Run() as run:
+    with Page(run.url) as page:
+        drives_by_keys(run, page)
+        holds_and_frees(run, page)
+        drags_a_goal(run, page)
+        pauses(run, page)
+        page.screenshot("driven_1280.png")
+        zooms(page)
+        drives_by_touch(run)
+        tells_the_end(run, page)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page of simrun --web as people use it: read off the screen, clicked and typed at."""
+
+import os
+
+from running import check, eventually, start_browser
+
+
+class Page:
+    def __init__(self, url, width=1280, height=800, touch=False):
+        self.browser = start_browser(width, height, touch)
+        self.browser.get(url)
+        eventually("a first frame", lambda: self.text("time") != "–")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind is None:
+            errors = [entry for entry in self.browser.get_log("browser")
+                      if entry["level"] == "SEVERE"]
+            check(not errors, f"the browser complains: {errors}")
+        self.browser.quit()
+
+    def part(self, name):
+        return self.browser.find_element("id", name)
+
+    def text(self, name):
+        return self.part(name).text
+
+    def time(self):
+        return float(self.text("time").split()[0])
+
+    def log(self):
+        return self.text("log")
+
+    def click(self, name):
+        self.part(name).click()
+
+    def select(self, mover):
+        """By its button in the list."""
+        for button in self.part("movers").find_elements("tag name", "button"):
+            if button.text.split()[0] == mover:
+                button.click()
+                return
+        check(False, f"no {mover} in the list")
+
+    def facts(self):
+        """What the page says of the selected one: {"x": 2.0, …}"""
+        rows = self.browser.execute_script(
+            "return [...document.querySelectorAll('#facts > *')].map(e => e.textContent)")
+        return {name: float(value.split()[0].rstrip("°/s"))
+                for name, value in zip(rows[::2], rows[1::2])}
+
+    def colors(self):
+        """How many pixels of the map have which colour, "#rrggbb"."""
+        return self.browser.execute_script("""
+            const map = document.getElementById('map'), counts = {};
+            const {data} = map.getContext('2d').getImageData(0, 0, map.width, map.height);
+            for (let i = 0; i < data.length; i += 4) {
+              const color = (data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+              counts[color] = (counts[color] ?? 0) + 1;
+            }
+            return Object.fromEntries(Object.entries(counts).filter(([, count]) => count > 3).map(
+                ([color, count]) => ['#' + (+color).toString(16).padStart(6, '0'), count]));""")
+
+    def centers(self, color):
+        """The middle of the pixels of a colour, in pixels of the map; None without any."""
+        return self.browser.execute_script("""
+            const wanted = parseInt(arguments[0].slice(1), 16);
+            const map = document.getElementById('map');
+            const {data} = map.getContext('2d').getImageData(0, 0, map.width, map.height);
+            let n = 0, x = 0, y = 0;
+            for (let i = 0; i < data.length; i += 4) {
+              if ((data[i] << 16 | data[i + 1] << 8 | data[i + 2]) !== wanted) continue;
+              n += 1;
+              x += i / 4 % map.width;
+              y += Math.floor(i / 4 / map.width);
+            }
+            return n ? [x / n, y / n] : null;""", color)
+
+    def map_size(self):
+        return self.browser.execute_script(
+            "const map = document.getElementById('map'); return [map.clientWidth, map.clientHeight]")
+
+    def settle(self):
+        """Until what was done last is drawn."""
+        self.browser.execute_script("return new Promise(done => requestAnimationFrame(() => "
+                                    "requestAnimationFrame(() => requestAnimationFrame(done))))")
+
+    def screenshot(self, name):
+        """Beside the other results of tests, to be looked at."""
+        folder = os.path.join(os.environ.get("ISPACE_BINARY_DIR", "."), "tests", "web")
+        os.makedirs(folder, exist_ok=True)
+        self.browser.save_screenshot(os.path.join(folder, name))
