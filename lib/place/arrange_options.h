@@ -85,6 +85,10 @@ struct ArrangeOptions {
     std::uint64_t seed = 0;
 };
 
+/// True if each sensor has candidates of its own: Hierarchical Random draws anew for each, unless
+/// the search finds their number. Groups are then of one sensor each.
+bool drawsForEach(const ArrangeOptions& options);
+
 /// Cells while searching: options.cells if set; with the thesis' strategies its 100 x 100; else
 /// those of the room, but in a large room fewer than a report has, to keep the search quick.
 CellChoice searchCells(const ArrangeOptions& options);

@@ -239,17 +239,26 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     return result;
 }
 
-}  // namespace
-
-Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
-                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+/// With candidates, bounds and all measures of cameras that see no farther.
+Arrangement arrangeSeen(const Scene& scene, const std::vector<SensorGroup>& groups,
+                        const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     if (!(options.pixel_density > 0)) return arrangeLimited(scene, groups, options, progress, mps);
-    // Candidates, bounds and what is measured in the end: all of cameras that see no farther.
     Scene limited = scene;
     for (Sensor& sensor : limited.sensors) limit(sensor.model, options.pixel_density);
     std::vector<SensorGroup> limited_groups = groups;
     for (SensorGroup& group : limited_groups) limit(group.model, options.pixel_density);
     return arrangeLimited(limited, limited_groups, options, progress, mps);
+}
+
+}  // namespace
+
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    if (!drawsForEach(options)) return arrangeSeen(scene, groups, options, progress, mps);
+    const SingleSensors singles = singleSensors(groups);
+    Arrangement result = arrangeSeen(scene, singles.groups, options, progress, mps);
+    for (ArrangedSensor& sensor : result.sensors) sensor.group = singles.origins[sensor.group];
+    return result;
 }
 
 namespace {

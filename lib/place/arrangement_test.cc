@@ -81,6 +81,33 @@ TEST(Arrangement, SameForAnyNumberOfThreads) {
     }
 }
 
+TEST(Arrangement, RandomHasPlacesOfItsOwnForEachSensor) {
+    const Scene scene = roomScene();
+    const auto groups = groupsOf(scene, {"laser,range=2:2", "laser,range=2,id=mine"});
+    ArrangeOptions options;
+    options.strategy = Strategy::Random;
+    options.headings = 1;
+    options.first_places = options.more_places = 1;
+    options.wants_trace = true;
+    options.search.optimizer = Optimizer::Greedy;
+    const Arrangement found = arranged(scene, groups, options);
+    EXPECT_EQ(found.candidates, 3U * 2);
+    ASSERT_EQ(found.sensors.size(), 3U);
+    std::set<std::string> kinds;
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(found.sensors[i].group, i / 2) << "in the order asked for";
+        for (const TriedPose& tried : found.tried)
+            if (tried.pose == found.sensors[i].pose) {
+                EXPECT_TRUE(tried.is_chosen);
+                kinds.insert(tried.sensor);
+            }
+    }
+    EXPECT_EQ(kinds, (std::set<std::string>{"laser", "laser.2", "mine"}));
+    // Where the search finds the number all choose of the same places.
+    options.budget = 3;
+    EXPECT_LE(arranged(scene, groupsOf(scene, {"laser,range=2:3"}), options).candidates, 3U * 2);
+}
+
 TEST(Arrangement, AMovedRoomHasTheSameArrangement) {
     const std::string there =
         "#env 1\nfence path=16,8;24,8;24,14;16,14 closed=yes\ndesk at=22,12 heading=30\n"

@@ -237,42 +237,61 @@ struct CandidatePool::Data {
         return drawn;
     }
 
-    /// Hierarchical Random: R1 places; for each sensor R2 more about its best one. All sensors
-    /// share these places. False if progress says stop.
+    /// The candidate from `first` on that adds most to what is covered so far, and how much.
+    struct Best {
+        std::size_t candidate = 0;
+        std::uint32_t value = 0;
+    };
+    [[nodiscard]] Best bestFrom(const PosedCandidates& set, std::size_t first) const {
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(WeightSums(weights.left), values);
+        const auto best =
+            std::max_element(values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+        return {static_cast<std::size_t>(best - values.begin()), *best};
+    }
+
+    /// Hierarchical Random, for each sensor anew: R1 places, then R2 more about the best of them.
+    /// What the best of these sees is covered for those that come after. False if progress says
+    /// stop.
     bool addRandom(PosedCandidates& set, const SensorClass& kind) {
-        const Drawn first = randomLevels(kind, options.first_places, true, [&](std::uint64_t k) {
-            return randomPlace(environment.limits(), options.seed, kind.id, k);
-        });
-        if (first.places == 0) {
-            if (!first.is_complete) return false;
-            throw UnmetError(noPlaceText(
-                kind, static_cast<std::size_t>(options.first_places) * first.levels.size()));
-        }
-        if (!addLevels(set, kind, first.levels, kMinPlaces) || !first.is_complete) return false;
-        const double scope =
-            options.scope.value_or(reachOf(kind, first.levels.front().height) / kSegments);
-        std::vector<std::uint32_t> weights_left = weights.left;
-        std::vector<std::uint32_t> values;
-        const auto best = [&] {
-            values.resize(set.size());
-            set.weighAll(WeightSums(weights_left), values);
-            return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
-                                            values.begin());
-        };
         for (int sensor = 0; sensor < kind.most; ++sensor) {
-            const std::size_t start = best();
-            if (values[start] == 0) break;  // nothing is left to be seen
-            const Point2 center = set.pose(start).position.onFloor();
+            const bool is_first = sensor == 0;
+            if (!is_first && !isAnythingLeft()) break;
+            const RandomSequence sequence{options.seed, kind.id,
+                                          static_cast<std::uint64_t>(sensor)};
+            const std::size_t own = set.size();
+            // One that adds nothing needs but a place to stand.
+            const int count = isAnythingLeft() ? options.first_places : 1;
+            const Drawn first = randomLevels(kind, count, is_first, [&](std::uint64_t k) {
+                return randomPlace(environment.limits(), sequence, k);
+            });
+            if (first.places == 0) {
+                if (!first.is_complete) return false;
+                if (!is_first) break;
+                throw UnmetError(
+                    noPlaceText(kind, static_cast<std::size_t>(count) * first.levels.size()));
+            }
+            if (!addLevels(set, kind, first.levels, is_first ? kMinPlaces : 0) ||
+                !first.is_complete)
+                return false;
+            const Best start = bestFrom(set, own);
+            if (start.value == 0) continue;
+            const double scope =
+                options.scope.value_or(reachOf(kind, first.levels.front().height) / kSegments);
+            const Point2 center = set.pose(start.candidate).position.onFloor();
             const Drawn more = randomLevels(kind, options.more_places, false, [&](std::uint64_t k) {
-                return randomPlaceAbout(center, scope, options.seed, kind.id,
-                                        static_cast<std::uint64_t>(sensor), k);
+                return randomPlaceAbout(center, scope, sequence, k);
             });
             if (!more.is_complete || !addLevels(set, kind, more.levels, 0)) return false;
-            set.forEachRun(best(), [&](const CellRun& run) {
-                std::fill(weights_left.begin() + run.first, weights_left.begin() + run.end, 0U);
+            set.forEachRun(bestFrom(set, own).candidate, [&](const CellRun& run) {
+                std::fill(weights.left.begin() + run.first, weights.left.begin() + run.end, 0U);
             });
         }
         return true;
+    }
+    [[nodiscard]] bool isAnythingLeft() const {
+        return std::any_of(weights.left.begin(), weights.left.end(),
+                           [](std::uint32_t weight) { return weight > 0; });
     }
 };
 

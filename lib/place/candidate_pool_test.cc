@@ -54,25 +54,37 @@ TEST(CandidatePool, GridHasACandidateForEachHeading) {
     EXPECT_EQ(round.set->size(), 6U);
 }
 
-TEST(CandidatePool, RandomTriesR1AndThenR2ASensor) {
+TEST(CandidatePool, RandomDrawsR1AndThenR2PlacesForEachSensor) {
     ArrangeOptions options;
     options.strategy = Strategy::Random;
     options.first_places = 7;
     options.more_places = 3;
     options.headings = 2;
     const Pooled pooled(roomScene(), "laser,range=2:2", options);
-    EXPECT_EQ(pooled.set->sites(), 7U + 2 * 3);
-    // Those of the first sensor lie about the best of the first seven.
-    const WeightSums ones(std::vector<std::uint32_t>(pooled.target.grid.size(), 1));
-    std::vector<std::uint32_t> values(pooled.set->size());
-    pooled.set->weighAll(ones, values);
-    const auto first_end = values.begin() + static_cast<std::ptrdiff_t>(pooled.set->firstOf(7));
-    const auto best =
-        static_cast<std::size_t>(std::max_element(values.begin(), first_end) - values.begin());
-    const Point2 center = pooled.set->pose(best).position.onFloor();
-    for (std::size_t site = 7; site < 10; ++site)
-        EXPECT_LE(distance(pooled.set->pose(pooled.set->firstOf(site)).position.onFloor(), center),
-                  2.0 / 5 + 1e-9);
+    EXPECT_EQ(pooled.set->sites(), 2 * (7U + 3));
+    // The last three of each sensor's ten lie about the best of its first seven.
+    std::vector<std::uint32_t> left(pooled.target.grid.size(), 1);
+    for (std::size_t sensor = 0; sensor < 2; ++sensor) {
+        std::vector<std::uint32_t> values(pooled.set->size());
+        pooled.set->weighAll(WeightSums(left), values);
+        const auto best_of = [&](std::size_t sites) {
+            const auto at = [&](std::size_t site) {
+                return values.begin() +
+                       static_cast<std::ptrdiff_t>(pooled.set->firstOf(10 * sensor + site));
+            };
+            return static_cast<std::size_t>(std::max_element(at(0), at(sites)) - values.begin());
+        };
+        const auto place_of = [&](std::size_t candidate) {
+            return pooled.set->pose(candidate).position.onFloor();
+        };
+        for (std::size_t site = 7; site < 10; ++site)
+            EXPECT_LE(
+                distance(place_of(pooled.set->firstOf(10 * sensor + site)), place_of(best_of(7))),
+                2.0 / 5 + 1e-9);
+        pooled.set->forEachRun(best_of(10), [&left](const CellRun& run) {
+            std::fill(left.begin() + run.first, left.begin() + run.end, 0U);
+        });
+    }
     options.seed = 1;
     const Pooled other(roomScene(), "laser,range=2:2", options);
     EXPECT_NE(other.set->pose(0).position, pooled.set->pose(0).position);

@@ -58,7 +58,7 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
       groups_(groups),
       options_(options),
       worlds_(scene.environment),
-      kinds_(kindsOf(groups)) {
+      kinds_(kindsOf(groups, drawsForEach(options))) {
     mustBeAffordable();
     if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.weights);
     const Coverage standing = coverageOf({});

@@ -76,13 +76,24 @@ Document withoutPlaces(const Document& layout, std::span<const std::string> fixe
     return freed;
 }
 
-std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups) {
+SingleSensors singleSensors(const std::vector<SensorGroup>& groups) {
+    SingleSensors singles;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        for (int k = 0; k < groups[i].most; ++k) {
+            singles.groups.push_back(groups[i]);
+            singles.groups.back().most = 1;
+            singles.origins.push_back(i);
+        }
+    return singles;
+}
+
+std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool apart) {
     std::vector<SensorClass> kinds;
     for (std::size_t i = 0; i < groups.size(); ++i) {
         const SensorGroup& group = groups[i];
         const double cost = group.record.number("cost");
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorClass& kind) {
-            return kind.model == group.model && kind.cost == cost &&
+            return !apart && kind.model == group.model && kind.cost == cost &&
                    kind.record.angle("tilt") == group.record.angle("tilt") &&
                    kind.record.angle("roll") == group.record.angle("roll");
         });

@@ -46,8 +46,15 @@ struct SensorClass {
     std::vector<std::size_t> groups = {};  ///< in their order
 };
 
-/// The kinds of these groups, in order of first appearance.
-std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups);
+/// The kinds of these groups, in order of first appearance; `apart`: one for each group.
+std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool apart = false);
+
+/// Each sensor as a group of its own.
+struct SingleSensors {
+    std::vector<SensorGroup> groups;
+    std::vector<std::size_t> origins;  ///< the group that each was of
+};
+SingleSensors singleSensors(const std::vector<SensorGroup>& groups);
 
 /// The kind that a group is of. \pre it is of one
 std::size_t kindOf(const std::vector<SensorClass>& kinds, std::size_t group);

@@ -71,13 +71,18 @@ std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
 /// \pre times >= 0 \throws UsageError for more than kMaxSites
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times);
 
+/// A sequence of random places of its own: for a kind of sensor, and its n-th sensor.
+struct RandomSequence {
+    std::uint64_t seed = 0;
+    std::string id;            ///< of the kind
+    std::uint64_t sensor = 0;  ///< < 2^31
+};
 /// Hierarchical Random (section 4.4.3): place k of a sequence, anywhere within limits, or in the
-/// disc of radius `scope` about `center`, both evenly over the area. Draws from (seed, id of the
-/// sensor, stage): the same for any number of threads. For places that are not valid the caller
-/// draws again with the next k. \pre k < 2^54, stage < 2^32 - 1
-Point2 randomPlace(const Box2& limits, std::uint64_t seed, const std::string& id, std::uint64_t k);
-Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const std::string& id,
-                        std::uint64_t stage, std::uint64_t k);
+/// disc of radius `scope` about `center`, both evenly over the area. The same for any number of
+/// threads. For places that are not valid the caller draws again with the next k. \pre k < 2^54
+Point2 randomPlace(const Box2& limits, const RandomSequence& sequence, std::uint64_t k);
+Point2 randomPlaceAbout(Point2 center, double scope, const RandomSequence& sequence,
+                        std::uint64_t k);
 
 // ---- Denser candidates
 

@@ -82,9 +82,9 @@ constexpr StrategyOption kGridOptions[] = {
     {"-Y", &ArrangeOptions::y, 1, kMaxLines,
      "interior lines across y (default: 5 per maximum range)"}};
 constexpr StrategyOption kRandomOptions[] = {
-    {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first"},
+    {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first, for each sensor"},
     {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces,
-     "places tried about the best of them, for each sensor"},
+     "places tried about the best of them"},
     {"--scope", &ArrangeOptions::scope, kMinLength, kMaxLength,
      "radius in which these lie (default: maximum range / 5)"}};
 constexpr StrategyOption kWallOptions[] = {
@@ -148,6 +148,11 @@ std::string_view nameOf(MountOn mount) {
 }
 
 bool isOfThesis(Strategy strategy) { return rowOf(strategy).is_of_thesis; }
+
+bool drawsForEach(const ArrangeOptions& options) {
+    return options.strategy == Strategy::Random && options.mount.on != MountOn::Frame &&
+           !options.target && !options.budget;
+}
 
 CellChoice searchCells(const ArrangeOptions& options) {
     constexpr int kMaxSearched = 40'000;

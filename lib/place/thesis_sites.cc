@@ -130,16 +130,19 @@ std::vector<Site> wallSites(const Environment& environment, double height, doubl
 
 namespace {
 
+/// Which places of a sensor are drawn.
+enum class Draws : std::uint64_t { Anywhere, AboutTheBest };
+
 /// Two numbers in [0, 1) of their own for each place of a sequence.
-std::array<double, 2> drawPair(std::uint64_t seed, const std::string& id, std::uint64_t sequence,
-                               std::uint64_t k) {
+std::array<double, 2> drawPair(const RandomSequence& sequence, Draws draws, std::uint64_t k) {
     // A place takes four elements of 24 bits. What does not fit into their number goes on in
     // further sequences.
     constexpr unsigned kPlaceBits = 30, kSequenceBits = 32;
-    const RandomKey key{.seed = seed,
+    const std::uint64_t number = 2 * sequence.sensor + static_cast<std::uint64_t>(draws);
+    const RandomKey key{.seed = sequence.seed,
                         .purpose = Purpose::Candidates,
-                        .sensor = hashOf(id),
-                        .frame = (k >> kPlaceBits) << kSequenceBits | sequence};
+                        .sensor = hashOf(sequence.id),
+                        .frame = (k >> kPlaceBits) << kSequenceBits | number};
     std::array<float, 4> parts{};
     draw(key, static_cast<std::uint32_t>(k << 2U), {.uniform = parts});
     const auto joined = [](float high, float low) {
@@ -150,14 +153,14 @@ std::array<double, 2> drawPair(std::uint64_t seed, const std::string& id, std::u
 
 }  // namespace
 
-Point2 randomPlace(const Box2& limits, std::uint64_t seed, const std::string& id, std::uint64_t k) {
-    const auto [x, y] = drawPair(seed, id, 0, k);
+Point2 randomPlace(const Box2& limits, const RandomSequence& sequence, std::uint64_t k) {
+    const auto [x, y] = drawPair(sequence, Draws::Anywhere, k);
     return {limits.low.x + x * limits.width(), limits.low.y + y * limits.depth()};
 }
 
-Point2 randomPlaceAbout(Point2 center, double scope, std::uint64_t seed, const std::string& id,
-                        std::uint64_t stage, std::uint64_t k) {
-    const auto [share, turn] = drawPair(seed, id, stage + 1, k);
+Point2 randomPlaceAbout(Point2 center, double scope, const RandomSequence& sequence,
+                        std::uint64_t k) {
+    const auto [share, turn] = drawPair(sequence, Draws::AboutTheBest, k);
     // The disc within a share of its radius has the square of that share of its area.
     return center + scope * std::sqrt(share) * unitVector(Angle::degrees(360 * turn));
 }

@@ -269,7 +269,7 @@ TEST(RandomPlace, FillsTheLimitsEvenly) {
     constexpr std::uint64_t kPlaces = 4000;
     std::array<int, 4> quarters{};
     for (std::uint64_t k = 0; k < kPlaces; ++k) {
-        const Point2 place = randomPlace(limits, 7, "laser1", k);
+        const Point2 place = randomPlace(limits, {7, "laser1"}, k);
         ASSERT_TRUE(place.x >= -3 && place.x < 5 && place.y >= 10 && place.y < 12);
         ++quarters[(place.x < 1 ? 0U : 1U) + (place.y < 11 ? 0U : 2U)];
     }
@@ -280,7 +280,7 @@ TEST(RandomPlace, FillsTheDiscEvenly) {
     constexpr int kPlaces = 4000;
     int inner = 0, left = 0;
     for (std::uint64_t k = 0; k < kPlaces; ++k) {
-        const Point2 place = randomPlaceAbout({2, -1}, 3, 7, "laser1", 0, k);
+        const Point2 place = randomPlaceAbout({2, -1}, 3, {7, "laser1"}, k);
         const double radius = distance(place, {2, -1});
         ASSERT_LE(radius, 3 + 1e-12);
         inner += radius < 3 / std::sqrt(2) ? 1 : 0;
@@ -288,20 +288,21 @@ TEST(RandomPlace, FillsTheDiscEvenly) {
     }
     EXPECT_NEAR(inner, kPlaces / 2, 130);
     EXPECT_NEAR(left, kPlaces / 2, 130);
-    EXPECT_EQ(randomPlaceAbout({2, -1}, 0, 7, "laser1", 0, 5), (Point2{2, -1}));
+    EXPECT_EQ(randomPlaceAbout({2, -1}, 0, {7, "laser1"}, 5), (Point2{2, -1}));
 }
 
 TEST(RandomPlace, DependsOnWhatItIsFor) {
     const Box2 limits = boxOf({0, 0}, {1, 1});
-    const Point2 place = randomPlace(limits, 1, "a", 0);
-    EXPECT_EQ(place, randomPlace(limits, 1, "a", 0));
-    EXPECT_NE(place, randomPlace(limits, 2, "a", 0));
-    EXPECT_NE(place, randomPlace(limits, 1, "b", 0));
-    EXPECT_NE(place, randomPlace(limits, 1, "a", 1));
-    EXPECT_NE(place, randomPlace(limits, 1, "a", std::uint64_t{1} << 30U));
-    EXPECT_NE(randomPlaceAbout({}, 1, 1, "a", 0, 0), randomPlaceAbout({}, 1, 1, "a", 1, 0));
+    const Point2 place = randomPlace(limits, {1, "a"}, 0);
+    EXPECT_EQ(place, randomPlace(limits, {1, "a"}, 0));
+    EXPECT_NE(place, randomPlace(limits, {2, "a"}, 0));
+    EXPECT_NE(place, randomPlace(limits, {1, "b"}, 0));
+    EXPECT_NE(place, randomPlace(limits, {1, "a"}, 1));
+    EXPECT_NE(place, randomPlace(limits, {1, "a"}, std::uint64_t{1} << 30U));
+    EXPECT_NE(place, randomPlace(limits, {1, "a", 1}, 0));
+    EXPECT_NE(randomPlaceAbout({}, 1, {1, "a"}, 0), randomPlaceAbout({}, 1, {1, "a", 1}, 0));
     // Moved limits move it.
-    expectPlace(randomPlace(boxOf({5, -7}, {6, -6}), 1, "a", 0), {place.x + 5, place.y - 7});
+    expectPlace(randomPlace(boxOf({5, -7}, {6, -6}), {1, "a"}, 0), {place.x + 5, place.y - 7});
 }
 
 }  // namespace

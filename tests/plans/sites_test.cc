@@ -40,7 +40,7 @@ std::vector<Site> allSites(const Environment& plan) {
     add(placesAlong(floor, 0.3, 0.02, sheets));
     add(medialPlaces(floor, 0.4, sheets));
     for (std::uint64_t k = 0; k < 100; ++k)
-        sites.push_back({randomPlace(plan.limits(), 1, "laser", k), {Angle()}});
+        sites.push_back({randomPlace(plan.limits(), {1, "laser"}, k), {Angle()}});
     return sites;
 }
 
