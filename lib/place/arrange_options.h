@@ -82,6 +82,12 @@ struct ArrangeOptions {
     double pixel_density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all
     std::optional<CellChoice> cells;                ///< while searching, see searchCells()
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of candidates and of the tree of Exact
+    /// While searching, a laser in a slice sees what lies within the contour of beams so far apart,
+    /// the thesis' "reso"; 0: its own. None: all that is in its view.
+    std::optional<Angle> beam_step;
+    /// The thesis' Insider Judge: sensors stand indoors, and indoor floor counts. Without it the
+    /// whole rectangle about the room is open to sensors and counts (fig. 4.8).
+    bool judges_inside = true;
     std::uint64_t seed = 0;
 };
 

@@ -105,9 +105,12 @@ void measure(Arrangement& result, SceneProblem& model) {
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
     const bool is_coverage = options.weights.isUniform() && options.redundancy == 1 &&
-                             model.target().grid == measured.target.grid;
+                             options.judges_inside && model.target().grid == measured.target.grid;
     const Coverage searched = model.coverageOf(result.sensors);
-    if (!is_coverage) result.value = model.share(model.valueOf(searched));
+    if (options.beam_step)
+        result.value = result.candidate_value;
+    else if (!is_coverage)
+        result.value = model.share(model.valueOf(searched));
     result.idle = idleSensors(model, searched);
 }
 

@@ -74,6 +74,7 @@ struct CandidatePool::Data {
         SiteRules rules;
         rules.height = height;
         rules.clearance = mount.clearance;
+        rules.judges_inside = options.judges_inside;
         for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
         for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
         if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
@@ -188,7 +189,11 @@ struct CandidatePool::Data {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
-                const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted);
+                worlds.prepare(mount);
+                std::optional<CandidateViews::ByBeams> by_beams;
+                if (options.beam_step) by_beams.emplace(worlds, *options.beam_step);
+                const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted,
+                                           by_beams);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.max_bytes - bytes, progress,
                                    share))

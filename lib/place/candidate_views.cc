@@ -16,6 +16,7 @@
 #include "base/number.h"
 #include "cover/plane_cells.h"
 #include "cover/sector_cells.h"
+#include "place/beam_cells.h"
 #include "place/look_ahead.h"
 #include "place/sensor_group.h"
 
@@ -93,6 +94,7 @@ struct CandidateViews::Data {
     Pose3 mount;
     bool is_round, looks_in_slice;
     std::optional<Counted> counted = {};
+    const RayWorld* beam_world = nullptr;  // of lasers that see by beams
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
@@ -117,7 +119,10 @@ struct CandidateViews::Data {
         } else {  // lasers
             parts.first.resize(1);
             for (std::size_t k = 0; k < headings; ++k) {
-                const CellParts seen = partOf(sight.cellsOf(grid, at(site, k)));
+                const Sensor laser = at(site, k);
+                const CellParts seen =
+                    partOf(beam_world == nullptr ? sight.cellsOf(grid, laser)
+                                                 : cellsByBeams(grid, *beam_world, laser));
                 parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
                 parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
             }
@@ -127,13 +132,18 @@ struct CandidateViews::Data {
 };
 
 CandidateViews::CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
-                               const Pose3& mount, const CellSet* counted)
+                               const Pose3& mount, const CellSet* counted,
+                               const std::optional<ByBeams>& by_beams)
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
                      looksAround(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()
                          ? std::optional<Counted>(*counted)
                          : std::nullopt}) {
     sight.prepare({"", device, mount});
+    if (!by_beams || !data_->looks_in_slice) return;
+    data_->looks_in_slice = false;
+    data_->device = atResolution(std::get<Laser>(device), by_beams->step);
+    data_->beam_world = &by_beams->worlds.at(mount);
 }
 
 CandidateViews::~CandidateViews() = default;

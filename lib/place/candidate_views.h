@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "place/sites.h"
 #include "raster/grid.h"
 #include "solve/candidate_set.h"
+#include "trace/worlds.h"
 
 namespace ispace {
 
@@ -45,15 +47,23 @@ class PosedCandidates : public CandidateSet {
 };
 
 /// What a kind of sensor sees of the cells of a grid from anywhere, mounted at one height with one
-/// tilt and roll: the same cells as Sight::cellsOf() for a sensor there. Thread-safe.
+/// tilt and roll: the same cells as Sight::cellsOf() for a sensor there, unless by beams.
+/// Thread-safe.
 class CandidateViews {
   public:
+    /// What lasers that scan a slice see by beams, see atResolution() and cellsByBeams().
+    struct ByBeams {
+        const Worlds& worlds;  ///< that of the mount is prepared
+        Angle step;            ///< 0: their own
+    };
     /// Keeps references.
     /// \param mount only height, tilt and roll are used
     /// \param counted the cells with weight; null: all. What candidates see of other cells is then
     ///        arbitrary, which saves memory
+    /// \param by_beams none: lasers in a slice see all that is in their view
     CandidateViews(const Sight& sight, const Grid& grid, const SensorModel& device,
-                   const Pose3& mount, const CellSet* counted = nullptr);
+                   const Pose3& mount, const CellSet* counted = nullptr,
+                   const std::optional<ByBeams>& by_beams = {});
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
@@ -67,7 +77,7 @@ class CandidateViews {
     [[nodiscard]] const Data& data() const { return *data_; }
 
   private:
-    std::unique_ptr<const Data> data_;
+    std::unique_ptr<Data> data_;
 };
 
 /// Candidates are made from at least this many places, however early the search is stopped, so that

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "place/any_place.h"
+#include "place/beam_cells.h"
 #include "place/idle_sensors.h"
 #include "place/refine.h"
 #include "sense/scan.h"
@@ -63,6 +64,8 @@ SceneProblem::SceneProblem(const Scene& scene, const std::vector<SensorGroup>& g
     if (options.refine) mustBeRefinable(scene, devicesOf(kinds_), options.weights);
     const Coverage standing = coverageOf({});
     target_ = standing.target;
+    if (!options.judges_inside)
+        for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
     problem_.weights = integerWeights(weightsOfCells(target_, options.weights));
     total_ = problem_.totalWeight();
     if (total_ == 0) throw UnmetError(nothingText(target_, options.weights));
@@ -243,7 +246,9 @@ std::vector<TriedPose> SceneProblem::triedPoses(const std::vector<Choice>& chose
         for (const Choice& choice : chosen)
             if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
         if (const auto* laser = std::get_if<Laser>(&kind.model))
-            addSliceAreas(worlds_, *laser, std::span(all).subspan(first));
+            addSliceAreas(worlds_,
+                          options_.beam_step ? atResolution(*laser, *options_.beam_step) : *laser,
+                          std::span(all).subspan(first));
     }
     return all;
 }

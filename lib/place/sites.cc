@@ -89,7 +89,10 @@ SiteValidity::~SiteValidity() = default;
 bool SiteValidity::isValid(Point2 place) const {
     const Data& data = *data_;
     const SiteRules& rules = data.rules;
-    if (!data.level->isFree(place) || data.keep_out.holder(place)) return false;
+    const bool is_free = rules.judges_inside ? data.level->isFree(place)
+                                             : !data.level->isBuried(place) &&
+                                                   !data.obstacles.anyWithin(place, kWeldDistance);
+    if (!is_free || data.keep_out.holder(place)) return false;
     if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
     // Distances round: a place at exactly the required distance is valid.
     if (rules.clearance > kWeldDistance &&

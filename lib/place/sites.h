@@ -126,6 +126,7 @@ std::vector<Point3> framePlaces(const Environment& environment, double step);
 /// favour: a place at exactly the required distance is valid.
 struct SiteRules {
     double height = kScanHeight;
+    bool judges_inside = true;      ///< the thesis' Insider Judge: indoors only
     double clearance = 0;           ///< least distance from walls and objects at this height
     std::vector<Polygon> keep_out;  ///< closed
     std::vector<Polygon> keep_in;   ///< closed; if any: in one of them
@@ -140,8 +141,8 @@ class SiteValidity {
     ~SiteValidity();
     SiteValidity(const SiteValidity&) = delete;
     SiteValidity& operator=(const SiteValidity&) = delete;
-    /// Strictly indoors (the thesis' Insider Judge), in no solid and on no wall at the height, and
-    /// within the rules. Exact, except for distances.
+    /// Strictly indoors (the thesis' Insider Judge) unless the rules say otherwise, in no solid and
+    /// on no wall at the height, and within the rules. Exact, except for distances.
     [[nodiscard]] bool isValid(Point2 place) const;
 
   private:

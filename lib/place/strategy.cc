@@ -83,8 +83,7 @@ constexpr StrategyOption kGridOptions[] = {
      "interior lines across y (default: 5 per maximum range)"}};
 constexpr StrategyOption kRandomOptions[] = {
     {"--r1", &ArrangeOptions::first_places, 1, kMaxPlaces, "places tried first, for each sensor"},
-    {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces,
-     "places tried about the best of them"},
+    {"--r2", &ArrangeOptions::more_places, 0, kMaxPlaces, "places tried about the best of them"},
     {"--scope", &ArrangeOptions::scope, kMinLength, kMaxLength,
      "radius in which these lie (default: maximum range / 5)"}};
 constexpr StrategyOption kWallOptions[] = {

@@ -157,6 +157,7 @@ std::string reasonForNothing(const Work& work, const Arrangement& arrangement) {
         return "nothing counts: floor has to be seen by " + std::to_string(times) +
                " sensors, and there are " + std::to_string(together);
     if (arrangement.coverage > 0 || arrangement.sensors.empty()) return "";
+    if (!work.how.judges_inside && arrangement.candidate_value > 0) return "";
     if (std::string text = reasonOfDensity(work); !text.empty()) return text;
     return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
            "`coverage` draws (-o map.png)";

@@ -57,6 +57,14 @@ double readShare(const std::string& text) {
     return *share;
 }
 
+Angle readResolution(const std::string& text) {
+    constexpr double kFinest = 0.01, kCoarsest = 90;
+    if (text == "sensor") return Angle();
+    return Angle::degrees(readNumber(
+        text, kFinest, kCoarsest,
+        "an angle from 0.01 to 90 degrees, nor `sensor` (cells are --grid P,Q or --cell M)"));
+}
+
 /// A bare 1 is all to who thinks in fractions and a hundredth to who thinks in per cent.
 double readGap(const std::string& text) {
     const double gap = readShare(text);
@@ -229,6 +237,16 @@ void ArrangeCommand::addGoalOptions() {
                  Enters::History);
     addDensityOption(line_, how.pixel_density);
     addCellOptions(line_, words_.cells, "while searching");
+    line_.parsed(
+        "--reso", "DEG", [&how](const std::string& text) { how.beam_step = readResolution(text); },
+        "while searching, lasers see what lies within the contour of beams so far apart, as in the "
+        "thesis; sensor: their own step (default: all that is in view)",
+        Enters::History);
+    line_.choice(
+        "--judge", words_.judge, {"yes", "no"},
+        "no: without the thesis' Insider Judge sensors may stand outside the room, and all "
+        "of the rectangle about it counts (fig. 4.8; default yes)",
+        Enters::History);
 }
 
 void ArrangeCommand::addSearchOptions() {
@@ -292,6 +310,11 @@ void ArrangeCommand::settle() {
     if (how.target && how.budget)
         throw UsageError("--target asks for the least cost: leave out --budget");
     for (const std::string& weight : options_.zones.weights) (void)splitWeight(weight);
+    how.judges_inside = words_.judge != "no";
+    if (how.refine && (how.beam_step || !how.judges_inside))
+        throw UsageError(
+            "--refine measures what is in view of the indoor floor: leave out --reso and "
+            "--judge no");
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
     how.seed = options_.common.seed;

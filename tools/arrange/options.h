@@ -50,7 +50,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
 
     /// Words of options that become something else once all are known.
     struct Words {
-        std::string effort, strategy, optimize, mount;
+        std::string effort, strategy, optimize, mount, judge;
         CellWords cells;
     };
     Words words_;
