@@ -23,9 +23,10 @@ using When = Expectation::When;
 
 /// What is seen of somebody at a step.
 struct Observation {
-    bool holds = false;          ///< the state, as the expectation has it
-    double measure = 0;          ///< metres, sensors or m/s, by the state
-    std::string_view into = {};  ///< of a collision
+    bool holds = false;           ///< the state, as the expectation has it
+    double measure = 0;           ///< metres, sensors or m/s, by the state
+    std::string_view other = {};  ///< of a collision
+    bool is_struck = false;       ///< by the other
 };
 
 /// One expectation about one robot or person.
@@ -48,12 +49,8 @@ std::string rounded(double value) { return formatDouble(roundSignificant(value, 
 
 std::vector<std::string> namesOf(const World& world) {
     std::vector<std::string> names;
-    for (const PlacedRobot& robot : world.robots()) names.push_back(robot.id);
+    for (const Mover& mover : world.movers()) names.push_back(mover.id);
     return names;
-}
-
-std::optional<std::size_t> moverNamed(const World& world, std::string_view id) {
-    return world.robotNamed(id);
 }
 
 UsageError unknown(const World& world, const std::string& id) {
@@ -65,7 +62,7 @@ std::string stateText(const Expectation& expectation, const Observation& seen) {
     const std::string is = seen.holds == expectation.is_negated ? "was not " : "was ";
     switch (expectation.state) {
         case State::Collision:
-            return "ran into " + std::string(seen.into);
+            return (seen.is_struck ? "was run into by " : "ran into ") + std::string(seen.other);
         case State::Near:
             return "was " + rounded(seen.measure) + " m away";
         case State::InZone:
@@ -173,8 +170,8 @@ struct ExpectationJudge::Data {
     std::vector<Polygon> zones;  // of the expectations; empty without
     std::vector<Trial> trials;
     std::optional<Watch> watch;
-    std::vector<Pose2> robots;  // where they are, for the watch
-    std::int64_t changes = 0;   // of the world, when everything was found
+    std::vector<Pose2> poses;  // of all movers, for the watch
+    std::int64_t changes = 0;  // of the world, when everything was found
 };
 
 ExpectationJudge::Data::Data(const World& simulated, std::vector<Expectation> list)
@@ -207,14 +204,14 @@ void ExpectationJudge::Data::checkTarget(const Expectation& expectation) {
     if (expectation.state == State::InZone)
         zones.back() = readZone(expectation.name, world->scene().environment).outline;
     if (expectation.state == State::Near && !expectation.place &&
-        !moverNamed(*world, expectation.name))
+        !world->moverNamed(expectation.name))
         throw unknown(*world, expectation.name);
 }
 
 /// Everybody in the world as it is since its last change.
 void ExpectationJudge::Data::find() {
     changes = world->changes();
-    for (Trial& trial : trials) trial.mover = moverNamed(*world, trial.id);
+    for (Trial& trial : trials) trial.mover = world->moverNamed(trial.id);
     const bool is_watched =
         std::any_of(expectations.begin(), expectations.end(),
                     [](const Expectation& each) { return each.state == State::Seen; });
@@ -223,16 +220,16 @@ void ExpectationJudge::Data::find() {
 
 std::optional<Point2> ExpectationJudge::Data::placeOf(const Expectation& expectation) const {
     if (expectation.place) return expectation.place;
-    const auto other = moverNamed(*world, expectation.name);
+    const auto other = world->moverNamed(expectation.name);
     if (!other) return std::nullopt;
     return world->status(*other).pose.position;
 }
 
 Observation ExpectationJudge::Data::lookForCollision(std::string_view id) const {
     for (const Collision& collision : world->collisions()) {
-        const std::string& who = world->robots()[collision.robot].id;
-        if (who == id) return {.holds = true, .into = collision.into};
-        if (collision.into == id) return {.holds = true, .into = who};
+        const std::string& who = world->movers()[collision.robot].id;
+        if (who == id) return {.holds = true, .other = collision.into};
+        if (collision.into == id) return {.holds = true, .other = who, .is_struck = true};
     }
     return {};
 }
@@ -244,15 +241,19 @@ bool ExpectationJudge::Data::collided(std::size_t mover) const {
 }
 
 std::size_t ExpectationJudge::Data::seenBy(std::size_t mover) const {
-    return watch->seenBy({robots[mover].position, static_cast<std::uint32_t>(mover)},
-                         {.robots = robots});
+    const std::size_t robots = world->robots().size();
+    const std::span<const Pose2> all(poses);
+    const auto owner = mover < robots ? static_cast<std::uint32_t>(mover)
+                                      : kFirstPerson + static_cast<std::uint32_t>(mover - robots);
+    return watch->seenBy({poses[mover].position, owner},
+                         {.robots = all.first(robots), .people = all.subspan(robots)});
 }
 
 /// \pre somebody has this id
 Observation ExpectationJudge::Data::look(const Trial& trial) const {
     const Expectation& expectation = expectations[trial.expectation];
     const RobotStatus status = world->status(*trial.mover);
-    const double speed = std::abs(status.speed);
+    const double speed = std::hypot(status.speed, status.sidespeed);
     switch (expectation.state) {
         case State::Collision:
             return lookForCollision(trial.id);
@@ -312,9 +313,9 @@ void ExpectationJudge::observe() {
     Data& data = *data_;
     if (data.world->changes() != data.changes) data.find();
     if (data.watch) {
-        data.robots.resize(data.world->robots().size());
-        for (std::size_t i = 0; i < data.robots.size(); ++i)
-            data.robots[i] = data.world->status(i).pose;
+        data.poses.resize(data.world->movers().size());
+        for (std::size_t i = 0; i < data.poses.size(); ++i)
+            data.poses[i] = data.world->status(i).pose;
     }
     for (Trial& trial : data.trials)
         if (!trial.decided) data.observe(trial);

@@ -186,6 +186,24 @@ TEST_F(ExpectTest, KnowsCollisions) {
               "expected `no collision`: " + verdicts[0].reason);
 }
 
+TEST(ExpectPeople, AreSubjectsAsRobotsAre) {
+    const Scene scene = testing::scene(kRoom,
+                                       "robot id=r1 at=0,0\nhuman id=h1 at=1.5,0 heading=90\n"
+                                       "camera on=h1 at=0,0,1.6 tilt=-40 fov=60\n"
+                                       "laser at=1.5,1 range=1.2 fov=360\n");
+    World world(scene, kStep);
+    ExpectationJudge judge(
+        world, {parseExpectation("h1 seen by 1 always"), parseExpectation("h1 seen by 2"),
+                parseExpectation("r1 within 0.9 of h1"), parseExpectation("no collision of h1")});
+    world.command(0, {.verb = Verb::Forward, .value = 1.4});
+    for (judge.observe(); world.time() < seconds(6); judge.observe()) world.step();
+    const auto verdicts = judge.verdicts();
+    EXPECT_TRUE(verdicts[0].is_met);
+    EXPECT_FALSE(verdicts[1].is_met) << "her own camera does not count";
+    EXPECT_TRUE(verdicts[2].is_met);
+    EXPECT_EQ(verdicts[3].reason.substr(0, 22), "h1 was run into by r1 ");
+}
+
 TEST_F(ExpectTest, WhatWasNotLookedAtIsNotMet) {
     EXPECT_EQ(reason("r1 never stalled after 9"),
               "r1 was not there in time; the run ended at t=6.000");
