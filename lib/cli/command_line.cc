@@ -2,6 +2,7 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -68,7 +69,8 @@ void appendWrapped(std::string& out, const std::string& text, std::size_t used,
 }
 
 std::string fileInHistory(const std::string& operand) {
-    return isStream(operand) ? "-" : shellQuote(baseName(operand));
+    const bool is_folder = std::filesystem::is_directory(operand);
+    return isStream(operand) && !is_folder ? "-" : shellQuote(baseName(operand));
 }
 
 }  // namespace

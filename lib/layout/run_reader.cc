@@ -207,7 +207,7 @@ bool exists(const std::string& file) { return std::filesystem::exists(file); }
 
 }  // namespace
 
-RunFiles::RunFiles(const std::string& folder) {
+RecordedFiles::RecordedFiles(const std::string& folder) {
     const auto inFolder = [&folder](const char* file) {
         return (std::filesystem::path(folder) / file).string();
     };
@@ -233,7 +233,7 @@ struct RunReader::Data {
 };
 
 RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {
-    const RunFiles files(folder);
+    const RecordedFiles files(folder);
     data_->name = files.robots;
     data_->add(files.robots, LineSource(InputFile(files.robots), ""), false);
     if (exists(files.people))
@@ -281,7 +281,7 @@ bool RunReader::isCut() const { return data_->is_cut; }
 const std::string& RunReader::name() const { return data_->name; }
 
 std::optional<double> recordedStep(const std::string& folder) {
-    const std::string name = RunFiles(folder).info;
+    const std::string name = RecordedFiles(folder).info;
     if (!exists(name)) return std::nullopt;
     const std::string text = readAll(name);
     if (text.empty()) return std::nullopt;

@@ -29,8 +29,8 @@ struct RunMember {
 };
 
 /// Names of the files in a folder that `simrun --record` has written.
-struct RunFiles {
-    explicit RunFiles(const std::string& folder);
+struct RecordedFiles {
+    explicit RecordedFiles(const std::string& folder);
     std::string robots, people, info, scene;
 };
 

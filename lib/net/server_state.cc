@@ -24,8 +24,10 @@ StepQueue::StepQueue(Simulation& simulation)
 std::shared_ptr<const StepQueue::Ticket> StepQueue::ask(std::int64_t count) {
     settle();
     simulation_->allow(count);
-    tickets_.push_back(std::make_shared<Ticket>(Ticket{.count = count, .left = count}));
-    return tickets_.back();
+    auto ticket = std::make_shared<Ticket>(Ticket{.count = count, .left = count});
+    tickets_.push_back(ticket);
+    if (simulation_->isHeld()) end();
+    return ticket;
 }
 
 void StepQueue::settle() {
@@ -40,7 +42,7 @@ void StepQueue::settle() {
         ticket.over = true;
         tickets_.pop_front();
     }
-    if (simulation_->finished()) end();
+    if (simulation_->finished() || simulation_->isHeld()) end();
 }
 
 void StepQueue::cut() {

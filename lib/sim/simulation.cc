@@ -68,6 +68,7 @@ void Simulation::pause(WallTime now) {
 
 void Simulation::resume(WallTime now) {
     assert(clock_.kind != Clock::Kind::Step);
+    if (isHeld()) return;
     paused_ = false;
     owed_ = 0;
     startAt(now);
@@ -77,12 +78,16 @@ void Simulation::resume(WallTime now) {
 
 void Simulation::allow(std::int64_t count) {
     assert(paused_ && count >= 0);
+    if (isHeld()) return;
     // A client that asks for all the steps there are may ask again.
     owed_ += std::min(count, std::numeric_limits<std::int64_t>::max() - owed_);
 }
 
 void Simulation::endIfReached() {
     if (world_->time() >= until_) finished_ = true;
+    if (replay_ == nullptr || !replay_->atEnd()) return;
+    owed_ = 0;
+    (holds_ ? paused_ : finished_) = true;
 }
 
 void Simulation::giveScripted() {
@@ -95,8 +100,17 @@ void Simulation::giveScripted() {
     }
 }
 
+void Simulation::replay(Replay& replay, bool holds) {
+    replay_ = &replay;
+    holds_ = holds;
+    endIfReached();
+}
+
 void Simulation::step() {
-    world_->step();
+    if (replay_ != nullptr)
+        replay_->step(*world_);
+    else
+        world_->step();
     events_.stepped();
     // Before the next commands: one of motion would wipe out the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);

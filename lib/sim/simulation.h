@@ -12,6 +12,7 @@
 #include "sim/command.h"
 #include "sim/events.h"
 #include "sim/recorder.h"
+#include "sim/replay.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -55,15 +56,23 @@ class Simulation {
     /// Records every step from now on. The recorder must outlive the last one.
     void recordWith(Recorder& recorder) { recorder_ = &recorder; }
 
+    /// Takes the steps of a record instead of simulating. At its end the run ends; or, if it is to
+    /// hold, it pauses and goes on serving the last moment. \pre the replay outlives the last step
+    void replay(Replay& replay, bool holds);
+    /// True if robots and people go as recorded, whatever they are told.
+    [[nodiscard]] bool isReplay() const { return replay_ != nullptr; }
+    /// True if a record that is to hold has come to its end: there are no more steps.
+    [[nodiscard]] bool isHeld() const { return holds_ && replay_ != nullptr && replay_->atEnd(); }
+
     /// Always true with the clock Step.
     [[nodiscard]] bool paused() const { return paused_; }
     /// Pauses; drops steps allowed but not taken.
     void pause(WallTime now);
     /// Resumes; drops steps allowed but not taken. With the clock Real the next step is due as long
     /// after this as it was at the pause, so only the time of the pause is lost.
-    /// \pre the clock is not Step
+    /// One that isHeld() stays paused. \pre the clock is not Step
     void resume(WallTime now);
-    /// Lets a paused world take `count` more steps. \pre paused(), count >= 0
+    /// Lets a paused world take `count` more steps; none if it isHeld(). \pre paused(), count >= 0
     void allow(std::int64_t count);
     /// Takes back `count` allowed steps. \pre count <= owed()
     void forgo(std::int64_t count) { owed_ -= count; }
@@ -100,6 +109,8 @@ class Simulation {
     std::vector<std::string> scripted_;  // ids of those whom the script commands, as it has indices
     std::size_t next_ = 0;               // of script_
     Recorder* recorder_ = nullptr;
+    Replay* replay_ = nullptr;
+    bool holds_ = false;  // at the end of the record
     Clock clock_;
     SimTime until_;
     std::vector<std::function<void()>> observers_;

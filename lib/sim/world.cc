@@ -142,12 +142,17 @@ void World::change(Scene scene, std::span<const std::string> placed) {
 
 void World::restart(Scene scene) { data_ = data_->next(std::move(scene), {}); }
 
+void World::stepTo(std::span<const RobotStatus> states) {
+    Data& data = *data_;
+    assert(states.size() == data.movers.size());
+    data.begin();
+    for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
+    data.sensors.read(data.time, data.where());
+}
+
 void World::step() {
     Data& data = *data_;
-    data.ends.clear();
-    data.collisions.clear();
-    data.time += data.step_length;
-    ++data.steps;
+    data.begin();
     data.proposeAll();
     data.settle();
     data.apply();

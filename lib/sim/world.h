@@ -124,6 +124,10 @@ class World {
     int command(std::size_t mover, const Command& command);
 
     void step();
+    /// A step in which everybody gets where a record says, instead of where commands lead: `states`
+    /// are those after it, by index of movers(). Who begins to stall has collided, with something
+    /// that is not told. \pre as many as movers()
+    void stepTo(std::span<const RobotStatus> states);
 
     /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/replay.h"
+
 namespace ispace {
 
 namespace {
@@ -163,6 +165,19 @@ void World::Data::walk(std::size_t mover) {
     const double path = moves[mover].to.path;
     gaits[person].walk(movers[mover].model.height, motion.drive.speed < 0 ? -path : path, speed);
     swings[person] = gaits[person].swing(speed);
+}
+
+void World::Data::put(std::size_t mover, const RobotStatus& status) {
+    moved = moved || status.pose != motions[mover].pose;
+    if (moved) sensors.moved();
+    motions[mover] = motionOf(status);
+    if (status.stall && !states[mover].stall)
+        collisions.push_back({mover, std::nullopt, "something", time});
+    states[mover].stall = status.stall;
+    if (!movers[mover].is_person) return;
+    Gait& gait = gaits[mover - scene->robots.size()];
+    gait.phase = status.phase;
+    swings[mover - scene->robots.size()] = gait.swing(std::hypot(status.speed, status.sidespeed));
 }
 
 void World::Data::keepGait(std::size_t mover, const Data& before, std::size_t old) {

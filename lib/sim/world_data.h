@@ -45,6 +45,14 @@ struct World::Data {
         const std::size_t robots = scene->robots.size();
         return {all.first(robots), all.subspan(robots), swings};
     }
+    void begin() {
+        ends.clear();
+        collisions.clear();
+        time += step_length;
+        ++steps;
+    }
+    /// Somebody gets where a record says.
+    void put(std::size_t mover, const RobotStatus& status);
     /// What a step does, in this order: proposals in parallel, settled one by one.
     void proposeAll();
     void settle();

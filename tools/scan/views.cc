@@ -193,7 +193,7 @@ void takeViews(const ScanCommand& command) {
     std::optional<RunRecord> run;
     if (!options.view.run.empty()) {
         run.emplace(RunReader(options.view.run));
-        files.push_back(RunFiles(options.view.run).robots);
+        files.push_back(RecordedFiles(options.view.run).robots);
     }
     const int frames = options.frames.value_or(1);
     const std::vector<ViewSpec>& views = options.view.views;

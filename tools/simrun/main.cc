@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -111,6 +112,61 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
         talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
 }
 
+/// A record knows its scene.
+SceneInput readInput(const SimrunOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (!options.replay.empty() && operands.empty()) {
+        const std::string scene = RecordedFiles(options.replay).scene;
+        if (!std::filesystem::exists(scene))
+            throw UsageError(options.replay +
+                             " holds no scene.env: give ENV and LAYOUT of the run");
+        operands.push_back(scene);
+    }
+    return readScene({operands, options.any_environment, false});
+}
+
+/// The record to be served, and the scene as it begins; nothing without --replay.
+std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
+    if (options.replay.empty()) return std::nullopt;
+    Replay replay(options.replay);
+    replay.placeAtStart(scene);
+    return replay;
+}
+
+/// Up to where a record is to be served from.
+void forward(Replay& replay, World& world, SimTime from) {
+    while (world.time() < from)
+        if (!replay.step(world))
+            throw UsageError("--from: the record ends at t=" + formatSimTime(world.time()));
+}
+
+History historyOf(const SimrunCommand& command, const SceneInput& input) {
+    History history = input.layout ? input.layout->history : History();
+    history.push_back(command.historyLine(input.named));
+    return history;
+}
+
+/// A record that is being written.
+struct RunningRecord {
+    RunningRecord(const SimrunOptions& options, const World& world, const History& history)
+        : recorder(options.record, world, history, options.common.seed),
+          guard(recordedLines(options.record), recorder.lock()) {
+        recorder.limit(options.max_recorded);
+    }
+    Recorder recorder;
+    LineGuard guard;
+};
+
+/// Replaces the records of the run before: to be called when all that may go wrong has gone well.
+/// Null without --record.
+std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
+                                        const History& history) {
+    if (options.record.empty()) return nullptr;
+    auto record = std::make_unique<RunningRecord>(options, simulation.world(), history);
+    simulation.recordWith(record->recorder);
+    return record;
+}
+
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
@@ -119,13 +175,16 @@ void simrun(const SimrunCommand& command) {
     if (!options.record.empty())
         for (const std::string& file : Recorder::filesIn(options.record))
             claimOutput(file, "a file of --record");
-    const SceneInput input = readScene({options.operands, options.any_environment, false});
+    SceneInput input = readInput(options);
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common);
-    World world(input.scene, options.step);
+    std::optional<Replay> replay = openReplay(options, input.scene);
+    World world(input.scene, replay ? replay->stepLength() : options.step);
+    if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
+    if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
-    simulation.onStep([&collisions] { collisions.tell(); });
+    if (!replay) simulation.onStep([&collisions] { collisions.tell(); });
     auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
     judge.observe();
     simulation.onStep([&judge] { judge.observe(); });
@@ -142,25 +201,16 @@ void simrun(const SimrunCommand& command) {
         port_file.emplace(options.port_file);
         port_file->write(std::to_string(server.port()) + '\n');
     }
-    // Only now, when all that may go wrong has gone well, the records of the run before are
-    // replaced.
-    History history = input.layout ? input.layout->history : History();
-    history.push_back(command.historyLine(input.named));
-    std::optional<Recorder> recorder;
-    std::optional<LineGuard> guard;
-    if (!options.record.empty()) {
-        recorder.emplace(options.record, world, history, options.common.seed);
-        recorder->limit(options.max_recorded);
-        guard.emplace(recordedLines(options.record), recorder->lock());
-        simulation.recordWith(*recorder);
-    }
+    const auto record = recordOf(simulation, options, historyOf(command, input));
     const auto progress = progressOf(simulation, options);
     announce(server, web);
     if (port_file) port_file->commit();
     server.run();
     progress->end();
-    if (recorder) recorder->flush(world);
+    if (record) record->recorder.flush(world);
     report(simulation, options);
+    if (replay && replay->isCut())
+        warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
     conclude(judge, options, input);
 }
 

@@ -22,17 +22,19 @@ SimTime simTime(const std::string& text, SimTime least, SimTime most) {
 
 SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     : ToolCommand(
-          "simrun", "ENV [LAYOUT]",
+          "simrun", "[ENV] [LAYOUT]",
           "Simulate the robots and sensors of a room and serve them over TCP. The first line of "
           "output says where; TERM, INT and the request SHUTDOWN end the run.") {
     line_.operands(options_.operands, 2);
     declareRun();
+    declareReplay();
     declareJudgement();
     declareServer();
     addAnyEnvironmentOption(line_, options_.any_environment);
     addCommonOptions(line_, options_.common, "");
     line_.parse(argc, argv);
     takeExpectations();
+    checkReplay();
     options_.limits.shutdown = options_.shutdown.value_or(true);
 }
 
@@ -62,6 +64,39 @@ void SimrunCommand::declareRun() {
         "--record-limit", "SIZE",
         [&o](const std::string& text) { o.max_recorded = byteCount(text); },
         "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
+}
+
+void SimrunCommand::declareReplay() {
+    SimrunOptions& o = options_;
+    line_.file(
+        "--replay", "DIR", o.replay,
+        "serve the run that --record wrote there once more: all go as recorded, sensors read; "
+        "ENV and LAYOUT are those of the record unless given",
+        Enters::BaseName);
+    line_.parsed(
+        "--from", "TIME",
+        [&o](const std::string& text) { o.from = simTime(text, SimTime(0), kLongestTime); },
+        "begin the replay at this time of the record", Enters::History);
+    line_.flag("--hold", o.holds,
+               "serve the last moment of the record on and on, instead of ending with it",
+               Enters::Nothing);
+}
+
+void SimrunCommand::checkReplay() const {
+    const SimrunOptions& o = options_;
+    if (o.replay.empty()) {
+        for (const char* option : {"--from", "--hold"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) + " is about a record: give --replay DIR");
+        return;
+    }
+    for (const char* option : {"--script", "--dt"})
+        if (line_.given(option))
+            throw UsageError(std::string(option) +
+                             " does not go with --replay: steps and motions are the record's");
+    if (o.until && *o.until <= o.from) throw UsageError("--from is not before --until");
+    if (!o.record.empty() && o.record == o.replay)
+        throw UsageError("--record would replace what --replay reads: give another folder");
 }
 
 void SimrunCommand::declareJudgement() {

@@ -23,6 +23,9 @@ struct SimrunOptions {
     std::string script;                                     ///< "" without; "-" is stdin
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
+    std::string replay;                                     ///< folder; "" without
+    SimTime from{};                                         ///< of the replay
+    bool holds = false;                                     ///< at the end of the replay
     std::vector<Expectation> expected;
     std::string junit;      ///< file; "" without
     std::string port_file;  ///< "" without
@@ -39,7 +42,9 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
 
   private:
     void declareRun();
+    void declareReplay();
     void declareJudgement();
+    void checkReplay() const;
     void takeExpectations();
     void declareServer();
 

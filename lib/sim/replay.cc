@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "sim/change.h"
+
+namespace ispace {
+
+namespace {
+
+SimTime timeOf(double seconds) {
+    constexpr double kNanoseconds = 1e9;
+    return SimTime(std::llround(seconds * kNanoseconds));
+}
+
+RobotStatus statusOf(const RunState& state) {
+    return {.pose = state.pose,
+            .speed = state.speed,
+            .rotspeed = state.rotspeed,
+            .accel = state.accel,
+            .rotaccel = state.rotaccel,
+            .stall = state.is_stalled,
+            .phase = state.phase};
+}
+
+}  // namespace
+
+Replay::Replay(const std::string& folder) : reader_(folder) {
+    if (!reader_.next())
+        throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
+    const SimTime begin = timeOf(reader_.time());
+    start_.assign(reader_.states().begin(), reader_.states().end());
+    is_ahead_ = reader_.next();
+    if (const auto step = recordedStep(folder))
+        step_ = timeOf(*step);
+    else if (is_ahead_)
+        step_ = timeOf(reader_.time()) - begin;
+    else
+        step_ = std::chrono::milliseconds(5);
+    if (begin != SimTime(0) || step_ < World::kShortestStep || step_ > World::kLongestStep)
+        throw FormatError({reader_.name(), 0, 0,
+                           "begins at t=" + formatSimTime(begin) + " with steps of " +
+                               formatSimTime(step_) + " s, wanted 0 and from " +
+                               formatSimTime(World::kShortestStep) + " to " +
+                               formatSimTime(World::kLongestStep) + " s"});
+}
+
+void Replay::placeAtStart(Scene& scene) const {
+    std::unordered_map<std::string_view, Pose2> places;
+    std::unordered_set<std::string_view> ids;
+    for (const RunState& state : start_) {
+        const RunMember& member = reader_.who()[state.who];
+        const auto has = [&member](const auto& list) {
+            return std::any_of(list.begin(), list.end(),
+                               [&member](const auto& each) { return each.id == member.id; });
+        };
+        if (member.is_person ? !has(scene.people) : !has(scene.robots))
+            throw FormatError({reader_.name(), 0, 0,
+                               std::string("the scene has no ") +
+                                   (member.is_person ? "person " : "robot ") + excerpt(member.id) +
+                                   ": it is not that of the record"});
+        ids.insert(member.id);
+        places.emplace(member.id, state.pose);
+    }
+    keepInPlace(scene, ids, places);
+}
+
+/// Indices shift when a world changes, and members are added while the record is read.
+void Replay::find(const World& world) {
+    if (changes_ != world.changes()) movers_.clear();
+    changes_ = world.changes();
+    const std::vector<RunMember>& who = reader_.who();
+    for (std::size_t i = movers_.size(); i < who.size(); ++i)
+        movers_.push_back(world.moverNamed(who[i].id));
+}
+
+bool Replay::step(World& world) {
+    if (!is_ahead_) return false;
+    const SimTime time = timeOf(reader_.time());
+    if (time != world.time() + step_)
+        throw FormatError({reader_.name(), 0, 0,
+                           "goes on at t=" + formatSimTime(time) +
+                               ", wanted t=" + formatSimTime(world.time() + step_)});
+    find(world);
+    states_.resize(world.movers().size());
+    for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
+    for (const RunState& state : reader_.states())
+        if (const auto mover = movers_[state.who]) states_[*mover] = statusOf(state);
+    world.stepTo(states_);
+    is_ahead_ = reader_.next();
+    return true;
+}
+
+Motion motionOf(const RobotStatus& status) {
+    Motion motion;
+    motion.pose = {status.pose.position, wrapped(status.pose.heading)};
+    motion.drive.speed = status.speed;
+    motion.drive.accel = status.accel;
+    motion.turn.speed = status.rotspeed.degrees();
+    motion.turn.accel = status.rotaccel.degrees();
+    motion.side.speed = status.sidespeed;
+    return motion;
+}
+
+}  // namespace ispace

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "layout/run_reader.h"
+#include "sim/motion.h"
+#include "sim/sim_time.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// A recorded run as the steps of a world: robots and people go where the record says, whatever
+/// they are told, and sensors read what they see there. In the scene of the record these are the
+/// readings of then; in another, what other sensors would have read.
+class Replay {
+  public:
+    /// Opens the record in a folder and reads its first moment.
+    /// \throws std::system_error, FormatError as RunReader, and if it holds nothing
+    explicit Replay(const std::string& folder);
+
+    /// From one moment to the next.
+    [[nodiscard]] SimTime stepLength() const { return step_; }
+    /// Puts everybody where the record begins. \throws FormatError for who is not in the scene
+    void placeAtStart(Scene& scene) const;
+    /// True if step() takes no more.
+    [[nodiscard]] bool atEnd() const { return !is_ahead_; }
+    /// Takes the next step of a world that has taken as many steps; false, and nothing done, at the
+    /// end of the record. Who is not in the world is passed over, who is not in the record stays.
+    /// \throws FormatError as RunReader, and for a moment that is not one step after the last
+    bool step(World& world);
+    /// True if the record ends with a moment that is not whole; known at its end.
+    [[nodiscard]] bool isCut() const { return reader_.isCut(); }
+
+  private:
+    void find(const World& world);
+
+    RunReader reader_;
+    SimTime step_{};
+    std::vector<RunState> start_;
+    bool is_ahead_ = false;            // the reader's moment is that of the next step
+    std::vector<RobotStatus> states_;  // of all movers of the world
+    std::vector<std::optional<std::size_t>> movers_;  // of each in the record
+    std::int64_t changes_ = -1;                       // of the world, when they were found
+};
+
+/// Of somebody with this status, who is to do nothing.
+Motion motionOf(const RobotStatus& status);
+
+}  // namespace ispace

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/replay.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "layout/test_layout.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using testing::scene;
+
+constexpr SimTime kStep = milliseconds(20);
+constexpr const char* kRoom = "ispace id=room size=8,6\npillar id=post at=2,0 size=0.2,0.2,2.5\n";
+constexpr const char* kWho =
+    "robot id=r1 at=0,0\nlaser id=l1 on=r1 range=4\nlaser id=l2 at=0,-2 heading=90\n"
+    "human id=h1 at=1,2\n";
+
+class ReplayTest : public ::testing::Test {
+  protected:
+    ReplayTest() {
+        std::string name = (fs::temp_directory_path() / "ispace_replay_XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+        world_ = std::make_unique<World>(scene_, kStep);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+
+    /// r1 drives round a bend and into the post; four seconds.
+    void record() {
+        Recorder recorder(folder_, *world_, {}, 0);
+        world_->command(0, {.verb = Verb::Speed, .value = 1.2});
+        world_->command(0, {.verb = Verb::Rotspeed, .value = 2});
+            for (int i = 0; i < 200; ++i) {
+            world_->step();
+            recorder.record(*world_);
+        }
+        recorder.flush(*world_);
+    }
+
+    Scene scene_ = scene(kRoom, kWho);
+    fs::path folder_;
+    std::unique_ptr<World> world_;
+};
+
+std::vector<float> rangesOf(const World& world, const char* laser) {
+    return world.reading(world.sensorNamed(laser).value()).scan().ranges;
+}
+
+TEST_F(ReplayTest, GoesAsRecordedAndSeesTheSame) {
+    record();
+    ASSERT_TRUE(world_->status(0).stall);
+    const std::vector<float> seen = rangesOf(*world_, "l1");
+    Replay replay(folder_);
+    EXPECT_EQ(replay.stepLength(), kStep);
+    World again(scene_, kStep);
+    int steps = 0, stalls = 0;
+    for (; !replay.atEnd(); ++steps) {
+        ASSERT_TRUE(replay.step(again));
+        stalls += static_cast<int>(again.collisions().size());
+    }
+    EXPECT_FALSE(replay.step(again));
+    EXPECT_FALSE(replay.isCut());
+    EXPECT_EQ(steps, 200);
+    EXPECT_EQ(stalls, 1);
+    const RobotStatus then = world_->status(0), now = again.status(0);
+    EXPECT_NEAR(distance(now.pose.position, then.pose.position), 0, 1e-12);
+    EXPECT_NEAR(now.pose.heading.degrees(), then.pose.heading.degrees(), 1e-12);
+    EXPECT_EQ(now.speed, then.speed);
+    EXPECT_EQ(now.stall, then.stall);
+    const std::vector<float> read = rangesOf(again, "l1");
+    ASSERT_EQ(read.size(), seen.size());
+    for (std::size_t i = 0; i < read.size(); ++i)
+        EXPECT_TRUE(read[i] == seen[i] || std::abs(read[i] - seen[i]) < 1e-5F) << i;
+}
+
+TEST_F(ReplayTest, EndsTheRunOrHolds) {
+    record();
+    Replay replay(folder_);
+    World world(scene_, kStep);
+    Simulation simulation(world, {}, {Clock::Kind::Fast, 1}, {});
+    simulation.replay(replay, false);
+    EXPECT_TRUE(simulation.isReplay());
+    simulation.run(WallTime(), hours(1));
+    EXPECT_TRUE(simulation.finished());
+    EXPECT_EQ(world.steps(), 200);
+
+    Replay held(folder_);
+    World held_world(scene_, kStep);
+    Simulation holding(held_world, {}, {Clock::Kind::Fast, 1}, {});
+    holding.replay(held, true);
+    holding.run(WallTime(), hours(1));
+    EXPECT_FALSE(holding.finished());
+    EXPECT_TRUE(holding.isHeld());
+    EXPECT_TRUE(holding.paused());
+    holding.allow(5);
+    EXPECT_EQ(holding.owed(), 0);
+    holding.resume(WallTime());
+    EXPECT_TRUE(holding.paused());
+    EXPECT_EQ(holding.run(WallTime(), hours(1)), std::nullopt);
+    EXPECT_EQ(held_world.steps(), 200);
+}
+
+TEST_F(ReplayTest, BeginsWhereTheRecordDoes) {
+    writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0,r1,0.25,-1,90\n0.02,r1,0.25,-0.9,90\n");
+    const Replay replay(folder_);
+    EXPECT_EQ(replay.stepLength(), kStep) << "by the moments";
+    replay.placeAtStart(scene_);
+    EXPECT_EQ(scene_.robots[0].pose, (Pose2{{0.25, -1}, Angle::degrees(90)}));
+    EXPECT_NEAR(scene_.sensors[0].pose.position.x, 0.25, 1e-12);
+    Scene other = scene(kRoom, "robot id=r2 at=0,0\n");
+    EXPECT_THROW(replay.placeAtStart(other), FormatError);
+}
+
+std::string errorOf(const std::string& folder, const Scene& room) {
+    try {
+        Replay replay(folder);
+        World world(room, replay.stepLength());
+        while (replay.step(world)) continue;
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST_F(ReplayTest, RefusesWhatIsNoRun) {
+    const std::string header = "t,id,x,y,heading_deg\n", name = path("robots.csv");
+    const auto errorWith = [&](const std::string& rows) {
+        writeAll(name, header + rows);
+        return errorOf(folder_, scene_);
+    };
+    EXPECT_EQ(errorWith(""), name + ": error: holds no moment of a run: nobody moved in it");
+    EXPECT_EQ(errorWith("1,r1,0,0,0\n"),
+              name +
+                  ": error: begins at t=1 with steps of 0.005 s, wanted 0 and from 0.000001 to "
+                  "1 s");
+    EXPECT_EQ(errorWith("0,r1,0,0,0\n5,r1,0,0,0\n"),
+              name + ": error: begins at t=0 with steps of 5 s, wanted 0 and from 0.000001 to 1 s");
+    EXPECT_EQ(errorWith("0,r1,0,0,0\n0.1,r1,0,0,0\n0.3,r1,0,0,0\n"),
+              name + ": error: goes on at t=0.3, wanted t=0.2");
+    EXPECT_EQ(errorWith("0,r1,0,0,0\n0.1,r1,0,0,0\n0.2,r1,0\n").substr(0, name.size() + 8),
+              name + ":4: erro");
+    EXPECT_EQ(errorWith("0,r1,0,0,0\n0.1,r1,0,0,0\n0.2,r1,0"), "");
+}
+
+TEST_F(ReplayTest, PassesOverWhoIsGone) {
+    record();
+    Replay replay(folder_);
+    World world(scene_, kStep);
+    replay.step(world);
+    world.change(scene(kRoom, "robot id=r7 at=-2,-2\nhuman id=h1 at=1,2\n"));
+    while (replay.step(world)) continue;
+    EXPECT_EQ(world.status(0).pose.position, (Point2{-2, -2}));
+    EXPECT_EQ(world.steps(), 200);
+}
+
+}  // namespace
+}  // namespace ispace
