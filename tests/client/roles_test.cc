@@ -85,7 +85,12 @@ TEST_F(Roles, RefusalsHaveTheServersText) {
 }
 
 TEST_F(Roles, WhoLeavesFreesTheRobot) {
-    { Robot robot(server.address(), "r1"); }
+    {
+        Robot robot(server.address(), "r1");
+        robot.connection().quit();
+        EXPECT_THROW(robot.status(), ConnectionError);
+        Robot at_once(server.address(), "r1");
+    }
     // The server learns of it a moment later.
     for (int i = 0;; ++i) {
         try {

@@ -56,13 +56,13 @@ TEST_F(Sensors, ARangerReadsTheSameInEachFormat) {
     CloudSensor sensor(server.address(), "d1");
     const Cloud cloud = sensor.scan();
     ASSERT_EQ(cloud.points.size(), 12U);
+    std::size_t i = 0;
     for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) {
+        for (int column = 0; column < 4; ++column, ++i) {
             const float distance = metres.at(column, row);
             ASSERT_TRUE(std::isfinite(distance));
             EXPECT_NEAR(millimetres.at(column, row), distance, 5.1e-4);
-            const Cloud::Point3 point = cloud.points[static_cast<std::size_t>(4 * row + column)];
-            EXPECT_NEAR(point.x, distance, 1e-6);  // along the axis
+            EXPECT_NEAR(cloud.points[i].x, distance, 1e-6);  // along the axis
         }
     }
 }

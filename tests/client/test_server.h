@@ -48,7 +48,7 @@ class TestServer {
     TestServer(const TestServer&) = delete;
     TestServer& operator=(const TestServer&) = delete;
 
-    const std::string& address() const { return address_; }
+    [[nodiscard]] const std::string& address() const { return address_; }
     /// Waits for a server that ends by itself. \return its exit status
     int wait() {
         int status = 0;

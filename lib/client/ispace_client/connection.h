@@ -64,6 +64,10 @@ class Connection {
         return answer;
     }
 
+    /// Ends the dialogue; what was held is free when this returns. Nothing can be asked after it.
+    /// Without it the server learns of the end of a connection a moment later.
+    void quit() { ask("QUIT"); }
+
     /// The next DONE or FAIL, EVENT, or scan of a stream; waits for it.
     /// \return false if none came within so many seconds
     bool nextEnd(Message& message, double timeout) { return next(ends_, message, timeout); }

@@ -83,7 +83,7 @@ class Link {
     /// Brakes, and frees it before this returns.
     void close() {
         robot_->stop();
-        robot_->connection().ask("QUIT");
+        robot_->connection().quit();
     }
 
   private:
