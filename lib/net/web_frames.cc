@@ -92,6 +92,7 @@ std::size_t appendReading(std::string& out, const RunSensor& sensor, const Senso
 
 void WebFrames::look(WallTime now) {
     if (now < next_look_) return;
+    const auto start = steady_clock::now();
     const World& world = simulation_->world();
     const bool stepped = world.steps() != steps_ || world.changes() != version_;
     std::string state = stateText();
@@ -104,16 +105,19 @@ void WebFrames::look(WallTime now) {
         changes_.reset();
         whole_.reset();
     }
-    const auto spent = steady_clock::now() - now;
     next_look_ = now + std::max<std::chrono::nanoseconds>(stepped ? kLeastInterval : kIdleInterval,
-                                                          kShare * spent);
+                                                          kShare * (steady_clock::now() - start));
 }
 
 WebFrames::Text WebFrames::frame(std::int64_t known) {
     // Both at once: what is new is told once.
     const bool has_last = known == number_ - 1 && known > 0;
     Text& text = has_last ? changes_ : whole_;
-    if (!text) text = std::make_shared<const std::string>(withReadings(!has_last));
+    if (!text) {
+        const auto start = steady_clock::now();
+        text = std::make_shared<const std::string>(withReadings(!has_last));
+        next_look_ += kShare * (steady_clock::now() - start);
+    }
     return text;
 }
 

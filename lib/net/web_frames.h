@@ -14,8 +14,8 @@ namespace ispace {
 ///
 /// A frame is a JSON object, see share/schemas/web-frame.json: where everything is, in millimetres
 /// and hundredths of degrees, and what sensors read. Frames count from 1. Who has the last one gets
-/// the readings that are new since; anybody else gets the newest of all sensors. Of very many only
-/// some come with each frame, in turn.
+/// what was read since (or a little before); anybody else gets the newest of all sensors. Of very
+/// many only some come with each frame, in turn.
 class WebFrames {
   public:
     using Text = std::shared_ptr<const std::string>;

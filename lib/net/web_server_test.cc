@@ -29,7 +29,7 @@ TEST(WebServer, ServesItsPage) {
     EXPECT_TRUE(has(std::string(page["Content-Security-Policy"]), "default-src 'none'"));
     EXPECT_TRUE(page.body().starts_with("<!doctype html>"));
     for (const char* file : {"/style.css", "/icon.svg", "/main.js", "/link.js", "/view.js",
-                             "/plan.js", "/movers.js", "/drive.js"}) {
+                             "/plan.js", "/movers.js", "/drive.js", "/events.js"}) {
         EXPECT_TRUE(has(page.body(), file) || has(browser.get("/main.js").body(), file)) << file;
         EXPECT_EQ(browser.get(file).result_int(), 200U) << file;
     }
@@ -40,7 +40,7 @@ TEST(WebServer, PageAsksNobodyElse) {
     const WebRunning server;
     Browser browser(server);
     for (const char* file : {"/", "/style.css", "/main.js", "/link.js", "/view.js", "/plan.js",
-                             "/movers.js", "/drive.js"}) {
+                             "/movers.js", "/drive.js", "/events.js"}) {
         const std::string text = browser.get(file).body();
         EXPECT_FALSE(has(text, "http://") || has(text, "https://") || has(text, "@import")) << file;
     }

@@ -18,7 +18,7 @@ export class Driver {
     this.keys = new Set();
     this.speeds = '0,0';
     this.link = new Link({line: line => this.event(line), close: () => { this.gone = true; this.goal = null; this.changed(); }});
-    this.ready = this.link.ask(`${mover.kind === 'person' ? 'PERSON' : 'ROBOT'} ${mover.id}`).then(answer => {
+    this.ready = this.link.takeRole(`${mover.kind === 'person' ? 'PERSON' : 'ROBOT'} ${mover.id}`).then(answer => {
       if (answer.startsWith('OK')) return true;
       tell(`${mover.id}: ${complaint(answer)}`, true);
       this.release();

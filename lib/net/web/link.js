@@ -30,6 +30,14 @@ export class Link {
     }
   }
 
+  /** The answer to the request for a role. Where the run has a token, the page's address gives it:
+   * `#token=…`, which stays in the browser. */
+  takeRole(request) {
+    const token = /#token=(.+)/.exec(location.hash)?.[1];
+    if (token) this.ask(`TOKEN ${decodeURIComponent(token)}`);
+    return this.ask(request);
+  }
+
   /** The answer to a request, as it comes. */
   ask(request) {
     return new Promise(tell => {

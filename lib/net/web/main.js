@@ -5,6 +5,7 @@ import {View} from './view.js';
 import {Plan} from './plan.js';
 import {Movers} from './movers.js';
 import {Driver} from './drive.js';
+import {eventText} from './events.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
@@ -19,13 +20,18 @@ function connect() {
   link = new Link({
     open: () => {
       banner('');
-      link.ask('WORLD');
-      link.ask('EVENTS');
+      link.takeRole('WORLD').then(answer => {
+        if (answer.startsWith('ERR')) tell(complaint(answer), true);
+        else link.ask('EVENTS');
+      });
       link.send('FRAME');
       asked = true;
     },
     json: object => object.plan ? takeScene(object) : takeFrame(object),
-    line: line => tell(line.replace(/^EVENT /, ''), /^EVENT (collision|stall|lost)/.test(line)),
+    line: line => {
+      const {text, bad} = eventText(line);
+      if (text) tell(text, bad);
+    },
     close: code => {
       banner(code === 1001 ? 'The run has ended.' : 'No connection to simrun: trying again…');
       document.body.classList.add('paused');

@@ -87,11 +87,12 @@ export class Movers {
 
   drawScans(context, view, selected) {
     view.inMetres(context);
+    const faint = 0.14 * Math.min(1, Math.sqrt(20 / this.scans.size));
     for (const [id, {area, hits}] of this.scans) {
       const color = this.colorOf.get(id) ?? this.colors.sensor;
       const sensor = this.sensors.find(other => other.id === id);
       const strong = selected && sensor?.on !== undefined && this.all[sensor.on] === selected;
-      context.globalAlpha = strong ? 0.26 : 0.14;
+      context.globalAlpha = strong ? 0.26 : faint;
       context.fillStyle = color;
       context.fill(area);
       context.globalAlpha = strong ? 0.9 : 0.65;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What happens in the world, for people.
+import {keysOf} from './link.js';
+
+const kTexts = {
+  collision: ({id, into}) => `${id} ran into ${into}`,
+  enter: ({id, zone}) => `${id} enters ${zone}`,
+  leave: ({id, zone}) => `${id} leaves ${zone}`,
+  mat: ({id, who, on}) => `${who} steps ${on === '1' ? 'on' : 'off'} ${id}`,
+  gate: ({id, who, way}) => `${who} goes ${way} through ${id}`,
+  seen: ({id, by}) => `${id} is in sight of ${by}`,
+  lost: ({id}) => `${id} is out of sight`,
+  mark: ({text}) => text,
+  change: ({what}) => `changed: ${what}`,
+};
+
+/** {text, bad} of a line that comes by itself; no text for what is not worth one. */
+export function eventText(line) {
+  const [, kind] = /^EVENT (\w+)/.exec(line) ?? [];
+  if (!kTexts[kind]) return {};
+  const keys = {...keysOf(line), text: line.split(' text=')[1], what: line.split(' what=')[1]};
+  return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision'};
+}
