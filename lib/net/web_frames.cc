@@ -141,6 +141,8 @@ std::string WebFrames::stateText() const {
                                                  : "step");
     out.append("\",\"rate\":").append(formatDouble(clock.rate));
     out.append(",\"paused\":").append(simulation_->paused() ? "true" : "false");
+    out.append(",\"replay\":").append(simulation_->isReplay() ? "true" : "false");
+    out.append(",\"over\":").append(simulation_->isHeld() ? "true" : "false");
     out.append(",\"movers\":[");
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         const RobotStatus status = world.status(i);

@@ -191,8 +191,8 @@ void simrun(const SimrunCommand& command) {
 
     checkRecord(options, world);
     Server server(simulation, options.listen, withinFileLimit(options.limits));
-    const bool is_file = input.environment_operand != "-";
-    const std::string title = is_file ? baseName(input.environment_operand) : "";
+    const std::string& shown = replay ? options.replay : input.environment_operand;
+    const std::string title = shown == "-" ? "" : baseName(shown);
     const std::string web = options.web ? server.serveWeb(*options.web, title) : "";
     const StopSignals signals;
     server.stopOn(signals.descriptor());

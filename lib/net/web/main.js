@@ -95,7 +95,7 @@ function draw() {
   if (frame) {
     movers.draw(context, view, {scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected});
     for (const driver of drivers.values()) drawGoal(driver.mover, driver.goal, '#0072b2');
-    if (drag?.mover && drag.moved) drawGoal(drag.mover, drag, '#d55e00');
+    if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, '#d55e00');
   }
   if (asked) return;
   asked = true;
@@ -131,11 +131,21 @@ function showClock(next) {
     pace = {...pace, now, t: next.t};
   }
   const rate = pace.rate === undefined ? '' : `${pace.rate >= 9.5 ? pace.rate.toFixed(0) : pace.rate.toFixed(1)} × real time`;
-  part('pace').textContent = next.paused ? 'paused' : rate;
+  part('pace').textContent = (next.replay ? 'record, ' : '') + (next.over ? 'at its end' : next.paused ? 'paused' : rate);
   document.body.classList.toggle('paused', next.paused);
   part('run').textContent = next.paused ? 'Resume' : 'Pause';
-  part('run').disabled = next.clock === 'step';
-  part('step').disabled = !next.paused;
+  part('run').disabled = next.clock === 'step' || next.over;
+  part('step').disabled = !next.paused || next.over;
+  if (next.replay !== frame?.replay) showHelp(next.replay);
+}
+
+/** Who is in a record goes where it went. */
+function showHelp(is_replay) {
+  part('pad').hidden = !selected || is_replay;
+  part('hint').hidden = Boolean(selected);
+  part('hint').textContent = is_replay ?
+    'This is a record: pause it, take single steps, follow who is in it.' :
+    'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.';
 }
 
 function listMovers() {
@@ -183,8 +193,7 @@ function select(mover) {
   }
   selected = mover;
   for (const {button, id} of movers.all) button?.setAttribute('aria-pressed', id === mover?.id);
-  part('pad').hidden = !mover;
-  part('hint').hidden = Boolean(mover);
+  showHelp(frame?.replay);
   if (!mover) follow(false);
   showDetails();
   redraw();
@@ -231,7 +240,7 @@ const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], Arro
 
 function key(name, down, repeated = false) {
   if (name in arrows) {
-    if (selected) {
+    if (selected && !frame?.replay) {
       if (!repeated) driverOf(selected).press(name, down);
     } else if (down) {
       view.pan(...arrows[name]);
@@ -309,7 +318,7 @@ canvas.addEventListener('pointermove', event => {
     pinch = span;
   } else if (drag) {
     drag.moved ||= Math.hypot(px - drag.px, py - drag.py) > 6;
-    if (drag.mover) Object.assign(drag, {x, y});
+    if (drag.mover && !frame?.replay) Object.assign(drag, {x, y});
     else if (drag.moved) {
       follow(false);
       view.pan(px - drag.px, py - drag.py);
@@ -330,7 +339,7 @@ function letGo(event) {
   const done = drag;
   drag = null;
   canvas.classList.remove('moving');
-  if (event.type === 'pointerup' && done?.mover && done.moved) driverOf(done.mover).goTo(done.x, done.y);
+  if (event.type === 'pointerup' && done?.x !== undefined && done.moved) driverOf(done.mover).goTo(done.x, done.y);
   else if (event.type === 'pointerup' && done && !done.mover && !done.moved) select();
   redraw();
 }

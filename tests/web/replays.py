@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page shows a record as it shows a run, and lets nobody drive in it."""
+
+import os
+import subprocess
+import tempfile
+
+from page import Page
+from running import LAYOUT, ENVIRONMENT, Run, check, eventually, skip
+
+try:
+    from selenium.webdriver import ActionChains, Keys
+except ImportError:
+    skip("no selenium here (Debian: python3-selenium)")
+
+
+def record(folder):
+    for name, text in (("office.env", ENVIRONMENT), ("office.3dm", LAYOUT),
+                       ("drive.txt", "0 r1 FORWARD 1.5\n")):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+    subprocess.run(["simrun", "office.env", "office.3dm", "-q", "--clock", "fast", "--until", "6",
+                    "--script", "drive.txt", "--record", "walk"], cwd=folder, check=True,
+                   stdout=subprocess.DEVNULL)
+    return os.path.join(folder, "walk")
+
+
+def end_of_r1(folder):
+    with open(os.path.join(folder, "robots.csv"), encoding="utf-8") as file:
+        rows = [line.split(",") for line in file]
+    return [float(row[2]) for row in rows if row[1] == "r1"][-1]
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    folder = record(scratch)
+    with Run("--replay", folder, "--hold", "--clock", "real:2") as run, \
+            Page(run.url) as page:
+        check(page.browser.title == "walk", f"the title is {page.browser.title}")
+        page.select("r1")
+        eventually("r1 moves", lambda: page.facts()["x"] > 2.2)
+        check("record" in page.text("pace"), "the page does not say that it is a record")
+        ActionChains(page.browser).key_down(Keys.ARROW_LEFT).pause(0.3).key_up(
+            Keys.ARROW_LEFT).perform()
+        eventually("the end", lambda: page.text("pace") == "record, at its end")
+        facts = page.facts()
+        check(abs(facts["x"] - end_of_r1(folder)) < 0.002 and facts["heading"] == 0,
+              f"r1 is not where the record has it: {facts}")
+        check(not page.part("run").is_enabled(), "the record can go on")
+        page.screenshot("replay_1280.png")
