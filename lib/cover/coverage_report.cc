@@ -6,6 +6,8 @@
 #include "base/number.h"
 #include "base/program.h"
 #include "cover/coverage.h"
+#include "cover/run_sight.h"
+#include "cover/text_table.h"
 
 namespace ispace {
 
@@ -111,7 +113,9 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 
 }  // namespace
 
-std::string coverageJson(const CoverageReport& report) {
+std::string coverageJson(const CoverageReport& report) { return coverageJson(report, nullptr); }
+
+std::string coverageJson(const CoverageReport& report, const RunSight* run) {
     const Box2& limits = report.limits;
     JsonWriter json;
     beginReport(json, "ispace-coverage/1", "coverage");
@@ -159,6 +163,7 @@ std::string coverageJson(const CoverageReport& report) {
         json.endObject();
     }
     if (report.comparison) write(json, *report.comparison);
+    if (run != nullptr) writeRun(json, *run);
     json.endObject();
     return json.take() + "\n";
 }
@@ -167,35 +172,9 @@ namespace {
 
 constexpr std::size_t kSpotsListed = 5;
 
-using Row = std::vector<std::string>;
-
 std::string metres(double value) { return formatFixed(value, 2); }
 std::string area(double value) { return formatFixed(value, 2) + " m2"; }
 std::string percent(double share) { return formatFixed(100 * share, 2) + "%"; }
-
-/// Columns as wide as their longest cell, two blanks apart; `sides` has an r for those of numbers,
-/// whose last letter counts on.
-std::string aligned(const std::vector<Row>& rows, const std::string& sides) {
-    std::vector<std::size_t> widths;
-    const auto side = [&sides](std::size_t i) {
-        return i < sides.size() ? sides[i] : sides.back();
-    };
-    for (const Row& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    std::string text;
-    for (const Row& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            const std::string blanks(widths[i] - row[i].size(), ' ');
-            if (i > 0) line += "  ";
-            line += side(i) == 'r' ? blanks + row[i] : row[i] + blanks;
-        }
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
-}
 
 template <typename Format>
 std::string withSign(double value, Format format) {
@@ -205,9 +184,9 @@ std::string withSign(double value, Format format) {
 
 /// A metric three ways: by cells, exact, and by how much cells are off.
 template <typename Format>
-Row row(std::string name, const Metric& metric, Format format) {
-    Row row = {std::move(name), metric.grid ? format(*metric.grid) : "-",
-               metric.exact ? format(*metric.exact) : "-"};
+TextRow row(std::string name, const Metric& metric, Format format) {
+    TextRow row = {std::move(name), metric.grid ? format(*metric.grid) : "-",
+                   metric.exact ? format(*metric.exact) : "-"};
     if (!metric.grid || !metric.exact) {
         row.emplace_back("-");
         return row;
@@ -225,7 +204,7 @@ std::string seenBy(std::size_t first, std::size_t last) {
 }
 
 /// A row for each number of sensors, of many the greater ones together.
-void addRedundancy(const CoverageReport& report, std::vector<Row>& rows) {
+void addRedundancy(const CoverageReport& report, std::vector<TextRow>& rows) {
     constexpr std::size_t kMaxRows = 8;
     const auto exact = [&report](std::size_t k) { return (*report.redundancy_exact)[k]; };
     std::size_t end = report.redundancy.size();
@@ -252,11 +231,11 @@ std::string classText(std::size_t index) {
 }
 
 std::string metricTable(const CoverageReport& report) {
-    std::vector<Row> rows = {{"", "by cells", "exact", "difference"},
-                             row("total effective area", report.total_effective_area, area),
-                             row("seen by several", report.overlap, area),
-                             row("coverage", report.coverage, percent),
-                             row("free coverage", report.free_coverage, percent)};
+    std::vector<TextRow> rows = {{"", "by cells", "exact", "difference"},
+                                 row("total effective area", report.total_effective_area, area),
+                                 row("seen by several", report.overlap, area),
+                                 row("coverage", report.coverage, percent),
+                                 row("free coverage", report.free_coverage, percent)};
     addRedundancy(report, rows);
     for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
         rows.push_back(row(classText(i), report.densities.indoor[i], percent));
@@ -276,10 +255,10 @@ std::string metricTable(const CoverageReport& report) {
 
 std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
     const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
-    std::vector<Row> rows = {{"sensor", "model", "slice area", "by cells", "exact", "difference",
-                              "marginal", "exact", "difference", "overlap"}};
+    std::vector<TextRow> rows = {{"sensor", "model", "slice area", "by cells", "exact",
+                                  "difference", "marginal", "exact", "difference", "overlap"}};
     for (const SensorMetrics& sensor : sensors) {
-        const Row region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
+        const TextRow region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
         rows.push_back(
             {printable(sensor.id),
              sensor.model.empty() ? std::string(sensor.kind->keyword) : printable(sensor.model),
@@ -298,13 +277,14 @@ std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
     const auto text = [](const std::optional<double>& value, const char* unit, int decimals) {
         return value ? formatFixed(*value, decimals) + unit : "-";
     };
-    std::vector<Row> rows = {{"camera", "nearest", "farthest", "mean density"}};
+    std::vector<TextRow> rows = {{"camera", "nearest", "farthest", "mean density"}};
     for (const PixelDensity& one : pixelDensities()) rows.front().emplace_back(one.name);
     for (const SensorMetrics& sensor : sensors) {
         if (!sensor.picture) continue;
         const PictureMetrics& picture = *sensor.picture;
-        Row row = {printable(sensor.id), text(picture.nearest, " m", 2),
-                   text(picture.farthest, " m", 2), text(best(picture.mean_density), " px/m", 1)};
+        TextRow row = {printable(sensor.id), text(picture.nearest, " m", 2),
+                       text(picture.farthest, " m", 2),
+                       text(best(picture.mean_density), " px/m", 1)};
         for (const Metric& metric : picture.areas) row.push_back(text(best(metric), " m2", 2));
         rows.push_back(std::move(row));
     }
@@ -321,7 +301,7 @@ std::string piecesText(const CoverageReport& report) {
     }
     if (report.unseen.empty()) return text;
     text += "largest spots of free floor that no sensor sees:\n";
-    std::vector<Row> rows;
+    std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(kSpotsListed, report.unseen.size()); ++i) {
         const UnseenSpot& spot = report.unseen[i];
         rows.push_back({" ", area(spot.area), "around",

@@ -182,6 +182,9 @@ std::string drawCoverageMap(const Scene& scene, const Coverage& coverage, const 
     picture.pushLayer("places tried");
     drawTrace(picture, map, frame);
     picture.pop();
+    picture.pushLayer("ways of the run");
+    drawRun(picture, map);
+    picture.pop();
     drawMarks(picture, map, frame);
     picture.pushLayer("frame");
     drawHead(picture, map, page);

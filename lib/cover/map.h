@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cover/coverage.h"
+#include "cover/run_sight.h"
 #include "cover/trace_file.h"
 #include "draw/picture.h"
 
@@ -32,6 +33,9 @@ struct MapOptions {
     FanStyle fans = FanStyle::Contours;
     /// What a search tried: places in the colours of the best value there, below the sensors.
     std::vector<TriedPose> trace = {};
+    /// What the layout saw of a run: ways in colours by the number of sensors that saw them, and
+    /// rings where sight was lost; null for none. It outlives the options.
+    const RunSight* run = nullptr;
 };
 
 /// The plan as a picture for a paper: covered floor, walls, objects, each sensor with its id,

@@ -166,6 +166,12 @@ struct LegendBlock {
     std::array<std::string, 2> columns = {};  ///< heads of value and second, or none
 };
 
+// What was seen of a run (map_run.cc).
+
+/// On top of the plan, below sensors' marks.
+void drawRun(Picture& picture, const MapPicture& map);
+LegendBlock runBlock(const RunSight& run);
+
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
 /// The main metrics, the most important first, for a line below the title.
 std::vector<std::string> mainMetrics(const MapPicture& map);

@@ -14,6 +14,7 @@
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "cover/coverage_formats.h"
+#include "cover/run_sight.h"
 #include "cover/trace_file.h"
 #include "coverage/options.h"
 #include "layout/scene.h"
@@ -108,6 +109,35 @@ void checkRequired(const CoverageToolOptions& options, const Coverage& coverage)
     if (!missing.empty()) throw UnmetError(missing);
 }
 
+/// A record knows its scene.
+SceneInput readInput(const CoverageToolOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (!options.run.empty() && operands.empty())
+        if (const std::string scene = RecordedFiles(options.run).scene;
+            std::filesystem::exists(scene))
+            operands.push_back(scene);
+    return readScene({operands, options.any_environment, true});
+}
+
+/// What the layout saw of a recorded run; nothing without --run.
+std::optional<RunSight> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
+    if (options.run.empty()) return std::nullopt;
+    RunReader reader(options.run);
+    RunSight run = measureRun(scene, reader,
+                              {.plane = options.measure.plane, .density = options.measure.density});
+    run.name = baseName(options.run);
+    if (reader.isCut())
+        warn(options.common, "coverage",
+             "the record ends in the midst of a step, which is left out");
+    return run;
+}
+
+std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
+                       const RunSight* run) {
+    if (options.json) return coverageJson(report, run);
+    return coverageText(report) + (run == nullptr ? "" : "\n" + runText(*run));
+}
+
 void coverage(CoverageToolOptions options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
@@ -115,7 +145,7 @@ void coverage(CoverageToolOptions options) {
     if (options.format != nullptr && options.format->beside_suffix != nullptr)
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
                     "the picture of the map");
-    const SceneInput input = readScene({options.operands, options.any_environment, true});
+    const SceneInput input = readInput(options);
     warn(options.common, "coverage", input.environment.warnings);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
@@ -134,14 +164,17 @@ void coverage(CoverageToolOptions options) {
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
     tellOfLargeCells(options, report.grid);
+    const std::optional<RunSight> run = lookAtRun(options, input.scene);
+    if (run) options.map.run = &*run;
+    if (run) files.push_back(RecordedFiles(options.run).robots);
     if (options.format != nullptr) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
         writeProduct(options, input.scene, measured);
         writeDependencies(options.common, files);
     }
-    if (!options.report.empty()) writeAll(options.report, coverageJson(report));
-    writeAll("-", options.json ? coverageJson(report) : coverageText(report));
+    if (!options.report.empty()) writeAll(options.report, coverageJson(report, options.map.run));
+    writeAll("-", reportText(options, report, options.map.run));
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");

@@ -113,6 +113,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.file("--compare", "LAYOUT", o.other,
               "report gains and losses against this layout, in numbers and on the map",
               Enters::BaseName);
+    line.file("--run", "DIR", o.run,
+              "report by how many sensors robots and people were seen in the run that simrun "
+              "--record wrote there, and where sight was lost, in numbers and on the map",
+              Enters::BaseName);
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
     constexpr int kNarrowest = 200, kWidest = 10000;

@@ -21,6 +21,7 @@ struct CoverageToolOptions {
     std::string report;  ///< file for the report as JSON besides stdout; "" for none
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of what a search tried, for the map; "" for none
+    std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
     MapOptions map;
     bool any_environment = false;
 };

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ispace {
+
+/// A row of a table in text.
+using TextRow = std::vector<std::string>;
+
+/// Columns as wide as their longest cell, two blanks apart; `sides` has an r for those of numbers,
+/// whose last letter counts on.
+std::string aligned(const std::vector<TextRow>& rows, const std::string& sides);
+
+}  // namespace ispace
