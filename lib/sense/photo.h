@@ -77,5 +77,8 @@ void appendY4mFrame(std::string& out, const Photo& photo);
 /// lens, then "png", the picture in base64.
 void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
                  std::span<const Sensor> receivers = {});
+/// The same with "file", its name, in place of the picture.
+void appendFileLine(std::string& out, const Sensor& sensor, const Photo& photo,
+                    const std::string& file);
 
 }  // namespace ispace

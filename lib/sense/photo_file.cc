@@ -112,10 +112,11 @@ void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& en
             endings.push_back(std::move(ending));
 }
 
-void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
-                 std::span<const Sensor> /*receivers*/) {
+namespace {
+
+/// All but the pixels.
+void beginLine(JsonWriter& json, const Sensor& sensor, const Photo& photo) {
     const Camera& camera = sensor.as<Camera>();
-    JsonWriter json;
     json.beginObject().key("sensor").value(sensor.id);
     json.key("t").value(photo.time).key("frame").value(photo.frame);
     addPose(json, photo.pose);
@@ -133,7 +134,24 @@ void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
         for (std::size_t i = 0; i < count; ++i) json.value(camera.distortion[i]);
         json.endArray();
     }
+}
+
+}  // namespace
+
+void appendLines(std::string& out, const Sensor& sensor, const Photo& photo,
+                 std::span<const Sensor> /*receivers*/) {
+    const Camera& camera = sensor.as<Camera>();
+    JsonWriter json;
+    beginLine(json, sensor, photo);
     json.key("png").value(base64(pngOfRgb(camera.columns, camera.rows, photo.rgb)));
+    out.append(json.endObject().text()).append("\n");
+}
+
+void appendFileLine(std::string& out, const Sensor& sensor, const Photo& photo,
+                    const std::string& file) {
+    JsonWriter json;
+    beginLine(json, sensor, photo);
+    json.key("file").value(file);
     out.append(json.endObject().text()).append("\n");
 }
 

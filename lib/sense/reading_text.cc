@@ -80,10 +80,11 @@ void appendScanLine(std::string& out, const Sensor& sensor, const Scan& scan) {
     appendWithRanges(out, json, "ranges", scan.ranges);
 }
 
-void appendLines(std::string& out, const Sensor& sensor, const DepthFrame& frame,
-                 std::span<const Sensor> /*receivers*/) {
+namespace {
+
+/// All but the depths.
+void beginLine(JsonWriter& json, const Sensor& sensor, const DepthFrame& frame) {
     const Ranger& ranger = sensor.as<Ranger>();
-    JsonWriter json;
     json.beginObject().key("sensor").value(sensor.id);
     json.key("t").value(frame.time).key("frame").value(frame.frame);
     addPose(json, frame.pose);
@@ -102,7 +103,23 @@ void appendLines(std::string& out, const Sensor& sensor, const DepthFrame& frame
     json.key("range_min").value(ranger.min_range);
     json.key("range_max").value(ranger.max_range);
     if (ranger.ambiguity > 0) json.key("ambiguity").value(ranger.ambiguity);
+}
+
+}  // namespace
+
+void appendLines(std::string& out, const Sensor& sensor, const DepthFrame& frame,
+                 std::span<const Sensor> /*receivers*/) {
+    JsonWriter json;
+    beginLine(json, sensor, frame);
     appendWithRanges(out, json, "depths", frame.depths);
+}
+
+void appendFileLine(std::string& out, const Sensor& sensor, const DepthFrame& frame,
+                    const std::string& file) {
+    JsonWriter json;
+    beginLine(json, sensor, frame);
+    json.key("file").value(file);
+    out.append(json.endObject().text()).append("\n");
 }
 
 void appendLines(std::string& out, const Sensor& sensor, std::span<const Scan> scans,

@@ -32,6 +32,9 @@ void appendLines(std::string& out, const Sensor& sensor, std::span<const Scan> s
 /// "range_max", "ambiguity" if there is one, and "depths".
 void appendLines(std::string& out, const Sensor& sensor, const DepthFrame& frame,
                  std::span<const Sensor> receivers = {});
+/// The same with "file", the name of a picture of the depths, in their place.
+void appendFileLine(std::string& out, const Sensor& sensor, const DepthFrame& frame,
+                    const std::string& file);
 /// One burst: the tag as "sensor", its true pose, "heard" with "receiver", "time_of_flight" and
 /// "range" each, the computed "position", "residual", "pdop", "hdop", "vdop".
 void appendLines(std::string& out, const Sensor& tag, const Burst& burst,

@@ -48,8 +48,8 @@ bool touches(const Area& area, const MovingBody& body) {
 }
 
 /// What of a mover is on the floor, or in the way of beams.
-std::vector<MovingBody> bodiesOfMover(const MoverShape& shape, const Pose2& pose) {
-    if (shape.is_person) return humanBodies(shape.height, pose, 0);
+std::vector<MovingBody> bodiesOfMover(const MoverShape& shape, const Pose2& pose, Angle swing) {
+    if (shape.is_person) return humanBodies(shape.height, pose, 0, swing);
     return {robotBody(shape.model, pose, 0)};
 }
 
@@ -103,7 +103,7 @@ FloorSensors::FloorSensors(const Scene& scene) : movers_(moverShapes(scene)) {
     gate_states_.resize(gates_.size());
 }
 
-void FloorSensors::follow(std::span<const Motion> robots, std::span<const Motion> people) {
+void FloorSensors::follow(const Movers& movers) {
     passages_.clear();
     if (empty()) return;
     for (MatState& state : mat_states_) state.on.clear();
@@ -111,20 +111,22 @@ void FloorSensors::follow(std::span<const Motion> robots, std::span<const Motion
     const bool has_places = places_.size() == movers_.size();
     places_.resize(movers_.size());
     for (std::size_t i = 0; i < movers_.size(); ++i) {
-        const Pose2& pose = (i < robots.size() ? robots[i] : people[i - robots.size()]).pose;
+        const std::size_t count = movers.robots.size();
+        const bool is_robot = i < count;
+        const Pose2& pose = (is_robot ? movers.robots[i] : movers.people[i - count]).pose;
         if (has_places && places_[i] != pose.position) pass(i, places_[i], pose.position);
         places_[i] = pose.position;
-        look(i, pose);
+        look(i, pose, is_robot ? Angle() : movers.swings[i - count]);
     }
 }
 
 /// What notices a mover where it is.
-void FloorSensors::look(std::size_t mover, const Pose2& pose) {
+void FloorSensors::look(std::size_t mover, const Pose2& pose, Angle swing) {
     const MoverShape& shape = movers_[mover];
     std::vector<MovingBody> bodies;  // made when something is near
     const auto any = [&](const Area& area, auto test) {
         if (distance(area.pose.position, pose.position) > area.reach() + shape.radius) return false;
-        if (bodies.empty()) bodies = bodiesOfMover(shape, pose);
+        if (bodies.empty()) bodies = bodiesOfMover(shape, pose, swing);
         return std::any_of(bodies.begin(), bodies.end(), test);
     };
     for (std::size_t k = 0; k < mats_.size(); ++k) {

@@ -16,6 +16,12 @@
 
 namespace ispace {
 
+/// Robots and people as they are after a step, in the order of the scene.
+struct Movers {
+    std::span<const Motion> robots, people;
+    std::span<const Angle> swings;  ///< of the people's limbs, see humanBodyOf
+};
+
 /// A pressure mat on the floor.
 struct Mat {
     Pose2 pose;
@@ -77,8 +83,8 @@ class FloorSensors {
     [[nodiscard]] const std::vector<std::string>& gateIds() const { return gate_ids_; }
     [[nodiscard]] bool empty() const { return mats_.empty() && gates_.empty(); }
 
-    /// Where robots and people, in this order, are after a step.
-    void follow(std::span<const Motion> robots, std::span<const Motion> people);
+    /// Where everybody is after a step.
+    void follow(const Movers& movers);
     /// A gate goes on counting from there.
     void goOn(std::size_t gate, const GateState& state) { gate_states_[gate] = state; }
     /// The next step begins where it ends: nobody walked there.
@@ -90,7 +96,7 @@ class FloorSensors {
     [[nodiscard]] std::span<const Passage> passages() const { return passages_; }
 
   private:
-    void look(std::size_t mover, const Pose2& pose);
+    void look(std::size_t mover, const Pose2& pose, Angle swing);
     void pass(std::size_t mover, Point2 from, Point2 to);
 
     std::vector<MoverShape> movers_;

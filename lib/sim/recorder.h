@@ -3,47 +3,66 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/program.h"
+#include "sim/events.h"
 #include "sim/world.h"
 
 namespace ispace {
+
+struct RecordOptions {
+    History history = {};
+    std::uint64_t seed = 0;
+    std::string scene = {};  ///< the content of scene.env
+    /// Pictures and depth frames of each camera and ranger in a simulated second, at most; of those
+    /// with a higher rate every second, third, … is recorded. 0: none.
+    double frame_rate = 1;
+    /// Limits the record to about this many bytes: the write that exceeds them throws FormatError;
+    /// what is written stays.
+    std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+};
 
 /// Records a run into a folder (thesis, table 3.4):
 ///
 /// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
 ///   time 0 and after each step
-/// - scans.jsonl: every scan, as `scan` writes them
+/// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase; likewise
+/// - scans.jsonl: every reading, as `scan` writes it
+/// - pictures/ID-NNNNNN.png and depths/ID-NNNNNN.png: frames of cameras and rangers by the number
+/// of
+///   their period
+/// - events.csv: what happened, see EventLog
+/// - scene.env: the scene of the run
 /// - info.csv: dt,control_interval,steps
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, the only thing that may differ
 ///   between runs
 ///
 /// Whole lines are written, at least every 0.1 s of wall time while record() or flushDue() is
-/// called. After an error the record ends with the last step that all files hold, which info.csv
-/// names.
+/// called; frames appear whole. After an error the record ends with the last step that all files
+/// hold, which info.csv names.
 class Recorder {
   public:
     /// Makes the folder if it is missing (not its parents), locks it, and starts the files anew.
-    /// \throws std::system_error naming the file; FormatError if another run is recorded there,
-    ///         or where a file is a link to one elsewhere
-    Recorder(const std::string& folder, const World& world, const History& history,
-             std::uint64_t seed);
+    /// \param events null: events.csv has no rows \throws std::system_error naming the file;
+    /// FormatError if another run is recorded there, or where a file is a link to one elsewhere
+    Recorder(const std::string& folder, World& world, const RecordOptions& options,
+             EventLog* events = nullptr);
     ~Recorder();
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Limits robots.csv and scans.jsonl together to about this many bytes: the write that exceeds
-    /// them throws FormatError; its lines stay.
-    void limit(std::uint64_t bytes);
-    /// The files in a folder of records; those that grow line by line come before info.csv.
+    /// The files in a folder of records: those that grow line by line, then the others.
+    static std::vector<std::string> growingFilesIn(const std::string& folder);
     static std::vector<std::string> filesIn(const std::string& folder);
 
-    /// Records the state after a step; flushes if 0.1 s have passed.
-    void record(const World& world);
+    /// Records the state after a step, and takes the frames that are due; flushes if 0.1 s have
+    /// passed.
+    void record(World& world);
     /// Writes out what is pending. \throws std::system_error, also for a full disk
     void flush(const World& world);
     /// The descriptor that holds the lock, or -1 on a file system without: a process that inherits

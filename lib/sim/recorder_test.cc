@@ -60,7 +60,7 @@ void recordRun(const std::string& folder, bool flush_at_the_end = true) {
     const Scene scene =
         testing::scene(kRoom, std::string(kRobots) + "laser id=l1 at=0,0 rate=1 fov=2\n");
     World world(scene, std::chrono::seconds(1));
-    Recorder recorder(folder, world, {"simrun room.env"}, 7);
+    Recorder recorder(folder, world, {.history = {"simrun room.env"}, .seed = 7});
     world.command(0, {Verb::Speed, 1});
     for (int i = 0; i < 2; ++i) {
         world.step();
@@ -72,9 +72,11 @@ void recordRun(const std::string& folder, bool flush_at_the_end = true) {
 TEST_F(RecorderTest, OneRunAtATimeInAFolder) {
     const Scene scene = testing::scene(kRoom, kRobots);
     World world(scene, milliseconds(5));
-    const auto second = [&] { const Recorder recorder(path("run"), world, {"second"}, 7); };
+    const auto second = [&] {
+        const Recorder recorder(path("run"), world, {.history = {"second"}});
+    };
     {
-        const Recorder first(path("run"), world, {"first"}, 7);
+        const Recorder first(path("run"), world, {.history = {"first"}});
         EXPECT_GE(first.lock(), 0);
         EXPECT_EQ(testing::findings([&] {
                       second();
@@ -104,7 +106,7 @@ TEST_F(RecorderTest, WritesScansAsScanDoes) {
                                        "laser id=l1 at=0,0 rate=1 fov=4\n"
                                        "laser id=l2 at=1,0 rate=2 fov=2\n");
     World world(scene, milliseconds(500));
-    Recorder recorder(path("run"), world, {"simrun \"room\".env"}, 7);
+    Recorder recorder(path("run"), world, {.history = {"simrun \"room\".env"}, .seed = 7});
     std::string expected = scanHeaderLine({"simrun \"room\".env"}, 7);
     const auto append = [&] {
         for (const std::size_t laser : world.read())
@@ -150,8 +152,8 @@ TEST_F(RecorderTest, StartsAnewInAFolderThatIsThere) {
 
 TEST_F(RecorderTest, AWorldWithNothingInItHasHeaders) {
     const Scene scene = testing::scene(kRoom);
-    const World world(scene, milliseconds(5));
-    const Recorder recorder(path("run"), world, {}, 0);
+    World world(scene, milliseconds(5));
+    const Recorder recorder(path("run"), world, {});
     EXPECT_EQ(text("run/robots.csv"), kHeader);
     EXPECT_EQ(text("run/scans.jsonl"), scanHeaderLine({}, 0));
     EXPECT_EQ(text("run/info.csv"), "dt,control_interval,steps\n0.005,0.005,0\n");
@@ -159,8 +161,8 @@ TEST_F(RecorderTest, AWorldWithNothingInItHasHeaders) {
 
 TEST_F(RecorderTest, DoesNotHoldMoreThanItShould) {
     const Scene scene = testing::scene(kRoom, kRobots);
-    const World world(scene, milliseconds(5));
-    Recorder recorder(path("run"), world, {}, 0);
+    World world(scene, milliseconds(5));
+    Recorder recorder(path("run"), world, {});
     constexpr std::size_t kRecords = 50000;
     for (std::size_t i = 0; i < kRecords; ++i) recorder.record(world);
     const std::string robots = text("run/robots.csv");
@@ -171,9 +173,9 @@ TEST_F(RecorderTest, DoesNotHoldMoreThanItShould) {
 
 TEST_F(RecorderTest, NamesTheFolderItCannotMake) {
     const Scene scene = testing::scene(kRoom);
-    const World world(scene, milliseconds(5));
+    World world(scene, milliseconds(5));
     const auto start = [&](const std::string& folder) {
-        return errorOf([&] { Recorder(folder, world, {}, 0); });
+        return errorOf([&] { Recorder(folder, world, {}); });
     };
     EXPECT_EQ(start(path("no/run")), path("no/run") + ": No such file or directory");
     writeAll(path("file"), "x");
@@ -185,12 +187,12 @@ TEST_F(RecorderTest, NamesTheFolderItCannotMake) {
 
 TEST_F(RecorderTest, NamesTheFileAFullDiskRefuses) {
     const Scene scene = testing::scene(kRoom, kRobots);
-    const World world(scene, milliseconds(5));
+    World world(scene, milliseconds(5));
     for (const char* name : {"robots.csv", "scans.jsonl", "info.csv", "timing.csv"}) {
         const fs::path folder = folder_ / "on" / name, file = folder / name;
         fs::create_directories(folder);
         fs::create_symlink("/dev/full", file);
-        EXPECT_EQ(errorOf([&] { Recorder(folder, world, {}, 0); }),
+        EXPECT_EQ(errorOf([&] { Recorder(folder, world, {}); }),
                   file.string().append(": No space left on device"));
     }
 }
@@ -217,10 +219,10 @@ class FileSizeLimit {
 
 TEST_F(RecorderTest, KeepsWholeLinesWhenTheDiskIsFull) {
     const Scene scene = testing::scene(kRoom, kRobots);
-    const World world(scene, milliseconds(5));
+    World world(scene, milliseconds(5));
     constexpr rlim_t kSpace = 10007;
     {
-        Recorder recorder(path("run"), world, {}, 0);
+        Recorder recorder(path("run"), world, {});
         const FileSizeLimit limit(kSpace);
         // A slow machine may meet it in record().
         const auto run = [&] {
@@ -247,7 +249,7 @@ TEST_F(RecorderTest, InfoTellsTheStepsThatAreThereWhenTheDiskIsFull) {
     const auto run = [&](const std::string& sensor, int steps) {
         const Scene scene = testing::scene(kRoom, kRobots + sensor);
         World world(scene, milliseconds(5));
-        Recorder recorder(path("run"), world, {}, 0);
+        Recorder recorder(path("run"), world, {});
         const FileSizeLimit limit(10007);
         return errorOf([&] {
             for (int i = 0; i < steps; ++i) {
@@ -274,19 +276,19 @@ TEST_F(RecorderTest, InfoTellsTheStepsThatAreThereWhenTheDiskIsFull) {
 
 TEST_F(RecorderTest, LinksAreNotFollowed) {
     const Scene scene = testing::scene(kRoom, kRobots);
-    const World world(scene, milliseconds(5));
+    World world(scene, milliseconds(5));
     writeAll(path("mine"), "old");
     for (const char* name : {"robots.csv", "info.csv"}) {
         fs::remove_all(path("run"));
         fs::create_directory(path("run"));
         fs::create_hard_link(path("mine"), path("run/") + name);
-        { const Recorder recorder(path("run"), world, {}, 0); }
+        { const Recorder recorder(path("run"), world, {}); }
         EXPECT_EQ(text("mine"), "old");
         EXPECT_NE(text(std::string("run/") + name), "old");
         fs::remove(path("run/") + name);
         for (const char* target : {"../mine", "../none"}) {
             fs::create_symlink(target, path("run/") + name);
-            EXPECT_THROW(Recorder(path("run"), world, {}, 0), FormatError);
+            EXPECT_THROW(Recorder(path("run"), world, {}), FormatError);
             EXPECT_EQ(text("mine"), "old");
             EXPECT_FALSE(fs::exists(path("none")));
             fs::remove(path("run/") + name);
@@ -297,8 +299,7 @@ TEST_F(RecorderTest, LinksAreNotFollowed) {
 TEST_F(RecorderTest, EndsTheRunAtItsLimit) {
     const Scene scene = testing::scene(kRoom, kRobots);
     World world(scene, milliseconds(5));
-    Recorder recorder(path("run"), world, {}, 0);
-    recorder.limit(100'000);
+    Recorder recorder(path("run"), world, {.max_bytes = 100'000});
     std::string error;
     try {
         for (int i = 0; i < 100'000; ++i) {

@@ -19,6 +19,12 @@ double RunSensor::rate() const {
 
 bool RunSensor::isHeavy() const { return model<Ranger>() != nullptr || model<Camera>() != nullptr; }
 
+Pose3 RunSensor::floorPose() const {
+    const auto* mat = std::get_if<Mat>(&what);
+    const Pose2& pose = mat != nullptr ? mat->pose : std::get<Gate>(what).pose;
+    return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
 bool RunSensor::isOn(std::size_t robot) const {
     return sensor() != nullptr && sensor()->mount && sensor()->mount->robot == robot;
 }

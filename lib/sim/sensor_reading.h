@@ -38,6 +38,8 @@ struct RunSensor {
     [[nodiscard]] double rate() const;
     /// Depth frames and pictures: taken only if somebody wants them.
     [[nodiscard]] bool isHeavy() const;
+    /// Where a mat or a gate lies. \pre sensor() is null
+    [[nodiscard]] Pose3 floorPose() const;
     /// True if it is on this robot.
     [[nodiscard]] bool isOn(std::size_t robot) const;
 };

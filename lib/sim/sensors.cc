@@ -37,7 +37,6 @@ SensorReader::SensorReader(const Scene& scene)
     addSensors();
     const std::size_t count = sensors_.size();
     due_.resize(count);
-    wanted_.resize(count);
     readings_.resize(count);
     casters_.resize(count);
     latest_.reserve(count);
@@ -47,7 +46,10 @@ SensorReader::SensorReader(const Scene& scene)
         is_heavy_.push_back(sensors_[i].isHeavy() ? 1 : 0);
         has_cameras = has_cameras || sensors_[i].model<Camera>() != nullptr;
         const Sensor* const sensor = sensors_[i].sensor();
-        if (sensor == nullptr) continue;
+        if (sensor == nullptr) {
+            readings_[i].pose = sensors_[i].floorPose();
+            continue;
+        }
         readings_[i].pose = sensor->pose;
         if (sensor->is<Ranger>()) readings_[i].value = DepthFrame();
         if (sensor->is<Camera>()) readings_[i].value = Photo();
@@ -84,7 +86,6 @@ void SensorReader::follow(const SensorReader& before,
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         const auto found = old.find(sensors_[i].id);
         if (found == old.end()) continue;
-        wanted_[i] = before.wanted_[found->second];
         if (!stayers.contains(found->first)) continue;
         const Sensor* const sensor = sensors_[i].sensor();
         const Sensor* const was = before.sensors_[found->second].sensor();
@@ -105,10 +106,10 @@ void SensorReader::jumped() {
 }
 
 void SensorReader::read(SimTime time, const Movers& movers) {
-    floor_.follow(movers.robots, movers.people);
+    floor_.follow(movers);
     latest_.clear();
     for (std::size_t i = 0; i < due_.size(); ++i) {
-        if (due_[i] <= time && (is_heavy_[i] == 0 || wanted_[i] > 0)) latest_.push_back(i);
+        if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
     }
     if (latest_.empty()) return;
     readLatest(time, movers);

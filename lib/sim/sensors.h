@@ -20,12 +20,6 @@
 
 namespace ispace {
 
-/// Robots and people as they are after a step, in the order of the scene.
-struct Movers {
-    std::span<const Motion> robots, people;
-    std::span<const Angle> swings;  ///< of the people's limbs, see humanBodyOf
-};
-
 /// Reads the sensors of a world when they are due: in the first step at or after the beginning of
 /// a period, all at the moment of that step.
 class SensorReader {
@@ -34,11 +28,11 @@ class SensorReader {
     /// are cameras
     explicit SensorReader(const Scene& scene);
 
-    /// After each step: follows those who move, and reads what is due, in parallel. Heavy sensors
-    /// that nobody wants are not read.
+    /// After each step: follows those who move, and reads what is due, in parallel. Heavy
+    /// sensors are left out.
     void read(SimTime time, const Movers& movers);
     /// Before the first reading in another scene: those that stay as they are keep their last
-    /// reading, gates their counts, and heavy ones who wants them.
+    /// reading, and gates their counts.
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers);
     /// Says that robots or people have moved.
     void moved() { moved_ = true; }
@@ -56,8 +50,6 @@ class SensorReader {
     [[nodiscard]] std::int64_t period(std::size_t sensor, SimTime time) const {
         return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
     }
-    /// Counts who wants a heavy sensor's readings.
-    void want(std::size_t sensor, bool wants) { wanted_[sensor] += wants ? 1 : -1; }
     /// Reads a heavy sensor now if it was not read in its newest period.
     void take(std::size_t sensor, SimTime time, const Movers& movers);
 
@@ -94,7 +86,6 @@ class SensorReader {
     Worlds worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
-    std::vector<int> wanted_;
     std::vector<char> is_heavy_;
     std::vector<SensorReading> readings_;
     std::vector<std::optional<LaserCaster>> casters_;  // of lasers

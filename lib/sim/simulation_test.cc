@@ -339,7 +339,7 @@ std::string recorded(const Scene& scene, const std::string& script) {
     if (::mkdtemp(folder.data()) == nullptr) return "";
     {
         World world(scene, milliseconds(50));
-        Recorder recorder(folder, world, {}, 0);
+        Recorder recorder(folder, world, {});
         Simulation simulation(world, readScript(script, "run.txt", world), kFast,
                               std::chrono::seconds(1));
         simulation.recordWith(recorder);
@@ -369,7 +369,7 @@ TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
     std::string folder = (fs::temp_directory_path() / "ispace_simulation_XXXXXX").string();
     ASSERT_NE(::mkdtemp(folder.data()), nullptr);
     World world(scene, milliseconds(50));
-    Recorder recorder(folder, world, {}, 0);
+    Recorder recorder(folder, world, {});
     Simulation simulation(world, {}, kByStep, {});
     simulation.recordWith(recorder);
     simulation.allow(3);

@@ -85,8 +85,6 @@ std::int64_t World::period(std::size_t sensor) const {
     return data_->sensors.period(sensor, data_->time);
 }
 
-void World::want(std::size_t sensor, bool wants) { data_->sensors.want(sensor, wants); }
-
 const SensorReading& World::take(std::size_t sensor) {
     data_->sensors.take(sensor, data_->time, data_->where());
     return reading(sensor);

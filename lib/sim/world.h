@@ -104,14 +104,12 @@ class World {
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
     [[nodiscard]] RobotStatus status(std::size_t mover) const;
-    /// The newest one; of a heavy sensor that nobody wants the one that was taken last, if any.
+    /// The newest one; of a heavy sensor (see RunSensor) the one that was taken last, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
     /// Number of the newest period of a sensor: that of its reading, unless it is heavy.
     [[nodiscard]] std::int64_t period(std::size_t sensor) const;
-    /// Depth frames and pictures are read when due only as long as somebody wants them: counts who
-    /// does. Nothing for other sensors, which are always read.
-    void want(std::size_t sensor, bool wants);
-    /// reading(), after reading a heavy sensor now if it was not in its newest period.
+    /// reading(), after reading a heavy sensor now if it was not in its newest period. Pictures and
+    /// depth frames are only taken this way.
     const SensorReading& take(std::size_t sensor);
     /// Mats and gates as they are after the last step, whatever their rates.
     [[nodiscard]] const FloorSensors& floorSensors() const;

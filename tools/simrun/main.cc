@@ -15,12 +15,12 @@
 #include "base/number.h"
 #include "base/run_files.h"
 #include "cli/common_options.h"
-#include "cli/line_guard.h"
 #include "cli/operands.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
 #include "net/server.h"
 #include "simrun/options.h"
+#include "simrun/record.h"
 #include "simrun/warnings.h"
 
 namespace {
@@ -62,26 +62,6 @@ std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInpu
         return readScript(readStdin(), displayName("-"), world);
     }
     return readScript(readAll(options.script), options.script, world);
-}
-
-/// Files of the record that grow.
-std::vector<std::string> recordedLines(const std::string& folder) {
-    std::vector<std::string> files = Recorder::filesIn(folder);
-    files.pop_back();
-    return files;
-}
-
-/// What the record of a run until a given time holds at least is known before it begins.
-void checkRecord(const SimrunOptions& options, const World& world) {
-    if (options.record.empty() || !options.until) return;
-    constexpr double kShortestLine = 20;  // bytes, of robots.csv
-    const double steps =
-        static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
-    const double lines = std::ceil(steps) * static_cast<double>(world.robots().size());
-    if (lines * kShortestLine <= static_cast<double>(options.max_recorded)) return;
-    throw UsageError("--record: " + formatDouble(lines) + " lines of robots.csv until t=" +
-                     formatSimTime(*options.until) + " are more than --record-limit, which is " +
-                     byteCountText(options.max_recorded) + "; is --until in seconds?");
 }
 
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
@@ -146,27 +126,6 @@ History historyOf(const SimrunCommand& command, const SceneInput& input) {
     return history;
 }
 
-/// A record that is being written.
-struct RunningRecord {
-    RunningRecord(const SimrunOptions& options, const World& world, const History& history)
-        : recorder(options.record, world, history, options.common.seed),
-          guard(recordedLines(options.record), recorder.lock()) {
-        recorder.limit(options.max_recorded);
-    }
-    Recorder recorder;
-    LineGuard guard;
-};
-
-/// Replaces the records of the run before: to be called when all that may go wrong has gone well.
-/// Null without --record.
-std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
-                                        const History& history) {
-    if (options.record.empty()) return nullptr;
-    auto record = std::make_unique<RunningRecord>(options, simulation.world(), history);
-    simulation.recordWith(record->recorder);
-    return record;
-}
-
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
@@ -201,7 +160,7 @@ void simrun(const SimrunCommand& command) {
         port_file.emplace(options.port_file);
         port_file->write(std::to_string(server.port()) + '\n');
     }
-    const auto record = recordOf(simulation, options, historyOf(command, input));
+    const auto record = recordOf(simulation, options, input.scene, historyOf(command, input));
     const auto progress = progressOf(simulation, options);
     announce(server, web);
     if (port_file) port_file->commit();

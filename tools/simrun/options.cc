@@ -40,6 +40,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
 
 void SimrunCommand::declareRun() {
     SimrunOptions& o = options_;
+    constexpr double kMaxFrames = 1e5;
     line_.parsed(
         "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
         "real[:RATE], fast, or step: simulated time follows wall time (RATE times as fast), runs "
@@ -59,7 +60,20 @@ void SimrunCommand::declareRun() {
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);
     line_.file("--record", "DIR", o.record,
-               "write robots.csv, scans.jsonl, info.csv and timing.csv there", Enters::Nothing);
+               "write what happens there: tables of robots, people and events, readings, pictures",
+               Enters::Nothing);
+    line_.parsed(
+        "--record-frames", "RATE",
+        [&o](const std::string& text) {
+            const auto rate = parseDouble(text);
+            if (!rate || *rate < 0 || *rate > kMaxFrames)
+                throw UsageError(excerpt(text) +
+                                 " is no number of frames a second from 0 to 100000");
+            o.recorded_frames = *rate;
+        },
+        "pictures and depth frames recorded of each sensor in a simulated second, at most (default "
+        "1; 0: none)",
+        Enters::Nothing);
     line_.parsed(
         "--record-limit", "SIZE",
         [&o](const std::string& text) { o.max_recorded = byteCount(text); },

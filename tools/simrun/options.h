@@ -27,8 +27,9 @@ struct SimrunOptions {
     SimTime from{};                                         ///< of the replay
     bool holds = false;                                     ///< at the end of the replay
     std::vector<Expectation> expected;
-    std::string junit;      ///< file; "" without
-    std::string port_file;  ///< "" without
+    std::string junit;           ///< file; "" without
+    double recorded_frames = 1;  ///< a simulated second, at most
+    std::string port_file;       ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web;
     std::optional<bool> shutdown;

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/record_files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "base/error.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& name, int error) {
+    throw std::system_error(error, std::generic_category(), name);
+}
+
+[[noreturn]] void refuseLink(const std::string& name, const char* to) {
+    throw FormatError({name, 0, 0,
+                       std::string("a symbolic link to a ") + to +
+                           ", and records follow none: remove it, or record into another folder"});
+}
+
+std::string_view wholeLines(std::string_view text) {
+    return text.substr(0, text.rfind('\n') + 1);  // npos + 1 is 0
+}
+
+/// An empty file for writing. What an earlier run left is removed, not overwritten: it may have
+/// another name elsewhere. Links are not followed.
+int openAnew(const std::string& name) {
+    struct stat info {
+    }, behind{};
+    if (::lstat(name.c_str(), &info) == 0) {
+        const bool is_link = S_ISLNK(info.st_mode);
+        if (is_link && (::stat(name.c_str(), &behind) != 0 || S_ISREG(behind.st_mode)))
+            refuseLink(name, "file");
+        const mode_t mode = is_link ? behind.st_mode : info.st_mode;
+        if (S_ISCHR(mode) || S_ISFIFO(mode))
+            // Not to wait for a reader, should it be a pipe.
+            return ::open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        if (::unlink(name.c_str()) != 0) return -1;
+    }
+    return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+}  // namespace
+
+LineFile::LineFile(std::string name) : name_(std::move(name)), fd_(openAnew(name_)) {
+    if (fd_ < 0) fail(name_, errno);
+    ::fcntl(fd_, F_SETFL, O_WRONLY);
+}
+
+LineFile::~LineFile() { ::close(fd_); }
+
+std::int64_t LineFile::wholeSteps() const {
+    std::int64_t steps = 0;
+    for (const StepEnd& end : ends_)
+        if (end.size <= size_) steps = end.step;
+    return steps;
+}
+
+void LineFile::cutBehind(std::int64_t step) {
+    pending.clear();
+    off_t end = size_;
+    for (const StepEnd& each : ends_)
+        if (each.step == step && each.size <= size_) end = each.size;
+    if (end < size_) static_cast<void>(!::ftruncate(fd_, size_ = end));
+}
+
+void LineFile::rewrite(std::string_view text) {
+    if (error_ == 0) {
+        const ssize_t n = ::pwrite(fd_, text.data(), text.size(), 0);
+        if (n != static_cast<ssize_t>(text.size())) error_ = n < 0 ? errno : ENOSPC;
+    }
+    if (error_ != 0) fail(name_, error_);
+}
+
+void LineFile::flush() {
+    if (error_ == 0 && !pending.empty()) write();
+    pending.clear();
+    if (error_ != 0) fail(name_, error_);
+}
+
+void LineFile::write() {
+    // An exception while a line was put together may have left a piece of one.
+    const std::string_view lines = wholeLines(pending);
+    std::string_view rest = lines;
+    while (!rest.empty()) {
+        const ssize_t n = ::write(fd_, rest.data(), rest.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            error_ = errno;
+            takeBackTornLine(lines.substr(0, lines.size() - rest.size()));
+            return;
+        }
+        rest.remove_prefix(static_cast<std::size_t>(n));
+    }
+    size_ += static_cast<off_t>(lines.size());
+}
+
+/// A full disk may have taken a piece of the last line.
+void LineFile::takeBackTornLine(std::string_view written) {
+    size_ += static_cast<off_t>(wholeLines(written).size());
+    static_cast<void>(!::ftruncate(fd_, size_));
+}
+
+const std::string& madeFolder(const std::string& folder) {
+    if (::mkdir(folder.c_str(), 0777) != 0) {
+        if (errno != EEXIST) fail(folder, errno);
+        struct stat info {};
+        if (::stat(folder.c_str(), &info) != 0) fail(folder, errno);
+        if (!S_ISDIR(info.st_mode)) fail(folder, ENOTDIR);
+    }
+    return folder;
+}
+
+FolderLock::FolderLock(const std::string& folder)
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    constexpr int kTries = 100;
+    // File systems without locks do without.
+    for (int tries = 0; fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+        if (errno != EWOULDBLOCK) return;
+        if (tries == kTries) {
+            ::close(fd_);
+            throw FormatError({folder, 0, 0, "another run is being recorded here"});
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+namespace {
+
+/// True for names that frames have, and for those under which they are written.
+bool isFrameName(const std::string& name) {
+    constexpr std::string_view kEnding = ".png";
+    constexpr std::size_t kDigits = 6;
+    std::string_view stem = name;
+    if (stem.ends_with(FrameFiles::kUnfinished)) stem.remove_suffix(FrameFiles::kUnfinished.size());
+    if (!stem.ends_with(kEnding)) return false;
+    stem.remove_suffix(kEnding.size());
+    const std::size_t dash = stem.rfind('-');
+    if (dash == std::string_view::npos || stem.size() - dash - 1 < kDigits) return false;
+    return stem.find_first_not_of("0123456789", dash + 1) == std::string_view::npos;
+}
+
+}  // namespace
+
+FrameFiles::FrameFiles(std::string folder) : folder_(std::move(folder)) {
+    struct stat info {};
+    if (::lstat(folder_.c_str(), &info) != 0) return;
+    if (S_ISLNK(info.st_mode)) refuseLink(folder_, "folder");
+    if (!S_ISDIR(info.st_mode)) fail(folder_, ENOTDIR);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+        if (isFrameName(entry.path().filename().string())) fs::remove(entry.path());
+}
+
+void FrameFiles::write(const std::string& name, std::string_view bytes, std::int64_t step) {
+    if (!std::exchange(is_made_, true)) madeFolder(folder_);
+    const std::string path = folder_ + "/" + name;
+    const std::string unfinished = path + std::string(kUnfinished);
+    const int fd = openAnew(unfinished);
+    if (fd < 0) fail(unfinished, errno);
+    int error = 0;
+    for (std::string_view rest = bytes; !rest.empty() && error == 0;) {
+        const ssize_t n = ::write(fd, rest.data(), rest.size());
+        if (n >= 0)
+            rest.remove_prefix(static_cast<std::size_t>(n));
+        else if (errno != EINTR)
+            error = errno;
+    }
+    if (::close(fd) != 0 && error == 0) error = errno;
+    if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
+    if (error != 0) {
+        ::unlink(unfinished.c_str());
+        fail(path, error);
+    }
+    size_ += bytes.size();
+    recent_.push_back({path, step});
+}
+
+void FrameFiles::cutBehind(std::int64_t step) {
+    for (const Frame& frame : recent_)
+        if (frame.step > step) ::unlink(frame.path.c_str());
+    std::erase_if(recent_, [step](const Frame& frame) { return frame.step > step; });
+}
+
+}  // namespace ispace

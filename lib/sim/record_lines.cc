@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/record_lines.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <span>
+
+#include "base/json_writer.h"
+#include "base/number.h"
+#include "raster/encode.h"
+#include "sense/reading_picture.h"
+#include "sense/reading_text.h"
+
+namespace ispace {
+
+namespace {
+
+void appendRow(std::string& out, const std::string& t, const std::string& id,
+               std::initializer_list<double> values) {
+    out.append(t).append(",").append(id);  // a word: nothing to quote
+    for (const double value : values) {
+        out += ',';
+        appendDouble(out, value);
+    }
+}
+
+}  // namespace
+
+void appendRobotRows(std::string& out, const World& world) {
+    const std::string t = formatSimTime(world.time());
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const RobotStatus status = world.status(i);
+        appendRow(
+            out, t, world.robots()[i].id,
+            {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
+             status.speed, status.rotspeed.degrees(), status.accel, status.rotaccel.degrees()});
+        out += status.stall ? ",1\n" : ",0\n";
+    }
+}
+
+void appendPeopleRows(std::string& out, const World& world) {
+    const std::string t = formatSimTime(world.time());
+    for (std::size_t i = 0; i < world.people().size(); ++i) {
+        const RobotStatus status = world.status(world.robots().size() + i);
+        appendRow(out, t, world.people()[i].id,
+                  {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
+                   status.speed, status.rotspeed.degrees(), status.phase});
+        out += '\n';
+    }
+}
+
+namespace {
+
+/// Lines by kind.
+struct LineWriter {
+    std::string& out;
+    const RunSensor& sensor;
+    const SensorReading& reading;
+    std::span<const Sensor> receivers;
+    const std::string& file;
+
+    void operator()(const Scan& scan) const { appendScanLine(out, *sensor.sensor(), scan); }
+    void operator()(const DepthFrame& frame) const {
+        appendFileLine(out, *sensor.sensor(), frame, file);
+    }
+    void operator()(const Photo& photo) const {
+        appendFileLine(out, *sensor.sensor(), photo, file);
+    }
+    void operator()(const Burst& burst) const {
+        appendLines(out, *sensor.sensor(), burst, receivers);
+    }
+    void operator()(const Hearings& hearings) const {
+        JsonWriter json = begin();
+        json.key("tags").beginArray();
+        for (const HeardTag& heard : hearings.tags) {
+            json.beginObject().key("tag").value(heard.tag);
+            json.key("time_of_flight")
+                .value(heard.time_of_flight ? std::optional(roundSignificant(*heard.time_of_flight))
+                                            : std::nullopt);
+            json.endObject();
+        }
+        json.endArray();
+        end(json);
+    }
+    void operator()(const MatState& mat) const {
+        JsonWriter json = begin();
+        json.key("on").beginArray();
+        for (const std::string& id : mat.on) json.value(id);
+        json.endArray();
+        end(json);
+    }
+    void operator()(const GateState& gate) const {
+        JsonWriter json = begin();
+        json.key("in").value(gate.in).key("out").value(gate.out);
+        json.key("last");
+        gate.last.empty() ? json.null() : json.value(gate.last);
+        json.key("way");
+        gate.last.empty() ? json.null() : json.value(gate.last_in ? "in" : "out");
+        json.key("broken").value(gate.broken);
+        end(json);
+    }
+
+  private:
+    [[nodiscard]] JsonWriter begin() const {
+        JsonWriter json;
+        json.beginObject().key("sensor").value(sensor.id);
+        json.key("t").value(seconds(reading.time)).key("frame").value(reading.seq);
+        addPose(json, reading.pose);
+        return json;
+    }
+    void end(JsonWriter& json) const { out.append(json.endObject().text()).append("\n"); }
+};
+
+}  // namespace
+
+void appendReadingLine(std::string& out, const RunSensor& sensor, const SensorReading& reading,
+                       std::span<const Sensor> receivers, const std::string& file) {
+    std::visit(LineWriter{out, sensor, reading, receivers, file}, reading.value);
+}
+
+std::string frameName(const std::string& id, std::int64_t seq) {
+    constexpr std::size_t kDigits = 6;
+    std::string name;
+    for (const char c : id) {
+        // The only sign of a word that a file's name cannot have; % is none of theirs.
+        if (c == '/')
+            name += "%2F";
+        else
+            name += c;
+    }
+    const std::string number = std::to_string(seq);
+    name.append("-").append(kDigits - std::min(kDigits, number.size()), '0');
+    return name.append(number).append(".png");
+}
+
+std::string frameBytes(const RunSensor& sensor, const SensorReading& reading) {
+    constexpr double kMillimetres = 1000;
+    if (const auto* photo = std::get_if<Photo>(&reading.value)) {
+        const Camera& camera = *sensor.model<Camera>();
+        return pngOfRgb(camera.columns, camera.rows, photo->rgb);
+    }
+    const Ranger& ranger = *sensor.model<Ranger>();
+    return depthPng(ranger.columns, ranger.rows, std::get<DepthFrame>(reading.value).depths,
+                    kMillimetres);
+}
+
+}  // namespace ispace

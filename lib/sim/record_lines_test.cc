@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/record_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "base/file.h"
+#include "layout/test_layout.h"
+#include "sense/ultrasound.h"
+#include "sim/record_files.h"
+#include "sim/recorder.h"
+
+namespace ispace {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+/// A folder of its own for each test, removed afterwards.
+class RecordLines : public ::testing::Test {
+  protected:
+    RecordLines() {
+        std::string name = (fs::temp_directory_path() / "ispace_lines_XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+    [[nodiscard]] std::size_t filesIn(const std::string& name) const {
+        const fs::directory_iterator all(path(name));
+        return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+    }
+
+    fs::path folder_;
+};
+
+const std::string kThings =
+    "robot id=r1 at=1,1\n"
+    "human id=h1 at=0,0 heading=90\n"
+    "camera id=c1 at=-2,0,1 pixels=8,6 rate=10\n"
+    "ranger id=d1 at=-2,0,1 pixels=4,3 rate=4\n"
+    "mat id=m1 at=0,0 rate=1\n"
+    "gate id=g1 at=0,2 rate=1\n";
+
+Scene room(const std::string& more = "") {
+    return testing::scene("ispace size=8,6\n", kThings + more);
+}
+
+std::string lineOf(const World& world, const std::string& id) {
+    const std::size_t i = world.sensorNamed(id).value();
+    std::string out;
+    appendReadingLine(out, world.sensors()[i], world.reading(i), {}, "pictures/x.png");
+    return out;
+}
+
+TEST_F(RecordLines, OfWhatLiesOnTheFloor) {
+    const Scene scene = room();
+    const World world(scene, milliseconds(100));
+    EXPECT_EQ(lineOf(world, "m1"),
+              "{\"sensor\":\"m1\",\"t\":0,\"frame\":0,\"pose\":[0,0,0,0,0,0],\"on\":[\"h1\"]}\n");
+    EXPECT_EQ(lineOf(world, "g1"),
+              "{\"sensor\":\"g1\",\"t\":0,\"frame\":0,\"pose\":[0,2,0,0,0,0],\"in\":0,\"out\":0,"
+              "\"last\":null,\"way\":null,\"broken\":false}\n");
+}
+
+TEST_F(RecordLines, OfReceivers) {
+    const Scene scene =
+        room("ultrasound id=u1 at=0,-2,2 tilt=-90\ntag id=t1 at=0,-2,1\ntag id=t2 at=0,-2,3\n");
+    const World world(scene, milliseconds(100));
+    const std::string line = lineOf(world, "u1");
+    // A metre at 343.42 m/s.
+    EXPECT_NE(line.find("\"tags\":[{\"tag\":\"t1\",\"time_of_flight\":0.00291188631996}"),
+              std::string::npos)
+        << line;
+    EXPECT_TRUE(line.ends_with("{\"tag\":\"t2\",\"time_of_flight\":null}]}\n")) << line;
+}
+
+TEST_F(RecordLines, PeopleHaveATable) {
+    const Scene scene = room();
+    World world(scene, milliseconds(100));
+    std::string out;
+    appendPeopleRows(out, world);
+    EXPECT_EQ(out, "0,h1,0,0,90,0,0,0\n");
+    world.command(1, {Verb::Speed, 1});
+    for (int i = 0; i < 10; ++i) world.step();
+    out.clear();
+    appendPeopleRows(out, world);
+    const RobotStatus status = world.status(1);
+    EXPECT_GT(status.phase, 0);
+    EXPECT_TRUE(out.starts_with("1,h1,")) << out;
+    EXPECT_EQ(std::count(out.begin(), out.end(), ','),
+              std::count(kPeopleHead.begin(), kPeopleHead.end(), ','));
+}
+
+TEST_F(RecordLines, FramesAreRecordedAtTheirRate) {
+    const auto run = [&](const std::string& name, double rate) {
+        const Scene scene = room();
+        World world(scene, milliseconds(50));
+        Recorder recorder(path(name), world, {.frame_rate = rate});
+        for (int i = 0; i < 40; ++i) {
+            world.step();
+            recorder.record(world);
+            // Somebody else's pictures are not those of the record.
+            if (i % 7 == 0) world.take(0);
+        }
+        recorder.flush(world);
+    };
+    run("one", 1);
+    EXPECT_EQ(filesIn("one/pictures"), 3U);
+    EXPECT_EQ(filesIn("one/depths"), 3U);
+    EXPECT_TRUE(fs::exists(path("one/pictures/c1-000010.png")));
+    EXPECT_TRUE(fs::exists(path("one/depths/d1-000008.png")));
+    run("all", 100);
+    EXPECT_EQ(filesIn("all/pictures"), 21U);
+    EXPECT_EQ(filesIn("all/depths"), 9U);
+    // The same folder again: nothing of the run before is left.
+    run("all", 0);
+    EXPECT_EQ(filesIn("all/pictures"), 0U);
+    EXPECT_EQ(filesIn("all/depths"), 0U);
+    const std::string scans = readAll(path("one/scans.jsonl"));
+    EXPECT_NE(scans.find("\"file\":\"pictures/c1-000010.png\"}\n"), std::string::npos);
+}
+
+TEST_F(RecordLines, OthersFilesStayAmongTheFrames) {
+    fs::create_directories(path("run/pictures"));
+    for (const char* name : {"mine.png", "c1-12.png", "notes-000001.txt", "c1-000001.png"})
+        writeAll(path("run/pictures/") + name, "x");
+    const Scene scene = room();
+    World world(scene, milliseconds(50));
+    { const Recorder recorder(path("run"), world, {.frame_rate = 0}); }
+    EXPECT_EQ(filesIn("run/pictures"), 3U);
+    EXPECT_FALSE(fs::exists(path("run/pictures/c1-000001.png")));
+}
+
+TEST_F(RecordLines, FramesBehindTheEndAreTakenBack) {
+    FrameFiles frames(path("frames"));
+    frames.write("a-000001.png", "1", 1);
+    frames.forget();
+    frames.write("a-000002.png", "22", 2);
+    frames.write("a-000003.png", "333", 3);
+    EXPECT_EQ(frames.size(), 6U);
+    frames.cutBehind(2);
+    EXPECT_EQ(filesIn("frames"), 2U);
+    EXPECT_EQ(readAll(path("frames/a-000002.png")), "22");
+}
+
+TEST(FrameName, HasTheIdAndThePeriod) {
+    EXPECT_EQ(frameName("c1", 5), "c1-000005.png");
+    EXPECT_EQ(frameName("hall/c1", 12345678), "hall%2Fc1-12345678.png");
+}
+
+TEST_F(RecordLines, EventsHaveATable) {
+    const Scene scene = room();
+    World world(scene, milliseconds(100));
+    EventLog events(world);
+    Recorder recorder(path("run"), world, {}, &events);
+    events.add(EventKind::Mark, "begin");
+    world.step();
+    events.stepped();
+    recorder.record(world);
+    recorder.flush(world);
+    const std::string table = readAll(path("run/events.csv"));
+    EXPECT_NE(table.find("0,mark,,,,,"), std::string::npos) << table;
+    EXPECT_NE(table.find("0.1,mat,m1,h1,"), std::string::npos) << table;
+}
+
+}  // namespace
+}  // namespace ispace
