@@ -105,7 +105,7 @@ void ClientConnection::makeWay(WallTime since) {
     if (!roleless() || heard_ > since) return;
     catchUp();
     if (!roleless() || heard_ > since) return;
-    refuse("ERR 408 no role taken in time: ROBOT id, LASER id or WORLD comes first\n");
+    refuse("ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n");
 }
 
 /// Reads what arrived while the world took its step.
@@ -159,7 +159,25 @@ void ClientConnection::answer() {
 void ClientConnection::stepped() {
     if (!session_) return;
     const bool waited = session_->waiting();
-    session_->stepped();
+    session_->stepped(out_.unsent() <= limits_.pending);
+    goOn(waited);
+}
+
+void ClientConnection::proceed() {
+    if (!session_) return;
+    const bool waited = session_->waiting();
+    session_->proceed();
+    goOn(waited);
+}
+
+void ClientConnection::watch(WallTime since) {
+    if (!watched() || heard_ > since) return;
+    silent_since_ = heard_;
+    session_->silent();
+    goOn(session_->waiting());
+}
+
+void ClientConnection::goOn(bool waited) {
     out_.append(session_->take());
     flush();
     if (waited && !closed() && !session_->waiting()) pumpLater();

@@ -98,8 +98,17 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     void cutOff(std::string_view text);
     /// Ends the connection if it has no role and made no request since that time.
     void makeWay(WallTime since);
-    /// The world took a step.
+    /// The world took a step, or was changed.
     void stepped();
+    /// Other clients were served.
+    void proceed();
+    /// Stops what the client holds if it made no request since that time.
+    void watch(WallTime since);
+    /// True if it drives something and was not found to be silent since its last request.
+    [[nodiscard]] bool watched() const {
+        return session_ && session_->drives() && silent_since_ != heard_;
+    }
+    [[nodiscard]] bool waitsToChange() const { return session_ && session_->waitsToChange(); }
     [[nodiscard]] bool waiting() const { return session_ && session_->waiting(); }
     /// False also for one that awaits a STEP and has finished sending: its client may be gone, so
     /// it takes no place.
@@ -130,6 +139,7 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     }
     void expectRole();
     void catchUp();
+    void goOn(bool waited);
     void pump();
     void pumpLater();
     void answer();
@@ -148,6 +158,7 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     std::optional<Session> session_;  // none: the connection is about to end
     Outbox out_;
     WallTime heard_{};
+    WallTime silent_since_{};  // what heard_ was when the client was found to be silent
     // What was to be sent at a time and is not yet: the age of the oldest byte, or a little less.
     WallTime waiting_since_{};
     std::size_t owed_ = 0;

@@ -44,4 +44,12 @@ std::string unknownThing(std::string_view kind, std::string_view id,
     return out.append("; there is ").append(joined(known, ", "));
 }
 
+std::string measured(double value) { return formatFixed(value, 3); }
+
+std::string headingText(Angle heading) {
+    std::string text = measured(heading.degrees());
+    if (text == "-180.000") text.erase(0, 1);
+    return text;
+}
+
 }  // namespace ispace

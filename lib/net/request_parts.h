@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "geom/pose.h"
+
 namespace ispace {
 
 /// A whole number from 1 to a thousand million, or what is wrong with it.
@@ -17,6 +19,11 @@ struct Count {
 };
 /// `what` begins the message: "every", "the number of steps".
 Count parseCount(std::string_view text, std::string_view what);
+
+/// A measured value, with three decimals.
+std::string measured(double value);
+/// A heading within (-180, 180], still so when rounded.
+std::string headingText(Angle heading);
 
 /// "no robot `r9`" with what may have been meant, or what there is.
 std::string unknownThing(std::string_view kind, std::string_view id,

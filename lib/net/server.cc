@@ -49,6 +49,7 @@ struct Server::Data {
     void welcome(tcp::socket socket);
     bool makeRoom();
     void stepped();
+    [[nodiscard]] WallTime nextTurn() const;
     void serveClients();
     void sleepUntil(WallTime time);
     void relieve();
@@ -110,6 +111,18 @@ bool Server::Data::makeRoom() {
 void Server::Data::stepped() {
     for (const auto& connection : connections) connection->stepped();
     if (web) web->stepped();
+    static_cast<void>(state.hasNews());
+}
+
+/// When a client that says nothing has something to be done for it.
+WallTime Server::Data::nextTurn() const {
+    WallTime next = WallTime::max();
+    for (const auto& connection : connections) {
+        if (connection->waitsToChange()) next = std::min(next, state.changes().next());
+        if (limits.watchdog.count() > 0 && connection->watched())
+            next = std::min(next, connection->heard() + limits.watchdog);
+    }
+    return next;
 }
 
 /// Runs handlers that are ready, for one turn at most.
@@ -117,8 +130,13 @@ void Server::Data::serveClients() {
     const WallTime end = steady_clock::now() + kTurn;
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
     for (const auto& connection : connections)
-        if (connection->waiting()) connection->stepped();
+        if (connection->waiting()) connection->proceed();
     if (web) web->serve();
+    if (state.hasNews()) stepped();
+    if (limits.watchdog.count() > 0) {
+        const WallTime since = steady_clock::now() - limits.watchdog;
+        for (const auto& connection : connections) connection->watch(since);
+    }
     relieve();
     sweep();
 }
@@ -205,8 +223,10 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         // Last before sleeping: what clients asked for decides for how long.
-        const auto next = simulation.run(steady_clock::now(), kTurn);
+        auto next = simulation.run(steady_clock::now(), kTurn);
         if (simulation.finished()) break;
+        if (const WallTime turn = data.nextTurn(); turn < WallTime::max())
+            next = std::min(next.value_or(turn), turn);
         if (!next)
             data.io.run_one();
         else if (*next > steady_clock::now())
@@ -269,11 +289,8 @@ Endpoint parseEndpoint(const std::string& text) {
         fail(text,
              ": wanted a numeric address or localhost before the port, like 127.0.0.1:8000 "
              "or [::1]:8000");
-    if (!address.is_loopback())
-        fail(text,
-             ": other machines can only be served with a token, which this version does not "
-             "have; listen on 127.0.0.1");
-    return {address.to_string(), static_cast<std::uint16_t>(parseInteger(port).value())};
+    return {address.to_string(), static_cast<std::uint16_t>(parseInteger(port).value()),
+            address.is_loopback()};
 }
 
 }  // namespace ispace

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim/simulation.h"
+#include "sim/world_editor.h"
 
 namespace ispace {
 
@@ -16,9 +17,9 @@ namespace ispace {
 struct Endpoint {
     std::string address = "127.0.0.1";
     std::uint16_t port = 0;
+    bool is_loopback = true;  ///< other machines cannot connect
 };
-/// ADDR:PORT with a numeric loopback address (127.x.y.z, [::1]) or localhost.
-/// \throws UsageError, also for an address beyond this machine
+/// ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws UsageError
 Endpoint parseEndpoint(const std::string& text);
 
 /// How often something may be asked for: `rate` a second in the long run, `burst` at once.
@@ -47,6 +48,14 @@ struct ServerLimits {
     /// What each client still may ask for once all together have used up theirs.
     RateLimit spare_pauses = {1, 1};
     bool shutdown = true;  ///< clients may end the run
+    bool changes = true;   ///< they may change the world, if there is a `source`
+    std::shared_ptr<const SceneSource> source;
+    /// What changes of the world and the end of the run need clients to know; "": nothing.
+    std::string token;
+    bool token_first = false;  ///< every role needs it
+    RateLimit wrong_tokens = {10, 10};
+    /// A robot or person stops when its client has been silent for so long; 0: never.
+    std::chrono::nanoseconds watchdog{};
 };
 
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world

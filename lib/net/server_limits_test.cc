@@ -23,7 +23,7 @@ using testing::soon;
 using testing::step;
 
 constexpr const char* kNoRole =
-    "ERR 408 no role taken in time: ROBOT id, LASER id or WORLD comes first\n";
+    "ERR 408 no role taken in time: ROBOT id, SENSOR id or WORLD comes first\n";
 
 TEST(Server, ConnectionWithoutARoleEnds) {
     ServerLimits limits;

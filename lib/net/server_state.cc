@@ -67,19 +67,48 @@ ServerState::ServerState(Simulation& simulation, const ServerLimits& limits)
     : simulation_(&simulation),
       limits_(limits),
       steps_(simulation),
-      held_(simulation.world().robots().size()),
+      seen_changes_(simulation.world().changes()),
       pauses_(limits.all_pauses),
-      texts_(simulation.world().sensors().size()) {}
-
-bool ServerState::hold(std::size_t robot) {
-    if (held_[robot]) return false;
-    held_[robot] = true;
-    return true;
+      wrong_tokens_(limits.wrong_tokens),
+      texts_(simulation.world().sensors().size()) {
+    if (limits.source) editor_.emplace(simulation, limits.source);
 }
 
-void ServerState::release(std::size_t robot) {
-    held_[robot] = false;
-    simulation_->world().command(robot, {Verb::Stop, 0});
+std::optional<std::int64_t> ServerState::hold(std::string_view id) {
+    const auto [held, is_new] = held_.try_emplace(std::string(id), holds_ + 1);
+    if (!is_new) return std::nullopt;
+    return ++holds_;
+}
+
+bool ServerState::holds(std::string_view id, std::int64_t hold) const {
+    const auto held = held_.find(id);
+    return held != held_.end() && held->second == hold;
+}
+
+void ServerState::release(std::string_view id, std::int64_t hold) {
+    if (!holds(id, hold)) return;
+    held_.erase(held_.find(id));
+    if (const auto mover = simulation_->world().moverNamed(id))
+        simulation_->world().command(*mover, {Verb::Stop, 0});
+}
+
+void ServerState::sync() {
+    const World& world = simulation_->world();
+    if (std::exchange(seen_changes_, world.changes()) == world.changes()) return;
+    std::erase_if(held_, [&](const auto& held) { return !world.moverNamed(held.first); });
+    // The same period may have another reading now.
+    texts_.clear();
+    texts_.resize(world.sensors().size());
+    kept_ = 0;
+}
+
+bool ServerState::hasNews() {
+    const std::int64_t changes = simulation_->world().changes();
+    const std::int64_t event = simulation_->events().next();
+    const bool none = told_changes_ == changes && told_event_ == event;
+    told_changes_ = changes;
+    told_event_ = event;
+    return !none;
 }
 
 std::shared_ptr<const std::string> ServerState::scan(std::size_t sensor, const ReplyForm& form) {

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +17,7 @@
 #include "net/server.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
+#include "sim/world_editor.h"
 
 namespace ispace {
 
@@ -88,6 +92,19 @@ class StepQueue {
     std::deque<std::shared_ptr<Ticket>> tickets_;
 };
 
+/// When clients' changes of the world may begin: they take half of the time at most.
+class ChangeBudget {
+  public:
+    [[nodiscard]] bool mayBegin(WallTime now) const { return now >= next_; }
+    /// One is over.
+    void spend(WallTime began, WallTime ended) { next_ = ended + (ended - began); }
+    /// The next one may begin then.
+    [[nodiscard]] WallTime next() const { return next_; }
+
+  private:
+    WallTime next_{};
+};
+
 /// What all sessions share: which robots are held, and the text of the newest scans, made once for
 /// all readers.
 class ServerState {
@@ -96,14 +113,28 @@ class ServerState {
     [[nodiscard]] Simulation& simulation() { return *simulation_; }
     [[nodiscard]] const ServerLimits& limits() const { return limits_; }
 
-    /// False if another client holds it.
-    bool hold(std::size_t robot);
-    /// Frees a robot and stops it.
-    void release(std::size_t robot);
+    /// A number for the hold of this robot or person; nothing if another client has it.
+    std::optional<std::int64_t> hold(std::string_view id);
+    /// False if the world has lost it since, even if there is another one of that name now.
+    [[nodiscard]] bool holds(std::string_view id, std::int64_t hold) const;
+    /// Frees it, and stops it.
+    void release(std::string_view id, std::int64_t hold);
+
+    /// Follows changes of the world. Call it after each.
+    void sync();
+    /// Clients may change the world.
+    [[nodiscard]] bool mayChange() const { return limits_.changes && editor_; }
+    /// \pre mayChange()
+    [[nodiscard]] WorldEditor& editor() { return *editor_; }
+    [[nodiscard]] ChangeBudget& changes() { return changes_; }
+    [[nodiscard]] const ChangeBudget& changes() const { return changes_; }
+    /// True if there may be news for clients since the last call: a change, a mark.
+    [[nodiscard]] bool hasNews();
 
     [[nodiscard]] StepQueue& steps() { return steps_; }
     /// Of all clients together.
     [[nodiscard]] TokenBucket& pauses() { return pauses_; }
+    [[nodiscard]] TokenBucket& wrongTokens() { return wrong_tokens_; }
 
     /// The newest reading of a sensor as scanText writes it, of a heavy one taken now if need be;
     /// all readers share one string. \throws FormatError as scanText does
@@ -123,8 +154,13 @@ class ServerState {
     Simulation* simulation_;
     ServerLimits limits_;
     StepQueue steps_;
-    std::vector<bool> held_;
-    TokenBucket pauses_;
+    std::map<std::string, std::int64_t, std::less<>> held_;
+    std::int64_t holds_ = 0;  // so far
+    std::optional<WorldEditor> editor_;
+    ChangeBudget changes_;
+    std::int64_t seen_changes_ = 0;                   // of the world
+    std::int64_t told_changes_ = 0, told_event_ = 0;  // at the last hasNews()
+    TokenBucket pauses_, wrong_tokens_;
     std::vector<std::vector<Text>> texts_;  // of each sensor, in every form that was asked for
     std::size_t kept_ = 0;                  // bytes in texts_
     // Bytes of all texts that somebody has; it outlives them.

@@ -282,13 +282,12 @@ TEST(ParseEndpoint, WantsANumericAddress) {
                       "127.0.0.1:8000 or [::1]:8000");
 }
 
-TEST(ParseEndpoint, RefusesOtherMachines) {
+TEST(ParseEndpoint, TellsOtherMachinesApart) {
     for (const std::string host : {"0.0.0.0", "192.168.0.1", "126.255.255.255", "128.0.0.1", "[::]",
                                    "[fe80::1]", "[::ffff:127.0.0.1]"})
-        EXPECT_EQ(usage(host + ":80"),
-                  "`" + host +
-                      ":80`: other machines can only be served with a token, which this version "
-                      "does not have; listen on 127.0.0.1");
+        EXPECT_FALSE(parseEndpoint(host + ":80").is_loopback) << host;
+    for (const std::string host : {"127.0.0.1", "127.255.255.255", "localhost", "[::1]"})
+        EXPECT_TRUE(parseEndpoint(host + ":80").is_loopback) << host;
 }
 
 }  // namespace

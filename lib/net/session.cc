@@ -16,7 +16,7 @@ namespace ispace {
 
 namespace {
 
-std::string_view nameOf(Outcome outcome) {
+std::string_view reasonOf(Outcome outcome) {
     switch (outcome) {
         case Outcome::Done:
             return "done";
@@ -39,6 +39,7 @@ struct Session::Request {
     std::optional<Role> role;    // at which it is possible; nothing: at any
     std::size_t least, most;     // number of arguments
     void (Session::*answer)(Words words);
+    bool needs_token = false;  // where the run has one
 };
 
 std::span<const Session::Request> Session::requests() {
@@ -46,7 +47,9 @@ std::span<const Session::Request> Session::requests() {
     // Commands are checked by parseCommand.
     constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
     static constexpr auto kRequests = std::to_array<Request>({
+        {"TOKEN", "x", std::nullopt, 1, 1, &C::token},
         {"ROBOT", "id", Role::None, 1, 1, &C::takeRobot},
+        {"PERSON", "id", Role::None, 1, 1, &C::takePerson},
         {"LASER", "id", Role::None, 1, 1, &C::takeLaser},
         {"SENSOR", "id", Role::None, 1, 1, &C::takeSensor},
         {"WORLD", "", Role::None, 0, 0, &C::takeWorld},
@@ -56,9 +59,21 @@ std::span<const Session::Request> Session::requests() {
         {"RIGHT", "deg", Role::Robot, 0, kAny, &C::command},
         {"SPEED", "m/s", Role::Robot, 0, kAny, &C::command},
         {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
+        {"SIDESPEED", "m/s", Role::Robot, 0, kAny, &C::command},
+        {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
         {"STOP", "", Role::Robot, 0, kAny, &C::command},
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
         {"SCAN", "id", Role::Robot, 1, 1, &C::scanOfRobot},
+        {"FORWARD", "m", Role::Person, 0, kAny, &C::command},
+        {"BACKWARD", "m", Role::Person, 0, kAny, &C::command},
+        {"LEFT", "deg", Role::Person, 0, kAny, &C::command},
+        {"RIGHT", "deg", Role::Person, 0, kAny, &C::command},
+        {"SPEED", "m/s", Role::Person, 0, kAny, &C::command},
+        {"ROTSPEED", "deg/s", Role::Person, 0, kAny, &C::command},
+        {"SIDESPEED", "m/s", Role::Person, 0, kAny, &C::command},
+        {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Person, 0, kAny, &C::command},
+        {"STOP", "", Role::Person, 0, kAny, &C::command},
+        {"STATUS", "", Role::Person, 0, 0, &C::status},
         {"SCAN", "", Role::Laser, 0, 0, &C::scan},
         {"STREAM", "[every=k]", Role::Laser, 0, 1, &C::stream},
         {"STOP", "", Role::Laser, 0, 0, &C::stopStream},
@@ -74,7 +89,14 @@ std::span<const Session::Request> Session::requests() {
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
         {"STEP", "[n]", Role::World, 0, 1, &C::step},
-        {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown},
+        {"RESET", "", Role::World, 0, 0, &C::change, true},
+        {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
+        {"ADD", "record", Role::World, 1, kAny, &C::change, true},
+        {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
+        {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},
+        {"EVENTS", "[kinds|off]", Role::World, 0, kAny, &C::events},
+        {"MARK", "text", Role::World, 1, kAny, &C::mark},
+        {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown, true},
         {"HELP", "", std::nullopt, 0, 0, &C::help},
         {"QUIT", "", std::nullopt, 0, 0, &C::quit},
     });
@@ -83,6 +105,7 @@ std::span<const Session::Request> Session::requests() {
 
 Session::Session(ServerState& state)
     : state_(&state),
+      changes_(state.simulation().world().changes()),
       pauses_(state.limits().pauses),
       spare_pauses_(state.limits().spare_pauses, std::chrono::steady_clock::now()) {}
 
@@ -94,6 +117,7 @@ void Session::request(std::string_view line) {
     std::vector<std::string_view> words;
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
+    sync();
     const bool first = std::exchange(first_, false);
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.
@@ -106,6 +130,7 @@ void Session::request(std::string_view line) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;
     });
     if (found == all.end()) return refuse(words.front(), first);
+    if (!mayUse(*found)) return;
     const std::size_t arguments = words.size() - 1;
     if (arguments < found->least)
         return error(400,
@@ -123,8 +148,10 @@ void Session::tooLong(std::size_t limit) {
     closing_ = true;
 }
 
-void Session::stepped() {
+void Session::stepped(bool has_room) {
+    sync();
     tellEnds();
+    if (has_room) tellEvents();
     if (every_ > 0) streamSensor();
     if (steps_) {
         state_->steps().settle();
@@ -132,25 +159,49 @@ void Session::stepped() {
     }
 }
 
+void Session::proceed() {
+    stepped();
+    if (!change_.empty() && state_->changes().mayBegin(std::chrono::steady_clock::now()))
+        carryOut(std::exchange(change_, {}));
+}
+
+void Session::silent() {
+    sync();
+    if (!drives()) return;
+    world().command(subject_, {Verb::Stop, 0});
+    tellEnds();
+}
+
 void Session::finish() {
+    sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
+    if (!std::exchange(change_, {}).empty()) error(405, {"the run has ended"});
     stepped();
 }
 
-std::string Session::roleText() const {
-    switch (role_) {
+std::string_view Session::verbOf(Role role) {
+    switch (role) {
         case Role::None:
-            return "no role";
+            break;
         case Role::Robot:
-            return "the role ROBOT " + world().robots()[subject_].id;
+            return "ROBOT";
+        case Role::Person:
+            return "PERSON";
         case Role::Laser:
-            return "the role LASER " + world().sensors()[subject_].id;
+            return "LASER";
         case Role::Sensor:
-            return "the role SENSOR " + world().sensors()[subject_].id;
+            return "SENSOR";
         case Role::World:
-            return "the role WORLD";
+            return "WORLD";
     }
     return "";
+}
+
+std::string Session::roleText() const {
+    if (role_ == Role::None) return "no role";
+    std::string text = "the role ";
+    text.append(verbOf(role_));
+    return role_ == Role::World ? text : text.append(" ").append(id_);
 }
 
 void Session::error(int code, std::initializer_list<std::string_view> text) {
@@ -168,11 +219,7 @@ void Session::refuse(std::string_view verb, bool first) {
         verbs.emplace_back(request.verb);
         if (request.verb != verb) continue;
         if (!roles.empty()) roles += " or ";
-        roles += request.role == Role::Robot    ? "ROBOT"
-                 : request.role == Role::Laser  ? "LASER"
-                 : request.role == Role::Sensor ? "SENSOR"
-                 : request.role == Role::World  ? "WORLD"
-                                                : "";
+        if (request.role) roles += verbOf(*request.role);
     }
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
         const std::string hint = didYouMean(upperCase(verb), verbs);
@@ -182,17 +229,70 @@ void Session::refuse(std::string_view verb, bool first) {
                            first ? "; a first line that is no request ends the connection" : ""});
     }
     if (role_ == Role::None)
-        return error(405, {"take a role first: ROBOT id, LASER id, SENSOR id or WORLD"});
+        return error(405, {"take a role first: ROBOT id, PERSON id, LASER id, SENSOR id or WORLD"});
     if (roles.empty())
         return error(405, {"this connection has ", roleText(), ": open another one for ", verb});
     error(405, {verb, " is for the role ", roles, ", this connection has ", roleText(),
                 ": open another one"});
 }
 
+/// Answers, if it is not so.
+bool Session::mayUse(const Request& request) {
+    const ServerLimits& limits = state_->limits();
+    const bool needs = request.needs_token || (limits.token_first && request.role);
+    if (needs && !limits.token.empty() && !has_token_) {
+        error(401, {request.verb, " needs the token of this run: TOKEN x comes before it"});
+        return false;
+    }
+    if (is_gone_ && request.role) {
+        error(404, {id_, " is no more: open another connection"});
+        return false;
+    }
+    return true;
+}
+
+/// After changes of the world: what the client has may have another index, or be gone.
+void Session::sync() {
+    state_->sync();
+    if (changes_ == world().changes()) return;
+    changes_ = world().changes();
+    const auto found = [this]() -> std::optional<std::size_t> {
+        if (role_ == Role::Laser || role_ == Role::Sensor) {
+            const auto sensor = world().sensorNamed(id_);
+            return sensor && world().sensors()[*sensor].keyword() == keyword_ ? sensor
+                                                                              : std::nullopt;
+        }
+        return state_->holds(id_, hold_) ? world().moverNamed(id_) : std::nullopt;
+    };
+    if (role_ == Role::None || role_ == Role::World) return;
+    if (const auto index = found()) {
+        subject_ = *index;
+        is_gone_ = false;
+    } else if (!is_gone_) {
+        lose();
+    }
+}
+
+/// The world has lost what the client has.
+void Session::lose() {
+    const std::string time = formatMilliseconds(world().time());
+    for (const int id : running_) {
+        out_.append("FAIL id=").append(std::to_string(id));
+        out_.append(" reason=deleted t=").append(time).append("\n");
+    }
+    out_.append("EVENT gone t=").append(time).append(" id=").append(id_).append("\n");
+    is_gone_ = true;
+    running_.clear();
+    every_ = 0;
+    scan_.reset();
+}
+
 /// Gives up what the client holds.
 void Session::leave() {
-    if (role_ == Role::Robot) state_->release(subject_);
+    if (drives()) state_->release(id_, hold_);
     state_->steps().drop(std::exchange(steps_, nullptr));
+    state_->simulation().events().unwant(std::exchange(events_, {}));
+    change_.clear();
     role_ = Role::None;
     running_.clear();
     every_ = 0;
@@ -205,7 +305,7 @@ void Session::tellEnds() {
         if (end.robot != subject_ || std::erase(running_, end.id) == 0) continue;
         const bool done = end.outcome == Outcome::Done;
         out_.append(done ? "DONE id=" : "FAIL id=").append(std::to_string(end.id));
-        if (!done) out_.append(" reason=").append(nameOf(end.outcome));
+        if (!done) out_.append(" reason=").append(reasonOf(end.outcome));
         out_.append(" t=").append(formatMilliseconds(end.time)).append("\n");
     }
 }
@@ -216,44 +316,14 @@ void Session::answerStep() {
     steps_.reset();
 }
 
-void Session::takeRobot(Words words) {
-    const auto robot = world().robotNamed(words[1]);
-    if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
-    if (!state_->hold(*robot))
-        return error(409, {"robot ", words[1], " is held by another client"});
-    role_ = Role::Robot;
-    subject_ = *robot;
-    const RobotModel& model = world().robots()[*robot].model;
-    out_.append("OK ROBOT ").append(words[1]);
-    out_.append(" model=").append(model.model.empty() ? "-" : model.model);
-    out_.append(" radius=").append(formatDouble(model.radius)).append("\n");
-}
-
-void Session::takeWorld(Words /*words*/) {
-    role_ = Role::World;
-    const Clock& clock = state_->simulation().clock();
-    out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
-    out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
-    switch (clock.kind) {
-        case Clock::Kind::Real:
-            out_.append("real rate=").append(formatDouble(clock.rate));
-            break;
-        case Clock::Kind::Fast:
-            out_ += "fast";
-            break;
-        case Clock::Kind::Step:
-            out_ += "step";
-            break;
-    }
-    out_ += '\n';
-}
-
 void Session::help(Words /*words*/) {
     std::string_view separator = " ";
     out_ += "OK HELP";
     for (const Request& request : requests()) {
         if (request.role.value_or(role_) != role_) continue;
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
+        if (request.answer == &Session::change && !state_->mayChange()) continue;
+        if (request.answer == &Session::token && state_->limits().token.empty()) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
         separator = " | ";

@@ -21,7 +21,7 @@ namespace ispace {
 class Session {
   public:
     explicit Session(ServerState& state);
-    /// Frees the robot it holds.
+    /// Frees the robot or person it holds.
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -34,16 +34,27 @@ class Session {
     void request(std::string_view line);
     /// Answers a request that exceeds the allowed length, and closes.
     void tooLong(std::size_t limit);
-    /// Writes events and scans for this client, and the answer to STEP. Call it after each step of
-    /// the world and, while waiting(), after other clients' requests.
-    void stepped();
+    /// Writes events and scans for this client, and the answer it waits for. Call it after each
+    /// step or change of the world. Without room for them, events that were asked for wait, and
+    /// some may be missed.
+    void stepped(bool has_room = true);
+    /// The same between steps, and carries out a change that had to wait.
+    void proceed();
+    /// Stops what it holds: the client has been silent for too long.
+    void silent();
 
     /// Ends what is under way, at the end of the run, and says so.
     void finish();
 
-    /// True while a STEP is under way; later requests wait for its answer.
-    [[nodiscard]] bool waiting() const { return steps_ != nullptr; }
+    /// True while a STEP or a change of the world is under way; later requests wait for its answer.
+    [[nodiscard]] bool waiting() const { return steps_ != nullptr || !change_.empty(); }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
+    /// True if that is a change that waits for its turn.
+    [[nodiscard]] bool waitsToChange() const { return !change_.empty(); }
+    /// True if it drives a robot or a person.
+    [[nodiscard]] bool drives() const {
+        return !is_gone_ && (role_ == Role::Robot || role_ == Role::Person);
+    }
     /// True after QUIT and errors that close the connection: nothing more is read.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Takes what is to be sent, in order.
@@ -54,23 +65,31 @@ class Session {
     [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
 
   private:
-    enum class Role { None, Robot, Laser, Sensor, World };
+    enum class Role { None, Robot, Person, Laser, Sensor, World };
     using Words = std::span<const std::string_view>;  // a request, the verb first
     struct Request;
     static std::span<const Request> requests();
 
     [[nodiscard]] World& world() const { return state_->simulation().world(); }
+    static std::string_view verbOf(Role role);
     [[nodiscard]] std::string roleText() const;
     [[nodiscard]] std::string unknownSensor(std::string_view kind, std::string_view id) const;
     void error(int code, std::initializer_list<std::string_view> text);
     void refuse(std::string_view verb, bool first);
+    [[nodiscard]] bool mayUse(const Request& request);
+    void sync();
+    void lose();
     bool mayAskFor(std::string_view verb);
     void leave();
     void tellEnds();
+    void tellEvents();
     void answerStep();
     void sendPendingScan();
 
+    void token(Words words);
     void takeRobot(Words words);
+    void takePerson(Words words);
+    [[nodiscard]] bool seize(Role role, std::string_view id, std::size_t mover);
     void takeLaser(Words words);
     void takeSensor(Words words);
     void format(Words words);
@@ -92,10 +111,21 @@ class Session {
     void resume(Words words);
     void step(Words words);
     void shutdown(Words words);
+    void change(Words words);
+    void carryOut(std::string_view line);
+    [[nodiscard]] std::string applied(Words words, std::string_view line);
+    void events(Words words);
+    void mark(Words words);
 
     ServerState* state_;
     Role role_ = Role::None;
-    std::size_t subject_ = 0;  // index of the robot or laser
+    // The robot, person or sensor: its id, and its index since so many changes of the world.
+    std::string id_;
+    std::string keyword_;  // of a sensor's record
+    std::size_t subject_ = 0;
+    std::int64_t changes_ = 0;
+    std::int64_t hold_ = 0;  // of a robot or person, see ServerState::hold
+    bool is_gone_ = false;   // the world has lost it
     std::string out_;
     std::vector<int> running_;  // commands whose end is still to be told
     // The stream: every how many scans (0: none), the last one considered, the one to be sent.
@@ -104,6 +134,11 @@ class Session {
     bool is_stale_ = false;  // there is a newer one than that to be sent
     std::shared_ptr<const std::string> scan_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a STEP to be answered
+    std::string change_;                              // a request that has to wait its turn
+    EventKinds events_;                               // that are told
+    std::int64_t next_event_ = 0;
+    bool has_token_ = false;
+    int wrong_tokens_ = 0;
     TokenBucket pauses_, spare_pauses_;
     bool first_ = true;  // nothing was asked yet
     bool closing_ = false;

@@ -38,6 +38,8 @@ void Session::takeLaser(Words words) {
     const Laser* const laser = found ? world().sensors()[*found].model<Laser>() : nullptr;
     if (laser == nullptr) return error(404, {unknownSensor("laser", words[1])});
     role_ = Role::Laser;
+    id_ = words[1];
+    keyword_ = "laser";
     subject_ = *found;
     form_ = {};
     out_.append("OK LASER ").append(words[1]).append(laserFigures(*laser)).append("\n");
@@ -47,8 +49,10 @@ void Session::takeSensor(Words words) {
     const auto found = world().sensorNamed(words[1]);
     if (!found) return error(404, {unknownSensor("sensor", words[1])});
     role_ = Role::Sensor;
+    id_ = words[1];
     subject_ = *found;
     const RunSensor& sensor = world().sensors()[subject_];
+    keyword_ = sensor.keyword();
     form_ = defaultForm(sensor);
     out_.append("OK SENSOR ").append(words[1]).append(sensorFigures(sensor)).append("\n");
 }
@@ -103,6 +107,7 @@ void Session::streamSensor() {
 }
 
 std::shared_ptr<const std::string> Session::takeScan() {
+    sync();
     if (scan_ && is_stale_) {
         ReplyForm form = form_;
         form.stream = true;

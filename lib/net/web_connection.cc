@@ -61,6 +61,8 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     void awaitRequest();
 
     void stepped() override;
+    void proceed() override;
+    void goOn();
     [[nodiscard]] bool waiting() const override { return session_ && session_->waiting(); }
     [[nodiscard]] bool wantsFrame() const override { return wants_frame_ && !closed_; }
     void offerFrame() override {
@@ -258,7 +260,17 @@ void Browser::answerHeld() {
 
 void Browser::stepped() {
     if (!session_ || closed_) return;
-    session_->stepped();
+    session_->stepped(out_.size() <= limits().pending);
+    goOn();
+}
+
+void Browser::proceed() {
+    if (!session_ || closed_) return;
+    session_->proceed();
+    goOn();
+}
+
+void Browser::goOn() {
     out_ += session_->take();
     // Events come unasked.
     if (out_.size() > 2 * limits().pending) return close();

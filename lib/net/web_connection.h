@@ -31,6 +31,7 @@ class WebConnection {
 
     /// Like those of Session.
     virtual void stepped() = 0;
+    virtual void proceed() = 0;
     [[nodiscard]] virtual bool waiting() const = 0;
     /// True if it is to get the next frame.
     [[nodiscard]] virtual bool wantsFrame() const = 0;

@@ -47,7 +47,7 @@ void WebServer::serve() {
     const auto now = steady_clock::now();
     bool wanted = false;
     for (const auto& connection : connections_) {
-        if (connection->waiting()) connection->stepped();
+        if (connection->waiting()) connection->proceed();
         connection->checkPatience(now);
         wanted = wanted || connection->wantsFrame();
     }

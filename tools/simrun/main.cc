@@ -18,7 +18,9 @@
 #include "cli/operands.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
+#include "cli/scene_folder.h"
 #include "net/server.h"
+#include "net/token.h"
 #include "simrun/options.h"
 #include "simrun/record.h"
 #include "simrun/warnings.h"
@@ -50,6 +52,21 @@ ServerLimits withinFileLimit(ServerLimits limits) {
     ::setrlimit(RLIMIT_NOFILE, &files);
     const rlim_t most = files.rlim_cur > kOwn ? files.rlim_cur - kOwn : 1;
     limits.clients = static_cast<std::size_t>(std::min<rlim_t>(limits.clients, most));
+    return limits;
+}
+
+/// Limits of the server, with what clients need to know and may read.
+ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
+    ServerLimits limits = withinFileLimit(options.limits);
+    if (!options.token_file.empty()) {
+        limits.token = readToken(options.token_file);
+        if (isOpenToOthers(options.token_file))
+            warn(options.common, "simrun",
+                 options.token_file + " can be read by other users: chmod 600 makes it yours");
+    }
+    const std::string& folder = options.load_folder;
+    limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
+                                                  options.any_environment);
     return limits;
 }
 
@@ -149,7 +166,7 @@ void simrun(const SimrunCommand& command) {
     simulation.onStep([&judge] { judge.observe(); });
 
     checkRecord(options, world);
-    Server server(simulation, options.listen, withinFileLimit(options.limits));
+    Server server(simulation, options.listen, limitsOf(options, input));
     const std::string& shown = replay ? options.replay : input.environment_operand;
     const std::string title = shown == "-" ? "" : baseName(shown);
     const std::string web = options.web ? server.serveWeb(*options.web, title) : "";

@@ -36,6 +36,12 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     takeExpectations();
     checkReplay();
     options_.limits.shutdown = options_.shutdown.value_or(true);
+    options_.limits.changes = options_.changes.value_or(true);
+    options_.limits.token_first = !options_.listen.is_loopback;
+    if (!options_.listen.is_loopback && options_.token_file.empty())
+        throw UsageError("--listen: `" + options_.listen.address +
+                         "`: other machines are served only with --token-file; or listen on "
+                         "127.0.0.1");
 }
 
 void SimrunCommand::declareRun() {
@@ -139,7 +145,13 @@ void SimrunCommand::declareServer() {
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
     line_.parsed(
-        "--web", "ADDR:PORT", [&o](const std::string& text) { o.web = parseEndpoint(text); },
+        "--web", "ADDR:PORT",
+        [&o](const std::string& text) {
+            o.web = parseEndpoint(text);
+            if (!o.web->is_loopback)
+                throw UsageError(excerpt(text) +
+                                 ": the page is for browsers of this machine; use 127.0.0.1");
+        },
         "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
@@ -153,6 +165,21 @@ void SimrunCommand::declareServer() {
             o.limits.clients = static_cast<std::size_t>(*count);
         },
         "clients served at once; more are refused (default 256)", Enters::Nothing);
+    line_.file("--token-file", "FILE", o.token_file,
+               "its first line is what clients must know to change the world or end the run, and "
+               "for anything if they may connect from other machines",
+               Enters::Nothing);
+    line_.parsed(
+        "--watchdog", "TIME",
+        [&o](const std::string& text) {
+            o.limits.watchdog = simTime(text, std::chrono::milliseconds(1), std::chrono::hours(24));
+        },
+        "stop a robot or person whose client has been silent for so long (wall time)",
+        Enters::Nothing);
+    line_.file("--load", "DIR", o.load_folder,
+               "folder from which the request LOAD reads (default that of ENV)", Enters::Nothing);
+    line_.switchFlag("--changes", "--no-changes", o.changes,
+                     "let clients change the world (default)", "refuse it", Enters::Nothing);
     line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
                      "let the request SHUTDOWN end the run (default)", "refuse it",
                      Enters::Nothing);

@@ -32,7 +32,9 @@ struct SimrunOptions {
     std::string port_file;       ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web;
-    std::optional<bool> shutdown;
+    std::optional<bool> shutdown, changes;
+    std::string token_file;   ///< "" without
+    std::string load_folder;  ///< "": that of the scene
     ServerLimits limits;
 };
 

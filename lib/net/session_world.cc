@@ -1,74 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clients that have a role can ask for.
+// The role WORLD, but for changes.
 #include <chrono>
-#include <initializer_list>
+#include <string>
 
-#include "base/message.h"
 #include "base/number.h"
 #include "net/request_parts.h"
-#include "net/server_state.h"
 #include "net/session.h"
 
 namespace ispace {
 
-namespace {
-
-std::string measured(double value) { return formatFixed(value, 3); }
-
-/// Of an angle within (-180, 180], still so when rounded.
-std::string headingText(Angle heading) {
-    std::string text = measured(heading.degrees());
-    if (text == "-180.000") text.erase(0, 1);
-    return text;
-}
-
-}  // namespace
-
-// The role ROBOT.
-
-void Session::command(Words words) {
-    const char* const begin = words.front().data();
-    const char* const end = words.back().data() + words.back().size();
-    const ParsedCommand parsed =
-        parseCommand(std::string_view(begin, static_cast<std::size_t>(end - begin)));
-    if (!parsed.command) {
-        const bool range = parsed.error.kind == CommandError::Kind::Range;
-        return error(range ? 416 : 400, {parsed.error.message});
+void Session::takeWorld(Words /*words*/) {
+    role_ = Role::World;
+    const Clock& clock = state_->simulation().clock();
+    out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
+    out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
+    switch (clock.kind) {
+        case Clock::Kind::Real:
+            out_.append("real rate=").append(formatDouble(clock.rate));
+            break;
+        case Clock::Kind::Fast:
+            out_ += "fast";
+            break;
+        case Clock::Kind::Step:
+            out_ += "step";
+            break;
     }
-    if (state_->simulation().isReplay())
-        return error(405, {"this run is a replay: robots and people go as recorded; take STATUS and "
-                           "SCAN, or run the scene without --replay"});
-    const std::string refusal = world().refusal(subject_, *parsed.command);
-    if (!refusal.empty()) return error(416, {refusal});
-    const int id = world().command(subject_, *parsed.command);
-    out_.append("OK ").append(words.front());
-    if (id != 0) {
-        running_.push_back(id);
-        out_.append(" id=").append(std::to_string(id));
-    }
-    if (const std::string_view name = valueNameOf(parsed.command->verb); !name.empty())
-        out_.append(" ").append(name).append("=").append(formatDouble(parsed.command->value));
     out_ += '\n';
 }
 
-void Session::status(Words /*words*/) {
-    const RobotStatus status = world().status(subject_);
-    out_.append("OK STATUS t=").append(formatMilliseconds(world().time()));
-    out_.append(" x=").append(measured(status.pose.position.x));
-    out_.append(" y=").append(measured(status.pose.position.y));
-    out_.append(" heading=").append(headingText(status.pose.heading));
-    out_.append(" speed=").append(measured(status.speed));
-    out_.append(" rotspeed=").append(measured(status.rotspeed.degrees()));
-    out_.append(" accel=").append(formatDouble(status.accel));
-    out_.append(" rotaccel=").append(formatDouble(status.rotaccel.degrees()));
-    out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
-}
-
-// The role WORLD.
-
 void Session::list(Words /*words*/) {
     out_.append("OK LIST robots=").append(joined(idsOf(world().robots()), ","));
-    out_.append(" lasers=").append(joined(laserIdsOf(world()), ",")).append("\n");
+    out_.append(" lasers=").append(joined(laserIdsOf(world()), ","));
+    out_.append(" people=").append(joined(idsOf(world().people()), ","));
+    out_.append(" sensors=").append(joined(idsOf(world().sensors()), ",")).append("\n");
 }
 
 void Session::time(Words /*words*/) {
@@ -77,13 +41,15 @@ void Session::time(Words /*words*/) {
 }
 
 void Session::poses(Words /*words*/) {
-    const auto robots = world().robots();
+    const auto movers = world().movers();
+    const std::size_t robots = world().robots().size();
     out_.append("OK POSES t=").append(formatMilliseconds(world().time()));
-    out_.append(" n=").append(std::to_string(robots.size())).append(" poses=");
-    for (std::size_t i = 0; i < robots.size(); ++i) {
+    out_.append(" n=").append(std::to_string(robots)).append(" poses=");
+    for (std::size_t i = 0; i < movers.size(); ++i) {
         const Pose2 pose = world().status(i).pose;
-        if (i > 0) out_ += ';';
-        out_.append(robots[i].id).append(",").append(measured(pose.position.x));
+        if (i == robots) out_ += " people=";
+        if (i != 0 && i != robots) out_ += ';';
+        out_.append(movers[i].id).append(",").append(measured(pose.position.x));
         out_.append(",").append(measured(pose.position.y));
         out_.append(",").append(headingText(pose.heading));
     }

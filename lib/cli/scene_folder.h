@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "cli/operands.h"
+#include "layout/devices.h"
+#include "sim/world_editor.h"
+
+namespace ispace {
+
+/// The folder that clients of a run may read from. A name they give is relative to it (or
+/// absolute), and must lead, links followed, to a regular file in it or below; no part of the way
+/// is hidden
+/// (`.name`). What such a file names in its turn is read as if it were an operand: it lies there
+/// because somebody who may write there wants it.
+class SceneFolder : public SceneSource {
+  public:
+    /// "" is the current folder. \throws std::system_error if there is none
+    SceneFolder(const std::string& folder, bool any_environment);
+    /// That of a run's operands: where ENV lies, or LAYOUT if that names ENV.
+    static std::string of(const SceneInput& input);
+
+    [[nodiscard]] const DeviceCatalogue& devices() const override { return devices_; }
+    [[nodiscard]] Scene load(const std::string& environment,
+                             const std::string& layout) const override;
+    void loadFilesOf(Record& record) const override;
+    /// The file that a client's name means. \throws FormatError
+    [[nodiscard]] std::string path(const std::string& name) const;
+
+  private:
+    std::string folder_;  // canonical
+    bool any_environment_;
+    DeviceCatalogue devices_;
+};
+
+}  // namespace ispace

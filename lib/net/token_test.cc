@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/token.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace ispace {
+namespace {
+
+std::string tokenIn(const std::string& text) {
+    const std::string file = ::testing::TempDir() + "token";
+    writeAll(file, text);
+    return readToken(file);
+}
+
+TEST(Token, IsTheFirstLine) {
+    EXPECT_EQ(tokenIn("s3cret\n"), "s3cret");
+    EXPECT_EQ(tokenIn("s3cret"), "s3cret");
+    EXPECT_EQ(tokenIn("s3cret\r\nmore\n"), "s3cret");
+    for (const std::string text : {"", "\n", "two words\n", "tab\t\n", "\xc3\xa4\n"})
+        EXPECT_THROW(tokenIn(text), FormatError) << text;
+    EXPECT_THROW(tokenIn(std::string(257, 'x')), FormatError);
+    EXPECT_THROW(readToken("/nowhere/token"), std::system_error);
+}
+
+TEST(Token, FilesOfOthers) {
+    const std::string file = ::testing::TempDir() + "token";
+    writeAll(file, "x\n");
+    ::chmod(file.c_str(), 0644);
+    EXPECT_TRUE(isOpenToOthers(file));
+    ::chmod(file.c_str(), 0600);
+    EXPECT_FALSE(isOpenToOthers(file));
+}
+
+TEST(Token, Comparison) {
+    EXPECT_TRUE(isSameSecret("abc", "abc"));
+    for (const char* given : {"", "ab", "abd", "abcd", "abcabc", "ABC"})
+        EXPECT_FALSE(isSameSecret(given, "abc")) << given;
+}
+
+}  // namespace
+}  // namespace ispace
