@@ -223,6 +223,96 @@ class Sensors(unittest.TestCase):
                 self.assertEqual(picture.pixels.shape, (6, 8, 3))
 
 
+class LivingWorld(unittest.TestCase):
+    """square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5)."""
+
+    def setUp(self):
+        self.run_ = ispace.simrun(DATA / "square.env", DATA / "sensing.3dm", clock="step", quiet=True)
+        self.addCleanup(self.run_.close)
+        self.world = self.run_.world()
+        self.addCleanup(self.world.close)
+
+    def test_person_and_paths(self):
+        with self.run_.person("h1") as person, self.run_.robot("r1") as robot:
+            self.assertEqual(person.info["height"], "1.7")
+            walk = person.path([(0.9, -1)])
+            ride = robot.path([(-1, 1), (0, 1)], speed=0.4, pause=0.5)
+            self.assertAlmostEqual(ride.length, 1, delta=1e-6)
+            self.world.advance(30)
+            self.assertTrue(person.wait(walk).done)
+            self.assertTrue(robot.wait(ride).done)
+            poses = self.world.poses()
+            self.assertLess(math.dist(poses["r1"][:2], (0, 1)), 0.01)
+            self.assertLess(math.dist(poses["h1"][:2], (0.9, -1)), 0.01)
+            person.sidespeed(0.2)
+            self.world.advance(1)
+            self.assertNotEqual(person.status().pose, poses["h1"])
+
+    def test_changes(self):
+        with self.run_.robot("r1") as robot:
+            self.assertEqual(self.world.add("cube id=box at=0,0 size=0.5,0.5,1"), "box")
+            blocked = robot.forward(1.5)
+            self.world.advance(10)
+            self.assertEqual(robot.wait(blocked).reason, "stall")
+            self.world.remove("box")
+            with self.assertRaises(ispace.Refused):
+                self.world.remove("box")
+            self.world.set("r1", "speed", "0.1")
+            robot.forward(0.3)
+            self.world.advance(2)
+            self.assertEqual(robot.status().speed, 0.1)
+            self.world.reset()
+            self.assertEqual(robot.status().pose, (-1, 0, 0))
+        self.world.load(DATA / "square.env", DATA / "session.3dm")
+        self.assertEqual(self.world.list()["robots"], ["r1", "r2"])
+
+    def test_events(self):
+        self.world.follow("collision", "mark")
+        self.world.mark("the robot = off")
+        with self.run_.robot("r1") as robot:
+            robot.forward(5)
+            self.world.advance(10)
+        first, second = list(self.world.events(timeout=0.05))[:2]
+        self.assertEqual((first.kind, first.fields["text"]), ("mark", "the robot = off"))
+        self.assertEqual((second.kind, second.fields["into"]), ("collision", "h1"))
+        self.world.unfollow()
+        self.world.mark("nobody hears this")
+        self.assertIsNone(self.world.next_event(0.05))
+
+    def test_token(self):
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write("a-secret-of-this-test\n")
+            file.flush()
+            run = ispace.simrun(DATA / "square.env", clock="step", token_file=file.name)
+        with run:
+            with run.world() as stranger, self.assertRaises(ispace.Refused) as caught:
+                stranger.reset()
+            self.assertEqual(caught.exception.code, 401)
+            with ispace.World(run.address, token="a-secret-of-this-test") as friend:
+                friend.reset()
+
+
+class Complete(unittest.TestCase):
+    def test_both_clients_have_every_request(self):
+        client = SOURCE / "lib" / "client"
+        sources = {
+            "C++": "".join(path.read_text(encoding="utf-8") for path in (client / "ispace_client").glob("*.h")),
+            "Python": "".join(path.read_text(encoding="utf-8") for path in (client / "python").glob("ispace/*.py")),
+        }
+        with ispace.simrun(DATA / "square.env", DATA / "sensing.3dm", clock="step", quiet=True) as run:
+            for role in ("", "ROBOT r1", "PERSON h1", "LASER l1", "SENSOR c1", "WORLD"):
+                connection = ispace.Connection(run.address)
+                if role:
+                    connection.ask(role)
+                requests = connection.ask("HELP").line.removeprefix("OK HELP ").split(" | ")
+                self.assertGreater(len(requests), 2)
+                for verb in (request.split()[0] for request in requests):
+                    for language, text in sources.items():
+                        if verb != "HELP":
+                            self.assertRegex(text, rf"\"{verb}\b", f"{role}: {verb} in {language}")
+                connection.close()
+
+
 class Server(unittest.TestCase):
     def test_stops_only_its_own(self):
         with ispace.simrun(DATA / "square.env", DATA / "session.3dm") as one:

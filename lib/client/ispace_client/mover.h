@@ -44,14 +44,14 @@ struct Odometry {
 /// A motion with an end: what forward(), left(), path() and their kin began.
 struct Motion {
     int id = 0;
-    double length = 0;  ///< of a path, m
+    double length = 0;  ///< of a path, m, from its first point on
 };
 
 /// How a motion ended.
 struct End {
     int id = 0;
     bool done = false;   ///< it got where it was to go
-    std::string reason;  ///< otherwise: stall, replaced or stopped
+    std::string reason;  ///< otherwise: stall, replaced, stopped or deleted
     double time = 0;     ///< simulated seconds
 };
 

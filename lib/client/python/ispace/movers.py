@@ -46,7 +46,7 @@ class Motion:
     """A motion with an end: what forward(), left(), path() and their kin began."""
 
     id: int
-    length: float = 0  #: of a path, m
+    length: float = 0  #: of a path, m, from its first point on
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class End:
 
     id: int
     done: bool  #: it got where it was to go
-    reason: str  #: otherwise: stall, replaced or stopped
+    reason: str  #: otherwise: stall, replaced, stopped or deleted
     time: float  #: simulated seconds
 
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The C++ client changes a running world, follows what happens in it, and drives people and paths.
+#include <gtest/gtest.h>
+#include <ispace_client.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "test_server.h"
+
+namespace ispace {
+namespace client {
+namespace {
+
+std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+
+/// square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5).
+class LivingWorld : public testing::Test {
+  protected:
+    TestServer server{{data("square.env"), data("sensing.3dm"), "--clock", "step", "-q"}};
+    World world{server.address()};
+    void simulate(double seconds) { world.step(std::lround(seconds / world.dt())); }
+    /// The events that have come, which are of these kinds alone.
+    std::vector<Event> events() {
+        std::vector<Event> events;
+        Event event;
+        while (world.nextEvent(event, 0.05)) events.push_back(event);
+        return events;
+    }
+};
+
+TEST_F(LivingWorld, APersonIsDrivenAsARobotIs) {
+    Person person(server.address(), "h1");
+    EXPECT_EQ(person.info().number("height"), 1.7);
+    EXPECT_THROW(Person(server.address(), "h1"), Refused);
+    EXPECT_THROW(Person(server.address(), "r1"), Refused);
+    const Motion ahead = person.forward(0.4);
+    simulate(5);
+    EXPECT_TRUE(person.wait(ahead).done);
+    EXPECT_NEAR(person.status().pose.x, 0.5, 2e-3);
+    EXPECT_NEAR(world.poses()["h1"].x, 0.5, 2e-3);
+    person.sidespeed(0.2);
+    simulate(2);
+    EXPECT_LT(person.status().pose.y, 0.4);
+    person.stop();
+}
+
+TEST_F(LivingWorld, PathsAreFollowed) {
+    Robot robot(server.address(), "r1");
+    PathOptions options;
+    options.speed = 0.4;
+    options.pause = 0.5;
+    const Motion path = robot.path({Point(-1, 1), Point(0, 1)}, options);
+    EXPECT_NEAR(path.length, 1, 1e-6);
+    simulate(30);
+    const End end = robot.wait(path);
+    EXPECT_TRUE(end.done) << end.reason;
+    EXPECT_NEAR(robot.status().pose.x, 0, 0.01);
+    EXPECT_NEAR(robot.status().pose.y, 1, 0.01);
+    options.loop = true;
+    const Motion round = robot.path({Point(-1, 1), Point(-1, 0)}, options);
+    simulate(30);
+    EXPECT_FALSE(robot.ended(round));
+    Person person(server.address(), "h1");
+    const Motion walk = person.path({Point(0.9, -1)});
+    simulate(10);
+    EXPECT_TRUE(person.wait(walk).done);
+}
+
+TEST_F(LivingWorld, ThingsComeAndGo) {
+    Robot robot(server.address(), "r1");
+    EXPECT_EQ(world.add("cube id=box at=0,0 size=0.5,0.5,1"), "box");
+    const Motion blocked = robot.forward(1.5);
+    simulate(10);
+    EXPECT_EQ(robot.wait(blocked).reason, "stall");
+    world.remove("box");
+    EXPECT_THROW(world.remove("box"), Refused);
+    world.set("r1", "speed", "0.1");
+    const Motion slow = robot.forward(0.5);
+    simulate(4);
+    EXPECT_FALSE(robot.ended(slow));
+    EXPECT_EQ(robot.status().speed, 0.1);
+    simulate(4);
+    EXPECT_TRUE(robot.wait(slow).done);
+    EXPECT_THROW(world.set("r1", "speed", "fast"), Refused);
+    EXPECT_THROW(world.add("cube size=much"), Refused);
+}
+
+TEST_F(LivingWorld, SensorsAndRobotsComeToo) {
+    EXPECT_EQ(world.add("laser id=l9 at=-1.9,0,0.1 fov=0"), "l9");
+    EXPECT_EQ(world.list()["lasers"], std::vector<std::string>({"l1", "l9"}));
+    simulate(0.1);
+    LaserSensor laser(server.address(), "l9");
+    EXPECT_NEAR(laser.scan().ranges.at(0), 0.64, 1e-3);  // the back of r1
+    world.add("robot id=r9 at=1,-1");
+    Robot robot(server.address(), "r9");
+    robot.speed(0.2);
+    simulate(1);
+    EXPECT_GT(world.poses()["r9"].x, 1.05);
+    EXPECT_EQ(world.list()["people"], std::vector<std::string>({"h1"}));
+}
+
+TEST_F(LivingWorld, ResetTakesThemBackAndLoadAway) {
+    Robot robot(server.address(), "r1");
+    robot.speed(0.3);
+    simulate(3);
+    EXPECT_GT(robot.status().pose.x, -0.9);
+    world.reset();
+    EXPECT_EQ(robot.status().pose.x, -1);
+    EXPECT_EQ(world.time(), 3);
+    world.load(data("square.env"), data("session.3dm"));
+    EXPECT_EQ(world.list()["robots"], std::vector<std::string>({"r1", "r2"}));
+    EXPECT_THROW(world.load(data("missing.env")), Refused);
+}
+
+TEST_F(LivingWorld, EventsAreToldAsTheyHappen) {
+    Robot robot(server.address(), "r1");
+    world.events({"collision", "mat", "gate", "mark"});
+    EXPECT_THROW(world.events({"collission"}), Refused);
+    world.mark("the robot = off");
+    robot.forward(5);
+    simulate(10);
+    std::vector<std::string> kinds;
+    for (const Event& event : events()) {
+        kinds.push_back(event.kind);
+        if (event.kind == "mark") {
+            EXPECT_EQ(event.fields.text("text"), "the robot = off");
+        }
+        if (event.kind == "gate" && event.fields.text("who") == "r1") {
+            EXPECT_EQ(event.fields.text("way"), "in");
+        }
+        if (event.kind == "collision") {
+            EXPECT_EQ(event.fields.text("into"), "h1");
+            EXPECT_NEAR(event.fields.number("x"), world.poses()["r1"].x, 0.02);
+            EXPECT_GT(event.time, 1);
+        }
+    }
+    for (const char* kind : {"mark", "mat", "gate", "collision"})
+        EXPECT_EQ(std::count(kinds.begin(), kinds.end(), std::string(kind)) > 0, true) << kind;
+    EXPECT_EQ(kinds.front(), "mark");
+    world.eventsOff();
+    world.mark("nobody hears this");
+    EXPECT_TRUE(events().empty());
+    world.events();
+    world.mark("all");
+    EXPECT_EQ(events().back().kind, "mark");
+}
+
+TEST(LivingWorldToken, ChangesNeedItWhereItIsAskedFor) {
+    const std::string file = testing::TempDir() + "/ispace_token." + std::to_string(getpid());
+    std::ofstream(file) << "a-secret-of-this-test\n";
+    ::chmod(file.c_str(), 0600);
+    TestServer server(
+        {data("square.env"), data("sensing.3dm"), "--clock", "step", "-q", "--token-file", file});
+    World stranger(server.address());
+    EXPECT_EQ(stranger.time(), 0);
+    try {
+        stranger.reset();
+        FAIL() << "changed without the token";
+    } catch (const Refused& refused) {
+        EXPECT_EQ(refused.code(), 401);
+    }
+    Options options;
+    options.token = "wrong";
+    EXPECT_THROW(World(server.address(), options), Refused);
+    options.token = "a-secret-of-this-test";
+    World friendly(server.address(), options);
+    friendly.reset();
+    friendly.shutdown();
+    EXPECT_EQ(server.wait(), 0);
+    std::remove(file.c_str());
+}
+
+}  // namespace
+}  // namespace client
+}  // namespace ispace
