@@ -15,6 +15,7 @@
 #include "base/message.h"
 #include "draw/font.h"
 #include "draw/picture.h"
+#include "draw/raster.h"
 
 namespace ispace {
 
@@ -233,12 +234,38 @@ std::string encodePng(const Image& image) {
     return bytes;
 }
 
-std::string writePng(const Picture& picture) {
-    const Surface surface(cairo_image_surface_create(
-                              CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(picture.width())),
-                              static_cast<int>(std::lround(picture.height()))),
-                          cairo_surface_destroy);
+namespace {
+
+Surface painted(const Picture& picture) {
+    Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                               static_cast<int>(std::lround(picture.width())),
+                                               static_cast<int>(std::lround(picture.height()))),
+                    cairo_surface_destroy);
     Painter(picture, surface.get()).paint();
+    return surface;
+}
+
+}  // namespace
+
+Image rasterOf(const Picture& picture) {
+    const Surface surface = painted(picture);
+    cairo_surface_flush(surface.get());
+    Image image{cairo_image_surface_get_width(surface.get()),
+                cairo_image_surface_get_height(surface.get()),
+                {}};
+    const auto width = static_cast<std::size_t>(image.width);
+    image.pixels.resize(width * static_cast<std::size_t>(image.height));
+    const unsigned char* row = cairo_image_surface_get_data(surface.get());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
+        std::memcpy(&image.pixels[y * width], row, width * sizeof(std::uint32_t));
+        row += cairo_image_surface_get_stride(surface.get());
+    }
+    for (std::uint32_t& pixel : image.pixels) pixel &= 0xFFFFFFU;  // the rest is undefined
+    return image;
+}
+
+std::string writePng(const Picture& picture) {
+    const Surface surface = painted(picture);
     std::string bytes;
     check(cairo_surface_write_to_png_stream(surface.get(), append, &bytes));
     return bytes;

@@ -16,11 +16,13 @@
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/operands.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/run_tool.h"
 #include "cli/scene_folder.h"
 #include "net/server.h"
 #include "net/token.h"
+#include "simrun/drawing.h"
 #include "simrun/options.h"
 #include "simrun/record.h"
 #include "simrun/warnings.h"
@@ -122,6 +124,12 @@ SceneInput readInput(const SimrunOptions& options) {
     return readScene({operands, options.any_environment, false});
 }
 
+/// Of what is shown: the room, or the record.
+std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
+    const std::string& shown = options.replay.empty() ? input.environment_operand : options.replay;
+    return shown == "-" ? "" : baseName(shown);
+}
+
 /// The record to be served, and the scene as it begins; nothing without --replay.
 std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
     if (options.replay.empty()) return std::nullopt;
@@ -146,6 +154,7 @@ History historyOf(const SimrunCommand& command, const SceneInput& input) {
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
+    if (!options.drawing.format.empty()) claimOutputs(options.common);
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
     if (!options.record.empty())
@@ -155,6 +164,8 @@ void simrun(const SimrunCommand& command) {
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common);
     std::optional<Replay> replay = openReplay(options, input.scene);
+    if (!options.drawing.format.empty())
+        return drawRecord(options, input.scene, titleOf(options, input));
     World world(input.scene, replay ? replay->stepLength() : options.step);
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
@@ -167,9 +178,8 @@ void simrun(const SimrunCommand& command) {
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
-    const std::string& shown = replay ? options.replay : input.environment_operand;
-    const std::string title = shown == "-" ? "" : baseName(shown);
-    const std::string web = options.web ? server.serveWeb(*options.web, title) : "";
+    const std::string web =
+        options.web ? server.serveWeb(*options.web, titleOf(options, input)) : "";
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;

@@ -13,6 +13,13 @@
 
 namespace ispace {
 
+/// What -o draws of a record.
+struct DrawingOptions {
+    std::string format;          ///< png, svg, pdf or y4m; "" without -o
+    int width = 1200;            ///< pixels
+    double fps = 25, speed = 1;  ///< of a film: pictures a second, simulated seconds a second
+};
+
 struct SimrunOptions {
     CommonOptions common;
     std::vector<std::string> operands;
@@ -26,6 +33,7 @@ struct SimrunOptions {
     std::string replay;                                     ///< folder; "" without
     SimTime from{};                                         ///< of the replay
     bool holds = false;                                     ///< at the end of the replay
+    DrawingOptions drawing;
     std::vector<Expectation> expected;
     std::string junit;           ///< file; "" without
     double recorded_frames = 1;  ///< a simulated second, at most
@@ -48,10 +56,13 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void declareReplay();
     void declareJudgement();
     void checkReplay() const;
+    void declareDrawing();
+    void takeDrawing();
     void takeExpectations();
     void declareServer();
 
     std::vector<std::string> expected_;
+    std::string to_;
 };
 
 }  // namespace ispace
