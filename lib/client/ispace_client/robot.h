@@ -11,6 +11,12 @@
 namespace ispace {
 namespace client {
 
+/// One of the sonars of a robot.
+struct Sonar {
+    Pose place;        ///< on the robot: m, degrees, in its own frame
+    double range = 0;  ///< m; infinity: no echo
+};
+
 /// A robot (role ROBOT).
 class Robot : public Mover {
   public:
@@ -35,8 +41,24 @@ class Robot : public Mover {
         odometry.rotspeed = fields.number("rotspeed");
         return odometry;
     }
-    /// Ranges of its ring of sonars, m; infinity: no echo.
-    std::vector<double> sonar() { return ask("SONAR").fields.numbers("r"); }
+    /// Its ring of sonars; empty if it has none.
+    std::vector<Sonar> sonar() {
+        const Fields fields = ask("SONAR").fields;
+        std::vector<Sonar> ring;
+        for (const std::string& place : split(fields.text("at"), ';')) {
+            const std::vector<std::string> parts = split(place, ',');
+            if (parts.size() != 3) throw ProtocolError("`" + place + "` is no place of a sonar");
+            Sonar sonar;
+            sonar.place.x = numberOf(parts[0]);
+            sonar.place.y = numberOf(parts[1]);
+            sonar.place.heading = numberOf(parts[2]);
+            ring.push_back(sonar);
+        }
+        const std::vector<double> ranges = fields.numbers("r");
+        if (ranges.size() != ring.size()) throw ProtocolError("sonars without ranges");
+        for (std::size_t i = 0; i < ring.size(); ++i) ring[i].range = ranges[i];
+        return ring;
+    }
     /// Which of its bumpers are pressed.
     std::vector<bool> bumpers() {
         std::vector<bool> hit;

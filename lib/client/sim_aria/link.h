@@ -69,8 +69,9 @@ class Link {
         packet.rot_vel = odometry.rotspeed;
         packet.stalled = robot_->status().stall;
         if (sonar && !sonars_.empty()) {
-            for (const double range : robot_->sonar())
-                packet.sonar.push_back(range < 5 ? ArMath::roundInt(1000 * range) : 5000);
+            for (const ispace::client::Sonar& sonar : robot_->sonar())
+                packet.sonar.push_back(sonar.range < 5 ? ArMath::roundInt(1000 * sonar.range)
+                                                       : 5000);
         }
         return packet;
     }
@@ -118,18 +119,12 @@ class Link {
     }
 
     void findSonars() {
-        ispace::client::Fields answer;
         try {
-            answer = robot_->connection().ask("SONAR").fields;
+            for (const ispace::client::Sonar& sonar : robot_->sonar())
+                sonars_.push_back(
+                    ArPose(1000 * sonar.place.x, 1000 * sonar.place.y, sonar.place.heading));
         } catch (const ispace::client::Refused&) {
-            return;  // it has none
-        }
-        for (const std::string& place : ispace::client::split(answer.text("at", ""), ';')) {
-            const std::vector<std::string> parts = ispace::client::split(place, ',');
-            if (parts.size() != 3) throw ispace::client::ProtocolError("a sonar at " + place);
-            sonars_.push_back(ArPose(1000 * ispace::client::numberOf(parts[0]),
-                                     1000 * ispace::client::numberOf(parts[1]),
-                                     ispace::client::numberOf(parts[2])));
+            // It has none.
         }
     }
 

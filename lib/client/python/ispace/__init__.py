@@ -33,7 +33,7 @@ from .errors import (
     ToolError,
 )
 from .filters import Layout, Object, Record, arrange, coverage, info, scan
-from .movers import End, Motion, Odometry, Person, Robot, Status
+from .movers import End, Motion, Odometry, Person, Robot, Sonar, Status
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
     Camera,
@@ -87,6 +87,7 @@ __all__ = [
     "Scan",
     "Sensor",
     "Simrun",
+    "Sonar",
     "Status",
     "Tag",
     "Timeout",

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Tuple, Type
 
 from ._connection import Address, Client
-from ._message import Fields, Message, Pose, text_of
-from .errors import Timeout
+from ._message import Fields, Message, Pose, number_of, split, text_of
+from .errors import ProtocolError, Timeout
 from .readings import R, Scan
 
 
@@ -39,6 +39,14 @@ class Odometry:
     pose: Pose  #: m, degrees
     speed: float  #: m/s
     rotspeed: float  #: degrees/s
+
+
+@dataclass(frozen=True)
+class Sonar:
+    """One of the sonars of a robot."""
+
+    place: Pose  #: on the robot: m, degrees, in its own frame
+    range: float  #: m; infinity: no echo
 
 
 @dataclass(frozen=True)
@@ -189,9 +197,14 @@ class Robot(Mover):
             fields.number("t"), fields.pose(), fields.number("speed"), fields.number("rotspeed")
         )
 
-    def sonar(self) -> List[float]:
-        """Ranges of its ring of sonars, m; infinity: no echo."""
-        return self._ask("SONAR").fields.numbers("r")
+    def sonar(self) -> List[Sonar]:
+        """Its ring of sonars; empty if it has none."""
+        fields = self._ask("SONAR").fields
+        places = [tuple(map(number_of, place.split(","))) for place in split(fields["at"], ";")]
+        ranges = fields.numbers("r")
+        if len(places) != len(ranges) or any(len(place) != 3 for place in places):
+            raise ProtocolError(f"sonars at {fields['at']} with ranges {fields['r']}")
+        return [Sonar(Pose(*place), range) for place, range in zip(places, ranges)]
 
     def bumpers(self) -> List[bool]:
         """Which of its bumpers are pressed."""
