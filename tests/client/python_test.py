@@ -204,6 +204,32 @@ class Sensors(unittest.TestCase):
             with self.assertRaisesRegex(ispace.Refused, "not on this robot"):
                 robot.reading("c1", ispace.Picture)
 
+    def test_sonars_and_bumpers(self):
+        with self.run_.world() as world:
+            try:
+                world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,0.2,90 bumpers=-45,45;135,225")
+            except ispace.Refused as refused:
+                self.skipTest(f"the server knows no sonars yet: {refused}")
+            with self.run_.robot("r5") as robot:
+                ahead, left = robot.sonar()
+                self.assertEqual((ahead.place, left.place.heading), ((0.2, 0, 0), 90))
+                self.assertAlmostEqual(ahead.range, 0.3, delta=0.005)
+                self.assertEqual(robot.bumpers(), [False, False])
+                robot.speed(0.3)
+                world.advance(5)
+                self.assertEqual(robot.bumpers(), [True, False])
+
+    def test_odometry(self):
+        with self.run_.world() as world, self.run_.robot("r1") as robot:
+            robot.forward(0.5)
+            world.advance(5)
+            try:
+                odometry = robot.odometry()
+            except ispace.Refused as refused:
+                self.skipTest(f"the server has no odometry yet: {refused}")
+            self.assertAlmostEqual(odometry.pose.x, 0.5, delta=2e-3)
+            self.assertEqual(odometry.speed, 0)
+
     def test_camera_streams(self):
         with self.run_.world() as world, self.run_.camera("c1") as camera:
             first = camera.scan()

@@ -95,6 +95,43 @@ TEST_F(Sensors, MatsAndGatesNoticeARobot) {
     EXPECT_THROW(robot.reading<Picture>("c1"), Refused);
 }
 
+TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
+    try {
+        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,0.2,90 bumpers=-45,45;135,225");
+    } catch (const Refused& refused) {
+        GTEST_SKIP() << "the server knows no sonars yet: " << refused.what();
+    }
+    Robot robot(server.address(), "r5");
+    const std::vector<Sonar> ring = robot.sonar();
+    ASSERT_EQ(ring.size(), 2U);
+    EXPECT_EQ(ring[0].place.x, 0.2);
+    EXPECT_EQ(ring[1].place.heading, 90);
+    EXPECT_NEAR(ring[0].range, 0.3, 0.005);
+    EXPECT_NEAR(ring[1].range, 3, 0.01);
+    EXPECT_EQ(robot.bumpers(), std::vector<bool>({false, false}));
+    robot.speed(0.3);
+    simulate(5);
+    EXPECT_TRUE(robot.status().stall);
+    EXPECT_EQ(robot.bumpers(), std::vector<bool>({true, false}));
+    Robot without(server.address(), "r1");
+    EXPECT_EQ(without.bumpers().empty(), true);
+}
+
+TEST_F(Sensors, ARobotHasOdometry) {
+    Robot robot(server.address(), "r1");
+    robot.forward(0.5);
+    simulate(5);
+    try {
+        const Odometry odometry = robot.odometry();
+        EXPECT_NEAR(odometry.pose.x, 0.5, 2e-3);
+        EXPECT_NEAR(odometry.pose.y, 0, 1e-3);
+        EXPECT_EQ(odometry.pose.heading, 0);
+        EXPECT_EQ(odometry.speed, 0);
+    } catch (const Refused& refused) {
+        GTEST_SKIP() << "the server has no odometry yet: " << refused.what();
+    }
+}
+
 TEST_F(Sensors, AnyKindIsAReading) {
     for (const char* id : {"l1", "c1", "d1", "u1", "t1", "m1", "g1"}) {
         Sensor sensor(server.address(), id);
