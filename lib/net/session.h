@@ -55,6 +55,11 @@ class Session {
     [[nodiscard]] bool drives() const {
         return !is_gone_ && (role_ == Role::Robot || role_ == Role::Person);
     }
+    /// False where roles need a token that the client has not given.
+    [[nodiscard]] bool mayLook() const {
+        const ServerLimits& limits = state_->limits();
+        return has_token_ || !limits.token_first || limits.token.empty();
+    }
     /// True after QUIT and errors that close the connection: nothing more is read.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Takes what is to be sent, in order.

@@ -88,7 +88,7 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     void refuse(http::status status, std::string_view why);
     void send(Response response);
 
-    void upgrade(Request request);
+    void upgrade(const Request& request);
     void listen();
     void received();
     void answerHeld();
@@ -136,7 +136,7 @@ void Browser::requested(error_code error) {
     if (error.category() == http::make_error_code(http::error::bad_method).category())
         return refuse(http::status::bad_request, "this is no request of HTTP");
     if (error) return close();
-    Request request = parser_->release();
+    const Request request = parser_->release();
     const auto host = view(request[http::field::host]);
     if (request.count(http::field::host) != 1 || !share_.origin->isHost(host))
         return refuse(http::status::forbidden,
@@ -148,7 +148,7 @@ void Browser::requested(error_code error) {
     if (request.count(http::field::origin) > 1 ||
         !share_.origin->mayConnect(view(request[http::field::origin])))
         return refuse(http::status::forbidden, "only the page of this server may connect");
-    upgrade(std::move(request));
+    upgrade(request);
 }
 
 void Browser::answer(const Request& request) {
@@ -204,7 +204,7 @@ void Browser::send(Response response) {
 
 // WebSocket.
 
-void Browser::upgrade(Request request) {
+void Browser::upgrade(const Request& request) {
     stream_.expires_never();
     response_.reset();
     socket_.emplace(std::move(stream_));
@@ -238,10 +238,12 @@ void Browser::received() {
     while (!lines.empty()) {
         const std::string_view line = lines.substr(0, lines.find('\n'));
         lines.remove_prefix(std::min(lines.size(), line.size() + 1));
-        if (line == "FRAME")
+        if (line != "FRAME")
+            held_.emplace_back(line);
+        else if (session_->mayLook())
             wants_frame_ = true;
         else
-            held_.emplace_back(line);
+            out_ += "ERR 401 FRAME needs the token of this run: TOKEN x comes before it\n";
     }
     in_.consume(in_.size());
     answerHeld();

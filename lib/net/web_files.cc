@@ -5,12 +5,12 @@
 #include <array>
 
 // The assembler copies the files into the program. They stand in lib/net/web, which CMake names.
-// NOLINTBEGIN(hicpp-no-assembler,cppcoreguidelines-macro-usage)
+// NOLINTBEGIN(hicpp-no-assembler,bugprone-macro-parentheses)
 #define ISPACE_WEB_FILE(symbol, file)                                                       \
     asm(".pushsection .rodata\n" #symbol ":\n.incbin \"" ISPACE_WEB "/" file "\"\n" #symbol \
         "End:\n.popsection\n");                                                             \
     extern "C" const char symbol[], symbol##End[]
-// NOLINTEND(hicpp-no-assembler,cppcoreguidelines-macro-usage)
+// NOLINTEND(hicpp-no-assembler,bugprone-macro-parentheses)
 
 ISPACE_WEB_FILE(kWebPage, "index.html");
 ISPACE_WEB_FILE(kWebStyle, "style.css");

@@ -160,6 +160,18 @@ TEST(WebSocket, SendsOnlyTheNewestFrame) {
     EXPECT_LE(numberOf(watcher.ask("FRAME")), first + 2);
 }
 
+TEST(WebSocket, ShowsNothingWithoutTheToken) {
+    ServerLimits limits;
+    limits.token = "s3cret";
+    limits.token_first = true;
+    const WebRunning server({Clock::Kind::Step, 1}, limits);
+    Browser watcher(server);
+    watcher.take("");
+    EXPECT_TRUE(watcher.ask("FRAME").starts_with("ERR 401 FRAME needs the token"));
+    EXPECT_EQ(watcher.ask("TOKEN s3cret"), "OK TOKEN\n");
+    EXPECT_TRUE(watcher.ask("FRAME").starts_with("{\"schema\""));
+}
+
 TEST(WebSocket, RefusesMessagesThatAreTooLong) {
     const WebRunning server;
     Browser browser(server);

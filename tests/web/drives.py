@@ -106,6 +106,16 @@ def pauses(run, page):
     check(page.text("run") == "Pause", "the button does not know")
 
 
+def drives_people(run, page):
+    """She walks on until something is in her way."""
+    page.select("h1")
+    before = pose(run, "h1")
+    ActionChains(page.browser).key_down(Keys.ARROW_UP).perform()
+    eventually("h1 walks", lambda: not near(pose(run, "h1"), before, 0.3))
+    eventually("the page tells what stops her", lambda: "h1 ran into " in page.log())
+    ActionChains(page.browser).key_up(Keys.ARROW_UP).perform()
+
+
 def zooms(page):
     page.click("fit")
     page.click("scans")
@@ -141,6 +151,7 @@ with Run() as run:
         drives_by_keys(run, page)
         holds_and_frees(run, page)
         drags_a_goal(run, page)
+        drives_people(run, page)
         pauses(run, page)
         page.screenshot("driven_1280.png")
         zooms(page)

@@ -34,7 +34,7 @@ def end_of_r1(folder):
 
 with tempfile.TemporaryDirectory() as scratch:
     folder = record(scratch)
-    with Run("--replay", folder, "--hold", "--clock", "real:2") as run, \
+    with Run("--replay", folder, "--hold", "--clock", "real") as run, \
             Page(run.url) as page:
         check(page.browser.title == "walk", f"the title is {page.browser.title}")
         page.select("r1")

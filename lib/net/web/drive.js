@@ -5,12 +5,6 @@ import {Link, complaint, keysOf} from './link.js';
 
 const kSpeed = {robot: 0.5, person: 1.2}, kTurn = 45;  // of the arrow keys: m/s, degrees a second
 
-/** Degrees within (-180, 180]. */
-function turnTo(angle) {
-  const turn = angle % 360;
-  return turn > 180 ? turn - 360 : turn <= -180 ? turn + 360 : turn;
-}
-
 export class Driver {
   /** tell(text, bad): says something to people; changed(): something is to be drawn anew */
   constructor(mover, tell, changed) {
@@ -44,24 +38,21 @@ export class Driver {
     tell(line.startsWith('DONE') ? 'done' : reason);
   }
 
-  /** A command that comes to an end: how it ended. */
+  /** A command that comes to an end: how it ended; null if it did not begin. */
   async run(request) {
     const answer = await this.ask(request);
-    if (!answer) return 'refused';
+    if (!answer) return null;
     return new Promise(tell => { this.command = {id: keysOf(answer).id, tell}; });
   }
 
-  /** Goes straight to a place: a turn on the spot, then a run. */
+  /** Goes straight to a place. */
   async goTo(x, y) {
     const goal = this.goal = {x, y}, {mover} = this;
     this.changed();
-    const turn = turnTo(Math.atan2(y - mover.y, x - mover.x) * 180 / Math.PI - mover.heading);
-    let end = Math.abs(turn) < 0.05 ? 'done' : await this.run(`${turn > 0 ? 'LEFT' : 'RIGHT'} ${Math.abs(turn).toFixed(2)}`);
-    if (end === 'done' && this.goal === goal)
-      end = await this.run(`FORWARD ${Math.hypot(x - mover.x, y - mover.y).toFixed(3)}`);
+    const end = await this.run(`PATH ${x.toFixed(3)},${y.toFixed(3)}`);
     if (this.goal !== goal) return;  // a newer one
     this.goal = null;
-    this.tell(end === 'done' ? `${mover.id} has arrived` : `${mover.id} did not arrive: ${end}`, end !== 'done');
+    if (end) this.tell(end === 'done' ? `${mover.id} has arrived` : `${mover.id} did not arrive: ${end}`, end !== 'done');
     this.changed();
   }
 
