@@ -54,7 +54,7 @@ TEST_P(Scenes, ThingsStandClearOfEachOtherAndLeaveMostOfTheFloor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, Scenes,
-                         ::testing::Values("ispace.env", "facilities.env", "office.yaml"));
+                         ::testing::Values("ispace.env", "crowded.env", "office.yaml"));
 
 TEST(Scenes, IntelligentSpaceHasTheFactsOfTheThesis) {
     const Environment env = scene("ispace.env");
@@ -69,8 +69,25 @@ TEST(Scenes, IntelligentSpaceHasTheFactsOfTheThesis) {
     EXPECT_TRUE(slice.blocked({0.5, 0.3})) << "the front barrier stands in the way";
 }
 
-TEST(Scenes, FacilitiesRoomIsSquareAndFreeAtTheOrigin) {
+TEST(Scenes, FacilitiesAreOfDifferentKindsAndLeaveTheWallsMostlyFree) {
     const Environment env = scene("facilities.env");
+    EXPECT_EQ(env.limits(), (Box2{{-4, -4}, {4, 4}}));
+    EXPECT_EQ(env.elements().size(), 11U) << "the room and ten things";
+    EXPECT_FALSE(env.slice(kScanHeight).blocked({}));
+    constexpr double kOff = 0.05;
+    int free = 0, all = 0;
+    const Slice slice = env.slice(kScanHeight);
+    for (double x = -3.95; x < 4; x += kOff)
+        for (const Point2 place : {Point2{x, -4 + kOff}, Point2{x, 4 - kOff}, Point2{-4 + kOff, x},
+                                   Point2{4 - kOff, x}}) {
+            ++all;
+            free += slice.blocked(place) ? 0 : 1;
+        }
+    EXPECT_GT(free, 0.95 * all);
+}
+
+TEST(Scenes, CrowdedRoomIsSquareAndFreeAtTheOrigin) {
+    const Environment env = scene("crowded.env");
     EXPECT_EQ(env.limits(), (Box2{{-4.8, -4.8}, {4.8, 4.8}}));
     EXPECT_EQ(env.inside(), Point2());
     EXPECT_NEAR(env.indoor().area(), 92.16, 1e-9);

@@ -50,7 +50,7 @@ TEST(CheckScene, NothingToFind) {
 }
 
 TEST(CheckScene, ScenesOfTheProjectAreInOrder) {
-    for (const char* name : {"ispace.env", "facilities.env"}) {
+    for (const char* name : {"ispace.env", "facilities.env", "crowded.env", "tracking.env"}) {
         const std::string file = std::string(ISPACE_SOURCE_DIR) + "/share/scenes/" + name;
         const Document document = readRecordText(readAll(file), name, sceneSchemas());
         EXPECT_EQ(check(makeScene(document, nullptr, devices())), "") << name;

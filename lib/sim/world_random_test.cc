@@ -31,8 +31,8 @@ std::vector<Point2> peopleIn(const Obstacles& obstacles) {
 /// The furnished room with people, and robots of different sizes at random free places, some with a
 /// laser.
 Scene crowdedRoom(std::size_t count, unsigned seed) {
-    const std::string text = readAll(ISPACE_SOURCE_DIR "/share/scenes/facilities.env");
-    const Document document = readRecordText(text, "facilities.env", sceneSchemas());
+    const std::string text = readAll(ISPACE_SOURCE_DIR "/share/scenes/crowded.env");
+    const Document document = readRecordText(text, "crowded.env", sceneSchemas());
     const Scene empty = makeScene(document, nullptr, testing::devices());
     const Obstacles obstacles(empty.environment.band(0, 0.5));
     std::mt19937_64 random(seed);

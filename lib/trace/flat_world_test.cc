@@ -131,7 +131,7 @@ struct Plan {
 std::vector<Plan> plans() {
     std::mt19937_64 random(1);
     return {{"ispace", shippedScene("ispace.env")},
-            {"facilities", shippedScene("facilities.env")},
+            {"crowded", shippedScene("crowded.env")},
             {"l-room", shippedScene("l-room.env")},
             {"office", office(8, 7)},
             {"tangle", tangle(random, 300, 20)}};

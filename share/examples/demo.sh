@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # demo.sh [FOLDER]: a room, three lasers placed in it, what they read and what they see, for two
-# rooms of the thesis, and robots in one of them. Needs the tools in PATH; leaves its files in FOLDER
+# rooms of the thesis, and a robot in one of them. Needs the tools in PATH; leaves its files in FOLDER
 # (default: ispace-demo).
 set -eu
 scenes=$(cd "$(dirname "$0")/../scenes" && pwd)
@@ -18,20 +18,20 @@ run envc "$scenes/ispace.env" -o ispace.glb
 run arrange ispace.glb --sensor urg-04lx:2 -o ispace.3dm
 run coverage ispace.glb ispace.3dm -o ispace.png
 
-# The furnished room and the three 4 m, 180 degree lasers of its section 4.6.
-run envc "$scenes/facilities.env" -o facilities.glb
-run arrange facilities.glb --sensor laser,range=4,fov=180:3 --optimize exact -o facilities.3dm
-run scan facilities.glb facilities.3dm -o facilities.jsonl
-run coverage facilities.glb facilities.3dm -o facilities.png
+# A crowded room and the three 4 m, 180 degree lasers of its section 4.6.
+run envc "$scenes/crowded.env" -o crowded.glb
+run arrange crowded.glb --sensor laser,range=4,fov=180:3 --optimize exact -o crowded.3dm
+run scan crowded.glb crowded.3dm -o crowded.jsonl
+run coverage crowded.glb crowded.3dm -o crowded.png
 
-# Two robots drive through the Intelligent Space, three lasers watch them, one of them on a robot.
+# A robot drives around the barriers in the Intelligent Space; two lasers watch it, one is on it.
 run simrun ispace.glb "$scenes/ispace.3dm" --clock fast --until 36 \
     --script "$(dirname "$scenes")/examples/drive.txt" --record drive
 
 echo
-result=$(sed -n 's/^result.*coverage=\([^ ]*\).*/\1/p' facilities.3dm)
-echo "the best there is for three lasers in the furnished room, coverage: $result"
+result=$(sed -n 's/^result.*coverage=\([^ ]*\).*/\1/p' crowded.3dm)
+echo "the best there is for three lasers in the crowded room, coverage: $result"
 way=$(awk -F, '$2 == "r1" { place = $3 + 0 ", " $4 + 0 } END { print place }' drive/robots.csv)
 scans=$(($(wc -l <drive/scans.jsonl) - 1))
 echo "robot r1 drove from 0.5, 2 to $way; $scans scans in drive/scans.jsonl"
-echo "open the map: $(pwd)/facilities.png"
+echo "open the map: $(pwd)/crowded.png"

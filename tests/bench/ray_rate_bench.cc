@@ -157,11 +157,11 @@ int main(int argc, char** argv) {
         return bench::loadScene(bench::sceneFile(name + ".env"));
     };
     make("hall", shipped("hall"), true);
-    make("facilities", shipped("facilities"), true);
+    make("crowded", shipped("crowded"), true);
     make("office-48", bench::officeScene(8, 6), true);
     make("office-1840", bench::officeScene(46, 40), true);
     make("walls-6", bench::sceneOfText(bench::building(6).text), false);
-    make("facilities", shipped("facilities"), false);
+    make("crowded", shipped("crowded"), false);
     make("office-100", bench::officeScene(10, 10), false);
     for (const auto& test : cases) {
         verify(*test);

@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
     std::vector<std::unique_ptr<Case>> cases;
     cases.push_back(std::make_unique<Case>("walls-6", bench::sceneOfText(bench::building(6).text)));
     cases.push_back(
-        std::make_unique<Case>("facilities", bench::loadScene(bench::sceneFile("facilities.env"))));
+        std::make_unique<Case>("crowded", bench::loadScene(bench::sceneFile("crowded.env"))));
     cases.push_back(std::make_unique<Case>("office-100", bench::officeScene(10, 10)));
     for (const auto& test : cases)
         for (const int threads : {1, 2})

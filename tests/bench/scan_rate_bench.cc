@@ -226,7 +226,7 @@ int main(int argc, char** argv) {
     };
     const Case level[] = {shipped("hall"), made("office-48", bench::officeText(8, 6)),
                           made("office-1840", bench::officeText(46, 40))};
-    const Case high[] = {made("walls-6", bench::building(6).text), shipped("facilities"),
+    const Case high[] = {made("walls-6", bench::building(6).text), shipped("crowded"),
                          made("office-100", bench::officeText(10, 10))};
     const double beams = bench::laserOfModel("utm-30lx").beams;
     for (const Case& test : level) {

@@ -4,7 +4,7 @@
 # read is written over.
 . "$(dirname "$0")/common.sh"
 
-envc "$scenes/facilities.env" -o room.glb
+envc "$scenes/crowded.env" -o room.glb
 printf 'x,y,heading\n# by the door\n-3,-2,90\n3,2,-90\n3,2,180\n0,0\n' >places.csv
 arrange room.glb --sensor laser:2 --places places.csv -q -o listed.3dm
 grep '^laser' listed.3dm | grep -vE 'at=(-3,-2|3,2|0,0),0.15' && fail "a place that is not in the list"

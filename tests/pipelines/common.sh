@@ -77,12 +77,12 @@ small_disk() {
 # one_job_of_each_tool: the jobs of scripts that make life hard for a tool are in ${jobs[@]}, words to
 # be split; product writes what the last one made (./out, ./map.png), without what differs between runs.
 one_job_of_each_tool() {
-    envc "$scenes/facilities.env" -o room.glb
+    envc "$scenes/crowded.env" -o room.glb
     arrange -q room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 6 -Y 6 --deg 8 -o best.3dm
     { cat best.3dm; echo 'ranger id=k at=-1,0,1 heading=40 tilt=-20 pixels=64,48 sigma=0.01'; } >more.3dm
     jobs=(
-        "envc $scenes/facilities.env --to glb"
-        "envc $scenes/facilities.env --to png"
+        "envc $scenes/crowded.env --to glb"
+        "envc $scenes/crowded.env --to png"
         "arrange room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 12 -Y 12 --deg 8 -q"
         "scan room.glb more.3dm --noise --frames 20"
         "coverage room.glb best.3dm -o map.png"

@@ -10,8 +10,8 @@ laser id=l1 at=1,1 heading=45 range=4 fov=180
 EOF
 draw() {  # draw FOLDER
     mkdir -p "$1"
-    coverage "$scenes/facilities.env" scene.3dm --grid 40 -o "$1/map.png" &&
-        coverage "$scenes/facilities.env" scene.3dm --grid 40 -o "$1/map.pdf" &&
+    coverage "$scenes/crowded.env" scene.3dm --grid 40 -o "$1/map.png" &&
+        coverage "$scenes/crowded.env" scene.3dm --grid 40 -o "$1/map.pdf" &&
         envc "$scenes/catalogue.env" -o "$1/plan.png"
 }
 draw wanted 2>err || fail "cannot draw: $(cat err)"

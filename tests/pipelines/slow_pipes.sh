@@ -5,11 +5,11 @@
 
 command -v python3 >/dev/null || skip "no python3 here"
 
-envc "$scenes/facilities.env" --to glb >expected.glb
-envc "$scenes/facilities.env" --to env >room.env
+envc "$scenes/crowded.env" --to glb >expected.glb
+envc "$scenes/crowded.env" --to env >room.env
 envc - --to glb <room.env >expected2.glb
 
-python3 - "$scenes/facilities.env" <<'END'
+python3 - "$scenes/crowded.env" <<'END'
 import fcntl, os, subprocess, sys, time
 
 def pipe(non_blocking):

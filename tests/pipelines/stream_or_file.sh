@@ -48,5 +48,5 @@ for stream in - /dev/stdin; do
 done
 
 # Another room than the one the layout was made for is refused.
-expect_error 1 coverage "$scenes/facilities.env" best.3dm
-expect_status 0 coverage "$scenes/facilities.env" best.3dm --any-environment
+expect_error 1 coverage "$scenes/crowded.env" best.3dm
+expect_status 0 coverage "$scenes/crowded.env" best.3dm --any-environment

@@ -7,7 +7,7 @@ run() {
     mkdir "$2"
     (
         cd "$2"
-        envc "$scenes/facilities.env" -j "$1" -o room.glb
+        envc "$scenes/crowded.env" -j "$1" -o room.glb
         arrange room.glb --sensor laser,range=4,fov=180:3 --strategy grid -X 6 -Y 6 --deg 8 \
             -j "$1" -o best.3dm
         scan room.glb best.3dm -j "$1" -o scans.jsonl

@@ -115,7 +115,7 @@ void driveIn(const std::string& file, double radius) {
 }
 
 TEST(Crowd, NeverOverlapsInAFurnishedRoom) {
-    driveIn(ISPACE_SOURCE_DIR "/share/scenes/facilities.env", 0.06);
+    driveIn(ISPACE_SOURCE_DIR "/share/scenes/crowded.env", 0.06);
 }
 
 TEST(Crowd, NeverOverlapsOnARobotsMap) {
