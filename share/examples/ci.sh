@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# ci.sh [FOLDER]: a test as a CI server runs it. Two robots drive through the Intelligent Space; the
+# ci.sh [FOLDER]: a test as a CI server runs it. A robot drives through the Intelligent Space; the
 # run must do what is expected of it, and the layout must have seen enough of it. Leaves for the
 # server: junit.xml (what was met), ways.png and seen.png (what it looked like), and the record.
 # Ends with 3 if something is not as expected. Needs the tools in PATH.
@@ -19,7 +19,7 @@ simrun "$room" "$layout" --clock fast --until 36 --script "$share/examples/drive
     --expect 'r* unseen at most 8' \
     --junit junit.xml >/dev/null || status=$?
 
-# Whatever came of it: a picture of where they went, and what the lasers saw of it.
+# Whatever came of it: a picture of where it went, and what the lasers saw of it.
 simrun --replay run "$room" "$layout" -o ways.png
 coverage "$room" "$layout" --run run -o seen.png --report seen.json >seen.txt
 sed -n '/^run/,$p' seen.txt
