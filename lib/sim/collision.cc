@@ -112,12 +112,14 @@ std::optional<std::size_t> Obstacles::stop(const Segment2& way, double radius) c
 Point2 Move::place(int part) const {
     if (part == 0 || to.path == 0) return start();
     if (part == kParts) return end();
-    return advance(*from, *limits, duration * part / kParts).motion.pose.position;
+    const double share = static_cast<double>(part) / kParts;
+    return advance(*from, *limits, duration * share).motion.pose.position + share * drift;
 }
 
 void Move::cancel() {
     to = {.motion = *from};
     to.motion.halt();
+    drift = {};
 }
 
 std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles) {

@@ -73,8 +73,10 @@ struct Move {
     double duration = 0;
     double radius = 0;
     Advance to;
+    Vec2 drift = {};  ///< of its end from where the motion alone would lead; grows evenly with time
 
     [[nodiscard]] Point2 start() const { return from->pose.position; }
+    /// With the drift, as is the pose in `to`.
     [[nodiscard]] Point2 end() const { return to.motion.pose.position; }
     [[nodiscard]] Segment2 chord() const { return {start(), end()}; }
     /// Its place after `part` of kParts equal intervals of the step.

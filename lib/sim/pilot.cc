@@ -68,7 +68,8 @@ void Pilot::steer(const Helm& helm, Motion& motion) {
 bool Pilot::stopsAtNext(SimTime step) const {
     constexpr double kStraight = 20;  // degrees
     const std::vector<Point2>& path = course_.path;
-    if (step > kInterval || course_.pause > 0 || (next_ + 1 == path.size() && !course_.loop)) return true;
+    if (step > kInterval || course_.pause > 0 || (next_ + 1 == path.size() && !course_.loop))
+        return true;
     if (model_.drive == Drive::Omni || next_ == 0) return model_.drive != Drive::Omni;
     const Vec2 before = path[next_] - path[next_ - 1];
     const Vec2 after = path[(next_ + 1) % path.size()] - path[next_];

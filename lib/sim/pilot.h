@@ -28,8 +28,9 @@ struct Helm {
 ///
 /// On a path it comes to rest at the last place and at those where it pauses; a robot that is not
 /// omnidirectional also where the path bends by more than 20 degrees, and with steps longer than
-/// kInterval at all of them. The others it passes within kPass metres. A place that it comes no nearer to for kPatience is given up: a path that was
-/// commanded fails, another goes on to the next place.
+/// kInterval at all of them. The others it passes within kPass metres. A place that it comes no
+/// nearer to for kPatience is given up: a path that was commanded fails, another goes on to the
+/// next place.
 ///
 /// Wandering it keeps its direction, changes it a little every few seconds, and turns away from
 /// what is ahead, as Stage's controller of that name does.

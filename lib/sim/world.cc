@@ -77,6 +77,14 @@ RobotStatus World::status(std::size_t mover) const {
             .phase = mover < robots ? 0 : data_->gaits[mover - robots].phase};
 }
 
+Odometry World::odometry(std::size_t robot) const {
+    const Motion& motion = data_->motions[robot];
+    return {.pose = data_->odometers[robot].pose(motion.pose),
+            .speed = motion.drive.speed,
+            .sidespeed = motion.side.speed,
+            .rotspeed = Angle::degrees(motion.turn.speed)};
+}
+
 const SensorReading& World::reading(std::size_t sensor) const {
     return data_->sensors.reading(sensor);
 }

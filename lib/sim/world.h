@@ -29,6 +29,13 @@ struct RobotStatus {
     double phase = 0;      ///< of a person's gait, see Gait
 };
 
+/// What a robot's odometry says.
+struct Odometry {
+    Pose2 pose;
+    double speed = 0, sidespeed = 0;  ///< m/s
+    Angle rotspeed;                   ///< a second, counter-clockwise
+};
+
 /// How a command ended.
 enum class Outcome { Done, Stall, Replaced, Stopped };
 
@@ -104,6 +111,9 @@ class World {
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
     [[nodiscard]] RobotStatus status(std::size_t mover) const;
+    /// Where a robot believes to be, from 0,0 and heading 0 at its start: what its wheels did, with
+    /// the errors of its records' odometry_noise. Without noise its true pose seen from there.
+    [[nodiscard]] Odometry odometry(std::size_t robot) const;
     /// The newest one; of a heavy sensor (see RunSensor) the one that was taken last, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
     /// Number of the newest period of a sensor: that of its reading, unless it is heavy.

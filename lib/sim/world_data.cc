@@ -45,11 +45,14 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       sensors(*scene),
       sensor_index(indexById(sensors.sensors())) {
     checkStart(scene->environment, movers, obstacles);
+    if (options.noise) strayStarts(movers, obstacles, options.seed);
+    odometers.reserve(scene->robots.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const auto& [id, model, pose, course, place, is_person] = movers[i];
         motions[i].pose = {pose.position, wrapped(pose.heading)};
         states[i].obstacles = &obstacles.at(model.height);
         states[i].limits = limitsOf(model, 0);
+        if (!is_person) odometers.emplace_back(movers[i], options.seed, options.noise);
         pilots[i] = Pilot(movers[i], options.seed);
         pilots[i].follow(course, model.speed, false);
         moves[i].from = &motions[i];
@@ -82,10 +85,15 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
             motion);
     if (motion.arrived()) {
         move.to = {.motion = motion};
+        move.drift = {};
         return;
     }
     setLimits(mover);
     move.to = advance(motion, states[mover].limits, move.duration);
+    if (mover < odometers.size() && odometers[mover].isNoisy()) {
+        move.drift = odometers[mover].stray(move.to.motion, motion.pose, steps);
+        move.to.path += length(move.drift);
+    }
     states[mover].blocked = elementAhead(mover);
 }
 
@@ -129,6 +137,7 @@ void World::Data::settle() {
 
 void World::Data::collide(const Collision& collision) {
     moves[collision.robot].cancel();
+    if (collision.robot < odometers.size()) odometers[collision.robot].stay();
     if (pilots[collision.robot].isOn()) return pilots[collision.robot].bumped();
     states[collision.robot].stall = true;
     collisions.push_back(collision);
@@ -142,7 +151,10 @@ void World::Data::apply() {
             sensors.moved();
         }
         motion = moves[mover].to.motion;
-        if (movers[mover].is_person) walk(mover);
+        if (movers[mover].is_person)
+            walk(mover);
+        else
+            odometers[mover].count(steps);
         if (states[mover].running == 0) continue;
         if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
             continue;
@@ -217,6 +229,7 @@ std::unique_ptr<World::Data> World::Data::next(
             after->motions[i] = motions[*old];
             if (after->movers[i].course == movers[*old].course) after->pilots[i] = pilots[*old];
             after->keepGait(i, *this, *old);
+            if (i < after->odometers.size()) after->odometers[i] = odometers[*old];
         } else if (state.running != 0) {
             after->end(i, Outcome::Stopped);
         }

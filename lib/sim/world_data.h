@@ -12,6 +12,7 @@
 
 #include "sim/collision.h"
 #include "sim/motion.h"
+#include "sim/motion_noise.h"
 #include "sim/people.h"
 #include "sim/pilot.h"
 #include "sim/sensors.h"
@@ -87,6 +88,7 @@ struct World::Data {
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
     std::vector<Pilot> pilots;
+    std::vector<Odometer> odometers;  // of robots
     std::vector<Move> moves;
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at

@@ -166,7 +166,10 @@ void simrun(const SimrunCommand& command) {
     std::optional<Replay> replay = openReplay(options, input.scene);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
-    World world(input.scene, replay ? replay->stepLength() : options.step);
+    const bool noise = options.noise && !replay;
+    if (noise) warnOfNoNoise(input.scene, options.common);
+    World world(input.scene, replay ? replay->stepLength() : options.step,
+                {.seed = options.common.seed, .noise = noise});
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
     if (replay) simulation.replay(*replay, options.holds);

@@ -68,6 +68,10 @@ void SimrunCommand::declareRun() {
         "--until", "TIME",
         [&o](const std::string& text) { o.until = simTime(text, SimTime(0), kLongestTime); },
         "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
+    line_.flag("--noise", o.noise,
+               "robots, their odometry and their starts stray as motion_noise, odometry_noise and "
+               "start_noise of their records say",
+               Enters::History);
     line_.file("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);

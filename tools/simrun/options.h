@@ -27,6 +27,7 @@ struct SimrunOptions {
     Clock clock;
     SimTime step = std::chrono::milliseconds(5);
     std::optional<SimTime> until;
+    bool noise = false;
     std::string script;                                     ///< "" without; "-" is stdin
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes

@@ -32,6 +32,13 @@ void CollisionLog::tell() {
     }
 }
 
+void warnOfNoNoise(const Scene& scene, const CommonOptions& options) {
+    for (const PlacedRobot& robot : scene.robots)
+        if (robot.model.noise != MotionNoise()) return;
+    warn(options, kTool,
+         "--noise changes nothing: no robot has motion_noise, odometry_noise or start_noise");
+}
+
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];

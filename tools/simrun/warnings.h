@@ -21,6 +21,9 @@ class CollisionLog {
     int count_ = 0;
 };
 
+/// Says so if no robot has noise to take part.
+void warnOfNoNoise(const Scene& scene, const CommonOptions& options);
+
 /// Says what takes no part: sensors without a place, and what is not simulated yet.
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options);
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "layout/test_layout.h"
+#include "sim/world.h"
+
+namespace ispace {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::scene;
+
+constexpr int kSide = 30, kRobots = kSide * kSide;
+
+/// Robots two metres apart, with these keys.
+Scene field(const std::string& keys) {
+    std::string layout;
+    for (int i = 0; i < kRobots; ++i)
+        layout += "robot id=r" + std::to_string(i) + " at=" + std::to_string(2 * (i % kSide) - 29) +
+                  "," + std::to_string(2 * (i / kSide) - 29) + " " + keys + "\n";
+    return scene("ispace size=64,64\n", layout);
+}
+
+World driven(const Scene& room, const Command& command, SimTime step, SimTime until) {
+    World world(room, step, {.seed = 5, .noise = true});
+    for (std::size_t i = 0; i < world.robots().size(); ++i) world.command(i, command);
+    while (world.time() < until) world.step();
+    return world;
+}
+
+/// The sum of squares of as many normal numbers of this variance has a chi-square distribution:
+/// within 3.3 of its standard deviations but once in a thousand.
+void expectVariance(const std::vector<double>& errors, double variance, const char* what) {
+    double sum = 0;
+    for (const double error : errors) sum += error * error / variance;
+    const auto count = static_cast<double>(errors.size());
+    EXPECT_NEAR(sum, count, 3.3 * std::sqrt(2 * count)) << what;
+}
+
+std::vector<double> errorsOf(const World& world, const std::function<double(std::size_t)>& error) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < world.robots().size(); ++i) errors.push_back(error(i));
+    return errors;
+}
+
+TEST(MotionNoise, OdometryAfterAMetreSpreadsAsItsModel) {
+    const Scene room = field("odometry_noise=0.01,0.004,0.002,0.001");
+    for (const SimTime step : {milliseconds(5), milliseconds(100)}) {
+        const World world = driven(room, {Verb::Forward, 1}, step, std::chrono::seconds(5));
+        for (std::size_t i = 0; i < world.robots().size(); ++i)
+            ASSERT_NEAR(world.status(i).pose.position.x - world.robots()[i].pose.position.x, 1,
+                        1e-9)
+                << "the truth does not stray";
+        const auto pose = [&](std::size_t i) { return world.odometry(i).pose; };
+        expectVariance(errorsOf(world, [&](std::size_t i) { return pose(i).heading.radians(); }),
+                       0.004, "heading");
+        expectVariance(errorsOf(world, [&](std::size_t i) { return pose(i).position.x - 1; }),
+                       0.002, "along");
+        // The integral of a random walk: a third.
+        expectVariance(errorsOf(world, [&](std::size_t i) { return pose(i).position.y; }),
+                       0.004 / 3, "aside");
+    }
+}
+
+TEST(MotionNoise, OdometryAfterATurnSpreadsAsItsModel) {
+    const Scene room = field("odometry_noise=0.01,0.004,0.002,0.001");
+    const World world = driven(room, {Verb::Left, 90}, milliseconds(10), std::chrono::seconds(4));
+    expectVariance(
+        errorsOf(world,
+                 [&](std::size_t i) {
+                     return wrapped(world.odometry(i).pose.heading - Angle::degrees(90)).radians();
+                 }),
+        0.01 * std::numbers::pi / 2, "heading");
+    double square = 0;
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const Vec2 way = world.odometry(i).pose.position - Point2{};
+        square += dot(way, way) / kRobots;
+    }
+    EXPECT_NEAR(square, 0.001 * std::numbers::pi / 2, 0.1 * 0.001 * std::numbers::pi / 2);
+}
+
+TEST(MotionNoise, TruthStraysFromTheWheelsTheOdometryCounts) {
+    const Scene room = field("motion_noise=0.01,0.004,0.002,0.001");
+    const World world = driven(room, {Verb::Forward, 1}, milliseconds(10), std::chrono::seconds(5));
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const Pose2 pose = world.odometry(i).pose;
+        ASSERT_NEAR(pose.position.x, 1, 1e-9);
+        ASSERT_NEAR(pose.position.y, 0, 1e-9);
+    }
+    const auto truth = [&](std::size_t i) {
+        return world.status(i).pose.position - world.robots()[i].pose.position;
+    };
+    expectVariance(errorsOf(world, [&](std::size_t i) { return truth(i).x - 1; }), 0.002, "along");
+    expectVariance(errorsOf(world, [&](std::size_t i) { return truth(i).y; }), 0.004 / 3, "aside");
+}
+
+TEST(MotionNoise, OffItIsTheTruthSeenFromTheStart) {
+    const Scene room = scene("ispace size=8,6\n",
+                             "robot id=r1 at=1,1 heading=90 odometry_noise=1,1,1,1 "
+                             "motion_noise=1,1,1,1 start_noise=1,30\n");
+    World world(room, milliseconds(5));
+    EXPECT_EQ(world.odometry(0).pose, Pose2());
+    world.command(0, {Verb::Forward, 1});
+    while (world.time() < std::chrono::seconds(1)) world.step();
+    EXPECT_GT(world.odometry(0).speed, 0.2);
+    while (world.time() < std::chrono::seconds(5)) world.step();
+    EXPECT_NEAR(world.odometry(0).pose.position.x, 1, 1e-9);
+    EXPECT_NEAR(world.odometry(0).pose.position.y, 0, 1e-9);
+    EXPECT_NEAR(world.status(0).pose.position.y, 2, 1e-9);
+}
+
+TEST(MotionNoise, StartsSpreadWhereThereIsRoom) {
+    const Scene room = field("start_noise=0.1,5");
+    const World world(room, milliseconds(5), {.seed = 3, .noise = true});
+    const auto away = [&](std::size_t i) {
+        return world.status(i).pose.position - world.robots()[i].pose.position;
+    };
+    expectVariance(errorsOf(world, [&](std::size_t i) { return away(i).x; }), 0.01, "x");
+    expectVariance(errorsOf(world, [&](std::size_t i) { return away(i).y; }), 0.01, "y");
+    expectVariance(
+        errorsOf(world, [&](std::size_t i) { return world.status(i).pose.heading.degrees(); }), 25,
+        "heading");
+    EXPECT_EQ(world.odometry(0).pose, Pose2()) << "which it does not know";
+    // Between walls it stays clear of them.
+    const Scene narrow = scene("ispace size=4,0.7\n", "robot id=r1 start_noise=1\n");
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        const World tight(narrow, milliseconds(5), {.seed = seed, .noise = true});
+        EXPECT_LE(std::abs(tight.status(0).pose.position.y), 0.05 + 1e-9);
+    }
+}
+
+TEST(MotionNoise, ACollisionStopsTheWheels) {
+    const Scene room = scene("ispace size=4,4\n", "robot id=r1 odometry_noise=0,0,1e-6,0\n");
+    World world(room, milliseconds(5), {.seed = 1, .noise = true});
+    world.command(0, {Verb::Forward, 9});
+    while (world.time() < std::chrono::seconds(9)) world.step();
+    EXPECT_TRUE(world.status(0).stall);
+    EXPECT_NEAR(world.odometry(0).pose.position.x, world.status(0).pose.position.x, 0.01);
+}
+
+}  // namespace
+}  // namespace ispace
