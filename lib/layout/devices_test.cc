@@ -47,7 +47,9 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
     // Files in the order of their names, devices in that of their files.
     EXPECT_EQ(models.front(), "vc-c4r");
     EXPECT_EQ(testing::devices().models("robot"),
-              (std::vector<std::string>{"pioneer-2dx", "pioneer-3dx"}));
+              (std::vector<std::string>{"create3", "turtlebot4", "pioneer-2dx", "pioneer-3dx",
+                                        "pioneer-3at", "pioneer-2at", "turtlebot3-burger",
+                                        "turtlebot3-waffle-pi"}));
     EXPECT_EQ(testing::devices().models("ultrasound"), std::vector<std::string>{"zps-3d"});
     EXPECT_EQ(testing::devices().models("tag"), std::vector<std::string>{"zps-3d-tag"});
     for (const char* laser : {"urg-04lx", "urg-04lx-ug01", "utm-30lx", "utm-30lx-ew", "ust-10lx",

@@ -103,7 +103,8 @@ TEST(RobotOf, UnknownAndForeignModels) {
     const std::string unknown = robotFindings("model=pioneer-2xd");
     EXPECT_EQ(unknown,
               "line:1:13: error: unknown model `pioneer-2xd`, did you mean `pioneer-2dx`? (known: "
-              "pioneer-2dx, pioneer-3dx)\n");
+              "create3, turtlebot4, pioneer-2dx, pioneer-3dx, pioneer-3at, pioneer-2at, "
+              "turtlebot3-burger, turtlebot3-waffle-pi)\n");
     EXPECT_EQ(robotFindings("model=urg-04lx"),
               "line:1:13: error: model `urg-04lx` is a laser, not a robot\n");
     EXPECT_NE(findings([] {
