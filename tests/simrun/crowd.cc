@@ -6,6 +6,9 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
+
+#include "layout/bodies.h"
 
 namespace ispace::testing {
 
@@ -34,29 +37,64 @@ float nearest(const Scan& scan, double from, double to) {
     return *std::min_element(begin, end);
 }
 
+struct Disc {
+    Point2 place;
+    double radius;
+};
+
+struct Wanted {
+    const Environment* environment;
+    double height, radius, gap;
+};
+
+/// Free places drawn from a seed, also free of those taken.
+std::vector<Pose2> places(const Wanted& wanted, std::vector<Disc> taken, std::size_t count,
+                          std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    const Environment& environment = *wanted.environment;
+    const Slice band = environment.band(0, wanted.height);
+    const Box2 box = bounds(environment.indoor());
+    std::uniform_real_distribution<double> x(box.low.x, box.high.x), y(box.low.y, box.high.y);
+    std::uniform_real_distribution<double> heading(-180, 180);
+    std::vector<Pose2> found;
+    for (std::size_t tries = 0; found.size() < count && tries < 1000 * count; ++tries) {
+        const Point2 p{x(random), y(random)};
+        const Angle faces = Angle::degrees(heading(random));
+        const bool apart = std::none_of(taken.begin(), taken.end(), [&](const Disc& disc) {
+            return distance(disc.place, p) < disc.radius + wanted.radius + wanted.gap;
+        });
+        if (!apart || environment.indoor().locate(p) != Side::Inside ||
+            !isClear(band, p, wanted.radius + wanted.gap))
+            continue;
+        taken.push_back({p, wanted.radius});
+        found.push_back({p, faces});
+    }
+    return found;
+}
+
 }  // namespace
 
 std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel& model,
                                std::size_t count, double gap, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    const Slice band = environment.band(0, model.height);
-    const Box2 box = bounds(environment.indoor());
-    std::uniform_real_distribution<double> x(box.low.x, box.high.x), y(box.low.y, box.high.y);
-    std::uniform_real_distribution<double> heading(-180, 180);
     std::vector<PlacedRobot> robots;
-    robots.reserve(count);
-    for (std::size_t tries = 0; robots.size() < count && tries < 1000 * count; ++tries) {
-        const Point2 p{x(random), y(random)};
-        const Angle faces = Angle::degrees(heading(random));
-        const bool apart = std::none_of(robots.begin(), robots.end(), [&](const PlacedRobot& r) {
-            return distance(r.pose.position, p) < 2 * model.radius + gap;
-        });
-        if (!apart || environment.indoor().locate(p) != Side::Inside ||
-            !isClear(band, p, model.radius + gap))
-            continue;
-        robots.push_back({"r" + std::to_string(robots.size() + 1), model, {p, faces}, {}});
-    }
+    for (const Pose2& pose :
+         places({&environment, model.height, model.radius, gap}, {}, count, seed))
+        robots.push_back({"r" + std::to_string(robots.size() + 1), model, pose, {}});
     return robots;
+}
+
+void addPeople(Scene& scene, std::size_t count, double gap, std::uint64_t seed) {
+    const PlacedPerson person;
+    std::vector<Disc> taken;
+    for (const PlacedRobot& robot : scene.robots)
+        taken.push_back({robot.pose.position, robot.model.radius});
+    for (const Pose2& pose :
+         places({&scene.environment, person.height, humanRadius(person.height), gap},
+                std::move(taken), count, seed)) {
+        scene.people.push_back(person);
+        scene.people.back().id = "h" + std::to_string(scene.people.size());
+        scene.people.back().pose = pose;
+    }
 }
 
 void mountLasers(Scene& scene, const Laser& laser) {
@@ -81,10 +119,10 @@ void wander(World& world) {
 void stumble(World& world, std::uint64_t seed) {
     // Each robot thinks again every half second, not all at the same step.
     const auto step = static_cast<std::uint64_t>(world.steps());
-    for (std::size_t i = 0; i < world.robots().size(); ++i) {
-        if ((step + 7 * i) % 100 != 0) continue;
+    for (std::size_t i = 0; i < world.movers().size(); ++i) {
+        if ((step + 7 * i) % 100 != 0 || world.movers()[i].course != Course()) continue;
         std::mt19937_64 random(seed ^ (step << 20U) ^ i);
-        const RobotModel& model = world.robots()[i].model;
+        const RobotModel& model = world.movers()[i].model;
         const double range = std::uniform_real_distribution<double>(-1, 1)(random);
         const double turn = std::uniform_real_distribution<double>(-1, 1)(random);
         world.command(i, {Verb::Speed, range * model.max_speed});

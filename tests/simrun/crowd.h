@@ -16,6 +16,10 @@ namespace ispace::testing {
 std::vector<PlacedRobot> crowd(const Environment& environment, const RobotModel& model,
                                std::size_t count, double gap, std::uint64_t seed);
 
+/// Adds `count` people 1.7 m tall at such places, clear of the scene's robots as well. Fewer if the
+/// room is full.
+void addPeople(Scene& scene, std::size_t count, double gap, std::uint64_t seed);
+
 /// Gives each robot of the scene a laser of this kind at its centre of rotation, in the scene's
 /// order.
 void mountLasers(Scene& scene, const Laser& laser);
@@ -24,7 +28,8 @@ void mountLasers(Scene& scene, const Laser& laser);
 /// sees room, else turning to the side with more of it. To be called after every step.
 void wander(World& world);
 
-/// The same without looking: drives blindly, with a new random speed and turn now and then.
+/// The same without looking: robots and people who have no course of their own move blindly, with
+/// a new random speed and turn now and then.
 void stumble(World& world, std::uint64_t seed);
 
 }  // namespace ispace::testing

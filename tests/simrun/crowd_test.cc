@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 500 robots driven at random for a simulated minute: at no step does one overlap a wall or another
-// robot. Judged by brute force over buckets, which shares nothing with what it tests.
+// Robots driven at random, people and those who go by themselves: at no step does one overlap a
+// wall or another. Judged by brute force over buckets, which shares nothing with what it tests.
+// ISPACE_CROWD=10000 in the environment takes so many, for ten simulated minutes.
 #include "crowd.h"
 
 #include <gtest/gtest.h>
@@ -65,53 +66,104 @@ class Lines {
     std::map<Bucket, std::vector<Segment2>> buckets_;
 };
 
-/// Least distance of two robots, by sweeping them in the order of x.
-double leastGap(const World& world, double radius) {
-    std::vector<Point2> places;
-    places.reserve(world.robots().size());
-    for (std::size_t i = 0; i < world.robots().size(); ++i)
-        places.push_back(world.status(i).pose.position);
-    std::sort(places.begin(), places.end(), lexLess);
-    double least = 4 * radius;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t j = i + 1; j < places.size() && places[j].x - places[i].x < least; ++j)
-            least = std::min(least, distance(places[i], places[j]));
-    return least - 2 * radius;
+/// How far the two who are nearest to each other are apart, by sweeping all in the order of x.
+double leastGap(const World& world) {
+    struct Disc {
+        Point2 place;
+        double radius;
+    };
+    std::vector<Disc> discs;
+    double widest = 0;
+    for (std::size_t i = 0; i < world.movers().size(); ++i) {
+        discs.push_back({world.status(i).pose.position, world.movers()[i].model.radius});
+        widest = std::max(widest, discs.back().radius);
+    }
+    std::sort(discs.begin(), discs.end(),
+              [](const Disc& a, const Disc& b) { return lexLess(a.place, b.place); });
+    double least = widest;
+    for (std::size_t i = 0; i < discs.size(); ++i)
+        for (std::size_t j = i + 1;
+             j < discs.size() && discs[j].place.x - discs[i].place.x < 2 * widest + least; ++j)
+            least = std::min(least, distance(discs[i].place, discs[j].place) - discs[i].radius -
+                                        discs[j].radius);
+    return least;
 }
 
-/// Drives for a minute. Returns the number of collisions.
-std::size_t driveAMinute(const Scene& scene, double radius) {
-    World world(scene, std::chrono::milliseconds(5));
-    const Lines lines(scene.environment.band(0, scene.robots.front().model.height), radius);
+/// Lines of each height among the movers.
+std::map<double, Lines> linesOf(const World& world, const Environment& environment) {
+    std::map<double, double> widest;
+    for (const Mover& mover : world.movers())
+        widest[mover.model.height] = std::max(widest[mover.model.height], mover.model.radius);
+    std::map<double, Lines> lines;
+    for (const auto& [height, radius] : widest)
+        lines.emplace(height, Lines(environment.band(0, height), radius));
+    return lines;
+}
+
+/// Lets them go. Returns the number of collisions.
+std::size_t drive(const Scene& scene, SimTime step, SimTime until) {
+    World world(scene, step);
+    const std::map<double, Lines> lines = linesOf(world, scene.environment);
     std::size_t collisions = 0;
-    while (world.time() < std::chrono::minutes(1)) {
+    while (world.time() < until) {
         testing::stumble(world, 1);
         world.step();
         collisions += world.collisions().size();
-        for (std::size_t i = 0; i < scene.robots.size(); ++i) {
+        for (std::size_t i = 0; i < world.movers().size(); ++i) {
+            const Mover& mover = world.movers()[i];
             const Point2 p = world.status(i).pose.position;
-            if (lines.nearest(p) < radius - kTouch) {
-                ADD_FAILURE() << scene.robots[i].id << " in a wall at " << p.x << ", " << p.y;
+            if (lines.at(mover.model.height).nearest(p) < mover.model.radius - kTouch) {
+                ADD_FAILURE() << mover.id << " in a wall at " << p.x << ", " << p.y;
                 return collisions;
             }
         }
-        if (leastGap(world, radius) < -kTouch) {
-            ADD_FAILURE() << "robots overlap at step " << world.steps();
+        if (leastGap(world) < -kTouch) {
+            ADD_FAILURE() << "two overlap at step " << world.steps();
             return collisions;
         }
     }
     return collisions;
 }
 
-void driveIn(const std::string& file, double radius) {
+Scene sceneOf(const std::string& file) {
     const Document document = parseDocument(readAll(file), file, ImportOptions(), sceneSchemas());
-    Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    return makeScene(document, nullptr, DeviceCatalogue());
+}
+
+void driveIn(const std::string& file, double radius) {
+    Scene scene = sceneOf(file);
     RobotModel model;
     model.radius = radius;
     scene.robots = testing::crowd(scene.environment, model, kRobots, 0.005, 1);
     ASSERT_EQ(scene.robots.size(), kRobots);
-    const std::size_t collisions = driveAMinute(scene, radius);
+    const std::size_t collisions =
+        drive(scene, std::chrono::milliseconds(5), std::chrono::minutes(1));
     EXPECT_GT(collisions, kRobots);  // else there was nothing to avoid
+}
+
+TEST(Crowd, RobotsAndPeopleNeverOverlap) {
+    const char* const wanted = std::getenv("ISPACE_CROWD");
+    const std::size_t count = wanted == nullptr ? 200 : std::stoul(wanted);
+    // Half a place more for each: a hall with pillars.
+    const double side = std::sqrt(static_cast<double>(count)) * 1.1;
+    std::string text = "#env 1\nispace size=" + std::to_string(side) + "," + std::to_string(side);
+    for (double x = 5 - side / 2; x < side / 2 - 2; x += 5)
+        for (double y = 5 - side / 2; y < side / 2 - 2; y += 5)
+            text += "\npillar at=" + std::to_string(x) + "," + std::to_string(y) + " size=0.5,0.5";
+    const Document document = readRecordText(text + "\n", "hall.env", sceneSchemas());
+    Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    RobotModel model;
+    model.radius = 0.2;
+    scene.robots = testing::crowd(scene.environment, model, count / 2, 0.02, 1);
+    testing::addPeople(scene, count / 2, 0.02, 2);
+    ASSERT_EQ(scene.robots.size() + scene.people.size(), count / 2 * 2);
+    // Every other one goes by itself.
+    for (std::size_t i = 0; i < count / 2; i += 2)
+        scene.robots[i].course.wander = scene.people[i].course.wander = true;
+    const std::size_t collisions =
+        drive(scene, std::chrono::milliseconds(20),
+              wanted == nullptr ? std::chrono::minutes(1) : std::chrono::minutes(10));
+    EXPECT_GT(collisions, count);
 }
 
 TEST(Crowd, NeverOverlapsInAFurnishedRoom) {
