@@ -128,6 +128,8 @@ def main():
     parser.add_argument("laser", nargs="?", help="id of a laser that rides on it")
     parser.add_argument("--reach", type=float, default=4, metavar="M", help="how far the picture goes (4 m)")
     options = parser.parse_args()
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        parser.error("it needs a terminal to read keys from and to draw on")
     try:
         with ispace.Robot(options.address, options.robot) as robot:
             laser = find_laser(options.address, robot, options.laser)

@@ -123,6 +123,14 @@ class Keyboard(unittest.TestCase):
         with self.run_.world() as world:
             return world.poses()["r1"]
 
+    def test_it_needs_a_terminal(self):
+        done = subprocess.run(
+            [sys.executable, EXAMPLE, self.run_.address, "r2"], stdin=subprocess.DEVNULL, capture_output=True, text=True
+        )
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("needs a terminal", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+
     def test_keys_drive(self):
         self.until(r"heading +0\.0")
         self.until("#")  # the laser l2 is on it, and the walls are near

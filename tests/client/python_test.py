@@ -262,8 +262,8 @@ class LivingWorld(unittest.TestCase):
         with self.run_.person("h1") as person, self.run_.robot("r1") as robot:
             self.assertEqual(person.info["height"], "1.7")
             walk = person.path([(0.9, -1)])
-            ride = robot.path([(-1, 1), (0, 1)], speed=0.4, pause=0.5)
-            self.assertAlmostEqual(ride.length, 1, delta=1e-6)
+            ride = robot.path([(-1, 0), (-1, 1), (0, 1)], speed=0.4, pause=0.5)
+            self.assertAlmostEqual(ride.length, 2, delta=1e-6)
             self.world.advance(30)
             self.assertTrue(person.wait(walk).done)
             self.assertTrue(robot.wait(ride).done)

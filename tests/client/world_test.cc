@@ -55,8 +55,8 @@ TEST_F(LivingWorld, PathsAreFollowed) {
     PathOptions options;
     options.speed = 0.4;
     options.pause = 0.5;
-    const Motion path = robot.path({Point(-1, 1), Point(0, 1)}, options);
-    EXPECT_NEAR(path.length, 1, 1e-6);
+    const Motion path = robot.path({Point(-1, 0), Point(-1, 1), Point(0, 1)}, options);
+    EXPECT_NEAR(path.length, 2, 1e-6);
     simulate(30);
     const End end = robot.wait(path);
     EXPECT_TRUE(end.done) << end.reason;

@@ -44,7 +44,7 @@ struct Odometry {
 /// A motion with an end: what forward(), left(), path() and their kin began.
 struct Motion {
     int id = 0;
-    double length = 0;  ///< of a path, m, from its first point on
+    double length = 0;  ///< of a path, m
 };
 
 /// How a motion ended.

@@ -54,7 +54,7 @@ class Motion:
     """A motion with an end: what forward(), left(), path() and their kin began."""
 
     id: int
-    length: float = 0  #: of a path, m, from its first point on
+    length: float = 0  #: of a path, m
 
 
 @dataclass(frozen=True)
