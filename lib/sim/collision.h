@@ -2,6 +2,8 @@
 // Private to lib/sim.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -26,6 +28,15 @@ constexpr double kTouch = 1e-9;
 /// Distance of two closed segments, 0 if they share a point, with rounding errors.
 double distance(const Segment2& s, const Segment2& t);
 
+/// Squared distance of a point and a segment, for those who look at many.
+inline double squaredDistance(Point2 p, const Segment2& s) {
+    const Vec2 along = s.b - s.a, way = p - s.a;
+    const double square = dot(along, along);
+    const double t = square > 0 ? std::clamp(dot(way, along) / square, 0.0, 1.0) : 0;
+    const Vec2 apart = way - t * along;
+    return dot(apart, apart);
+}
+
 /// Obstacles for circles on the floor: the lines of a band, indexed by a grid.
 /// Thread-safe.
 class Obstacles {
@@ -44,8 +55,8 @@ class Obstacles {
     void forEachWithin(Point2 p, double reach, Visit visit) const {
         const auto look = [&](std::span<const std::uint32_t> cell) {
             for (const std::uint32_t i : cell)
-                if (const double apart = ispace::distance(p, lines_[i]); apart < reach)
-                    visit(lines_[i], apart);
+                if (const double square = squaredDistance(p, lines_[i]); square < reach * reach)
+                    visit(lines_[i], std::sqrt(square));
         };
         grid_.searchFrom(p, look, [&](double seen) { return seen >= reach; });
     }

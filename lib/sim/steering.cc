@@ -22,6 +22,19 @@ Vec2 velocityOf(const Motion& motion) {
     return motion.drive.speed * ahead + motion.side.speed * perpendicular(ahead);
 }
 
+/// True if the way comes nearer to the line than `reach`.
+bool comesNear(const Segment2& way, const Segment2& line, double reach) {
+    const auto apart = [reach](double a, double b, double c, double d) {
+        return std::max(a, b) + reach < std::min(c, d) || std::max(c, d) + reach < std::min(a, b);
+    };
+    if (apart(way.a.x, way.b.x, line.a.x, line.b.x) || apart(way.a.y, way.b.y, line.a.y, line.b.y))
+        return false;
+    const double least =
+        std::min(std::min(squaredDistance(way.a, line), squaredDistance(way.b, line)),
+                 std::min(squaredDistance(line.a, way), squaredDistance(line.b, way)));
+    return least < reach * reach || intersects(way, line);
+}
+
 }  // namespace
 
 Steering::Steering(const Surroundings& around, std::size_t mover, const Obstacles& obstacles,
@@ -76,7 +89,7 @@ double Steering::untilLine(Vec2 velocity, double most) const {
     for (double share = most; share >= kLeast; share /= 2) {
         const Segment2 way{place_, place_ + share * horizon_ * velocity};
         const bool is_free = std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
-            return distance(way, line.line) < line.reach;
+            return comesNear(way, line.line, line.reach);
         });
         if (is_free) return share == most ? kNever : share * horizon_;
     }

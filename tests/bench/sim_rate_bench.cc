@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Simulated seconds in a second of wall time: robots that wander about an office floor as big as
-// the map of Willow Garage, each with a laser of 181 beams and 8 m at 10 Hz, in steps of 5 ms.
+// the map of Willow Garage, each with a laser of 181 beams and 8 m at 10 Hz, in steps of 5 ms; and
+// people who walk about a hall. With one thread and two, and in seconds of processor time, which
+// other work on the machine does not change much.
 #include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "crowd.h"
+#include "layout/schemas.h"
+#include "record/text.h"
 
 namespace {
 
@@ -28,24 +36,42 @@ Scene floorPlan(std::string& name) {
     return bench::officeScene(12, 10);
 }
 
-Scene withRobots(const Scene& plan, std::size_t count) {
+/// Robots of this model, wandering by themselves or driven by their scans.
+Scene withRobots(const Scene& plan, std::size_t count, bool by_scans) {
     Scene scene = plan;
     const DeviceCatalogue devices = bench::devices();
-    const RobotModel model = withParameters(RobotModel(), *devices.find("pioneer-2dx"));
-    scene.robots = testing::crowd(scene.environment, model, count, 0.1, 1);
+    RobotModel model = withParameters(RobotModel(), *devices.find("pioneer-2dx"));
+    // Ten thousand Pioneers do not fit.
+    if (count > 1000) model = withParameters(RobotModel(), *devices.find("turtlebot3-burger"));
+    scene.robots = testing::crowd(scene.environment, model, count, count > 1000 ? 0.02 : 0.1, 1);
     if (scene.robots.size() != count) {
         std::fprintf(stderr, "sim_rate: room for %zu robots only\n", scene.robots.size());
         std::exit(1);
     }
+    for (PlacedRobot& robot : scene.robots) robot.course.wander = !by_scans;
     Laser laser;
     laser.max_range = 8;
     testing::mountLasers(scene, laser);
     return scene;
 }
 
-void simulateASecond(World& world) {
+/// A hall of 50 m x 50 m with people who wander about, and lasers on its walls.
+Scene hallOfPeople(std::size_t count) {
+    std::string lines = "#3dm 1\n";
+    for (const char* place : {"-24.9,0,0.15 heading=0", "24.9,0,0.15 heading=180",
+                              "0,-24.9,0.15 heading=90", "0,24.9,0.15 heading=-90"})
+        lines += "laser at=" + std::string(place) + " fov=180 step=0.5 range=30 rate=20\n";
+    const Document room = readRecordText("#env 1\nispace size=50,50\n", "hall.env", sceneSchemas());
+    const Document layout = readRecordText(lines, "hall.3dm", sceneSchemas());
+    Scene scene = makeScene(room, &layout, bench::devices());
+    testing::addPeople(scene, count, 0.1, 1);
+    for (PlacedPerson& person : scene.people) person.course.wander = true;
+    return scene;
+}
+
+void simulateASecond(World& world, bool by_scans) {
     for (int i = 0; i < kStepsASecond; ++i) {
-        testing::wander(world);
+        if (by_scans) testing::wander(world);
         world.step();
     }
 }
@@ -60,21 +86,34 @@ void verify(const Scene& scene, const World& world) {
             if (range < 8) ++returns;
     }
     const auto count = static_cast<double>(scene.robots.size());
-    if (way < 0.2 * count || static_cast<double>(returns) < 30 * count) {
+    const double speed = scene.robots.front().model.speed;
+    if (way < 0.4 * speed * count || static_cast<double>(returns) < 30 * count) {
         std::fprintf(stderr, "sim_rate: %g m, %zu returns of %g robots\n", way, returns, count);
         std::exit(1);
     }
 }
 
-void simulate(benchmark::State& state, const Scene& plan, const char* stage) {
-    const Scene scene = withRobots(plan, static_cast<std::size_t>(state.range(0)));
+struct Case {
+    const char* what;
+    bool by_scans;
+    int count, threads;
+};
+
+double processorSeconds() {
+    return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
+}
+
+void run(benchmark::State& state, const Scene& scene, const Case& of) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(of.threads));
     World world(scene, kStep);
-    for (int i = 0; i < 5; ++i) simulateASecond(world);
-    verify(scene, world);
-    for (auto _ : state) simulateASecond(world);
-    state.counters["sim_s_per_s"] =
-        benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-    state.SetLabel(std::string("Stage 4.3: ") + stage);
+    for (int i = 0; i < 5; ++i) simulateASecond(world, of.by_scans);
+    if (!scene.robots.empty()) verify(scene, world);
+    const double before = processorSeconds();
+    for (auto _ : state) simulateASecond(world, of.by_scans);
+    const auto seconds = static_cast<double>(state.iterations());
+    state.counters["sim_s_per_s"] = benchmark::Counter(seconds, benchmark::Counter::kIsRate);
+    state.counters["cpu_s_per_sim_s"] = (processorSeconds() - before) / seconds;
 }
 
 }  // namespace
@@ -84,14 +123,27 @@ int main(int argc, char** argv) {
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     std::string name;
     const Scene plan = floorPlan(name);
-    for (const auto& [count, stage] :
-         {std::pair(1, "930"), {10, "153"}, {100, "7"}, {1000, "0.26 to 0.5"}})
+    std::vector<Case> cases;
+    for (const int threads : {1, 2}) {
+        for (const int count : {1, 10, 100, 1000}) cases.push_back({"scans", true, count, threads});
+        for (const int count : {1, 10, 100, 1000, 10000})
+            cases.push_back({"wander", false, count, threads});
+        for (const int count : {100, 1000}) cases.push_back({"people", false, count, threads});
+    }
+    for (const Case& of : cases) {
+        const bool people = std::string_view(of.what) == "people";
+        const std::string title = "sim_rate/" + (people ? "hall" : name) + "/" + of.what + "/" +
+                                  std::to_string(of.count) +
+                                  "/threads:" + std::to_string(of.threads);
         benchmark::RegisterBenchmark(
-            ("sim_rate/" + name + "/robots").c_str(),
-            [&plan, stage = stage](benchmark::State& state) { simulate(state, plan, stage); })
-            ->Arg(count)
+            title.c_str(),
+            [&plan, of, people](benchmark::State& state) {
+                const auto count = static_cast<std::size_t>(of.count);
+                run(state, people ? hallOfPeople(count) : withRobots(plan, count, of.by_scans), of);
+            })
             ->UseRealTime()
             ->Unit(benchmark::kMillisecond);
+    }
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }
