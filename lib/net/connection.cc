@@ -156,11 +156,14 @@ void ClientConnection::answer() {
     }
 }
 
-void ClientConnection::stepped() {
+void ClientConnection::stepped(bool has_time) {
     if (!session_) return;
     const bool waited = session_->waiting();
-    session_->stepped(out_.unsent() <= limits_.pending);
-    goOn(waited);
+    session_->stepped(out_.unsent() <= limits_.pending / 4);
+    if (has_time) return goOn(waited);
+    out_.append(session_->take());
+    const bool sends = !writing_ && (!out_.front().empty() || session_->scanBytes() > 0);
+    if (sends || (waited && !session_->waiting())) pumpLater();
 }
 
 void ClientConnection::proceed() {

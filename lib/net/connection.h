@@ -98,8 +98,9 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     void cutOff(std::string_view text);
     /// Ends the connection if it has no role and made no request since that time.
     void makeWay(WallTime since);
-    /// The world took a step, or was changed.
-    void stepped();
+    /// The world took a step, or was changed. Without time for it now, what that is to send waits
+    /// for the client's turn.
+    void stepped(bool has_time);
     /// Other clients were served.
     void proceed();
     /// Stops what the client holds if it made no request since that time.

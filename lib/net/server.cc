@@ -34,6 +34,8 @@ using std::chrono::steady_clock;
 constexpr auto kTurn = std::chrono::milliseconds(2);
 /// Connections beyond those served that get a last message.
 constexpr std::size_t kMaxLingering = 64;
+/// Marks and changes between steps are told to all so often at most.
+constexpr auto kNewsEvery = std::chrono::milliseconds(10);
 constexpr auto kLastFlush = std::chrono::milliseconds(500);
 
 }  // namespace
@@ -60,6 +62,8 @@ struct Server::Data {
     Simulation& simulation;
     ServerLimits limits;
     ServerState state;
+    bool has_news = false;  // between steps, that not all clients were told
+    WallTime next_news{};
     asio::io_context io{1};  // one thread runs it
     Acceptor acceptor;
     asio::steady_timer alarm{io};
@@ -109,14 +113,21 @@ bool Server::Data::makeRoom() {
 }
 
 void Server::Data::stepped() {
-    for (const auto& connection : connections) connection->stepped();
+    // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
+    // waits leaves everybody a turn before the next scan.
+    const bool may_be_late = simulation.clock().kind != Clock::Kind::Real;
+    const WallTime end = steady_clock::now() + kTurn / 4;
+    for (const auto& connection : connections)
+        connection->stepped(may_be_late || steady_clock::now() < end);
     if (web) web->stepped();
     static_cast<void>(state.hasNews());
+    has_news = false;
+    next_news = steady_clock::now() + kNewsEvery;
 }
 
 /// When a client that says nothing has something to be done for it.
 WallTime Server::Data::nextTurn() const {
-    WallTime next = WallTime::max();
+    WallTime next = has_news ? next_news : WallTime::max();
     for (const auto& connection : connections) {
         if (connection->waitsToChange()) next = std::min(next, state.changes().next());
         if (limits.watchdog.count() > 0 && connection->watched())
@@ -132,7 +143,8 @@ void Server::Data::serveClients() {
     for (const auto& connection : connections)
         if (connection->waiting()) connection->proceed();
     if (web) web->serve();
-    if (state.hasNews()) stepped();
+    has_news = state.hasNews() || has_news;
+    if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
         const WallTime since = steady_clock::now() - limits.watchdog;
         for (const auto& connection : connections) connection->watch(since);

@@ -18,6 +18,9 @@ namespace ispace {
 
 namespace {
 
+/// Bytes of what an event quotes: it goes to all clients who listen.
+constexpr std::size_t kMaxText = 256;
+
 /// Why a change cannot be.
 struct Refusal {
     int code = 400;
@@ -128,7 +131,7 @@ void Session::carryOut(std::string_view line) {
     const auto began = std::chrono::steady_clock::now();
     try {
         const std::string id = applied(words, line);
-        state_->simulation().events().add(EventKind::Change, printable(line));
+        state_->simulation().events().add(EventKind::Change, printable(line.substr(0, kMaxText)));
         out_.append("OK ").append(words[0]);
         if (!id.empty()) out_.append(" id=").append(id);
         out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
@@ -197,6 +200,8 @@ void Session::events(Words words) {
 void Session::mark(Words words) {
     const std::string_view last = words.back();
     const std::string text(words[1].data(), last.data() + last.size());
+    if (text.size() > kMaxText)
+        return error(416, {"a mark has at most ", std::to_string(kMaxText), " bytes"});
     state_->simulation().events().add(EventKind::Mark, printable(text));
     out_.append("OK MARK t=").append(formatMilliseconds(world().time())).append("\n");
     tellEvents();

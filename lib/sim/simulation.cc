@@ -134,6 +134,14 @@ WallTime Simulation::dueAt() const {
     return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kFarthest)));
 }
 
+void Simulation::noteLateness() {
+    const nanoseconds late = steady_clock::now() - dueAt();
+    ++lateness_.steps;
+    lateness_.most = std::max(lateness_.most, late);
+    const auto step = static_cast<double>(world_->stepLength().count());
+    if (static_cast<double>(late.count()) > step / clock_.rate) ++lateness_.late;
+}
+
 void Simulation::forgive(WallTime now) {
     const auto lag = now - dueAt();
     if (lag <= kLongestLag) return;
@@ -154,7 +162,10 @@ std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
     if (follows && !paused_) forgive(now);
     const auto began = steady_clock::now();
     while (isDue(now)) {
-        if (paused_) --owed_;
+        if (paused_)
+            --owed_;
+        else if (follows)
+            noteLateness();
         step();
         if (steady_clock::now() - began >= budget) break;
     }

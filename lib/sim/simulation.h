@@ -87,6 +87,13 @@ class Simulation {
     /// goes slower, instead of faster later. \returns when to call again; nothing: only once told
     /// to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
+    /// How punctual the steps were that were due by the clock Real: the latest of them, and how many
+    /// began later than a step after their time (as a step lasts in wall time).
+    struct Lateness {
+        std::int64_t steps = 0, late = 0;
+        std::chrono::nanoseconds most{};
+    };
+    [[nodiscard]] const Lateness& lateness() const { return lateness_; }
     /// Wall time lost so far because steps took too long.
     [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
 
@@ -98,6 +105,7 @@ class Simulation {
     void startAt(WallTime now);
     /// When the next step is due by the clock Real. \pre it is started
     [[nodiscard]] WallTime dueAt() const;
+    void noteLateness();
     /// Gives up a lag that is too long.
     void forgive(WallTime now);
     /// True if a step is to be taken now.
@@ -121,6 +129,7 @@ class Simulation {
     std::optional<std::chrono::nanoseconds>
         ahead_;  // of a pause to the next step; less than 0: lag
     std::chrono::nanoseconds lost_{};
+    Lateness lateness_;
 };
 
 }  // namespace ispace

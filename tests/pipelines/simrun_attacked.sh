@@ -22,6 +22,24 @@ attack silent
 attack flood
 stop
 
+# How late the steps are meanwhile: most of them no more than a step, on a machine with other work.
+late() { # KIND: per mille of the steps
+    local kind=$1
+    start "$data/square.env" attacked.3dm --clock real --max-clients 1100 -v
+    attack "$kind"
+    stop
+    grep 'began more than a step late' simrun.err | sed "s/^simrun: /$kind: /"
+    late=$(sed -n 's/^simrun: \([0-9]*\) of \([0-9]*\) steps began.*/\1 \2/p' simrun.err |
+        awk '{ print int(1000 * $1 / $2) }')
+    [ -n "$late" ] || fail "$kind: nothing said: $(cat simrun.err)"
+}
+late idle
+alone=$late
+for kind in storm edits; do
+    late "$kind"
+    [ "$late" -le $((alone + 200)) ] || fail "$kind: $late of 1000 steps are late, $alone without"
+done
+
 # Clients cannot end this run; the system can.
 start "$data/square.env" attacked.3dm --clock step --no-shutdown
 dial world

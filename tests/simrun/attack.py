@@ -213,4 +213,60 @@ def silent():
     check(greeting == "ISPACE 1" and answer.startswith("ERR 408 "), f"the first: {answer}")
 
 
-{"stall": stall, "flood": flood, "noise": noise, "silent": silent}[KIND]()
+def crowd(role, count):
+    """As many clients, connected at once, without waiting for any."""
+    clients = []
+    for _ in range(count):
+        client = socket.socket()
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        client.setblocking(False)
+        try:
+            client.connect(("127.0.0.1", PORT))
+        except BlockingIOError:
+            pass
+        clients.append(client)
+    for client in clients:
+        client.setblocking(True)
+        client.settimeout(60)
+        client.sendall(role)
+    return clients
+
+
+def storm():
+    """A thousand at once, none of whom reads its events and scans."""
+    world = Client("WORLD")
+    begin = time.monotonic()
+    clients = crowd(b"WORLD\nEVENTS\n", 500) + crowd(b"LASER l1\nSTREAM\n", 500)
+    for client in clients:
+        check(client.recv(8) == b"ISPACE 1", "no greeting")
+    print(f"1000 connections at once: {time.monotonic() - begin:.2f} s")
+    for i in range(300):
+        check(world.ask(f"MARK {'x' * 250}").startswith("OK MARK "), "no MARK")
+    time.sleep(1)
+    check(world.ask("TIME").startswith("OK TIME "), "the world is gone")
+
+
+def edits():
+    """Many who change the world as fast as they may, and send changes that cannot be."""
+    world, driver = Client("WORLD"), Client("ROBOT r1")
+    before = memory("VmRSS")
+    bad = "".join(f"SET r1.{'k' * 3000}=1\nADD human id=x path={'0,0;' * 900}\nDELETE {'*' * 3000}\n"
+                  for _ in range(3))
+    child = asking("ADD human id=h1 at=1,1\nDELETE h1\n" + bad, 40)
+    try:
+        steps, answers = rates(world, driver, 3)
+        print(f"40 change the world: {steps:.0f} steps and {answers:.0f} answers a second")
+        check(steps > 100 and answers > 20, "others wait")
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+    print(f"memory: {(memory('VmRSS') - before) / MIB:.1f} MiB more")
+    check(memory("VmRSS") - before < 256 * MIB, "memory grew")
+    check(driver.ask("STATUS").startswith("OK STATUS "), "the robot is gone")
+
+
+def idle():
+    time.sleep(2)
+
+
+{"idle": idle, "storm": storm, "edits": edits, "stall": stall, "flood": flood, "noise": noise, "silent": silent}[KIND]()
