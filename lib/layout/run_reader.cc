@@ -19,11 +19,24 @@ namespace ispace {
 namespace {
 
 /// Columns, the needed ones first and in this order; others may be anywhere behind them or missing.
-constexpr std::array<std::string_view, 11> kColumns = {
-    "t",     "id",           "x",     "y",    "heading_deg", "speed", "rotspeed_deg",
-    "accel", "rotaccel_deg", "stall", "phase"};
+constexpr std::array<std::string_view, 12> kColumns = {
+    "t",     "id",           "x",     "y",     "heading_deg", "speed", "rotspeed_deg",
+    "accel", "rotaccel_deg", "stall", "phase", "sidespeed"};
 constexpr std::size_t kNeeded = 5;
-enum Column { kTime, kId, kX, kY, kHeading, kSpeed, kRotspeed, kAccel, kRotaccel, kStall, kPhase };
+enum Column {
+    kTime,
+    kId,
+    kX,
+    kY,
+    kHeading,
+    kSpeed,
+    kRotspeed,
+    kAccel,
+    kRotaccel,
+    kStall,
+    kPhase,
+    kSidespeed
+};
 
 constexpr std::size_t kLongestLine = 4096;
 
@@ -183,6 +196,7 @@ void MomentFile::readLine() {
     row.state.rotaccel = Angle::degrees(number(kRotaccel));
     row.state.is_stalled = number(kStall) != 0;
     row.state.phase = number(kPhase);
+    row.state.sidespeed = number(kSidespeed);
     row_ = row;
 }
 
@@ -203,6 +217,44 @@ bool MomentFile::read(std::vector<RunState>& states) {
     return is_whole;
 }
 
+/// The collisions of a table of events, t,kind,id,other,…
+class CollisionFile {
+  public:
+    CollisionFile(std::string name, LineSource lines)
+        : name_(std::move(name)), lines_(std::move(lines)) {
+        const auto head = lines_.next();
+        if (head && !head->starts_with("t,kind,id,other"))
+            throw FormatError({name_, 1, 0, "no events of a run: wanted t,kind,id,other,…"});
+        readLine();
+    }
+
+    /// Those up to a time that were not read yet.
+    void read(double time, std::vector<RunCollision>& collisions) {
+        for (; row_ && row_->first <= time; readLine())
+            collisions.push_back(std::move(row_->second));
+    }
+
+  private:
+    void readLine() {
+        row_.reset();
+        while (const auto line = lines_.next()) {
+            splitFields(*line, fields_);
+            if (fields_.size() < 4 || fields_[1] != "collision") continue;
+            const auto time = parseDouble(fields_[0]);
+            if (!time)
+                throw FormatError({name_, lines_.number(), 0,
+                                   "t is " + excerpt(fields_[0]) + ", wanted a number"});
+            row_.emplace(*time, RunCollision{std::string(fields_[2]), std::string(fields_[3])});
+            return;
+        }
+    }
+
+    std::string name_;
+    LineSource lines_;
+    std::vector<std::string_view> fields_;
+    std::optional<std::pair<double, RunCollision>> row_;  // read ahead
+};
+
 bool exists(const std::string& file) { return std::filesystem::exists(file); }
 
 }  // namespace
@@ -213,6 +265,7 @@ RecordedFiles::RecordedFiles(const std::string& folder) {
     };
     robots = inFolder("robots.csv");
     people = inFolder("people.csv");
+    events = inFolder("events.csv");
     info = inFolder("info.csv");
     scene = inFolder("scene.env");
 }
@@ -227,7 +280,9 @@ struct RunReader::Data {
     std::string name;
     std::vector<RunMember> who;
     std::vector<MomentFile> files;
+    std::optional<CollisionFile> events;
     std::vector<RunState> states;
+    std::vector<RunCollision> collisions;
     double time = 0;
     bool is_cut = false;
 };
@@ -238,12 +293,16 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
     data_->add(files.robots, LineSource(InputFile(files.robots), ""), false);
     if (exists(files.people))
         data_->add(files.people, LineSource(InputFile(files.people), ""), true);
+    if (exists(files.events))
+        data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
 }
 
-RunReader::RunReader(std::string robots, std::string people) : data_(std::make_unique<Data>()) {
+RunReader::RunReader(std::string robots, std::string people, std::string events)
+    : data_(std::make_unique<Data>()) {
     data_->name = "robots.csv";
     data_->add("robots.csv", LineSource({}, std::move(robots)), false);
     if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
+    if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
 }
 
 RunReader::~RunReader() = default;
@@ -271,11 +330,17 @@ bool RunReader::next() {
     }
     data.states = std::move(states);
     data.time = time;
+    data.collisions.clear();
+    if (data.events) data.events->read(time, data.collisions);
     return true;
 }
 
 double RunReader::time() const { return data_->time; }
 std::span<const RunState> RunReader::states() const { return data_->states; }
+std::optional<std::span<const RunCollision>> RunReader::collisions() const {
+    return data_->events ? std::optional<std::span<const RunCollision>>(data_->collisions)
+                         : std::nullopt;
+}
 const std::vector<RunMember>& RunReader::who() const { return data_->who; }
 bool RunReader::isCut() const { return data_->is_cut; }
 const std::string& RunReader::name() const { return data_->name; }

@@ -19,7 +19,13 @@ struct RunState {
     double speed = 0, accel = 0;  ///< m/s, m/s^2, forward
     Angle rotspeed, rotaccel;     ///< a second, a second a second
     bool is_stalled = false;
-    double phase = 0;  ///< of a person's gait
+    double phase = 0;      ///< of a person's gait
+    double sidespeed = 0;  ///< m/s, to the left
+};
+
+/// Somebody ran into something.
+struct RunCollision {
+    std::string id, other;  ///< other: a robot, a person or an element
 };
 
 /// Somebody in a record.
@@ -31,11 +37,11 @@ struct RunMember {
 /// Names of the files in a folder that `simrun --record` has written.
 struct RecordedFiles {
     explicit RecordedFiles(const std::string& folder);
-    std::string robots, people, info, scene;
+    std::string robots, people, events, info, scene;
 };
 
 /// Reads the poses of a recorded run, one moment after another, whatever its size: robots.csv, and
-/// people.csv if there is one.
+/// people.csv and the collisions of events.csv if there are any.
 ///
 /// The record may still be growing, or its run may have been killed: a last line without its end,
 /// and a last moment at which some are missing, are left out.
@@ -43,8 +49,8 @@ class RunReader {
   public:
     /// \throws std::system_error if robots.csv cannot be read, FormatError as next()
     explicit RunReader(const std::string& folder);
-    /// The content of the files in their place; people may be empty. For tests.
-    RunReader(std::string robots, std::string people);
+    /// The content of the files in their place; all but the first may be empty. For tests.
+    RunReader(std::string robots, std::string people, std::string events = "");
     ~RunReader();
     RunReader(RunReader&&) noexcept;
     RunReader& operator=(RunReader&&) noexcept;
@@ -57,6 +63,9 @@ class RunReader {
     [[nodiscard]] double time() const;
     /// Who is there at it: robots in the order of their lines, then people.
     [[nodiscard]] std::span<const RunState> states() const;
+    /// Who ran into something in the step to it; nothing without events.csv, as from runs before
+    /// there was one.
+    [[nodiscard]] std::optional<std::span<const RunCollision>> collisions() const;
     /// Everybody so far; indices stay.
     [[nodiscard]] const std::vector<RunMember>& who() const;
     /// True if an incomplete last moment was left out; known at the end.

@@ -111,6 +111,26 @@ TEST(RunReader, NamesTheLineOfWhatIsWrong) {
               "people.csv:3: error: the moment t=1 is none of robots.csv, which goes on at t=2\n");
 }
 
+TEST(RunReader, ReadsCollisions) {
+    const std::string events =
+        "t,kind,id,other,x,y,value,text\n0,enter,r1,z,0,0,,\n0.005,collision,r1,post,0.5,0,,\n"
+        "0.005,mark,,,,,,\"a, b\"\n0.005,collision,r2,h1,1,1,,\n";
+    RunReader reader(kRobots, kPeople, events);
+    ASSERT_TRUE(reader.next());
+    EXPECT_TRUE(reader.collisions()->empty());
+    ASSERT_TRUE(reader.next());
+    ASSERT_EQ(reader.collisions()->size(), 2U);
+    EXPECT_EQ((*reader.collisions())[1].id, "r2");
+    EXPECT_EQ((*reader.collisions())[1].other, "h1");
+    EXPECT_FALSE(RunReader(kRobots, kPeople).collisions());
+    EXPECT_EQ(errorsOf([] { RunReader(kRobots, "", "a,b\n"); }),
+              "events.csv:1: error: no events of a run: wanted t,kind,id,other,…\n");
+    surviveDamage(events, [](const std::string& bytes) {
+        RunReader damaged(kRobots, "", bytes);
+        readAllOf(damaged);
+    });
+}
+
 TEST(RunReader, SurvivesDamage) {
     surviveDamage(kRobots, [](const std::string& bytes) { momentsOf(bytes, kPeople); });
     surviveDamage(kPeople, [](const std::string& bytes) { momentsOf(kRobots, bytes); });

@@ -44,8 +44,8 @@ void appendPeopleRows(std::string& out, const World& world) {
         const RobotStatus status = world.status(world.robots().size() + i);
         appendRow(out, t, world.people()[i].id,
                   {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
-                   status.speed, status.rotspeed.degrees(), status.phase});
-        out += '\n';
+                   status.speed, status.rotspeed.degrees(), status.phase, status.sidespeed});
+        out += status.stall ? ",1\n" : ",0\n";
     }
 }
 

@@ -14,7 +14,8 @@ namespace ispace {
 constexpr std::string_view kRobotsHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
 void appendRobotRows(std::string& out, const World& world);
-constexpr std::string_view kPeopleHead = "t,id,x,y,heading_deg,speed,rotspeed_deg,phase\n";
+constexpr std::string_view kPeopleHead =
+    "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";
 void appendPeopleRows(std::string& out, const World& world);
 
 /// A reading as a line of JSON, as `scan` writes it. A frame that has a file of its own says "file"

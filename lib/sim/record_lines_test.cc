@@ -81,7 +81,7 @@ TEST_F(RecordLines, PeopleHaveATable) {
     World world(scene, milliseconds(100));
     std::string out;
     appendPeopleRows(out, world);
-    EXPECT_EQ(out, "0,h1,0,0,90,0,0,0\n");
+    EXPECT_EQ(out, "0,h1,0,0,90,0,0,0,0,0\n");
     world.command(1, {Verb::Speed, 1});
     for (int i = 0; i < 10; ++i) world.step();
     out.clear();

@@ -31,7 +31,7 @@ struct RecordOptions {
 ///
 /// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
 ///   time 0 and after each step
-/// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase; likewise
+/// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall; likewise
 /// - scans.jsonl: every reading, as `scan` writes it
 /// - pictures/ID-NNNNNN.png and depths/ID-NNNNNN.png: frames of cameras and rangers by the number
 /// of

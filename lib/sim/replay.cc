@@ -27,6 +27,7 @@ RobotStatus statusOf(const RunState& state) {
             .accel = state.accel,
             .rotaccel = state.rotaccel,
             .stall = state.is_stalled,
+            .sidespeed = state.sidespeed,
             .phase = state.phase};
 }
 
@@ -81,6 +82,22 @@ void Replay::find(const World& world) {
         movers_.push_back(world.moverNamed(who[i].id));
 }
 
+/// The collisions of the step that is to be taken.
+void Replay::collide(const World& world) {
+    collisions_.clear();
+    const SimTime time = world.time() + step_;
+    if (const auto recorded = reader_.collisions()) {
+        recorded_.assign(recorded->begin(), recorded->end());
+        for (const auto& [id, other] : recorded_)
+            if (const auto mover = world.moverNamed(id))
+                collisions_.push_back({*mover, world.moverNamed(other), other, time});
+        return;
+    }
+    for (std::size_t i = 0; i < states_.size(); ++i)
+        if (states_[i].stall && !world.status(i).stall)
+            collisions_.push_back({i, std::nullopt, "something", time});
+}
+
 bool Replay::step(World& world) {
     if (!is_ahead_) return false;
     const SimTime time = timeOf(reader_.time());
@@ -93,7 +110,8 @@ bool Replay::step(World& world) {
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
     for (const RunState& state : reader_.states())
         if (const auto mover = movers_[state.who]) states_[*mover] = statusOf(state);
-    world.stepTo(states_);
+    collide(world);
+    world.stepTo(states_, collisions_);
     is_ahead_ = reader_.next();
     return true;
 }

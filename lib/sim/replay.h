@@ -26,21 +26,26 @@ class Replay {
     void placeAtStart(Scene& scene) const;
     /// True if step() takes no more.
     [[nodiscard]] bool atEnd() const { return !is_ahead_; }
-    /// Takes the next step of a world that has taken as many steps; false, and nothing done, at the
-    /// end of the record. Who is not in the world is passed over, who is not in the record stays.
-    /// \throws FormatError as RunReader, and for a moment that is not one step after the last
+    /// Collisions are those of events.csv; without it, who begins to stall has run into
+    /// "something". Takes the next step of a world that has taken as many steps; false, and nothing
+    /// done, at the end of the record. Who is not in the world is passed over, who is not in the
+    /// record stays. \throws FormatError as RunReader, and for a moment that is not one step after
+    /// the last
     bool step(World& world);
     /// True if the record ends with a moment that is not whole; known at its end.
     [[nodiscard]] bool isCut() const { return reader_.isCut(); }
 
   private:
     void find(const World& world);
+    void collide(const World& world);
 
     RunReader reader_;
     SimTime step_{};
     std::vector<RunState> start_;
     bool is_ahead_ = false;            // the reader's moment is that of the next step
     std::vector<RobotStatus> states_;  // of all movers of the world
+    std::vector<Collision> collisions_;
+    std::vector<RunCollision> recorded_;              // what they name
     std::vector<std::optional<std::size_t>> movers_;  // of each in the record
     std::int64_t changes_ = -1;                       // of the world, when they were found
 };

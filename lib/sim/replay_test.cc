@@ -40,11 +40,12 @@ class ReplayTest : public ::testing::Test {
         Recorder recorder(folder_, *world_, {}, 0);
         world_->command(0, {.verb = Verb::Speed, .value = 1.2});
         world_->command(0, {.verb = Verb::Rotspeed, .value = 2});
-            for (int i = 0; i < 200; ++i) {
+        for (int i = 0; i < 200; ++i) {
             world_->step();
             recorder.record(*world_);
         }
         recorder.flush(*world_);
+        fs::remove(path("events.csv"));  // nobody asked for them
     }
 
     Scene scene_ = scene(kRoom, kWho);
@@ -81,6 +82,33 @@ TEST_F(ReplayTest, GoesAsRecordedAndSeesTheSame) {
     ASSERT_EQ(read.size(), seen.size());
     for (std::size_t i = 0; i < read.size(); ++i)
         EXPECT_TRUE(read[i] == seen[i] || std::abs(read[i] - seen[i]) < 1e-5F) << i;
+}
+
+TEST_F(ReplayTest, KnowsWhoRanIntoWhom) {
+    writeAll(path("robots.csv"),
+             "t,id,x,y,heading_deg,stall\n0,r1,0,0,0,0\n0.02,r1,0,0,0,1\n0.04,r1,0,0,0,1\n");
+    writeAll(path("people.csv"),
+             "t,id,x,y,heading_deg,speed,phase,sidespeed,stall\n0,h1,1,2,0,0,0,0,0\n"
+             "0.02,h1,1,2,0,1,0.25,0.3,0\n0.04,h1,1,2,0,0,0.5,0,1\n");
+    const auto into = [this] {
+        Replay replay(folder_);
+        World world(scene_, kStep);
+        std::string all;
+        while (replay.step(world))
+            for (const Collision& each : world.collisions())
+                all += world.movers()[each.robot].id + '>' + std::string(each.into) + ' ';
+        return all;
+    };
+    EXPECT_EQ(into(), "r1>something h1>something ") << "by their stalls";
+    writeAll(path("events.csv"),
+             "t,kind,id,other,x,y,value,text\n0.02,collision,r1,h1,0,0,,\n0.04,stall,h1,,0,0,,\n");
+    EXPECT_EQ(into(), "r1>h1 ") << "by the events";
+    Replay replay(folder_);
+    World world(scene_, kStep);
+    ASSERT_TRUE(replay.step(world));
+    EXPECT_EQ(world.collisions()[0].other, 1U);
+    EXPECT_EQ(world.status(1).phase, 0.25);
+    EXPECT_EQ(world.status(1).sidespeed, 0.3);
 }
 
 TEST_F(ReplayTest, EndsTheRunOrHolds) {

@@ -148,11 +148,12 @@ void World::change(Scene scene, std::span<const std::string> placed) {
 
 void World::restart(Scene scene) { data_ = data_->next(std::move(scene), {}); }
 
-void World::stepTo(std::span<const RobotStatus> states) {
+void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions) {
     Data& data = *data_;
     assert(states.size() == data.movers.size());
     data.begin();
     for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
+    data.collisions.assign(collisions.begin(), collisions.end());
     data.sensors.read(data.time, data.where());
 }
 

@@ -133,9 +133,8 @@ class World {
 
     void step();
     /// A step in which everybody gets where a record says, instead of where commands lead: `states`
-    /// are those after it, by index of movers(). Who begins to stall has collided, with something
-    /// that is not told. \pre as many as movers()
-    void stepTo(std::span<const RobotStatus> states);
+    /// are those after it, by index of movers(). \pre as many as movers()
+    void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions);
 
     /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,

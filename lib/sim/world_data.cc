@@ -183,8 +183,6 @@ void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
     motions[mover] = motionOf(status);
-    if (status.stall && !states[mover].stall)
-        collisions.push_back({mover, std::nullopt, "something", time});
     states[mover].stall = status.stall;
     if (!movers[mover].is_person) return;
     Gait& gait = gaits[mover - scene->robots.size()];

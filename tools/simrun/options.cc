@@ -168,7 +168,7 @@ void SimrunCommand::takeDrawing() {
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
     for (const char* option :
-         {"--record", "--expect", "--clock", "--hold", "--listen", "--port-file"})
+         {"--record", "--expect", "--clock", "--hold", "--listen", "--web", "--port-file"})
         if (line_.given(option))
             throw UsageError(std::string(option) + " does not go with -o, which serves nobody");
     const bool is_set = OutputSet::of(o.common.output).has_value();
