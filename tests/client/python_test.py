@@ -207,12 +207,12 @@ class Sensors(unittest.TestCase):
     def test_sonars_and_bumpers(self):
         with self.run_.world() as world:
             try:
-                world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,0.2,90 bumpers=-45,45;135,225")
+                world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225")
             except ispace.Refused as refused:
                 self.skipTest(f"the server knows no sonars yet: {refused}")
             with self.run_.robot("r5") as robot:
-                ahead, left = robot.sonar()
-                self.assertEqual((ahead.place, left.place.heading), ((0.2, 0, 0), 90))
+                ahead, right = robot.sonar()
+                self.assertEqual((ahead.place, right.place.heading), ((0.2, 0, 0), -90))
                 self.assertAlmostEqual(ahead.range, 0.3, delta=0.005)
                 self.assertEqual(robot.bumpers(), [False, False])
                 robot.speed(0.3)

@@ -97,7 +97,7 @@ TEST_F(Sensors, MatsAndGatesNoticeARobot) {
 
 TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
     try {
-        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,0.2,90 bumpers=-45,45;135,225");
+        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
     } catch (const Refused& refused) {
         GTEST_SKIP() << "the server knows no sonars yet: " << refused.what();
     }
@@ -105,16 +105,14 @@ TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
     const std::vector<Sonar> ring = robot.sonar();
     ASSERT_EQ(ring.size(), 2U);
     EXPECT_EQ(ring[0].place.x, 0.2);
-    EXPECT_EQ(ring[1].place.heading, 90);
+    EXPECT_EQ(ring[1].place.heading, -90);
     EXPECT_NEAR(ring[0].range, 0.3, 0.005);
-    EXPECT_NEAR(ring[1].range, 3, 0.01);
+    EXPECT_NEAR(ring[1].range, 0.6, 0.005);
     EXPECT_EQ(robot.bumpers(), std::vector<bool>({false, false}));
     robot.speed(0.3);
     simulate(5);
     EXPECT_TRUE(robot.status().stall);
     EXPECT_EQ(robot.bumpers(), std::vector<bool>({true, false}));
-    Robot without(server.address(), "r1");
-    EXPECT_EQ(without.bumpers().empty(), true);
 }
 
 TEST_F(Sensors, ARobotHasOdometry) {

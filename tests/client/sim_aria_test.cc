@@ -166,7 +166,7 @@ TEST_F(SimAria, SonarsAreInMillimetres) {
     connect();
     ispace::client::World world(server->address());
     try {
-        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,0.2,90");
+        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90");
     } catch (const ispace::client::Refused& refused) {
         GTEST_SKIP() << "the server knows no sonars yet: " << refused.what();
     }
@@ -181,13 +181,13 @@ TEST_F(SimAria, SonarsAreInMillimetres) {
     ringed.lock();
     ASSERT_EQ(ringed.getNumSonar(), 2);
     EXPECT_NEAR(ringed.getSonarRange(0), 300, 5);
-    EXPECT_NEAR(ringed.getSonarRange(1), 3000, 10);
+    EXPECT_NEAR(ringed.getSonarRange(1), 600, 5);
     EXPECT_EQ(ringed.getSonarRange(2), -1);
-    EXPECT_EQ(ringed.getSonarReading(1)->getSensorTh(), 90);
+    EXPECT_EQ(ringed.getSonarReading(1)->getSensorTh(), -90);
     EXPECT_TRUE(ringed.getSonarReading(1)->isNew(ringed.getCounter()));
     EXPECT_NEAR(ringed.getClosestSonarRange(-10, 10), 300, 5);
     EXPECT_NEAR(sonar.currentReadingPolar(-20, 20), 500, 5);
-    EXPECT_NEAR(sonar.currentReadingPolar(60, 120), 3200, 10);
+    EXPECT_NEAR(sonar.currentReadingPolar(-120, -60), 800, 5);
     EXPECT_EQ(sonar.currentReadingPolar(150, 210), 5000);
     ringed.unlock();
 }
