@@ -63,6 +63,7 @@ std::span<const Session::Request> Session::requests() {
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
         {"STOP", "", Role::Robot, 0, kAny, &C::command},
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
+        {"ODOMETRY", "", Role::Robot, 0, 0, &C::odometry},
         {"SCAN", "id", Role::Robot, 1, 1, &C::scanOfRobot},
         {"FORWARD", "m", Role::Person, 0, kAny, &C::command},
         {"BACKWARD", "m", Role::Person, 0, kAny, &C::command},

@@ -104,6 +104,7 @@ class Session {
     void quit(Words words);
     void command(Words words);
     void status(Words words);
+    void odometry(Words words);
     void scanOfRobot(Words words);
     void scan(Words words);
     void stream(Words words);

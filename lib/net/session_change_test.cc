@@ -275,6 +275,18 @@ TEST(SessionChange, SilenceStopsWhatIsHeld) {
     EXPECT_EQ(talk.ask(robot, "FORWARD 1"), "OK FORWARD id=2 distance=1\n");
 }
 
+TEST(SessionChange, OdometryBeginsWhereTheRobotDoes) {
+    Changing talk;
+    Session& robot = talk.client("ROBOT r2");
+    EXPECT_EQ(talk.ask(robot, "ODOMETRY"),
+              "OK ODOMETRY t=0.000 x=0.000 y=0.000 heading=0.000 speed=0.000 rotspeed=0.000\n");
+    talk.ask(robot, "FORWARD 0.5");
+    talk.step(50);
+    robot.take();
+    EXPECT_EQ(talk.ask(robot, "ODOMETRY"),
+              "OK ODOMETRY t=5.000 x=0.500 y=0.000 heading=0.000 speed=0.000 rotspeed=0.000\n");
+}
+
 TEST(SessionChange, APersonIsDriven) {
     Changing talk;
     Session& world = talk.client("WORLD");

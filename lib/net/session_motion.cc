@@ -52,8 +52,9 @@ void Session::command(Words words) {
         return error(range ? 416 : 400, {parsed.error.message});
     }
     if (state_->simulation().isReplay())
-        return error(405, {"this run is a replay: robots and people go as recorded; take STATUS and "
-                           "SCAN, or run the scene without --replay"});
+        return error(405,
+                     {"this run is a replay: robots and people go as recorded; take STATUS and "
+                      "SCAN, or run the scene without --replay"});
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
     const int id = world().command(subject_, *parsed.command);
@@ -78,6 +79,16 @@ void Session::status(Words /*words*/) {
     out_.append(" accel=").append(formatDouble(status.accel));
     out_.append(" rotaccel=").append(formatDouble(status.rotaccel.degrees()));
     out_.append(" stall=").append(status.stall ? "1" : "0").append("\n");
+}
+
+void Session::odometry(Words /*words*/) {
+    const Odometry odometry = world().odometry(subject_);
+    out_.append("OK ODOMETRY t=").append(formatMilliseconds(world().time()));
+    out_.append(" x=").append(measured(odometry.pose.position.x));
+    out_.append(" y=").append(measured(odometry.pose.position.y));
+    out_.append(" heading=").append(headingText(odometry.pose.heading));
+    out_.append(" speed=").append(measured(odometry.speed));
+    out_.append(" rotspeed=").append(measured(odometry.rotspeed.degrees())).append("\n");
 }
 
 }  // namespace ispace
