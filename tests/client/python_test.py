@@ -223,10 +223,7 @@ class Sensors(unittest.TestCase):
         with self.run_.world() as world, self.run_.robot("r1") as robot:
             robot.forward(0.5)
             world.advance(5)
-            try:
-                odometry = robot.odometry()
-            except ispace.Refused as refused:
-                self.skipTest(f"the server has no odometry yet: {refused}")
+            odometry = robot.odometry()
             self.assertAlmostEqual(odometry.pose.x, 0.5, delta=2e-3)
             self.assertEqual(odometry.speed, 0)
 

@@ -119,15 +119,11 @@ TEST_F(Sensors, ARobotHasOdometry) {
     Robot robot(server.address(), "r1");
     robot.forward(0.5);
     simulate(5);
-    try {
-        const Odometry odometry = robot.odometry();
-        EXPECT_NEAR(odometry.pose.x, 0.5, 2e-3);
-        EXPECT_NEAR(odometry.pose.y, 0, 1e-3);
-        EXPECT_EQ(odometry.pose.heading, 0);
-        EXPECT_EQ(odometry.speed, 0);
-    } catch (const Refused& refused) {
-        GTEST_SKIP() << "the server has no odometry yet: " << refused.what();
-    }
+    const Odometry odometry = robot.odometry();
+    EXPECT_NEAR(odometry.pose.x, 0.5, 2e-3);
+    EXPECT_NEAR(odometry.pose.y, 0, 1e-3);
+    EXPECT_EQ(odometry.pose.heading, 0);
+    EXPECT_EQ(odometry.speed, 0);
 }
 
 TEST_F(Sensors, AnyKindIsAReading) {

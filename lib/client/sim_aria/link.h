@@ -46,7 +46,7 @@ class Link {
         if (!robot_) throw ispace::client::Error(server + " has no robot that is free");
         max_vel_ = 1000 * limitOf("SPEED");
         max_rot_vel_ = limitOf("ROTSPEED");
-        start_ = odometry().pose;
+        start_ = robot_->odometry().pose;
         findSonars();
     }
 
@@ -59,7 +59,7 @@ class Link {
     const std::vector<ArPose>& sonars() const { return sonars_; }
 
     Packet read(bool sonar) {
-        const ispace::client::Odometry odometry = this->odometry();
+        const ispace::client::Odometry odometry = robot_->odometry();
         Packet packet;
         const double c = ArMath::cos(-start_.heading), s = ArMath::sin(-start_.heading);
         const double x = 1000 * (odometry.pose.x - start_.x),
@@ -89,19 +89,6 @@ class Link {
 
   private:
     static constexpr int kHeld = 409;
-
-    ispace::client::Odometry odometry() {
-        try {
-            return robot_->odometry();
-        } catch (const ispace::client::Refused&) {
-            const ispace::client::Status status = robot_->status();
-            ispace::client::Odometry odometry;
-            odometry.pose = status.pose;
-            odometry.speed = status.speed;
-            odometry.rotspeed = status.rotspeed;
-            return odometry;
-        }
-    }
 
     /// What the server says when it refuses far too much: "r1 goes at most 1.6 m/s".
     double limitOf(const std::string& verb) {
