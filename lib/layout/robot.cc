@@ -71,6 +71,34 @@ void applyDrive(RobotModel& model, const Record& record, Diagnostics& findings) 
         record.finding("max_sidespeed", "only drive=omni goes sideways: say so, or leave it out"));
 }
 
+void applyContacts(RobotModel& model, const Record& record, Diagnostics& findings) {
+    if (record.has("sonar")) {
+        model.sonar.places.clear();
+        for (const Tuple& place : record.list("sonar"))
+            model.sonar.places.push_back({{place[0], place[1]}, Angle::degrees(place[2])});
+    }
+    if (record.has("sonar_range")) {
+        const Tuple& range = record.tuple("sonar_range");
+        if (range.size() > 1) model.sonar.min_range = range.front();
+        model.sonar.max_range = range.back();
+        if (model.sonar.max_range <= model.sonar.min_range)
+            findings.add(record.finding(
+                "sonar_range",
+                "the greatest range of sonars, " + formatDouble(model.sonar.max_range) +
+                    " m, must be above the least, " + formatDouble(model.sonar.min_range) + " m"));
+    }
+    if (record.has("sonar_fov")) model.sonar.fov = record.angle("sonar_fov");
+    if (!record.has("bumpers")) return;
+    model.bumpers.clear();
+    for (const Tuple& part : record.list("bumpers")) {
+        model.bumpers.push_back({Angle::degrees(part[0]), Angle::degrees(part[1])});
+        if (part[0] < part[1] && part[1] - part[0] <= 360) continue;
+        findings.add(record.finding(
+            "bumpers", "`bumpers`: " + formatDouble(part[0]) + "," + formatDouble(part[1]) +
+                           " is no part of a turn, wanted FROM,TO counter-clockwise"));
+    }
+}
+
 }  // namespace
 
 RobotModel withParameters(RobotModel base, const Record& record) {
@@ -85,6 +113,7 @@ RobotModel withParameters(RobotModel base, const Record& record) {
     if (record.has("rotaccel")) base.rotaccel = record.angle("rotaccel");
     applyDrive(base, record, findings);
     applyNoise(base.noise, record);
+    applyContacts(base, record, findings);
     findings.throwIfAny();
     return base;
 }

@@ -27,6 +27,20 @@ struct MotionNoise {
     friend bool operator==(const MotionNoise&, const MotionNoise&) = default;
 };
 
+/// A part of the rim of a robot that feels what it runs into, counter-clockwise.
+struct Bumper {
+    Angle from, to;  ///< bearings in the robot's frame
+    friend bool operator==(const Bumper&, const Bumper&) = default;
+};
+
+/// The ring of sonars of a robot, all of one kind.
+struct SonarRing {
+    std::vector<Pose2> places;              ///< in the robot's frame
+    double min_range = 0.1, max_range = 5;  ///< nearer echoes read as the least
+    Angle fov = Angle::degrees(15);         ///< full angle of the cone
+    friend bool operator==(const SonarRing&, const SonarRing&) = default;
+};
+
 /// A robot on wheels. Its frame has the origin on the floor at the centre of rotation and x
 /// forward. The bare robot, without model, turns in a circle of 0.3 m as the thesis' does and
 /// moves like a Pioneer.
@@ -46,6 +60,8 @@ struct RobotModel {
     Drive drive = Drive::Differential;
     double max_sidespeed = 0;  ///< m/s, to either side; 0 but for Drive::Omni
     MotionNoise noise;
+    SonarRing sonar;
+    std::vector<Bumper> bumpers;
     friend bool operator==(const RobotModel&, const RobotModel&) = default;
 };
 

@@ -42,6 +42,34 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
                     .upper = kMost});
 }
 
+/// What a robot feels by itself.
+void addContactKeys(std::vector<KeySpec>& keys) {
+    constexpr double kMost = 1000;
+    constexpr double kTurn = 360, kWidestCone = 90;
+    const auto list = [&](std::string name, std::string help, std::size_t count) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::TupleList,
+                        .help = std::move(help),
+                        .min_count = count,
+                        .max_count = count,
+                        .lower = -kTurn,
+                        .upper = kTurn});
+    };
+    list("sonar", "its sonars: x,y in metres from the centre of rotation, bearing in degrees", 3);
+    keys.push_back({.name = "sonar_range",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "least and greatest distance that they measure, or the greatest alone",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kMost});
+    keys.push_back(
+        positiveKey("sonar_fov", Unit::Angle, "full angle of the cone of a sonar", kWidestCone));
+    list("bumpers", "parts of its rim that feel: bearings from,to in degrees, counter-clockwise",
+         2);
+}
+
 /// Parameters that a model gives too; none has a default, as its absence means "as the model".
 /// Speeds are lengths and angles a second, with the suffixes of those.
 void addRobotParameters(std::vector<KeySpec>& keys) {
@@ -86,6 +114,7 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                                "without it max_speed",
                                kFastest));
     addStrayKeys(keys);
+    addContactKeys(keys);
 }
 
 /// A key of a fixed place on the floor, 0,0 without it.
@@ -197,12 +226,12 @@ Schema gateSchema() {
     height.default_value = 0.5;
     KeySpec width = positiveKey("width", Unit::Length, "distance between its posts", kFarthest);
     width.default_value = 1.0;
-    return {
-        .keyword = "gate",
-        .type = RecordType::Placement,
-        .help = "a light gate: tells whether something stands between its posts",
-        .keys = {idKey(), floorAtKey("middle between the posts"),
-                 headingKey("direction in which one passes"), std::move(width), std::move(height), rateKey()}};
+    return {.keyword = "gate",
+            .type = RecordType::Placement,
+            .help = "a light gate: tells whether something stands between its posts",
+            .keys = {idKey(), floorAtKey("middle between the posts"),
+                     headingKey("direction in which one passes"), std::move(width),
+                     std::move(height), rateKey()}};
 }
 
 Schema environmentSchema() {

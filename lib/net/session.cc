@@ -65,6 +65,8 @@ std::span<const Session::Request> Session::requests() {
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
         {"ODOMETRY", "", Role::Robot, 0, 0, &C::odometry},
         {"SCAN", "id", Role::Robot, 1, 1, &C::scanOfRobot},
+        {"SONAR", "", Role::Robot, 0, 0, &C::sonar},
+        {"BUMPER", "", Role::Robot, 0, 0, &C::bumper},
         {"FORWARD", "m", Role::Person, 0, kAny, &C::command},
         {"BACKWARD", "m", Role::Person, 0, kAny, &C::command},
         {"LEFT", "deg", Role::Person, 0, kAny, &C::command},

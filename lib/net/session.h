@@ -106,6 +106,8 @@ class Session {
     void status(Words words);
     void odometry(Words words);
     void scanOfRobot(Words words);
+    void sonar(Words words);
+    void bumper(Words words);
     void scan(Words words);
     void stream(Words words);
     void stopStream(Words words);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "net/request_parts.h"
 #include "net/sensor_text.h"
 #include "net/session.h"
@@ -68,6 +69,32 @@ void Session::scanOfRobot(Words words) {
     ReplyForm form = defaultForm(sensor);
     form.binary = false;
     out_ += *state_->scan(*found, form);
+}
+
+void Session::sonar(Words /*words*/) {
+    const std::vector<float> ranges = world().sonar(subject_);
+    std::string places, values;
+    for (const Pose2& place : world().robots()[subject_].model.sonar.places) {
+        places.append(places.empty() ? "" : ";").append(formatDouble(place.position.x));
+        places.append(",").append(formatDouble(place.position.y));
+        places.append(",").append(formatDouble(place.heading.degrees()));
+    }
+    for (const float range : ranges) {
+        if (!values.empty()) values += ',';
+        appendRange(values, range);
+    }
+    out_.append("OK SONAR t=").append(formatMilliseconds(world().time()));
+    out_.append(" n=").append(std::to_string(ranges.size()));
+    out_.append(" at=").append(places).append(" r=").append(values).append("\n");
+}
+
+void Session::bumper(Words /*words*/) {
+    const std::vector<bool> pressed = world().bumper(subject_);
+    std::string hit;
+    for (const bool one : pressed) hit.append(hit.empty() ? "" : ",").append(one ? "1" : "0");
+    out_.append("OK BUMPER t=").append(formatMilliseconds(world().time()));
+    out_.append(" n=").append(std::to_string(pressed.size()));
+    out_.append(" hit=").append(hit).append("\n");
 }
 
 void Session::scan(Words /*words*/) {

@@ -90,8 +90,10 @@ class RenderScene {
     explicit RenderScene(const Scene& scene, const RenderSceneOptions& options = {});
 
     /// The same environment with what is placed at other poses, one for each of Scene::placed, in
-    /// the world. Takes far less time than a new scene.
-    [[nodiscard]] RenderScene at(std::span<const Pose3> poses) const;
+    /// the world. `swings` of the people's limbs, in their order, if they walk: see humanBodyOf().
+    /// Takes far less time than a new scene.
+    [[nodiscard]] RenderScene at(std::span<const Pose3> poses,
+                                 std::span<const Angle> swings = {}) const;
 
     struct Data;
     [[nodiscard]] const Data& data() const { return *data_; }

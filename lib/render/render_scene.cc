@@ -265,6 +265,8 @@ class StillBuilder {
             StillSurfaces::Figure figure;
             figure.finish.label = static_cast<std::uint32_t>(placed.record + 1);
             if (isShown(placed)) figure.body = bodyOf(scene_, placed);
+            const Record& record = scene_.records[placed.record];
+            if (record.keyword() == "human") figure.person_height = record.number("height");
             const auto& views = options_.views;
             if (std::find(views.begin(), views.end(), placed.record) != views.end())
                 figure.view = viewOf(scene_, placed);
@@ -292,11 +294,14 @@ Mesh placedAt(const Mesh& mesh, const Pose3& pose) {
     return out;
 }
 
-FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses) {
+FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses,
+                      std::span<const Angle> swings) {
     FinishedSoup soup;
+    std::size_t person = 0;
     for (std::size_t i = 0; i < still.figures.size(); ++i) {
-        const auto& [body, view, finish, paint] = still.figures[i];
-        for (const Mesh& mesh : body)
+        const auto& [body, view, finish, paint, person_height] = still.figures[i];
+        const Angle swing = person_height && !swings.empty() ? swings[person++] : Angle();
+        for (const Mesh& mesh : swing == Angle() ? body : humanBodyOf(*person_height, swing))
             soup.add(placedAt(mesh, poses[i]),
                      {finish.label, paint.value_or(paintOf(mesh.material))}, still.shift);
     }
@@ -325,9 +330,10 @@ std::optional<std::uint32_t> Covering::paintAt(Point2 place) const {
     return paints[row * columns + column];
 }
 
-RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses)
+RenderScene::Data::Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
+                        std::span<const Angle> swings)
     : still(std::move(surfaces)),
-      bodies(still->device.get(), bodiesAt(*still, poses), unsigned(SurfaceKind::Body)),
+      bodies(still->device.get(), bodiesAt(*still, poses, swings), unsigned(SurfaceKind::Body)),
       views(still->device.get(), viewsAt(*still, poses), unsigned(SurfaceKind::View)) {}
 
 Finish RenderScene::Data::finishAt(const Finish& finish, Point3 place) const {
@@ -346,8 +352,8 @@ RenderScene::RenderScene(const Scene& scene, const RenderSceneOptions& options) 
     data_ = std::make_shared<const Data>(std::move(still), poses);
 }
 
-RenderScene RenderScene::at(std::span<const Pose3> poses) const {
-    return RenderScene(std::make_shared<const Data>(data_->still, poses));
+RenderScene RenderScene::at(std::span<const Pose3> poses, std::span<const Angle> swings) const {
+    return RenderScene(std::make_shared<const Data>(data_->still, poses, swings));
 }
 
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor) {

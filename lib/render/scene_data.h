@@ -43,6 +43,7 @@ struct StillSurfaces {
         std::optional<Mesh> view;
         Finish finish;
         std::optional<std::uint32_t> paint;  ///< of the body, if it is not that of its materials
+        std::optional<double> person_height = {};  ///< of a person's, whose limbs swing
     };
 
     EmbreeDevice device;
@@ -68,7 +69,8 @@ struct RenderScene::Data {
     std::shared_ptr<const StillSurfaces> still;
     SurfaceSet bodies, views;
 
-    Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses);
+    Data(std::shared_ptr<const StillSurfaces> surfaces, std::span<const Pose3> poses,
+         std::span<const Angle> swings = {});
     /// The finish of a triangle at a place: coverings lie on the floor.
     [[nodiscard]] Finish finishAt(const Finish& finish, Point3 place) const;
     [[nodiscard]] const SurfaceSet& set(SurfaceKind kind) const {

@@ -39,8 +39,8 @@ Photographer::Photographer(const Scene& scene, const PhotoOptions& options)
 
 Photographer::~Photographer() = default;
 
-void Photographer::moveTo(std::span<const Pose3> poses) {
-    data_->surfaces = data_->surfaces.at(poses);
+void Photographer::moveTo(std::span<const Pose3> poses, std::span<const Angle> swings) {
+    data_->surfaces = data_->surfaces.at(poses, swings);
 }
 
 Photo Photographer::take(const Sensor& sensor, const Pose3& pose, int frame) const {

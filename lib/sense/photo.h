@@ -44,9 +44,9 @@ class Photographer {
     Photographer(const Photographer&) = delete;
     Photographer& operator=(const Photographer&) = delete;
 
-    /// Puts what is placed at these poses, one for each of Scene::placed, as RenderScene::at does;
-    /// the room stays as it is. \pre no picture is being taken
-    void moveTo(std::span<const Pose3> poses);
+    /// Puts what is placed at these poses, one for each of Scene::placed, with people's limbs as
+    /// they swing, as RenderScene::at does; the room stays as it is. \pre no picture is being taken
+    void moveTo(std::span<const Pose3> poses, std::span<const Angle> swings = {});
     /// What the sensor, a camera, sees at a pose. Neither its own body nor that of the robot or
     /// person that carries it is in the picture.
     [[nodiscard]] Photo take(const Sensor& sensor, const Pose3& pose, int frame) const;

@@ -208,7 +208,7 @@ void SensorReader::movePictures(const Movers& movers) {
         }
         poses.push_back(pose);
     }
-    photographer_->moveTo(poses);
+    photographer_->moveTo(poses, movers.swings);
 }
 
 void SensorReader::measure(std::size_t sensor, SimTime time) {

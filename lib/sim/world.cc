@@ -7,6 +7,7 @@
 
 #include "base/number.h"
 #include "sim/change.h"
+#include "sim/robot_sensors.h"
 #include "sim/world_data.h"
 
 namespace ispace {
@@ -96,6 +97,32 @@ std::int64_t World::period(std::size_t sensor) const {
 const SensorReading& World::take(std::size_t sensor) {
     data_->sensors.take(sensor, data_->time, data_->where());
     return reading(sensor);
+}
+
+std::vector<float> World::sonar(std::size_t robot) {
+    Data& data = *data_;
+    const RobotModel& model = data.movers[robot].model;
+    if (model.sonar.places.empty()) return {};
+    const MovingBodies& bodies = data.sensors.bodies(data.where());
+    return sonarRanges(model, data.motions[robot].pose, data.sensors.mesh(Surfaces::Solid), bodies,
+                       static_cast<std::uint32_t>(robot));
+}
+
+std::vector<bool> World::bumper(std::size_t robot) const {
+    const Data& data = *data_;
+    const MoverState& state = data.states[robot];
+    const RobotModel& model = data.movers[robot].model;
+    const auto nearest = [&](Point2 place, double farthest) {
+        double least = state.obstacles->nearest(place, farthest);
+        for (std::size_t i = 0; i < data.movers.size(); ++i) {
+            if (i == robot) continue;
+            const double apart = distance(data.motions[i].pose.position, place);
+            least = std::min(least, apart - data.movers[i].model.radius);
+        }
+        return least;
+    };
+    const Vec2 bump = state.stall ? state.bump : Vec2();
+    return pressedBumpers(model, data.motions[robot].pose, bump, nearest);
 }
 
 const FloorSensors& World::floorSensors() const { return data_->sensors.floor(); }

@@ -121,6 +121,11 @@ class World {
     /// reading(), after reading a heavy sensor now if it was not in its newest period. Pictures and
     /// depth frames are only taken this way.
     const SensorReading& take(std::size_t sensor);
+    /// What the sonars of a robot measure now, in the order of its model: metres, +infinity without
+    /// an echo. See robot_sensors.h.
+    [[nodiscard]] std::vector<float> sonar(std::size_t robot);
+    /// Which bumpers of a robot touch what it ran into; none unless it has stalled.
+    [[nodiscard]] std::vector<bool> bumper(std::size_t robot) const;
     /// Mats and gates as they are after the last step, whatever their rates.
     [[nodiscard]] const FloorSensors& floorSensors() const;
 

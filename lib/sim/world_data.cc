@@ -136,7 +136,9 @@ void World::Data::settle() {
 }
 
 void World::Data::collide(const Collision& collision) {
-    moves[collision.robot].cancel();
+    Move& move = moves[collision.robot];
+    states[collision.robot].bump = move.end() - move.start();
+    move.cancel();
     if (collision.robot < odometers.size()) odometers[collision.robot].stay();
     if (pilots[collision.robot].isOn()) return pilots[collision.robot].bumped();
     states[collision.robot].stall = true;
@@ -224,6 +226,7 @@ std::unique_ptr<World::Data> World::Data::next(
         state.running = states[*old].running;
         if (stayers.contains(id)) {
             state.stall = states[*old].stall;
+            state.bump = states[*old].bump;
             after->motions[i] = motions[*old];
             if (after->movers[i].course == movers[*old].course) after->pilots[i] = pilots[*old];
             after->keepGait(i, *this, *old);

@@ -28,6 +28,7 @@ struct MoverState {
     int ids = 0;           // given so far
     int running = 0;       // id of the command that comes to an end, or 0
     bool stall = false;
+    Vec2 bump;  // the way of the step that was cancelled when the stall began
     std::optional<std::size_t> blocked;  // by an element of the environment
 };
 

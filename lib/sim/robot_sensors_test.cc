@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/robot_sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "layout/test_layout.h"
+#include "sim/world.h"
+
+namespace ispace {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::scene;
+
+constexpr const char* kRoom = "ispace size=8,6\n";
+
+TEST(Sonar, MeasuresTheNearestInItsCone) {
+    // Ahead, to the left, back; the walls are 4 and 3 m away.
+    const Scene room = scene(kRoom, "robot id=r1 at=0,0 sonar=0.2,0,0;0,0.1,90;-0.2,0,180\n");
+    World world(room, milliseconds(100));
+    const std::vector<float> ranges = world.sonar(0);
+    ASSERT_EQ(ranges.size(), 3U);
+    EXPECT_NEAR(ranges[0], 3.8, 1e-5);
+    EXPECT_NEAR(ranges[1], 2.9, 1e-5);
+    EXPECT_NEAR(ranges[2], 3.8, 1e-5);
+}
+
+TEST(Sonar, FollowsItsRobotAndSeesOthers) {
+    const Scene room = scene(kRoom,
+                             "robot id=r1 at=0,0 sonar=0,0,0;0,0,90 sonar_fov=20\n"
+                             "robot id=r2 at=2,0.2 radius=0.3\n"
+                             "human id=h1 at=-1,2\n");
+    World world(room, milliseconds(100));
+    // A cylinder a little aside: between its front and its middle.
+    EXPECT_GT(world.sonar(0)[0], 1.7F);
+    EXPECT_LT(world.sonar(0)[0], 1.75F);
+    EXPECT_NEAR(world.sonar(0)[1], 3, 1e-5);
+    world.command(0, {Verb::Left, 116.565});
+    for (int i = 0; i < 60; ++i) world.step();
+    // Towards the person's legs.
+    EXPECT_LT(world.sonar(0)[0], std::sqrt(5.0));
+    EXPECT_GT(world.sonar(0)[0], std::sqrt(5.0) - 0.3);
+}
+
+TEST(Sonar, LimitsAndTheFloor) {
+    const Scene room = scene(kRoom,
+                             "robot id=r1 at=3.65,0 height=0.1 sonar=0.3,0,0;0,0,180 "
+                             "sonar_range=0.2,6\n");
+    World world(room, milliseconds(100));
+    EXPECT_EQ(world.sonar(0)[0], 0.2F) << "nearer than the least";
+    // 7.65 m to the wall behind; the cone meets the floor long before.
+    EXPECT_TRUE(std::isinf(world.sonar(0)[1]));
+}
+
+TEST(Sonar, HearsGlass) {
+    for (const char* glass : {"clear", "opaque"}) {
+        const Scene room =
+            scene(std::string(kRoom) + "wall id=w from=2,-3 to=2,3 height=2.5\n" +
+                      "window wall=w offset=3 size=2,0.1,2 sill=0.05 glass=" + glass + "\n",
+                  "robot id=r1 at=0,0 sonar=0,0,0\n");
+        World world(room, milliseconds(100));
+        EXPECT_NEAR(world.sonar(0)[0], 2, 0.06) << glass;
+    }
+}
+
+/// Front, left, back and right, a quarter each.
+constexpr const char* kBumpers = " bumpers=-45,45;45,135;135,225;225,315\n";
+
+std::vector<bool> pressedAfter(const std::string& robot, Verb verb, double value,
+                               const std::string& others = "") {
+    const Scene room = scene(kRoom, "robot id=r1 " + robot + kBumpers + others);
+    World world(room, milliseconds(10));
+    EXPECT_EQ(world.bumper(0), std::vector<bool>(4));
+    world.command(0, {verb, value});
+    for (int i = 0; i < 2000 && !world.status(0).stall; ++i) world.step();
+    EXPECT_TRUE(world.status(0).stall);
+    return world.bumper(0);
+}
+
+TEST(Bumper, TellsWhereItTouches) {
+    const std::vector<bool> front{true, false, false, false}, back{false, false, true, false};
+    EXPECT_EQ(pressedAfter("at=2,0", Verb::Forward, 5), front);
+    EXPECT_EQ(pressedAfter("at=2,0 heading=90", Verb::Forward, 5), front);
+    EXPECT_EQ(pressedAfter("at=-2,0", Verb::Backward, 5), back);
+    // Along a wall it does not feel it.
+    EXPECT_EQ(pressedAfter("at=2,2.69", Verb::Forward, 5), front);
+    // A glancing wall, met with the left of the front; a robot; a person.
+    EXPECT_EQ(pressedAfter("at=0,2 heading=30", Verb::Forward, 5),
+              (std::vector<bool>{false, true, false, false}));
+    EXPECT_EQ(pressedAfter("at=-2,0", Verb::Forward, 5, "robot id=r2 at=0,0\n"), front);
+    EXPECT_EQ(pressedAfter("at=-2,0", Verb::Forward, 5, "human id=h1 at=0,-0.2\n"),
+              (std::vector<bool>{true, false, false, false}));
+}
+
+TEST(Bumper, IsReleasedByTheNextMotion) {
+    const Scene room = scene(kRoom, std::string("robot id=r1 at=3,0") + kBumpers);
+    World world(room, milliseconds(10));
+    world.command(0, {Verb::Forward, 2});
+    for (int i = 0; i < 1000 && !world.status(0).stall; ++i) world.step();
+    EXPECT_TRUE(world.bumper(0)[0]);
+    world.command(0, {Verb::Backward, 0.5});
+    EXPECT_FALSE(world.bumper(0)[0]);
+}
+
+TEST(RobotRecord, PartsOfTheRimAndRangesAreChecked) {
+    EXPECT_EQ(testing::findings([] { scene(kRoom, "robot bumpers=30,20\n"); }),
+              "room.3dm:2:15: error: `bumpers`: 30,20 is no part of a turn, wanted FROM,TO "
+              "counter-clockwise\n");
+    EXPECT_EQ(testing::findings([] { scene(kRoom, "robot sonar_range=2,1\n"); }),
+              "room.3dm:2:19: error: the greatest range of sonars, 1 m, must be above the least, "
+              "2 m\n");
+}
+
+}  // namespace
+}  // namespace ispace
