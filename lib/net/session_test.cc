@@ -147,7 +147,7 @@ TEST(Session, Help) {
               "OK HELP FORWARD m | BACKWARD m | LEFT deg | RIGHT deg | SPEED m/s | ROTSPEED deg/s "
               "| SIDESPEED m/s | PATH x,y;... [speed=v] [pause=s] [loop=yes] | STOP | STATUS | "
               "ODOMETRY | "
-              "SCAN id | HELP | QUIT\n");
+              "SCAN id | SONAR | BUMPER | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("LASER l1"), "HELP"),
               "OK HELP SCAN | STREAM [every=k] | STOP | BINARY on|off | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("WORLD"), "HELP"),
