@@ -165,5 +165,27 @@ TEST_F(RecordLines, EventsHaveATable) {
     EXPECT_NE(table.find("0.1,mat,m1,h1,"), std::string::npos) << table;
 }
 
+TEST_F(RecordLines, EventsAfterTheLastStepAreKept) {
+    const Scene scene = room();
+    World world(scene, milliseconds(100));
+    EventLog events(world);
+    Recorder recorder(path("run"), world, {}, &events);
+    world.step();
+    events.stepped();
+    recorder.record(world);
+    recorder.flush(world);
+    EXPECT_FALSE(recorder.flushDue(std::chrono::steady_clock::now()));
+    const std::string before = readAll(path("run/events.csv"));
+    // In a world that waits they are written, too, when others are.
+    events.add(EventKind::Mark, "first");
+    EXPECT_TRUE(recorder.flushDue({}));
+    EXPECT_FALSE(recorder.flushDue(std::chrono::steady_clock::time_point::max()));
+    EXPECT_EQ(readAll(path("run/events.csv")), before + "0.1,mark,,,,,,first\n");
+    events.add(EventKind::Mark, "last");
+    recorder.flush(world);
+    EXPECT_EQ(readAll(path("run/events.csv")),
+              before + "0.1,mark,,,,,,first\n0.1,mark,,,,,,last\n");
+}
+
 }  // namespace
 }  // namespace ispace

@@ -78,6 +78,10 @@ struct Recorder::Data {
     std::vector<std::int64_t> strides;  // of frames; 0: none
     std::vector<std::int64_t> periods;  // recorded last
 
+    /// True if something happened since the last record.
+    [[nodiscard]] bool hasNewEvents() const {
+        return events_log != nullptr && next_event < events_log->next();
+    }
     [[nodiscard]] std::array<LineFile*, 4> stepFiles() {
         return {&robots, &people, &scans, &events};
     }
@@ -227,6 +231,8 @@ void Recorder::Data::flush() {
     if (ended) std::rethrow_exception(ended);
     flushed = steady_clock::now();
     try {
+        // What clients did since the step.
+        if (hasNewEvents()) appendEvents();
         writeLines();
     } catch (const std::system_error&) {
         endEarly();
@@ -287,7 +293,7 @@ void Recorder::flush(const World& world) {
 }
 
 std::optional<steady_clock::time_point> Recorder::flushDue(steady_clock::time_point now) {
-    if (data_->flushed_all) return std::nullopt;
+    if (data_->flushed_all && !data_->hasNewEvents()) return std::nullopt;
     const auto due = data_->flushed + kFlushEvery;
     if (now < due) return due;
     data_->flush();
