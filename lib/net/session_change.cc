@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "layout/schemas.h"
 #include "net/request_parts.h"
 #include "net/session.h"
 #include "net/token.h"
@@ -53,10 +54,21 @@ void checkGlob(const Edit& edit) {
         throw Refusal{400, excerpt(edit.ids) + " has more than two stars"};
 }
 
+/// True for records that are no part of a world.
+bool isMeta(std::string_view keyword) {
+    const Schema* const schema = sceneSchemas().find(keyword);
+    return schema != nullptr && schema->type == RecordType::Meta;
+}
+
 /// The edits that a request asks for.
 std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_view rest) {
     try {
-        if (words[0] == "ADD") return {parseEdit(Edit::Kind::Add, rest)};
+        if (words[0] == "ADD") {
+            if (isMeta(words[1]))
+                throw Refusal{400, "a record `" + std::string(words[1]) +
+                                       "` tells of a file: a running world has none"};
+            return {parseEdit(Edit::Kind::Add, rest)};
+        }
         std::vector<Edit> edits;
         if (words[0] == "SET")
             edits.push_back(parseEdit(Edit::Kind::Set, rest));
@@ -155,6 +167,9 @@ std::string Session::applied(Words words, std::string_view line) {
     if (words[0] == "RESET") {
         editor.reset();
     } else if (words[0] == "LOAD") {
+        for (const std::string_view name : words.subspan(1))
+            if (printable(name) != name)
+                throw Refusal{400, "the name of a file holds no control characters"};
         editor.load(std::string(words[1]), words.size() > 2 ? std::string(words[2]) : "");
     } else {
         const auto begin = static_cast<std::size_t>(words[1].data() - line.data());
@@ -199,10 +214,13 @@ void Session::events(Words words) {
 
 void Session::mark(Words words) {
     const std::string_view last = words.back();
-    const std::string text(words[1].data(), last.data() + last.size());
+    std::string text(words[1].data(), last.data() + last.size());
+    std::replace(text.begin(), text.end(), '\t', ' ');
     if (text.size() > kMaxText)
         return error(416, {"a mark has at most ", std::to_string(kMaxText), " bytes"});
-    state_->simulation().events().add(EventKind::Mark, printable(text));
+    if (printable(text) != text)
+        return error(400, {"a mark is text in UTF-8 without control characters"});
+    state_->simulation().events().add(EventKind::Mark, text);
     out_.append("OK MARK t=").append(formatMilliseconds(world().time())).append("\n");
     tellEvents();
 }

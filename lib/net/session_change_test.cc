@@ -77,6 +77,29 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     EXPECT_EQ(talk.room.world.changes(), 0);
 }
 
+TEST(SessionChange, RecordsOfFilesAreNotAdded) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    talk.answer(world, "ADD zone id=z at=0,0 size=1,1");
+    for (const std::string record : {"environment", "environment file=hall.env", "result value=1"})
+        EXPECT_EQ(talk.answer(world, "ADD " + record),
+                  "ERR 400 a record `" + record.substr(0, record.find(' ')) +
+                      "` tells of a file: a running world has none\n");
+    EXPECT_EQ(talk.room.world.changes(), 1);
+}
+
+TEST(SessionChange, ControlCharactersAreRefused) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    EXPECT_EQ(talk.answer(world, std::string("LOAD hall.env\0x", 15)),
+              "ERR 400 the name of a file holds no control characters\n");
+    EXPECT_EQ(talk.answer(world, "MARK \x1b[31mred"),
+              "ERR 400 a mark is text in UTF-8 without control characters\n");
+    talk.ask(world, "EVENTS mark");
+    EXPECT_EQ(talk.ask(world, "MARK gr\xc3\xbcn\tblau"),
+              "OK MARK t=0.000\nEVENT mark t=0.000 text=gr\xc3\xbcn blau\n");
+}
+
 TEST(SessionChange, ARobotThatIsDeletedLosesItsClient) {
     Changing talk;
     Session& world = talk.client("WORLD");
