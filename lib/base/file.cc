@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/held_signals.h"
+#include "base/read_fence.h"
 #include "base/run_files.h"
 
 namespace ispace {
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 
 /// \param info of the file
 OpenFile openInput(const std::string& operand, struct stat& info) {
+    mustBeReadable(operand);
     OpenFile file(operand == "-" ? STDIN_FILENO : ::open(operand.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0) fail(operand, errno);
     if (S_ISDIR(info.st_mode)) fail(operand, EISDIR);

@@ -2,15 +2,18 @@
 #include "cli/scene_folder.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "base/message.h"
+#include "base/file.h"
+#include "base/read_fence.h"
 #include "cli/common_options.h"
 #include "io/input.h"
+#include "record/text.h"
 
 namespace ispace {
 
@@ -18,19 +21,92 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What is elsewhere is not told apart from what is nowhere.
+constexpr const char* kNone = "there is no such file in the folder that clients may read";
+
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
     throw FormatError({name, 0, 0, why});
 }
 
+/// \throws std::system_error naming it if it is no folder
+std::string canonicalFolder(const std::string& folder) {
+    std::error_code error;
+    const fs::path place = fs::canonical(folder, error);
+    if (!error && !fs::is_directory(place)) error.assign(ENOTDIR, std::generic_category());
+    if (error) throw std::system_error(error, folder);
+    return place.string();
+}
+
+void replaceAll(std::string& text, const std::string& old, const std::string& by) {
+    for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += by.size())
+        text.replace(at, old.size(), by);
+}
+
+bool beginsAsRecords(const std::string& file) {
+    try {
+        std::string bytes;
+        InputFile input(file);
+        static_cast<void>(input.read(bytes));
+        return isRecordText(bytes);
+    } catch (const std::system_error&) {
+        return false;
+    }
+}
+
+/// Names in texts for clients, who may not know where the folder is.
+class ClientNames {
+  public:
+    explicit ClientNames(const std::string& folder) : folder_(folder) {}
+    /// A file that the client has named.
+    void add(const std::string& path, const std::string& written) {
+        names_.emplace_back(path, written);
+    }
+    [[nodiscard]] std::string in(std::string text) const {
+        for (const auto& [path, written] : names_) replaceAll(text, path, written);
+        replaceAll(text, folder_ == "/" ? folder_ : folder_ + "/", "");
+        return text;
+    }
+    /// Without what a file holds that is no scene. \pre the fence stands
+    [[nodiscard]] FormatError in(const FormatError& error) const {
+        constexpr const char* kHidden =
+            "this file cannot be used: envc --check may say why; what it names must lie in the "
+            "folder that clients may read, too";
+        std::vector<Diagnostic> findings = error.diagnostics();
+        for (Diagnostic& finding : findings) {
+            // What a request says has no file.
+            const bool tells =
+                !fs::path(finding.file).is_absolute() || beginsAsRecords(finding.file);
+            finding.message = tells ? in(finding.message) : kHidden;
+            finding.file = in(finding.file);
+        }
+        return FormatError(std::move(findings));
+    }
+    /// Calls read() with the fence around the folder. \throws FormatError, UsageError
+    template <typename Read>
+    auto guarded(Read read) const {
+        const ReadFence fence({folder_, shareFolder() + "/devices"});
+        try {
+            return read();
+        } catch (const FormatError& error) {
+            throw in(error);
+        } catch (const UsageError& error) {
+            throw UsageError(in(std::string(error.what())));
+        } catch (const std::system_error& error) {
+            refuse("", in(std::string(error.what())));
+        }
+    }
+
+  private:
+    std::string folder_;
+    std::vector<std::pair<std::string, std::string>> names_;
+};
+
 }  // namespace
 
 SceneFolder::SceneFolder(const std::string& folder, bool any_environment)
-    : folder_(fs::canonical(folder.empty() ? "." : folder).string()),
+    : folder_(canonicalFolder(folder.empty() ? "." : folder)),
       any_environment_(any_environment),
-      devices_(loadDevices(shareFolder() + "/devices")) {
-    if (!fs::is_directory(folder_))
-        throw std::system_error(ENOTDIR, std::generic_category(), folder);
-}
+      devices_(loadDevices(shareFolder() + "/devices")) {}
 
 std::string SceneFolder::of(const SceneInput& input) {
     const bool through_layout = std::find(input.named.begin(), input.named.end(),
@@ -40,36 +116,46 @@ std::string SceneFolder::of(const SceneInput& input) {
 }
 
 std::string SceneFolder::path(const std::string& name) const {
-    // What is elsewhere is not told apart from what is nowhere.
-    constexpr const char* kNone = "there is no such file in the folder that clients may read";
     std::error_code error;
     const fs::path file = fs::canonical(fs::path(folder_) / name, error);
     if (error) refuse(name, kNone);
-    const fs::path folder(folder_);
-    const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
-    if (end != folder.end() || rest == file.end()) refuse(name, kNone);
-    const bool hidden = std::any_of(
-        rest, file.end(), [](const fs::path& part) { return part.string().starts_with('.'); });
-    if (hidden || !fs::is_regular_file(file, error)) refuse(name, kNone);
+    if (!liesOpenlyIn(folder_, file.string())) refuse(name, kNone);
     return file.string();
 }
 
 Scene SceneFolder::load(const std::string& environment, const std::string& layout) const {
-    std::vector<std::string> operands = {path(environment)};
-    if (!layout.empty()) operands.push_back(path(layout));
-    SceneRequest request{std::move(operands), any_environment_, false};
-    return readScene(request).scene;
+    ClientNames names(folder_);
+    std::vector<std::string> operands;
+    for (const std::string& name : {environment, layout}) {
+        if (name.empty()) continue;
+        operands.push_back(path(name));
+        names.add(operands.back(), name);
+    }
+    const SceneRequest request{std::move(operands), any_environment_, false};
+    return names.guarded([&] {
+        Scene scene = readScene(request).scene;
+        // They are read when a picture is taken.
+        for (const Record& record : scene.records)
+            if (record.schema().find("texture") != nullptr && record.has("texture") &&
+                !mayBeRead(record.text("texture")))
+                throw FormatError(record.finding("texture", kNone));
+        return scene;
+    });
 }
 
 void SceneFolder::loadFilesOf(Record& record) const {
     if (record.schema().find("side_files") != nullptr && record.text("side_files") != "folder")
         throw FormatError(record.finding("side_files", "clients may not set `side_files`"));
-    for (const KeySpec& key : record.schema().keys)
-        if (key.role == Role::File && record.has(key.name))
-            record.set(key.name, path(record.text(key.name)), record.keyPlace(key.name));
+    ClientNames names(folder_);
+    for (const KeySpec& key : record.schema().keys) {
+        if (key.role != Role::File || !record.has(key.name)) continue;
+        const std::string written = record.text(key.name);
+        record.set(key.name, path(written), record.keyPlace(key.name));
+        names.add(record.text(key.name), written);
+    }
     Document document;
     document.records.push_back(std::move(record));
-    loadFiles(document, "-");
+    names.guarded([&] { loadFiles(document, "-"); });
     record = std::move(document.records.front());
 }
 

@@ -11,9 +11,9 @@ namespace ispace {
 
 /// The folder that clients of a run may read from. A name they give is relative to it (or
 /// absolute), and must lead, links followed, to a regular file in it or below; no part of the way
-/// is hidden
-/// (`.name`). What such a file names in its turn is read as if it were an operand: it lies there
-/// because somebody who may write there wants it.
+/// is hidden (`.name`). So must what such a file names in its turn: includes, pictures, meshes and
+/// whatever else. Errors name files as seen from the folder, and tell nothing of the content of
+/// those that do not begin as records do (`#env 1`, `#3dm 1`).
 class SceneFolder : public SceneSource {
   public:
     /// "" is the current folder. \throws std::system_error if there is none

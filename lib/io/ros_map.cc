@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "base/read_fence.h"
 #include "geom/pose.h"
 #include "io/cell_map.h"
 #include "io/import_records.h"
@@ -159,6 +161,7 @@ MapHeader readHeader(std::string_view yaml, const std::string& name) {
 /// Why the picture cannot be read, or "". Devices and pipes are refused: they may never end.
 std::string reasonNotToRead(const std::string& path) {
     std::error_code error;
+    if (!mayBeRead(path)) return std::generic_category().message(ENOENT);
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (error) return error.message();
     return std::filesystem::is_regular_file(status) ? "" : "it is no regular file";

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/read_fence.h"
 #include "base/run_files.h"
 
 namespace ispace {
@@ -41,6 +42,7 @@ RegularFile openRegular(const std::string& path) {
         if (S_ISDIR(info.st_mode)) throw std::system_error(EISDIR, std::generic_category(), path);
         if (!S_ISREG(info.st_mode)) failFile(path, "it is no regular file");
     };
+    mustBeReadable(path);
     // Before it is opened, too: to open a device may do things.
     if (::stat(path.c_str(), &info) != 0)
         throw std::system_error(errno, std::generic_category(), path);
@@ -61,7 +63,7 @@ std::optional<RegularFile> openSideFile(const std::string& path, const std::stri
                                         bool anywhere) {
     std::error_code error;
     const fs::path place = fs::canonical(sideFilePath(path, name), error);
-    if (error) return std::nullopt;
+    if (error || !mayBeRead(place.string())) return std::nullopt;
     if (!anywhere && !liesIn(fs::canonical(folderOf(path)), place))
         failFile(path, "it names the file " + excerpt(name) +
                            ", which lies outside its folder: put it there, or allow it in a `mesh` "

@@ -17,6 +17,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/read_fence.h"
 #include "base/run_files.h"
 
 namespace ispace {
@@ -133,6 +134,7 @@ std::string joined(const fs::path& folder, const std::string& path) {
 
 /// The content of a regular file: others, as devices are, may have no end.
 std::string readRegularFile(const std::string& name) {
+    mustBeReadable(name);
     std::error_code error;
     const fs::file_status status = fs::status(name, error);
     if (error) throw std::system_error(error);
