@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -43,7 +45,8 @@ class SceneFolderTest : public ::testing::Test {
         }
     }
     SceneFolder folder() { return {(root_ / "scenes").string(), false}; }
-    fs::path root_ = fs::canonical(::testing::TempDir()) / "scene_folder_test";
+    fs::path root_ =
+        fs::canonical(::testing::TempDir()) / ("scene_folder_test." + std::to_string(::getpid()));
 };
 
 TEST_F(SceneFolderTest, ReadsWhatLiesInIt) {
