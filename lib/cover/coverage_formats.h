@@ -18,10 +18,11 @@ std::string coverageCsv(const Coverage& coverage);
 
 /// The plan as a GeoJSON FeatureCollection in metres of the plan: the indoor region and the free
 /// floor, the floor seen by exactly 1, 2, ... sensors (`keyword` "seen", with `sensors` and
-/// `area`), that which cameras see with the pixels of each of pixelDensities() (`keyword` "density",
-/// with `pixels_per_metre` and `area`), each sensor as a Point with `heading` and what it sees as an area (`keyword` "view"),
-/// and the unseen pieces of the free floor as Points with `area`. Arcs are chords within
-/// kChordError; where regions are not known exactly, cells are outlined instead.
+/// `area`), that which cameras see with the pixels of each of pixelDensities() (`keyword`
+/// "density", with `pixels_per_metre` and `area`), each sensor as a Point with `heading` and what
+/// it sees as an area (`keyword` "view"), and the unseen pieces of the free floor as Points with
+/// `area`. Arcs are chords within kChordError; where regions are not known exactly, cells are
+/// outlined instead.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
 /// A product, and the file that stands beside it.

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "sense/scan_plane.h"
 #include "cover/sight.h"
 #include "cover/test_scenes.h"
 #include "cover/test_sensors.h"
+#include "sense/scan_plane.h"
 #include "sensor/test_sensors.h"
 
 namespace ispace {

@@ -6,11 +6,11 @@
 #include <iterator>
 #include <utility>
 
-#include "sense/scan_plane.h"
 #include "cover/shadow_bodies.h"
 #include "cover/shadow_footprint.h"
 #include "geom/overlay.h"
 #include "geom/visibility.h"
+#include "sense/scan_plane.h"
 #include "sensor/kind.h"
 
 namespace ispace {

@@ -336,7 +336,8 @@ TEST(Session, ShutdownMayBeRefused) {
     EXPECT_FALSE(talk.room.simulation.finished());
     EXPECT_FALSE(world.closing());
     EXPECT_EQ(talk.ask(world, "HELP"),
-              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | EVENTS [kinds|off] | MARK text | HELP | QUIT\n");
+              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | EVENTS [kinds|off] | MARK "
+              "text | HELP | QUIT\n");
 }
 
 }  // namespace

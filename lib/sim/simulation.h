@@ -87,8 +87,8 @@ class Simulation {
     /// goes slower, instead of faster later. \returns when to call again; nothing: only once told
     /// to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
-    /// How punctual the steps were that were due by the clock Real: the latest of them, and how many
-    /// began later than a step after their time (as a step lasts in wall time).
+    /// How punctual the steps were that were due by the clock Real: the latest of them, and how
+    /// many began later than a step after their time (as a step lasts in wall time).
     struct Lateness {
         std::int64_t steps = 0, late = 0;
         std::chrono::nanoseconds most{};
