@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/error.h"
@@ -23,6 +25,7 @@ struct Sample {
     std::vector<RunState> states;
     std::vector<Pose2> robots, people;  // of the scene, for sensors that ride on them
     std::vector<std::size_t> counts;    // of each state
+    std::vector<double> fastest;        // m/s, of each state
 };
 
 /// Finds the members of a record in a scene.
@@ -44,6 +47,17 @@ class Members {
         for (std::size_t i = owners_.size(); i < reader_->who().size(); ++i)
             owners_.push_back(find(reader_->who()[i]));
         return owners_[who];
+    }
+    /// What nobody goes faster than, m/s: with a margin, as a record may have changed in the run.
+    double fastest(const RunState& state) {
+        const std::uint32_t owner = ownerOf(state.who);
+        constexpr double kUnknown = std::numeric_limits<double>::infinity(), kMargin = 2;
+        if (owner == MovingBodies::kNobody) return kUnknown;
+        const double going = std::hypot(state.speed, state.sidespeed);
+        if (owner >= kFirstPerson)
+            return kMargin * std::max(scene_->people[owner - kFirstPerson].speed, going);
+        const RobotModel& model = scene_->robots[owner].model;
+        return kMargin * std::max(std::hypot(model.max_speed, model.max_sidespeed), going);
     }
     /// Where everybody is now.
     void move(const RunState& state) {
@@ -85,10 +99,11 @@ class SightSum {
         std::size_t count = 0;
         std::optional<SightGap> gap;  // that goes on
         bool was_seen = false;        // ever
+        bool has_jumped = false;      // since its way was drawn
         std::size_t way = 0;          // index of its last one
     };
 
-    void lookAt(std::size_t who, double time, Point2 place, std::size_t count);
+    void lookAt(std::size_t who, double time, Point2 place, std::size_t count, double fastest);
     void addTo(RunSightMetrics& metrics, std::size_t count, double time, double way);
     void closeGap(std::size_t who, double time, Point2 place);
     void draw(std::size_t who, Point2 place, std::size_t count);
@@ -127,21 +142,28 @@ void SightSum::closeGap(std::size_t who, double time, Point2 place) {
 
 void SightSum::draw(std::size_t who, Point2 place, std::size_t count) {
     Last& last = last_[who];
-    const bool goes_on = last.is_there && sight_.ways[last.way].sensors == count;
+    const bool has_jumped = std::exchange(last.has_jumped, false);
+    const bool goes_on = last.is_there && !has_jumped && sight_.ways[last.way].sensors == count;
     if (goes_on) {
         std::vector<Point2>& points = sight_.ways[last.way].points;
         if (distance(points.back(), place) >= kThinning) points.push_back(place);
         return;
     }
-    if (last.is_there) sight_.ways[last.way].points.push_back(place);
+    if (last.is_there && !has_jumped) sight_.ways[last.way].points.push_back(place);
     last.way = sight_.ways.size();
     sight_.ways.push_back({who, count, {place}});
 }
 
-void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t count) {
+void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t count,
+                      double fastest) {
     Last& last = last_[who];
     if (last.is_there) {
-        const double way = distance(last.place, place), passed = time - last.time;
+        const double passed = time - last.time;
+        double way = distance(last.place, place);
+        if (way > fastest * passed + kThinning) {  // put there by a client: nobody went that way
+            way = 0;
+            last.has_jumped = true;
+        }
         addTo(sight_.members[who], last.count, passed, way);
         addTo(sight_.all, last.count, passed, way);
     }
@@ -167,7 +189,7 @@ void SightSum::add(const Sample& sample) {
             last_.resize(state.who + 1);
             sight_.members.resize(state.who + 1);
         }
-        lookAt(state.who, sample.time, state.pose.position, sample.counts[i]);
+        lookAt(state.who, sample.time, state.pose.position, sample.counts[i], sample.fastest[i]);
     }
 }
 
@@ -198,7 +220,8 @@ RunSight SightSum::finish(const RunReader& reader) {
 void flush(const Watch& watch, Members& members, std::vector<Sample>& samples, SightSum& sum) {
     // Known before threads ask.
     for (Sample& sample : samples)
-        for (const RunState& state : sample.states) members.ownerOf(state.who);
+        for (const RunState& state : sample.states)
+            sample.fastest.push_back(members.fastest(state));
     tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
         Sample& sample = samples[i];
         const WatchMoment moment{.robots = sample.robots, .people = sample.people};
@@ -228,7 +251,8 @@ RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& o
     };
     constexpr double kRounding = 1e-9;
     do {
-        Sample sample{reader.time(), {reader.states().begin(), reader.states().end()}, {}, {}, {}};
+        Sample sample{
+            reader.time(), {reader.states().begin(), reader.states().end()}, {}, {}, {}, {}};
         for (const RunState& state : sample.states) members.move(state);
         if (watch.rides()) {
             sample.robots = members.robots;

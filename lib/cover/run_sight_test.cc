@@ -87,6 +87,19 @@ TEST(RunSight, ARunMayBeAMoment) {
     EXPECT_THROW(sightOf("t,id,x,y,heading_deg\n0,r9,0,0,0\n"), FormatError);
 }
 
+TEST(RunSight, JumpsAreNoWay) {
+    // RESET puts r1 back after half a second, from 1 m away.
+    std::string text = "t,id,x,y,heading_deg\n";
+    for (int i = 0; i <= 100; ++i)
+        text += std::to_string(i * 0.01) + ",r1," + std::to_string(-3 + (i % 50) * 0.02 * 0.75) +
+                ",0,0\n";
+    const RunSight run = sightOf(text);
+    EXPECT_NEAR(run.members[0].duration, 1, 1e-9);
+    EXPECT_NEAR(run.members[0].length, 1.44, 1e-4) << "without the way back";
+    ASSERT_EQ(run.ways.size(), 3U) << "one from each place where it was put";
+    EXPECT_EQ(run.ways[1].points.front(), (Point2{-3, 0}));
+}
+
 TEST(RunSight, WhoJoinsLaterIsLookedAt) {
     const RunSight run = sightOf(
         "t,id,x,y,heading_deg\n0,r1,-3,0,0\n1,r1,-3,0,0\n1,r2,0,0,0\n2,r1,-3,0,0\n2,r2,0,0,0\n");
