@@ -12,6 +12,10 @@ namespace ispace {
 
 namespace {
 
+bool has(const Scene& scene, const std::string& id) {
+    return std::find(scene.ids.begin(), scene.ids.end(), id) != scene.ids.end();
+}
+
 void movePerson(Scene& scene, const std::string& id, const Pose2& pose) {
     for (Placed& placed : scene.placed)
         if (scene.ids[placed.record] == id)
@@ -29,6 +33,21 @@ RunRecord::RunRecord(RunReader reader) : name_(reader.name()) {
     if (steps_.empty()) throw FormatError({name_, 0, 0, "holds no pose of a robot"});
 }
 
+bool RunRecord::wasThereAtStart(std::size_t who) const {
+    for (const Step& step : steps_) {
+        if (step.time > begin()) return false;
+        if (step.who == who) return true;
+    }
+    return false;
+}
+
+std::vector<std::string> RunRecord::joinedWithout(const Scene& scene) const {
+    std::vector<std::string> ids;
+    for (std::size_t who = 0; who < who_.size(); ++who)
+        if (!has(scene, who_[who].id) && !wasThereAtStart(who)) ids.push_back(who_[who].id);
+    return ids;
+}
+
 void RunRecord::apply(Scene& scene, double time) const {
     std::map<std::size_t, Pose2> poses;
     const auto later = std::upper_bound(steps_.begin(), steps_.end(), time,
@@ -36,7 +55,8 @@ void RunRecord::apply(Scene& scene, double time) const {
     for (auto step = steps_.begin(); step != later; ++step) poses[step->who] = step->pose;
     for (const auto& [who, pose] : poses) {
         const std::string& id = who_[who].id;
-        if (std::find(scene.ids.begin(), scene.ids.end(), id) == scene.ids.end())
+        if (!has(scene, id) && !wasThereAtStart(who)) continue;
+        if (!has(scene, id))
             throw FormatError({name_, 0, 0,
                                std::string("the scene has no ") +
                                    (who_[who].is_person ? "person " : "robot ") + excerpt(id)});

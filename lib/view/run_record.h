@@ -21,8 +21,11 @@ class RunRecord {
     [[nodiscard]] double begin() const { return steps_.front().time; }
     [[nodiscard]] double end() const { return steps_.back().time; }
     /// Puts robots and people where they were at the last step at or before this time, robots with
-    /// what they carry. \throws FormatError for one that the scene does not have
+    /// what they carry. Who joined the run later is passed over if the scene does not have it.
+    /// \throws FormatError for one of the start that the scene does not have
     void apply(Scene& scene, double time) const;
+    /// Ids of those who joined the run later and that the scene does not have.
+    [[nodiscard]] std::vector<std::string> joinedWithout(const Scene& scene) const;
     /// The ways of all from the beginning up to this time, on the floor, without turns on
     /// the spot.
     [[nodiscard]] std::vector<std::vector<Point2>> waysUntil(double time) const;
@@ -33,6 +36,8 @@ class RunRecord {
         std::size_t who = 0;
         Pose2 pose;
     };
+    [[nodiscard]] bool wasThereAtStart(std::size_t who) const;
+
     std::string name_;
     std::vector<RunMember> who_;
     std::vector<Step> steps_;  // by ascending time, never empty

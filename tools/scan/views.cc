@@ -194,6 +194,13 @@ void takeViews(const ScanCommand& command) {
     if (!options.view.run.empty()) {
         run.emplace(RunReader(options.view.run));
         files.push_back(RecordedFiles(options.view.run).robots);
+        if (const auto joined = run->joinedWithout(scene); !joined.empty())
+            warn(options.common, "scan",
+                 joined.front() +
+                     (joined.size() > 1 ? " and " + std::to_string(joined.size() - 1) + " more"
+                                        : "") +
+                     " joined the run later and " + (joined.size() > 1 ? "are" : "is") +
+                     " left out: not in the scene");
     }
     const int frames = options.frames.value_or(1);
     const std::vector<ViewSpec>& views = options.view.views;
