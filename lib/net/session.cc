@@ -22,6 +22,8 @@ std::string_view reasonOf(Outcome outcome) {
             return "done";
         case Outcome::Stall:
             return "stall";
+        case Outcome::Unreached:
+            return "unreached";
         case Outcome::Replaced:
             return "replaced";
         case Outcome::Stopped:

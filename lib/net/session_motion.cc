@@ -57,6 +57,10 @@ void Session::command(Words words) {
                       "SCAN, or run the scene without --replay"});
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
+    double value = parsed.command->value;
+    if (parsed.command->verb == Verb::Path)  // the whole way, from here
+        value +=
+            distance(world().status(subject_).pose.position, parsed.command->course.path.front());
     const int id = world().command(subject_, *parsed.command);
     out_.append("OK ").append(words.front());
     if (id != 0) {
@@ -64,7 +68,7 @@ void Session::command(Words words) {
         out_.append(" id=").append(std::to_string(id));
     }
     if (const std::string_view name = valueNameOf(parsed.command->verb); !name.empty())
-        out_.append(" ").append(name).append("=").append(formatDouble(parsed.command->value));
+        out_.append(" ").append(name).append("=").append(formatDouble(value));
     out_ += '\n';
 }
 

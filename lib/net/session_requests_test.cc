@@ -29,6 +29,18 @@ TEST(Session, CommandsAreAnsweredAtOnce) {
     EXPECT_EQ(talk.ask(robot, "SPEED -0"), "OK SPEED speed=0\nFAIL id=4 reason=replaced t=0.000\n");
 }
 
+TEST(Session, PathsAreAsLongAsTheWayFromHere) {
+    Talk talk;
+    Session& robot = talk.client("ROBOT r1");
+    const Point2 at = talk.room.world.status(0).pose.position;
+    const auto place = [&at](double east, double north) {
+        return formatDouble(at.x + east) + ',' + formatDouble(at.y + north);
+    };
+    EXPECT_EQ(talk.ask(robot, ("PATH " + place(0.5, 0)).c_str()), "OK PATH id=1 length=0.5\n");
+    EXPECT_EQ(talk.ask(robot, ("PATH " + place(0.5, 0) + ';' + place(0.5, 0.25)).c_str()),
+              "OK PATH id=2 length=0.75\nFAIL id=1 reason=replaced t=0.000\n");
+}
+
 TEST(Session, CommandsThatAreWrong) {
     Talk talk;
     Session& robot = talk.client("ROBOT r1");

@@ -100,7 +100,7 @@ TEST(Pilot, ACommandedPathIsDone) {
     });
     ASSERT_EQ(ends.size(), 2U);
     EXPECT_EQ(ends[0].outcome, Outcome::Done);
-    EXPECT_EQ(ends[1].outcome, Outcome::Stall) << "where the other one stands nobody gets";
+    EXPECT_EQ(ends[1].outcome, Outcome::Unreached) << "where the other one stands nobody gets";
     EXPECT_TRUE(isAt(world, ends[0].robot, {3, 1}, 0.01));
 }
 
@@ -114,7 +114,7 @@ TEST(Pilot, APathThroughAWallFails) {
         return !ends.empty();
     });
     ASSERT_TRUE(time);
-    EXPECT_EQ(ends[0].outcome, Outcome::Stall);
+    EXPECT_EQ(ends[0].outcome, Outcome::Unreached);
     EXPECT_LE(world.status(0).pose.position.x, 0.7 + 1e-9);
 }
 

@@ -37,7 +37,7 @@ struct Odometry {
 };
 
 /// How a command ended.
-enum class Outcome { Done, Stall, Replaced, Stopped };
+enum class Outcome { Done, Stall, Unreached, Replaced, Stopped };
 
 /// The end of a command with an id.
 struct CommandEnd {

@@ -161,7 +161,7 @@ void World::Data::apply() {
         if (Pilot& pilot = pilots[mover]; pilot.isOn()) {
             continue;
         } else if (pilot.state() != Pilot::State::Off) {
-            end(mover, pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Stall);
+            end(mover, pilot.state() == Pilot::State::Arrived ? Outcome::Done : Outcome::Unreached);
             pilot.turnOff();
         } else if (states[mover].stall) {
             end(mover, Outcome::Stall);

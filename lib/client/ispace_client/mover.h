@@ -51,7 +51,7 @@ struct Motion {
 struct End {
     int id = 0;
     bool done = false;   ///< it got where it was to go
-    std::string reason;  ///< otherwise: stall, replaced, stopped or deleted
+    std::string reason;  ///< otherwise: stall, unreached, replaced, stopped or deleted
     double time = 0;     ///< simulated seconds
 };
 

@@ -63,7 +63,7 @@ class End:
 
     id: int
     done: bool  #: it got where it was to go
-    reason: str  #: otherwise: stall, replaced, stopped or deleted
+    reason: str  #: otherwise: stall, unreached, replaced, stopped or deleted
     time: float  #: simulated seconds
 
 
