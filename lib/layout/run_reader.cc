@@ -217,17 +217,21 @@ bool MomentFile::read(std::vector<RunState>& states) {
     return is_whole;
 }
 
-/// The collisions of a table of events, t,kind,id,other,…
-class CollisionFile {
+/// The collisions of a table of events, t,kind,id,other,…, or what else is of one kind.
+class EventFile {
   public:
-    CollisionFile(std::string name, LineSource lines)
-        : name_(std::move(name)), lines_(std::move(lines)) {
+    EventFile(std::string name, LineSource lines, std::string_view kind = "collision")
+        : name_(std::move(name)), lines_(std::move(lines)), kind_(kind) {
         const auto head = lines_.next();
         if (head && !head->starts_with("t,kind,id,other"))
             throw FormatError({name_, 1, 0, "no events of a run: wanted t,kind,id,other,…"});
         readLine();
     }
 
+    /// When the next one is.
+    [[nodiscard]] std::optional<double> upcoming() const {
+        return row_ ? std::optional(row_->first) : std::nullopt;
+    }
     /// Those up to a time that were not read yet.
     void read(double time, std::vector<RunCollision>& collisions) {
         for (; row_ && row_->first <= time; readLine())
@@ -239,7 +243,7 @@ class CollisionFile {
         row_.reset();
         while (const auto line = lines_.next()) {
             splitFields(*line, fields_);
-            if (fields_.size() < 4 || fields_[1] != "collision") continue;
+            if (fields_.size() < 4 || fields_[1] != kind_) continue;
             const auto time = parseDouble(fields_[0]);
             if (!time)
                 throw FormatError({name_, lines_.number(), 0,
@@ -251,6 +255,7 @@ class CollisionFile {
 
     std::string name_;
     LineSource lines_;
+    std::string_view kind_;
     std::vector<std::string_view> fields_;
     std::optional<std::pair<double, RunCollision>> row_;  // read ahead
 };
@@ -280,7 +285,7 @@ struct RunReader::Data {
     std::string name;
     std::vector<RunMember> who;
     std::vector<MomentFile> files;
-    std::optional<CollisionFile> events;
+    std::optional<EventFile> events;
     std::vector<RunState> states;
     std::vector<RunCollision> collisions;
     double time = 0;
@@ -357,6 +362,12 @@ std::optional<double> recordedStep(const std::string& folder) {
                            "no length of a step: wanted the columns dt,control_interval,steps, as "
                            "`simrun --record` writes"});
     return step;
+}
+
+std::optional<double> recordedChange(const std::string& folder) {
+    const std::string name = RecordedFiles(folder).events;
+    if (!exists(name)) return std::nullopt;
+    return EventFile(name, LineSource(InputFile(name), ""), "change").upcoming();
 }
 
 }  // namespace ispace

@@ -82,4 +82,8 @@ class RunReader {
 /// none. \throws FormatError if it says something else
 std::optional<double> recordedStep(const std::string& folder);
 
+/// When clients first changed the world of the run, by events.csv; nothing if they did not, or
+/// without that file. \throws FormatError if it holds no events
+std::optional<double> recordedChange(const std::string& folder);
+
 }  // namespace ispace

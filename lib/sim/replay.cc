@@ -36,16 +36,21 @@ RobotStatus statusOf(const RunState& state) {
 Replay::Replay(const std::string& folder) : reader_(folder) {
     if (!reader_.next())
         throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
+    if (const auto change = recordedChange(folder)) changed_ = timeOf(*change);
     const SimTime begin = timeOf(reader_.time());
-    start_.assign(reader_.states().begin(), reader_.states().end());
-    is_ahead_ = reader_.next();
-    if (const auto step = recordedStep(folder))
+    const auto step = recordedStep(folder);
+    // Without a moment of the start nobody was there then.
+    const bool is_late = begin > SimTime(0) && step && isEmptyAt(SimTime(0));
+    if (!is_late) start_.assign(reader_.states().begin(), reader_.states().end());
+    is_ahead_ = is_late || reader_.next();
+    if (step)
         step_ = timeOf(*step);
     else if (is_ahead_)
         step_ = timeOf(reader_.time()) - begin;
     else
         step_ = std::chrono::milliseconds(5);
-    if (begin != SimTime(0) || step_ < World::kShortestStep || step_ > World::kLongestStep)
+    if ((begin != SimTime(0) && !is_late) || step_ < World::kShortestStep ||
+        step_ > World::kLongestStep)
         throw FormatError({reader_.name(), 0, 0,
                            "begins at t=" + formatSimTime(begin) + " with steps of " +
                                formatSimTime(step_) + " s, wanted 0 and from " +
@@ -71,6 +76,13 @@ void Replay::placeAtStart(Scene& scene) const {
         places.emplace(member.id, state.pose);
     }
     keepInPlace(scene, ids, places);
+}
+
+/// True if the record may lack the moment at a time because nobody was in the world. A change takes
+/// effect before the next step.
+bool Replay::isEmptyAt(SimTime time) const {
+    const SimTime next = timeOf(reader_.time());
+    return changed_ && *changed_ <= next && time < next;
 }
 
 /// Indices shift when a world changes, and members are added while the record is read.
@@ -101,13 +113,19 @@ void Replay::collide(const World& world) {
 bool Replay::step(World& world) {
     if (!is_ahead_) return false;
     const SimTime time = timeOf(reader_.time());
-    if (time != world.time() + step_)
-        throw FormatError({reader_.name(), 0, 0,
-                           "goes on at t=" + formatSimTime(time) +
-                               ", wanted t=" + formatSimTime(world.time() + step_)});
+    const SimTime now = world.time() + step_;
+    const bool is_empty = isEmptyAt(now) && (time - now) % step_ == SimTime(0);
+    if (time != now && !is_empty)
+        throw FormatError(
+            {reader_.name(), 0, 0,
+             "goes on at t=" + formatSimTime(time) + ", wanted t=" + formatSimTime(now)});
     find(world);
     states_.resize(world.movers().size());
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
+    if (is_empty) {
+        world.stepTo(states_, {});
+        return true;
+    }
     for (const RunState& state : reader_.states())
         if (const auto mover = movers_[state.who]) states_[*mover] = statusOf(state);
     collide(world);

@@ -29,18 +29,23 @@ class Replay {
     /// Collisions are those of events.csv; without it, who begins to stall has run into
     /// "something". Takes the next step of a world that has taken as many steps; false, and nothing
     /// done, at the end of the record. Who is not in the world is passed over, who is not in the
-    /// record stays. \throws FormatError as RunReader, and for a moment that is not one step after
-    /// the last
+    /// record stays; when nobody was in the world, for which the record has no moments, all stay.
+    /// \throws FormatError as RunReader, and for a moment that is not one step after the last,
+    /// unless the run had changed its world
     bool step(World& world);
+    /// When clients first changed the world of the run, which the replay does not do.
+    [[nodiscard]] const std::optional<SimTime>& changedAt() const { return changed_; }
     /// True if the record ends with a moment that is not whole; known at its end.
     [[nodiscard]] bool isCut() const { return reader_.isCut(); }
 
   private:
     void find(const World& world);
     void collide(const World& world);
+    [[nodiscard]] bool isEmptyAt(SimTime time) const;
 
     RunReader reader_;
     SimTime step_{};
+    std::optional<SimTime> changed_;
     std::vector<RunState> start_;
     bool is_ahead_ = false;            // the reader's moment is that of the next step
     std::vector<RobotStatus> states_;  // of all movers of the world

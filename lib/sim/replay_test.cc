@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "layout/test_layout.h"
 #include "sim/simulation.h"
 
@@ -178,6 +179,45 @@ TEST_F(ReplayTest, RefusesWhatIsNoRun) {
     EXPECT_EQ(errorWith("0,r1,0,0,0\n0.1,r1,0,0,0\n0.2,r1,0\n").substr(0, name.size() + 8),
               name + ":4: erro");
     EXPECT_EQ(errorWith("0,r1,0,0,0\n0.1,r1,0,0,0\n0.2,r1,0"), "");
+}
+
+TEST_F(ReplayTest, PassesTimesWithoutAnybody) {
+    const std::string header = "t,id,x,y,heading_deg\n",
+                      events = "t,kind,id,other,x,y,value,text\n";
+    writeAll(path("robots.csv"),
+             header + "0,r1,0,0,0\n0.02,r1,0.01,0,0\n0.1,r1,0.5,0,0\n0.12,r1,0.51,0,0\n");
+    writeAll(path("events.csv"), events + "0.02,mark,,,,,,none\n");
+    EXPECT_EQ(errorOf(folder_, scene_),
+              path("robots.csv") + ": error: goes on at t=0.1, wanted t=0.04");
+    writeAll(path("events.csv"),
+             events + "0.02,change,,,,,,DELETE id=r1\n0.1,change,,,,,,ADD robot id=r1\n");
+    Replay replay(folder_);
+    EXPECT_EQ(replay.changedAt(), kStep);
+    World world(scene_, kStep);
+    std::string way;
+    while (replay.step(world)) way += formatDouble(world.status(0).pose.position.x) + ' ';
+    EXPECT_EQ(way, "0.01 0.01 0.01 0.01 0.5 0.51 ");
+    EXPECT_EQ(world.steps(), 6);
+
+    // Off the grid of steps it is no such time.
+    writeAll(path("robots.csv"), header + "0,r1,0,0,0\n0.02,r1,0,0,0\n0.09,r1,0,0,0\n");
+    EXPECT_EQ(errorOf(folder_, scene_),
+              path("robots.csv") + ": error: goes on at t=0.09, wanted t=0.04");
+}
+
+TEST_F(ReplayTest, BeginsWithNobody) {
+    writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0.06,r1,1,0,0\n0.08,r1,1.01,0,0\n");
+    writeAll(path("info.csv"), "dt,control_interval,steps\n0.02,0.1,4\n");
+    EXPECT_NE(errorOf(folder_, scene_), "");
+    writeAll(path("events.csv"),
+             "t,kind,id,other,x,y,value,text\n0.06,change,,,,,,ADD robot id=r1\n");
+    Replay replay(folder_);
+    replay.placeAtStart(scene_);
+    EXPECT_EQ(scene_.robots[0].pose.position, (Point2{0, 0}));
+    World world(scene_, kStep);
+    std::string way;
+    while (replay.step(world)) way += formatDouble(world.status(0).pose.position.x) + ' ';
+    EXPECT_EQ(way, "0 0 1 1.01 ");
 }
 
 TEST_F(ReplayTest, PassesOverWhoIsGone) {

@@ -106,11 +106,13 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
 }
 
 /// The last word on a run: what it was expected to do.
-void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
-              const SceneInput& input) {
+void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
+              std::optional<OutputFile>& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
-    if (!options.junit.empty())
-        writeAll(options.junit, junitXml(verdicts, baseName(input.environment_operand)));
+    if (junit) {
+        junit->write(junitXml(verdicts, baseName(input.environment_operand)));
+        junit->commit();
+    }
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     if (!verdicts.empty())
         talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
@@ -168,6 +170,7 @@ void simrun(const SimrunCommand& command) {
     SceneInput input = readInput(options);
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common);
+    warnOfOutside(input.scene, options.common);
     std::optional<Replay> replay = openReplay(options, input.scene);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
@@ -175,6 +178,7 @@ void simrun(const SimrunCommand& command) {
     if (noise) warnOfNoNoise(input.scene, options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
                 {.seed = options.common.seed, .noise = noise});
+    if (replay) warnOfChanges(*replay, options.common);
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
     if (replay) simulation.replay(*replay, options.holds);
@@ -195,6 +199,9 @@ void simrun(const SimrunCommand& command) {
         port_file.emplace(options.port_file);
         port_file->write(std::to_string(server.port()) + '\n');
     }
+    // Before the run, so that none is lost for want of a folder.
+    std::optional<OutputFile> junit;
+    if (!options.junit.empty()) junit.emplace(options.junit);
     const auto record = recordOf(simulation, options, input.scene, historyOf(command, input));
     const auto progress = progressOf(simulation, options);
     announce(server, web);
@@ -205,7 +212,7 @@ void simrun(const SimrunCommand& command) {
     report(simulation, options);
     if (replay && replay->isCut())
         warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
-    conclude(judge, options, input);
+    conclude(judge, options, input, junit);
 }
 
 }  // namespace

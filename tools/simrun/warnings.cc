@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/warnings.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
 #include "base/number.h"
+#include "env/point_location.h"
 #include "layout/scene.h"
 #include "sensor/kind.h"
 
@@ -37,6 +39,29 @@ void warnOfNoNoise(const Scene& scene, const CommonOptions& options) {
         if (robot.model.noise != MotionNoise()) return;
     warn(options, kTool,
          "--noise changes nothing: no robot has motion_noise, odometry_noise or start_noise");
+}
+
+void warnOfOutside(const Scene& scene, const CommonOptions& options) {
+    const RegionIndex& indoor = scene.environment.indoorIndex();
+    const auto look = [&](const std::string& id, const Pose2& pose, const Course& course) {
+        const auto isOutside = [&indoor](Point2 p) { return indoor.locate(p) == Side::Outside; };
+        const auto place = [](Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); };
+        if (isOutside(pose.position))
+            return warn(options, kTool, id + " stands outside the room at " + place(pose.position));
+        const auto lost = std::find_if(course.path.begin(), course.path.end(), isOutside);
+        if (lost != course.path.end())
+            warn(options, kTool, "the path of " + id + " leads out of the room to " + place(*lost));
+    };
+    for (const PlacedRobot& robot : scene.robots) look(robot.id, robot.pose, robot.course);
+    for (const PlacedPerson& person : scene.people) look(person.id, person.pose, person.course);
+}
+
+void warnOfChanges(const Replay& replay, const CommonOptions& options) {
+    if (const auto& time = replay.changedAt())
+        warn(options, kTool,
+             "the world of the run was changed at t=" + formatMilliseconds(*time) +
+                 ": it is replayed in the scene of its start, and who was taken out stays where "
+                 "it was last");
 }
 
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {

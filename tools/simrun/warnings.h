@@ -3,6 +3,7 @@
 
 #include "cli/common_options.h"
 #include "layout/scene.h"
+#include "sim/replay.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -23,6 +24,12 @@ class CollisionLog {
 
 /// Says so if no robot has noise to take part.
 void warnOfNoNoise(const Scene& scene, const CommonOptions& options);
+
+/// Says which robots and people begin outside the room, and whose path leads there.
+void warnOfOutside(const Scene& scene, const CommonOptions& options);
+
+/// Says that a replay goes on in the scene of the start of a run that changed its world.
+void warnOfChanges(const Replay& replay, const CommonOptions& options);
 
 /// Says what takes no part: sensors without a place, and what is not simulated yet.
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options);
