@@ -83,7 +83,7 @@ class ClientNames {
     }
     /// Calls read() with the fence around the folder. \throws FormatError, UsageError
     template <typename Read>
-    auto guarded(Read read) const {
+    auto guarded(Read read) const {  // NOLINT(modernize-use-nodiscard): it may give nothing
         const ReadFence fence({folder_, shareFolder() + "/devices"});
         try {
             return read();

@@ -265,14 +265,14 @@ bool exists(const std::string& file) { return std::filesystem::exists(file); }
 }  // namespace
 
 RecordedFiles::RecordedFiles(const std::string& folder) {
-    const auto inFolder = [&folder](const char* file) {
+    const auto in_folder = [&folder](const char* file) {
         return (std::filesystem::path(folder) / file).string();
     };
-    robots = inFolder("robots.csv");
-    people = inFolder("people.csv");
-    events = inFolder("events.csv");
-    info = inFolder("info.csv");
-    scene = inFolder("scene.env");
+    robots = in_folder("robots.csv");
+    people = in_folder("people.csv");
+    events = in_folder("events.csv");
+    info = in_folder("info.csv");
+    scene = in_folder("scene.env");
 }
 
 struct RunReader::Data {

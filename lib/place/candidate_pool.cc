@@ -191,7 +191,8 @@ struct CandidatePool::Data {
                 const Pose3 mount{{0, 0, level.height}, {}, tilt, kind.record.angle("roll")};
                 worlds.prepare(mount);
                 std::optional<CandidateViews::ByBeams> by_beams;
-                if (options.beam_step) by_beams.emplace(worlds, *options.beam_step);
+                if (options.beam_step)
+                    by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
                 const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted,
                                            by_beams);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
