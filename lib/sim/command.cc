@@ -95,7 +95,7 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
     return {Command{facts.verb, *value + 0.0}, {}};
 }
 
-ParsedCommand refusePath(std::string message) {
+ParsedCommand refusePath(const std::string& message) {
     return refuse(CommandError::Kind::Syntax, join({message, ", like ", kPathExample}));
 }
 
@@ -150,7 +150,7 @@ ParsedCommand parsePath(std::span<const Piece> words) {
     Command command = pathCommand({.path = *places});
     for (const Piece& word : words.subspan(1))
         if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
-            return refusePath(std::move(wrong));
+            return refusePath(wrong);
     return {std::move(command), {}};
 }
 

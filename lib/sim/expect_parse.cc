@@ -19,9 +19,9 @@ using State = Expectation::State;
 using When = Expectation::When;
 
 const std::vector<std::string>& stateWords() {
-    static const std::vector<std::string> kWords = {"within",  "in",    "seen",   "unseen",
-                                                    "stalled", "still", "faster", "slower"};
-    return kWords;
+    static const std::vector<std::string> words = {"within",  "in",    "seen",   "unseen",
+                                                   "stalled", "still", "faster", "slower"};
+    return words;
 }
 
 /// Reads the words of a sentence one after another.

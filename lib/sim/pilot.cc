@@ -139,7 +139,9 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
     blocked_since_ = kNever;
     const bool is_direct = free.direction == direct;
     const double speed = speed_ * std::min(1.0, free.time / std::min(1.0, needed));
-    go(motion, free.direction, speed, is_direct && stops ? left : kForever);
+    double length = kForever;
+    if (is_direct && stops) length = left;
+    go(motion, free.direction, speed, length);
 }
 
 /// Waits a while, then tries a way aside.

@@ -242,6 +242,7 @@ void Recorder::Data::flush() {
 
 std::vector<std::string> Recorder::growingFilesIn(const std::string& folder) {
     std::vector<std::string> files;
+    files.reserve(kInfo);
     for (int i = 0; i < kInfo; ++i) files.push_back(pathIn(folder, kNames[static_cast<File>(i)]));
     return files;
 }

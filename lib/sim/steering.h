@@ -53,7 +53,7 @@ class Steering {
     void findNeighbours(const Surroundings& around, std::size_t mover);
     void findLines(const Obstacles& obstacles, double clearance);
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
-    [[nodiscard]] double untilLine(Vec2 velocity, double share) const;
+    [[nodiscard]] double untilLine(Vec2 velocity, double most) const;
     [[nodiscard]] double freeTime(Angle direction, double share) const;
 
     struct Line {

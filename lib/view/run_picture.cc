@@ -171,8 +171,9 @@ void RunPicture::drawLegend(Picture& picture) const {
         std::max(1.0, std::floor((options_.width / em_ - 2.8) / kLegendColumn)));
     const std::size_t named = std::min(members_.size(), kMaxNamed);
     for (std::size_t i = 0; i < std::min(members_.size(), kMaxNamed + 1); ++i) {
-        const Point2 at{(1.4 + kLegendColumn * static_cast<double>(i % columns)) * em_,
-                        plan_bottom_ + (4.0 + 1.5 * static_cast<double>(i / columns)) * em_};
+        const std::size_t column = i % columns, line = i / columns;
+        const Point2 at{(1.4 + kLegendColumn * static_cast<double>(column)) * em_,
+                        plan_bottom_ + (4.0 + 1.5 * static_cast<double>(line)) * em_};
         if (i == named) {
             picture.text(at, "… and " + std::to_string(members_.size() - named) + " more", style);
             break;
