@@ -39,11 +39,11 @@ std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
     const DrawingOptions& film = options.drawing;
     int count = 0;
     bool has_moment = false;
-    const auto timeOf = [&](int frame) {
+    const auto time_of = [&](int frame) {
         return seconds(options.from) + frame * film.speed / film.fps;
     };
     readRecord(options, picture, [&](double time) {
-        for (; has_moment && timeOf(count) < time - kRounding; ++count)
+        for (; has_moment && time_of(count) < time - kRounding; ++count)
             write(picture.frame(), count);
         has_moment = true;
     });

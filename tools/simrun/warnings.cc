@@ -44,11 +44,11 @@ void warnOfNoNoise(const Scene& scene, const CommonOptions& options) {
 void warnOfOutside(const Scene& scene, const CommonOptions& options) {
     const RegionIndex& indoor = scene.environment.indoorIndex();
     const auto look = [&](const std::string& id, const Pose2& pose, const Course& course) {
-        const auto isOutside = [&indoor](Point2 p) { return indoor.locate(p) == Side::Outside; };
+        const auto is_outside = [&indoor](Point2 p) { return indoor.locate(p) == Side::Outside; };
         const auto place = [](Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); };
-        if (isOutside(pose.position))
+        if (is_outside(pose.position))
             return warn(options, kTool, id + " stands outside the room at " + place(pose.position));
-        const auto lost = std::find_if(course.path.begin(), course.path.end(), isOutside);
+        const auto lost = std::find_if(course.path.begin(), course.path.end(), is_outside);
         if (lost != course.path.end())
             warn(options, kTool, "the path of " + id + " leads out of the room to " + place(*lost));
     };
