@@ -15,6 +15,7 @@
 
 #include "base/number.h"
 #include "env/body.h"
+#include "sense/reading_text.h"
 #include "sense/sensors.h"
 #include "sense/watch.h"
 #include "sim/world.h"
@@ -34,20 +35,6 @@ constexpr std::array<std::string_view, kEventKinds> kNames = {
 
 bool isIn(const Box2& box, Point2 p) {
     return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
-}
-
-/// `text` as a field of a table: quoted where a comma, a quote or a new line is in it.
-void appendField(std::string& out, std::string_view text) {
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-        out += text;
-        return;
-    }
-    out += '"';
-    for (const char c : text) {
-        if (c == '"') out += '"';
-        out += c;
-    }
-    out += '"';
 }
 
 }  // namespace
@@ -80,7 +67,7 @@ void appendEventRow(std::string& out, const Event& event) {
                            event.kind == EventKind::Seen;
     if (has_value) out += std::to_string(event.value);
     out += ',';
-    appendField(out, event.text);
+    appendCsvField(out, event.text);
     out += '\n';
 }
 
