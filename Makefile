@@ -12,7 +12,7 @@ configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo check races bench fuzz format lint install clean
+.PHONY: all help deps demo experiments check races bench fuzz format lint install clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -21,6 +21,7 @@ help:
 	@echo "make             build the tools (build/bin), tests and benchmarks"
 	@echo "make deps        install the Debian packages of packages.txt"
 	@echo "make demo        deps, build, and run the pipeline on a furnished room"
+	@echo "make experiments deps, build, and run the thesis' experiments: one report beside its figures"
 	@echo "make check       deps, build, formatting, sanitizers, races, all tests"
 	@echo "make races       deps, build with ThreadSanitizer, tests of what runs in threads"
 	@echo "make bench       deps, build, benchmarks"
@@ -38,6 +39,12 @@ demo:
 	@$(MAKE) --no-print-directory $(BUILD)/configured
 	$(call build,$(BUILD)) --target tools manual
 	@PATH="$$PWD/$(BUILD)/bin:$$PATH" share/examples/demo.sh $(BUILD)/demo
+
+experiments:
+	@.ci/deps build experiments
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools examples
+	@python3 share/experiments/run.py --build $(BUILD) -o $(BUILD)/experiments
 
 check:
 	@.ci/deps build check

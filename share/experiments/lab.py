@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an experiment works with: the tools, a folder of its own, and the sheet that goes into the report."""
+
+import contextlib
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+TOOLS = ("envc", "arrange", "scan", "coverage", "simrun")
+SHARE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+PATIENCE = 300  # seconds; far more than any command takes
+
+
+class ToolFailed(Exception):
+    """A command did not do what it was to do."""
+
+
+class Port(int):
+    """A port that the system chose; commands are shown with one that a reader can type."""
+
+    SHOWN = 7001
+
+
+class Lab:
+    """Commands run in the lab's folder, with the tools of the build in PATH. What is shown of them is
+    what a reader types there."""
+
+    def __init__(self, name, title, source, build, folder, quick=False):
+        self.name, self.title, self.source = name, title, source
+        self.build, self.folder, self.quick = build, folder, quick
+        self.parts = []     # of the report, in order: ("text", …), ("picture", …), ("rows", [Row])
+        self.commands = []  # as typed
+        self.cited, self.assumed, self.fits = [], [], []
+        self.failures = []
+        self.timings = []   # (what, seconds of wall time), for timings.csv
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder)
+
+    # ---- Files
+
+    def path(self, name):
+        """The full name of a file of the folder."""
+        return os.path.join(self.folder, name)
+
+    def scene(self, *names):
+        """Copies scenes of share/scenes into the folder, where commands name them without a path."""
+        for name in names:
+            shutil.copy(os.path.join(SHARE, "scenes", name), self.folder)
+        self.command("cp " + " ".join(f"$ISPACE/share/scenes/{name}" for name in names) + " .")
+
+    def write(self, name, text):
+        """Writes a file that is shown among the commands as typed."""
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        self.command(f"cat > {name} <<'END'\n{text.rstrip()}\nEND")
+
+    def read(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    # ---- Commands
+
+    def tool(self, name, *args, stdout=None, shown=True, statuses=(0,)):
+        """Runs a program of build/bin or build/examples, or one in PATH, and returns its standard output,
+        which also goes to the file `stdout`, if given; standard error is in `self.talk`."""
+        line = _line(name, args)
+        if shown:
+            self.command(line + (f" > {stdout}" if stdout else ""))
+        start = time.monotonic()
+        try:
+            done = subprocess.run([self._program(name), *map(_argument, args)], cwd=self.folder,
+                                  capture_output=True, text=True, env=self._environment(),
+                                  check=False, timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise ToolFailed(f"{line}: not done after {PATIENCE} s") from None
+        self.timings.append((line, time.monotonic() - start))
+        self.talk = done.stderr
+        if done.returncode not in statuses:
+            raise ToolFailed(f"{line}: status {done.returncode}: {_last_line(done.stderr)}")
+        if stdout:
+            with open(self.path(stdout), "w", encoding="utf-8") as file:
+                file.write(done.stdout)
+        return done.stdout
+
+    @contextlib.contextmanager
+    def serve(self, *args, shown=True):
+        """A simrun with these arguments that serves clients on a port (the value, for tool()) as long as
+        the block lasts. With --clock step what clients get does not depend on the machine."""
+        if shown:
+            self.command(_line("simrun", [*args, "--listen", f"127.0.0.1:{Port.SHOWN}"]) + " &")
+        with subprocess.Popen([self._program("simrun"), *map(_argument, args), "-q", "--listen",
+                               "127.0.0.1:0"], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True,
+                              env=self._environment()) as server:
+            first = server.stdout.readline()
+            if not first:
+                raise ToolFailed(f"{_line('simrun', args)}: {_last_line(server.stderr.read())}")
+            try:
+                yield Port(json.loads(first)["listen"].rsplit(":", 1)[1])
+            finally:
+                server.terminate()
+                server.communicate(timeout=PATIENCE)
+
+    def json(self, name, *args, shown=True):
+        """The report of a tool as a value."""
+        return json.loads(self.tool(name, *args, "--json", shown=shown))
+
+    def seeds(self, count, few=3):
+        """0, 1, … of a run with `count` seeds; `few` in a quick one."""
+        return range(few if self.quick else count)
+
+    def each_seed(self, seeds, name, *args):
+        """The standard output of a tool for each seed, shown as a loop of the shell."""
+        self.command(f"for seed in $(seq {seeds[0]} {seeds[-1]}); do {_line(name, args)} "
+                     "--seed $seed; done")
+        return [self.tool(name, *args, "--seed", seed, shown=False) for seed in seeds]
+
+    def command(self, text):
+        """A command as it is shown, once."""
+        if text not in self.commands:
+            self.commands.append(text)
+
+    def _program(self, name):
+        if name == "python3":
+            return sys.executable
+        path = shutil.which(name, path=self._environment()["PATH"])
+        if not path:
+            raise ToolFailed(f"no program {name} in {self.build}/bin, {self.build}/examples or PATH")
+        return path
+
+    def _environment(self):
+        folders = [os.path.join(self.build, "bin"), os.path.join(self.build, "examples"),
+                   os.environ.get("PATH", os.defpath)]
+        source = os.path.dirname(SHARE)
+        return {**os.environ, "PATH": os.pathsep.join(folders), "LC_ALL": "C", "ISPACE": source,
+                "PYTHONPATH": os.path.join(source, "lib", "client", "python"),
+                "PYTHONDONTWRITEBYTECODE": "1"}
+
+    # ---- The sheet
+
+    def text(self, paragraph):
+        self.parts.append(("text", paragraph))
+
+    def row(self, what, thesis, ours, unit="", bound=None, note="", digits=2):
+        """A line of the table: numbers, or words where there are none (None: nothing is said). `bound` is
+        (least, most), what ours must keep to; `note` says in a sentence why they differ."""
+        if not self.parts or self.parts[-1][0] != "rows":
+            self.parts.append(("rows", []))
+        kept = bound is None or bound[0] <= ours <= bound[1]
+        if not kept:
+            self.fail(f"{what}: {ours:.6g}{_gap(unit)} is not within {_interval(bound)}{_gap(unit)}")
+        self.parts[-1][1].append({"what": what, "thesis": thesis, "ours": ours, "unit": unit,
+                                  "bound": bound, "kept": kept, "note": note, "digits": digits})
+
+    def picture(self, path, caption):
+        """A PNG, JPEG or SVG of the folder; pictures one after another stand side by side."""
+        with open(self.path(path), "rb") as file:
+            self.parts.append(("picture", {"name": path, "bytes": file.read(), "caption": caption}))
+
+    def svg(self, name, text, caption):
+        """A drawing of the experiment's own, kept in the folder as well."""
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        self.picture(name, caption)
+
+    def given(self, what, source):
+        """A figure or a parameter of the thesis, and where it stands there."""
+        self.cited.append((what, source))
+
+    def assumption(self, text):
+        """What the thesis does not say, and is ours."""
+        self.assumed.append(text)
+
+    def fitted(self, text):
+        """What was chosen so that a figure of the thesis comes out."""
+        self.fits.append(text)
+
+    def require(self, holds, what):
+        """A claim that makes the experiment fail if it does not hold."""
+        if not holds:
+            self.fail(what)
+
+    def fail(self, why):
+        self.failures.append(why)
+
+
+def _argument(value):
+    return str(int(value)) if isinstance(value, Port) else str(value)
+
+
+def _line(name, args):
+    """A command as it is typed."""
+    return shlex.join([name, *(str(Port.SHOWN) if isinstance(arg, Port) else str(arg)
+                               for arg in args)])
+
+
+def _last_line(text):
+    return (text.strip().splitlines() or ["nothing said"])[-1]
+
+
+def _gap(unit):
+    return f" {unit}" if unit else ""
+
+
+def _interval(bound):
+    return f"{bound[0]:g} … {bound[1]:g}"
