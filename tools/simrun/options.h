@@ -47,6 +47,10 @@ struct SimrunOptions {
     ServerLimits limits;
 };
 
+/// The value of an option that is a time. \throws UsageError unless it is one from `least` to
+/// `most`
+SimTime timeOption(const std::string& text, SimTime least, SimTime most);
+
 class SimrunCommand : public ToolCommand<SimrunOptions> {
   public:
     /// Opens no file. \throws UsageError, TextRequested
@@ -61,6 +65,7 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void takeDrawing();
     void takeExpectations();
     void declareServer();
+    void takeServer();
 
     std::vector<std::string> expected_;
     std::string to_;
