@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/program.h"
 #include "sense/point_cloud.h"
 #include "sense/reading.h"
+#include "sense/reading_picture.h"
 
 namespace ispace {
 
@@ -50,6 +52,7 @@ struct FormatOptions {
     Encoding encoding = Encoding::Binary;          ///< of pcd and ply
     double depth_per_metre = 1000;                 ///< of png
     bool color = true;                             ///< of png: a picture for people, too
+    std::optional<DepthSpectrum> spectrum;         ///< of that picture
     int map_pixels = 800;                          ///< of png: side of an obstacle map
     /// Of png and jpeg: pictures have these files beside them; the table of labels needs the scene.
     bool labels = false, depths = false;

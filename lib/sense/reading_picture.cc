@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "base/number.h"
@@ -51,8 +52,13 @@ std::uint32_t pixelOf(Color color) {
 /// most of what it sees is near.
 class Scale {
   public:
-    explicit Scale(const Ranger& ranger)
+    Scale(const Ranger& ranger, std::optional<DepthSpectrum> spectrum)
         : far_(ranger.ambiguity > 0 ? ranger.ambiguity : ranger.max_range) {
+        if (spectrum) {
+            std::tie(near_, far_) = std::minmax(spectrum->warm, spectrum->cold);
+            near_is_cold_ = spectrum->warm > spectrum->cold;
+            return;
+        }
         constexpr double kRoom = 20, kSpan = 200;
         is_ratio_ = far_ > kRoom;
         near_ = ranger.ambiguity > 0 ? 0 : ranger.min_range;
@@ -66,9 +72,10 @@ class Scale {
                                        : (depth - near_) / (far_ - near_);
         return std::clamp(share, 0.0, 1.0);
     }
-    [[nodiscard]] static std::uint32_t color(double share) {
+    [[nodiscard]] std::uint32_t color(double share) const {
         // The ends of the map are left out: its darkest blue looks like no return.
         constexpr double kColdest = 0.07, kWarmest = 0.96;
+        if (near_is_cold_) share = 1 - share;
         return pixelOf(turboColor(kWarmest + (kColdest - kWarmest) * share));
     }
     /// Round depths for an axis with room for so many labels.
@@ -89,7 +96,7 @@ class Scale {
 
   private:
     double near_ = 0, far_;
-    bool is_ratio_ = false;
+    bool is_ratio_ = false, near_is_cold_ = false;
 };
 
 /// How large a pixel of the ranger is on the page; `stride`: only each so-manieth is shown.
@@ -121,7 +128,7 @@ Image colored(const Ranger& ranger, const DepthFrame& frame, const Scale& scale,
             &frame.depths[static_cast<std::size_t>(row) * static_cast<std::size_t>(ranger.columns)];
         for (int column = 0; column < ranger.columns; column += stride) {
             const double depth = depths[column];
-            image.pixels.push_back(std::isfinite(depth) ? Scale::color(scale.shareOf(depth))
+            image.pixels.push_back(std::isfinite(depth) ? scale.color(scale.shareOf(depth))
                                                         : kNoReturn);
         }
     }
@@ -145,7 +152,7 @@ void drawLegend(Picture& picture, const Scale& scale, double left, double top, d
     Image bar{1, steps, {}};
     bar.pixels.reserve(static_cast<std::size_t>(steps));
     for (int i = 0; i < steps; ++i)  // near at the bottom
-        bar.pixels.push_back(Scale::color((steps - i - 0.5) / steps));
+        bar.pixels.push_back(scale.color((steps - i - 0.5) / steps));
     picture.image({left, top}, std::move(bar), kBarWidth, 1);
     const Stroke edge{kInk, 1};
     const auto frame = [&](double from, double to) {
@@ -172,9 +179,10 @@ void drawLegend(Picture& picture, const Scale& scale, double left, double top, d
 
 }  // namespace
 
-std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame) {
+std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame,
+                          std::optional<DepthSpectrum> spectrum) {
     const Ranger& ranger = sensor.as<Ranger>();
-    const Scale scale(ranger);
+    const Scale scale(ranger, spectrum);
     const Zoom zoom(ranger);
     Image image = colored(ranger, frame, scale, zoom.stride);
     const double width = image.width * zoom.x, height = image.height * zoom.y;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,10 +12,17 @@ namespace ispace {
 
 // Readings as PNG pictures for people. Equal input gives equal bytes.
 
+/// Which depths have the colours at the ends of a scale, in metres; equal steps of depth are equal
+/// steps of colour in between, and what lies beyond an end has its colour. Either may be greater.
+struct DepthSpectrum {
+    double warm = 0, cold = 1;
+};
+
 /// Depths in colours, with a legend: near is warm, far is cold, no return is black. The scale spans
 /// the ranger's limits (of an ambiguous one: 0 to its ambiguity), so pictures of one device
-/// compare.
-std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame);
+/// compare, unless there is a spectrum.
+std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame,
+                          std::optional<DepthSpectrum> spectrum = std::nullopt);
 
 /// The returns of a scan as points on a polar grid (thesis fig. 3.24): the sensor at the centre,
 /// bearing 0 upwards, labelled rings at round distances, a spoke every 30 degrees, the field of

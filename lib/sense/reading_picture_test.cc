@@ -165,6 +165,29 @@ TEST(ColorDepth, NearIsWarmFarIsColdNoReturnIsBlack) {
     EXPECT_EQ(image.at(16 + 3 * 176, middle), 0xFFFFFFU);
 }
 
+TEST(ColorDepth, SpectrumSaysWhichDepthsAreRedAndBlue) {
+    const Sensor sensor = smallRanger(Projection::Pinhole, 176, 144);
+    DepthFrame frame;
+    frame.depths.assign(sensor.as<Ranger>().pixels(), 1.0F);
+    for (std::size_t i = 0; i < frame.depths.size(); ++i)
+        if (i % 176 >= 88) frame.depths[i] = 2.0F;
+    const auto left = [](const Image& image) {
+        return rgbAt(image, 16 + 3 * 44, image.height / 2);
+    };
+    const auto right = [](const Image& image) {
+        return rgbAt(image, 16 + 3 * 132, image.height / 2);
+    };
+    const Image usual = decodePng(colorDepthPng(sensor, frame, DepthSpectrum{1, 2}));
+    EXPECT_GT(left(usual).red, left(usual).blue + 100);
+    EXPECT_GT(right(usual).blue, right(usual).red + 50);
+    const Image turned = decodePng(colorDepthPng(sensor, frame, DepthSpectrum{2, 1}));
+    EXPECT_GT(left(turned).blue, left(turned).red + 50);
+    EXPECT_GT(right(turned).red, right(turned).blue + 100);
+    // What lies beyond the ends has their colours.
+    const Image narrow = decodePng(colorDepthPng(sensor, frame, DepthSpectrum{1.4, 1.6}));
+    EXPECT_EQ(narrow.at(16 + 3 * 44, narrow.height / 2), usual.at(16 + 3 * 44, usual.height / 2));
+}
+
 TEST(ColorDepth, OddRangersAreDrawn) {
     for (const Projection projection : {Projection::Pinhole, Projection::Spherical}) {
         for (const auto& [columns, rows] :

@@ -82,6 +82,7 @@ FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input)
             .encoding = options.encoding,
             .depth_per_metre = options.depth_per_metre,
             .color = options.color,
+            .spectrum = options.spectrum,
             .map_pixels = options.map_pixels,
             .labels = options.photo.labels,
             .depths = options.photo.depths,

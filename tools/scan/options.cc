@@ -22,6 +22,18 @@ double numberWithin(const std::string& text, double lowest, double highest) {
     return *number;
 }
 
+DepthSpectrum depthSpectrum(const std::string& text) {
+    constexpr double kMost = 1e6, kLeastSpan = 0.001;
+    const std::size_t comma = std::min(text.find(','), text.size());
+    if (comma == text.size())
+        throw UsageError("`" + text + "` is no pair WARM,COLD, such as 0.5,3");
+    const DepthSpectrum spectrum{numberWithin(text.substr(0, comma), 0, kMost),
+                                 numberWithin(text.substr(comma + 1), 0, kMost)};
+    if (std::fabs(spectrum.warm - spectrum.cold) < kLeastSpan)
+        throw UsageError("the two ends must be a millimetre apart at least");
+    return spectrum;
+}
+
 }  // namespace
 
 ScanCommand::ScanCommand(int argc, const char* const* argv)
@@ -88,6 +100,12 @@ void ScanCommand::declare() {
     line_.switchFlag("--color", "--no-color", color_,
                      "depth png: also NAME-color.png for people (default)",
                      "depth png: no such picture", Enters::History);
+    line_.parsed(
+        "--spectrum", "WARM,COLD",
+        [&o](const std::string& text) { o.spectrum = depthSpectrum(text); },
+        "NAME-color.png: depths in metres at the red and the blue end of the colours; 3,0.5 turns "
+        "them round (default: the limits of the sensor, near is red)",
+        Enters::History);
     line_.parsed(
         "--size", "W[,H]", [&o](const std::string& text) { o.picture_size = pictureSize(text); },
         "pixels of a view (default 1280,960; H follows from W), or of each side of an obstacle map "
@@ -178,7 +196,7 @@ void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
     };
     if (!reads([](const Sensor& sensor) { return sensor.is<Camera>(); }))
         for (const char* name :
-             {"--samples", "--light", "--exposure", "--sensor-bodies", "--layers", "--color"})
+             {"--samples", "--light", "--exposure", "--sensor-bodies", "--layers"})
             if (line_.given(name))
                 throw UsageError(std::string(name) +
                                  " is for pictures of cameras, and no camera is read");
@@ -186,6 +204,8 @@ void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
         options_.format == "png" && reads([](const Sensor& sensor) { return sensor.is<Ranger>(); });
     if (line_.given("--color") && !has_depths)
         throw UsageError("--color is for depth pictures of rangers, and none is written");
+    if (options_.spectrum && !(has_depths && options_.color))
+        throw UsageError("--spectrum is for depth pictures in colours, and none is written");
 }
 
 void ScanCommand::checkViews() const {

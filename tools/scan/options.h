@@ -10,6 +10,7 @@
 #include "scan/views.h"
 #include "sense/photo.h"
 #include "sense/point_cloud.h"
+#include "sense/reading_picture.h"
 
 namespace ispace {
 
@@ -27,6 +28,7 @@ struct ScanToolOptions {
     Encoding encoding = Encoding::Binary;
     double depth_per_metre = 1000;
     bool color = true;
+    std::optional<DepthSpectrum> spectrum;
     int map_pixels = 800;
     std::optional<PictureSize> picture_size;
     ViewToolOptions view;
