@@ -44,10 +44,10 @@ experiments:
 	@.ci/deps build experiments
 	@$(MAKE) --no-print-directory $(BUILD)/configured
 	$(call build,$(BUILD)) --target tools examples
-	@python3 share/experiments/run.py --build $(BUILD) -o $(BUILD)/experiments
+	@share/experiments/run.py --build $(BUILD) -o $(BUILD)/experiments
 
 check:
-	@.ci/deps build check
+	@.ci/deps build experiments check
 	@.ci/format --check
 	@$(MAKE) --no-print-directory all $(SANITIZED)/configured
 	@.ci/validator $(BUILD)/npm

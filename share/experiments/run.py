@@ -1,9 +1,9 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """run.py [--build DIR] [--only NAME]... [-o DIR]: the experiments of the thesis with the tools of a build.
 
 Writes DIR/index.html, one file that holds everything, and DIR/timings.csv, which alone differs from run
-to run; each experiment leaves its files in DIR/NAME. Needs Python's standard library alone. An
+to run; each experiment leaves its files in DIR/NAME. Needs matplotlib besides Python itself. An
 experiment is a file of this folder with
 
     TITLE = "What runs"
