@@ -12,6 +12,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cerrno>
+#include <list>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "base/number.h"
 #include "net/acceptor.h"
 #include "net/connection.h"
+#include "net/device_port.h"
 #include "net/web_server.h"
 
 namespace ispace {
@@ -72,6 +74,8 @@ struct Server::Data {
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in the order of their coming
     std::atomic<std::size_t> serving = 0;
     std::optional<WebServer> web;
+    DeviceHost host{state};
+    std::list<DevicePort> devices;
 };
 
 void Server::Data::welcome(tcp::socket socket) {
@@ -122,6 +126,7 @@ void Server::Data::stepped() {
     const WallTime end = steady_clock::now() + kTurn / 4;
     for (const auto& connection : connections)
         connection->stepped(may_be_late || steady_clock::now() < end);
+    for (DevicePort& device : devices) device.stepped();
     if (web) web->stepped();
     static_cast<void>(state.hasNews());
     has_news = false;
@@ -146,6 +151,7 @@ void Server::Data::serveClients() {
     for (const auto& connection : connections)
         if (connection->waiting()) connection->proceed();
     if (web) web->serve();
+    for (DevicePort& device : devices) device.serve(steady_clock::now());
     has_news = state.hasNews() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
@@ -201,9 +207,15 @@ void Server::Data::end() {
     stopper.close(ignored);
     for (const auto& connection : connections) connection->end();
     if (web) web->end();
+    for (DevicePort& device : devices) device.end();
     sweep();
+    const auto busy = [this] {
+        return !connections.empty() || (web && web->busy()) ||
+               std::any_of(devices.begin(), devices.end(),
+                           [](DevicePort& device) { return device.busy(); });
+    };
     const WallTime deadline = steady_clock::now() + kLastFlush;
-    while ((!connections.empty() || (web && web->busy())) && steady_clock::now() < deadline) {
+    while (busy() && steady_clock::now() < deadline) {
         io.run_one_until(deadline);
         sweep();
     }
@@ -213,6 +225,7 @@ void Server::Data::end() {
 void Server::Data::closeAll() {
     for (const auto& connection : connections) connection->close();
     if (web) web->closeAll();
+    for (DevicePort& device : devices) device.closeAll();
     sweep();
 }
 
@@ -227,6 +240,15 @@ std::uint16_t Server::port() const { return data_->acceptor.port(); }
 
 std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title) {
     return data_->web.emplace(data_->io, data_->state, endpoint, title).url();
+}
+
+std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
+                                const Endpoint& endpoint) {
+    Data& data = *data_;
+    const std::string refusal = protocol.refusal(data.simulation.world(), id);
+    if (!refusal.empty()) throw UsageError(refusal);
+    return data.devices.emplace_back(data.io, data.host, data.limits, protocol, id, endpoint)
+        .address();
 }
 
 std::size_t Server::clients() const { return data_->serving; }

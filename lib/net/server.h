@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/net: the Simulator TCP Protocol and its server. Uses sim and below; Asio inside.
+// lib/net: the Simulator TCP Protocol, its server, and the transport of device ports. Uses wire and
+// below; Asio inside.
 #pragma once
 
 #include <chrono>
@@ -7,9 +8,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "net/network.h"
 #include "sim/simulation.h"
 #include "sim/world_editor.h"
+#include "wire/wire_session.h"
 
 namespace ispace {
 
@@ -56,6 +60,9 @@ struct ServerLimits {
     RateLimit wrong_tokens = {10, 10};
     /// A robot or person stops when its client has been silent for so long; 0: never.
     std::chrono::nanoseconds watchdog{};
+    /// Who may use device ports, besides this machine.
+    std::vector<Network> allowed;
+    bool wall_clock = false;  ///< clocks of devices show wall time, not that of the world
 };
 
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world
@@ -79,6 +86,11 @@ class Server {
     /// before run(). \param title of the page \returns "http://127.0.0.1:40124/"
     /// \throws std::system_error naming the endpoint
     std::string serveWeb(const Endpoint& endpoint, const std::string& title);
+    /// Puts a robot or sensor behind the port of a real device, at an endpoint of its own. Call it
+    /// before run(). \returns "127.0.0.1:10940"
+    /// \throws UsageError if the world has no such device, std::system_error naming the endpoint
+    std::string serveDevice(const WireProtocol& protocol, const std::string& id,
+                            const Endpoint& endpoint);
     /// Number of clients served now; callable from any thread.
     [[nodiscard]] std::size_t clients() const;
 

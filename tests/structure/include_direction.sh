@@ -26,7 +26,8 @@ violations() {
         layer("io", "plan"); layer("trace", "layout"); layer("render", "trace")
         layer("sense", "render")
         layer("cover", "sense plan"); layer("view", "cover")
-        layer("place", "cover solve"); layer("sim", "sense"); layer("net", "sim plan"); layer("client", "")
+        layer("place", "cover solve"); layer("sim", "sense"); layer("wire", "sim")
+        layer("net", "wire plan"); layer("client", "")
         layer("cli", "place view net io")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
@@ -100,6 +101,7 @@ expect lib/sense/a.cc '#include "plan/plan.h"' yes
 expect lib/draw/a_test.cc '#include "record/schema.h"' yes
 expect lib/base/a.cc '#include <geom/pose.h>' yes
 expect lib/place/a.cc '#include "net/server.h"' yes
+expect lib/wire/a.cc '#include "net/server.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes
 expect lib/geom/a.cc '#include "pose.h"' yes
 expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/net, since it includes Asio.
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <memory>
+#include <string>
+
+#include "sim/simulation.h"
+#include "wire/wire_session.h"
+
+namespace ispace {
+
+/// The transport of a WireSession. Nothing blocks; handlers keep it alive until it is closed.
+///
+/// A client that leaves much unread is not read from, and one that takes nothing of it for ten
+/// seconds is closed, as is one whose machine is gone.
+class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
+  public:
+    DeviceConnection(boost::asio::ip::tcp::socket socket, std::unique_ptr<WireSession> session);
+
+    void serve() { pump(); }
+    /// The world took a step, or was changed.
+    void stepped();
+    /// Closes it if its client takes nothing any more.
+    void checkPatience(WallTime now);
+    /// Ends the session, sends what is pending and closes.
+    void end();
+    void close();
+    [[nodiscard]] bool closed() const { return !socket_.is_open(); }
+    /// True if its client has said nothing since that time, and nothing before it.
+    [[nodiscard]] bool isMute(WallTime since) const { return !heard_ && began_ <= since; }
+
+  private:
+    [[nodiscard]] std::size_t unsent() const { return out_.size() - sent_; }
+    void pump();
+    void collect();
+    void flush();
+    void listen();
+    void receive();
+    void linger();
+    void discard();
+
+    boost::asio::ip::tcp::socket socket_;
+    boost::asio::steady_timer timer_;       // of lingering
+    std::unique_ptr<WireSession> session_;  // none: the connection is about to end
+    std::string out_;
+    std::size_t sent_ = 0;  // of out_
+    WallTime began_, stuck_{};
+    bool heard_ = false;
+    bool reading_ = false, writing_ = false;  // handlers on their way
+    bool lingering_ = false;
+};
+
+}  // namespace ispace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "net/device_port.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+using std::chrono::steady_clock;
+
+/// A client that has said nothing for so long makes room for another.
+constexpr auto kMute = std::chrono::seconds(1);
+
+}  // namespace
+
+WorldEditor* DeviceHost::editor() {
+    // Nobody shows a token here.
+    const bool may = state_->mayChange() && state_->limits().token.empty();
+    return may ? &state_->editor() : nullptr;
+}
+
+std::optional<std::int64_t> DeviceHost::hold(std::string_view robot) {
+    state_->sync();
+    return state_->hold(robot);
+}
+
+bool DeviceHost::holds(std::string_view robot, std::int64_t hold) {
+    state_->sync();
+    return state_->holds(robot, hold);
+}
+
+void DeviceHost::release(std::string_view robot, std::int64_t hold) {
+    state_->sync();
+    state_->release(robot, hold);
+}
+
+std::chrono::nanoseconds DeviceHost::clock() const {
+    if (state_->limits().wall_clock) return steady_clock::now() - began_;
+    return state_->simulation().world().time();
+}
+
+DevicePort::DevicePort(boost::asio::io_context& io, DeviceHost& host, const ServerLimits& limits,
+                       const WireProtocol& protocol, std::string id, const Endpoint& endpoint)
+    : host_(&host),
+      allowed_(limits.allowed),
+      protocol_(&protocol),
+      id_(std::move(id)),
+      acceptor_(io, endpoint, [this](tcp::socket socket) { welcome(std::move(socket)); }) {}
+
+/// Who may not come, or finds no place, is closed without a word: the devices' languages have none
+/// for it.
+void DevicePort::welcome(tcp::socket socket) {
+    error_code error;
+    const auto peer = socket.remote_endpoint(error);
+    if (error || !isAllowed(allowed_, peer.address().to_string())) return;
+    sweep();
+    if (connections_.size() >= protocol_->clients && !makeRoom()) return;
+    if (!protocol_->refusal(host_->world(), id_).empty()) return;  // the world has lost it
+    connections_.push_back(
+        std::make_shared<DeviceConnection>(std::move(socket), protocol_->open(*host_, id_)));
+    connections_.back()->serve();
+    sweep();
+}
+
+bool DevicePort::makeRoom() {
+    const auto mute = std::find_if(connections_.begin(), connections_.end(),
+                                   [since = steady_clock::now() - kMute](const auto& connection) {
+                                       return connection->isMute(since);
+                                   });
+    if (mute == connections_.end()) return false;
+    (*mute)->close();
+    sweep();
+    return true;
+}
+
+void DevicePort::stepped() {
+    for (const auto& connection : connections_) connection->stepped();
+}
+
+void DevicePort::serve(WallTime now) {
+    for (const auto& connection : connections_) connection->checkPatience(now);
+    sweep();
+}
+
+void DevicePort::sweep() {
+    std::erase_if(connections_, [](const auto& connection) { return connection->closed(); });
+}
+
+bool DevicePort::busy() {
+    sweep();
+    return !connections_.empty();
+}
+
+void DevicePort::end() {
+    acceptor_.close();
+    for (const auto& connection : connections_) connection->end();
+    sweep();
+}
+
+void DevicePort::closeAll() {
+    for (const auto& connection : connections_) connection->close();
+    sweep();
+}
+
+}  // namespace ispace

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/net, since it includes Asio.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "net/acceptor.h"
+#include "net/device_connection.h"
+#include "net/server_state.h"
+#include "wire/wire_session.h"
+
+namespace ispace {
+
+/// What sessions of device ports see of a server's run.
+class DeviceHost : public WireHost {
+  public:
+    explicit DeviceHost(ServerState& state) : state_(&state) {}
+
+    [[nodiscard]] World& world() override { return state_->simulation().world(); }
+    [[nodiscard]] bool isReplay() const override { return state_->simulation().isReplay(); }
+    [[nodiscard]] WorldEditor* editor() override;
+    std::optional<std::int64_t> hold(std::string_view robot) override;
+    [[nodiscard]] bool holds(std::string_view robot, std::int64_t hold) override;
+    void release(std::string_view robot, std::int64_t hold) override;
+    [[nodiscard]] std::chrono::nanoseconds clock() const override;
+
+  private:
+    ServerState* state_;
+    WallTime began_ = std::chrono::steady_clock::now();
+};
+
+/// A robot or sensor of the running world behind the port of a real device. It is part of a Server
+/// and works in the same thread, within the same loop.
+class DevicePort {
+  public:
+    /// Listens at once. \throws std::system_error naming the endpoint
+    DevicePort(boost::asio::io_context& io, DeviceHost& host, const ServerLimits& limits,
+               const WireProtocol& protocol, std::string id, const Endpoint& endpoint);
+
+    /// "127.0.0.1:10940"
+    [[nodiscard]] std::string address() const { return acceptor_.address(); }
+    /// The world took a step, or was changed.
+    void stepped();
+    /// Between steps.
+    void serve(WallTime now);
+    void end();
+    void closeAll();
+    /// True if there is a connection still.
+    bool busy();
+
+  private:
+    void welcome(boost::asio::ip::tcp::socket socket);
+    bool makeRoom();
+    void sweep();
+
+    DeviceHost* host_;
+    std::vector<Network> allowed_;
+    const WireProtocol* protocol_;
+    std::string id_;
+    Acceptor acceptor_;
+    std::vector<std::shared_ptr<DeviceConnection>> connections_;  // in the order of their coming
+};
+
+}  // namespace ispace
