@@ -20,6 +20,31 @@ std::string robotFindings(const std::string& keys) {
     return findings([&] { return robot(keys); });
 }
 
+TEST(RobotOf, DevicesHaveTheSonarsAndBumpersOfTheReal) {
+    for (const char* model : {"pioneer-2dx", "pioneer-3dx", "pioneer-2at", "pioneer-3at"}) {
+        const RobotModel pioneer = robot(std::string("model=") + model);
+        ASSERT_EQ(pioneer.sonar.places.size(), 16U) << model;
+        EXPECT_EQ(pioneer.bumpers.size(), 10U) << model;
+        // The ring is the same on both sides, and every sonar sits within the circle.
+        for (std::size_t i = 0; i < 16; ++i) {
+            const Pose2 here = pioneer.sonar.places[i];
+            const Pose2 there = pioneer.sonar.places[i < 8 ? 7 - i : 23 - i];
+            EXPECT_EQ(here.position.x, there.position.x) << model << ' ' << i;
+            EXPECT_EQ(here.position.y, -there.position.y) << model << ' ' << i;
+            EXPECT_NEAR(wrapped(here.heading + there.heading).degrees(), 0, 1e-9) << model;
+            EXPECT_LT(distance(here.position, {}), pioneer.radius) << model << ' ' << i;
+        }
+    }
+    for (const char* model : {"create3", "turtlebot4"}) {
+        EXPECT_EQ(robot(std::string("model=") + model).bumpers.size(), 5U) << model;
+        EXPECT_TRUE(robot(std::string("model=") + model).sonar.places.empty()) << model;
+    }
+    for (const char* model : {"turtlebot3-burger", "turtlebot3-waffle-pi"}) {
+        EXPECT_TRUE(robot(std::string("model=") + model).bumpers.empty()) << model;
+        EXPECT_TRUE(robot(std::string("model=") + model).sonar.places.empty()) << model;
+    }
+}
+
 TEST(RobotOf, BareRobotIsACylinderOfThirtyCentimetres) {
     const RobotModel bare = robot("");
     EXPECT_EQ(bare, RobotModel());
