@@ -14,13 +14,14 @@
 /// and with
 /// `--clock step` the world advances while the program sleeps, the same way each time.
 ///
-/// There are the classes of a program that drives by itself: Aria, ArRobot, ArPose, ArSonarDevice,
+/// There are the classes of a program that drives by itself: Aria, ArRobot, ArPose, ArSonarDevice, ArBumpers,
 /// ArSerialConnection, ArTcpConnection, ArSimpleConnector, ArRobotConnector, ArArgumentParser,
 /// ArSignalHandler, ArCommands, ArUtil, ArMath, ArTime, ArLog and functors. Actions, lasers of ARIA
 /// and ArNetworking are not there.
 #ifndef SIM_ARIA_H
 #define SIM_ARIA_H
 
+#include <sim_aria/bumpers.h>
 #include <sim_aria/commands.h>
 #include <sim_aria/connection.h>
 #include <sim_aria/connector.h>

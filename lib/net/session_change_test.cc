@@ -317,7 +317,8 @@ TEST(SessionChange, APersonIsDriven) {
     Session& person = talk.client();
     EXPECT_EQ(talk.ask(person, "PERSON h2"), "ERR 404 no person `h2`, did you mean `h1`?\n");
     EXPECT_EQ(talk.ask(person, "PERSON r1"), "ERR 404 no person `r1`, did you mean `h1`?\n");
-    EXPECT_EQ(talk.ask(person, "PERSON h1"), "OK PERSON h1 height=1.7 radius=0.255\n");
+    EXPECT_TRUE(talk.ask(person, "PERSON h1")
+                    .starts_with("OK PERSON h1 height=1.7 radius=0.255 speed=1.2 "));
     EXPECT_EQ(talk.ask(talk.client(), "PERSON h1"),
               "ERR 409 person h1 is held by another client\n");
     EXPECT_EQ(talk.ask(person, "FORWARD 1"), "OK FORWARD id=1 distance=1\n");

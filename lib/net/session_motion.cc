@@ -8,6 +8,26 @@
 
 namespace ispace {
 
+namespace {
+
+/// What commands run at and up to what they may ask, on a floor without friction.
+std::string speedsText(const RobotModel& model) {
+    std::string text;
+    const auto add = [&text](std::string_view key, double value) {
+        text.append(" ").append(key).append("=").append(formatDouble(value));
+    };
+    add("speed", model.speed);
+    add("rotspeed", model.rotspeed.degrees());
+    add("max_speed", model.max_speed);
+    add("max_rotspeed", model.max_rotspeed.degrees());
+    add("max_sidespeed", model.max_sidespeed);
+    add("accel", model.accel);
+    add("rotaccel", model.rotaccel.degrees());
+    return text;
+}
+
+}  // namespace
+
 void Session::takeRobot(Words words) {
     const auto robot = world().robotNamed(words[1]);
     if (!robot) return error(404, {unknownThing("robot", words[1], idsOf(world().robots()))});
@@ -15,7 +35,8 @@ void Session::takeRobot(Words words) {
     const RobotModel& model = world().robots()[*robot].model;
     out_.append("OK ROBOT ").append(words[1]);
     out_.append(" model=").append(model.model.empty() ? "-" : model.model);
-    out_.append(" radius=").append(formatDouble(model.radius)).append("\n");
+    out_.append(" radius=").append(formatDouble(model.radius));
+    out_.append(speedsText(model)).append("\n");
 }
 
 void Session::takePerson(Words words) {
@@ -25,7 +46,8 @@ void Session::takePerson(Words words) {
     const Mover& mover = world().movers()[*person];
     out_.append("OK PERSON ").append(words[1]);
     out_.append(" height=").append(formatDouble(mover.model.height));
-    out_.append(" radius=").append(formatDouble(mover.model.radius)).append("\n");
+    out_.append(" radius=").append(formatDouble(mover.model.radius));
+    out_.append(speedsText(mover.model)).append("\n");
 }
 
 /// Takes hold of somebody, or says that another client has.

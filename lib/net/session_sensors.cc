@@ -94,7 +94,13 @@ void Session::bumper(Words /*words*/) {
     for (const bool one : pressed) hit.append(hit.empty() ? "" : ",").append(one ? "1" : "0");
     out_.append("OK BUMPER t=").append(formatMilliseconds(world().time()));
     out_.append(" n=").append(std::to_string(pressed.size()));
-    out_.append(" hit=").append(hit).append("\n");
+    std::string places;
+    for (const Bumper& bumper : world().movers()[subject_].model.bumpers)
+        places.append(places.empty() ? "" : ";")
+            .append(formatDouble(bumper.from.degrees()))
+            .append(",")
+            .append(formatDouble(bumper.to.degrees()));
+    out_.append(" hit=").append(hit).append(" at=").append(places).append("\n");
 }
 
 void Session::scan(Words /*words*/) {

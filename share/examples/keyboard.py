@@ -63,17 +63,22 @@ class Wheel:
 
     def try_speed(self, speed):
         try:
-            self.robot.speed(round(speed, 3))
-            self.speed = round(speed, 3)
+            self.speed = self.within(round(speed, 3), self.robot.limits.max_speed, "m/s")
+            self.robot.speed(self.speed)
         except ispace.Refused as refused:
             self.note = str(refused)
 
     def try_turn(self, turn):
         try:
-            self.robot.rotspeed(turn)
-            self.turn = turn
+            self.turn = self.within(turn, self.robot.limits.max_rotspeed, "degrees/s")
+            self.robot.rotspeed(self.turn)
         except ispace.Refused as refused:
             self.note = str(refused)
+
+    def within(self, value, most, unit):
+        if abs(value) > most:
+            self.note = f"{self.robot.id} does at most {most:g} {unit}"
+        return max(-most, min(most, value))
 
 
 def find_laser(address, robot, wanted):

@@ -206,10 +206,7 @@ class Sensors(unittest.TestCase):
 
     def test_sonars_and_bumpers(self):
         with self.run_.world() as world:
-            try:
-                world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225")
-            except ispace.Refused as refused:
-                self.skipTest(f"the server knows no sonars yet: {refused}")
+            world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225")
             with self.run_.robot("r5") as robot:
                 ahead, right = robot.sonar()
                 self.assertEqual((ahead.place, right.place.heading), ((0.2, 0, 0), -90))
@@ -218,6 +215,13 @@ class Sensors(unittest.TestCase):
                 robot.speed(0.3)
                 world.advance(5)
                 self.assertEqual(robot.bumpers(), [True, False])
+                self.assertEqual(robot.rim(), [ispace.Bumper(-45, 45, True), ispace.Bumper(135, 225, False)])
+            with self.run_.robot("r1") as robot:
+                self.assertEqual(len(robot.sonar()), 16)
+                self.assertEqual(len(robot.rim()), 10)
+                self.assertEqual(robot.limits, ispace.Limits(0.5, 100, 1.6, 300, 0, 0.3, 100))
+            with self.run_.person("h1") as person:
+                self.assertEqual((person.limits.speed, person.limits.max_sidespeed), (1.2, 0.6))
 
     def test_odometry(self):
         with self.run_.world() as world, self.run_.robot("r1") as robot:

@@ -25,6 +25,13 @@ class Roles : public testing::Test {
 TEST_F(Roles, ARobotDrivesAndSaysSo) {
     Robot robot(server.address(), "r1");
     EXPECT_EQ(robot.info().text("model"), "pioneer-2dx");
+    EXPECT_EQ(robot.limits().speed, 0.5);
+    EXPECT_EQ(robot.limits().rotspeed, 100);
+    EXPECT_EQ(robot.limits().max_speed, 1.6);
+    EXPECT_EQ(robot.limits().max_rotspeed, 300);
+    EXPECT_EQ(robot.limits().max_sidespeed, 0);
+    EXPECT_EQ(robot.limits().accel, 0.3);
+    EXPECT_EQ(robot.limits().rotaccel, 100);
     const Motion ahead = robot.forward(0.5);
     simulate(0.5);
     EXPECT_FALSE(robot.ended(ahead));

@@ -96,11 +96,7 @@ TEST_F(Sensors, MatsAndGatesNoticeARobot) {
 }
 
 TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
-    try {
-        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
-    } catch (const Refused& refused) {
-        GTEST_SKIP() << "the server knows no sonars yet: " << refused.what();
-    }
+    world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
     Robot robot(server.address(), "r5");
     const std::vector<Sonar> ring = robot.sonar();
     ASSERT_EQ(ring.size(), 2U);

@@ -85,6 +85,8 @@ TEST_F(SimAria, SpeedsAreWholeAndClamped) {
     EXPECT_EQ(robot.getRotVel(), -20);
     EXPECT_EQ(robot.getTransVelMax(), 1600);
     EXPECT_EQ(robot.getRotVelMax(), 300);
+    EXPECT_EQ(robot.getTransAccel(), 300);
+    EXPECT_EQ(robot.getRotAccel(), 100);
     robot.setTransVelMax(80);
     robot.setVel(500);
     robot.setRotVelMax(10);
@@ -152,7 +154,7 @@ TEST_F(SimAria, AWallStallsBothMotorsAndBackIsFree) {
     robot.setVel(400);
     ArUtil::sleep(9000);
     EXPECT_TRUE(robot.isLeftMotorStalled() && robot.isRightMotorStalled());
-    EXPECT_EQ(robot.getStallValue(), ArUtil::BIT0 | ArUtil::BIT8);
+    EXPECT_EQ(robot.getStallValue(), ArUtil::BIT0 | ArUtil::BIT8 | ArUtil::BIT11);
     EXPECT_EQ(robot.getVel(), 0);
     // The wall is 3 m away, the robot a circle of 0.25 m.
     EXPECT_NEAR(robot.getX(), 2750, 5);
@@ -165,11 +167,7 @@ TEST_F(SimAria, AWallStallsBothMotorsAndBackIsFree) {
 TEST_F(SimAria, SonarsAreInMillimetres) {
     connect();
     ispace::client::World world(server->address());
-    try {
-        world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90");
-    } catch (const ispace::client::Refused& refused) {
-        GTEST_SKIP() << "the server knows no sonars yet: " << refused.what();
-    }
+    world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90");
     setenv("ISPACE_ROBOT", "r5", 1);
     ArSonarDevice sonar;
     ArRobot ringed;
@@ -190,6 +188,32 @@ TEST_F(SimAria, SonarsAreInMillimetres) {
     EXPECT_NEAR(sonar.currentReadingPolar(-120, -60), 800, 5);
     EXPECT_EQ(sonar.currentReadingPolar(150, 210), 5000);
     ringed.unlock();
+}
+
+TEST_F(SimAria, BumpersAreBitsClockwise) {
+    connect();
+    EXPECT_TRUE(robot.hasFrontBumpers() && robot.hasRearBumpers());
+    EXPECT_EQ(robot.getNumFrontBumpers(), 5U);
+    EXPECT_EQ(robot.getNumRearBumpers(), 5U);
+    EXPECT_EQ(robot.getNumSonar(), 16);
+    ArBumpers bumpers;
+    robot.lock();
+    robot.addRangeDevice(&bumpers);
+    robot.setVel(400);
+    robot.unlock();
+    ArUtil::sleep(9000);
+    robot.lock();
+    // The third of those in front faces the wall, and so does the point of it.
+    EXPECT_EQ(robot.getStallValue(), ArUtil::BIT0 | ArUtil::BIT8 | ArUtil::BIT11);
+    EXPECT_NEAR(bumpers.currentReadingPolar(-5, 5), 250, 1);
+    EXPECT_EQ(bumpers.currentReadingPolar(10, -10), 5000);
+    robot.setVel(-400);
+    robot.unlock();
+    ArUtil::sleep(12000);
+    robot.lock();
+    EXPECT_EQ(robot.getStallValue(), ArUtil::BIT0 | ArUtil::BIT8 | ArUtil::BIT3);
+    EXPECT_NEAR(bumpers.currentReadingPolar(175, -175), 250, 1);
+    robot.unlock();
 }
 
 TEST_F(SimAria, ThePoseIsWhatTheProgramSays) {

@@ -18,7 +18,7 @@ done
 dial driver
 expect driver "FORWARD 1" 'ERR 405 .*ROBOT.*'
 expect driver "ROBOT r9" 'ERR 404 .*r1.*'
-expect driver "ROBOT r1" 'OK ROBOT r1 model=pioneer-2dx radius=0\.25'
+expect driver "ROBOT r1" 'OK ROBOT r1 model=pioneer-2dx radius=0\.25 speed=0\.5 .* max_speed=1\.6 .*'
 dial other
 expect other "ROBOT r1" 'ERR 409 .*r1.*'
 

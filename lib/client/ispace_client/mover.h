@@ -32,6 +32,17 @@ struct Status {
     Fields fields;        ///< all that the server says
 };
 
+/// How fast a robot or person goes on a floor without friction.
+struct Limits {
+    double speed = 0;          ///< m/s of forward() and backward()
+    double rotspeed = 0;       ///< degrees/s of left() and right()
+    double max_speed = 0;      ///< m/s, forward and backward
+    double max_rotspeed = 0;   ///< degrees/s, either way
+    double max_sidespeed = 0;  ///< m/s, to either side; 0: it cannot
+    double accel = 0;          ///< m/s², speeding up and braking
+    double rotaccel = 0;       ///< degrees/s²
+};
+
 /// What a robot's wheels tell it, from (0, 0, 0) where it started; differs from Status::pose where
 /// the run has noise.
 struct Odometry {
@@ -73,6 +84,18 @@ class Mover {
     const std::string& id() const { return id_; }
     /// What the server said of it when it was taken: model, radius …
     const Fields& info() const { return info_; }
+    /// \throws ProtocolError if the server is too old to say
+    Limits limits() const {
+        Limits limits;
+        limits.speed = info_.number("speed");
+        limits.rotspeed = info_.number("rotspeed");
+        limits.max_speed = info_.number("max_speed");
+        limits.max_rotspeed = info_.number("max_rotspeed");
+        limits.max_sidespeed = info_.number("max_sidespeed");
+        limits.accel = info_.number("accel");
+        limits.rotaccel = info_.number("rotaccel");
+        return limits;
+    }
 
     /// So far, at the model's own speed.
     /// \param metres not negative

@@ -17,6 +17,12 @@ struct Sonar {
     double range = 0;  ///< m; infinity: no echo
 };
 
+/// One of the bumpers of a robot.
+struct Bumper {
+    double from = 0, to = 0;  ///< bearings of its ends, degrees, counter-clockwise
+    bool hit = false;
+};
+
 /// A robot (role ROBOT).
 class Robot : public Mover {
   public:
@@ -62,8 +68,25 @@ class Robot : public Mover {
     /// Which of its bumpers are pressed.
     std::vector<bool> bumpers() {
         std::vector<bool> hit;
-        for (const double value : ask("BUMPER").fields.numbers("hit")) hit.push_back(value != 0);
+        for (const Bumper& bumper : rim()) hit.push_back(bumper.hit);
         return hit;
+    }
+    /// Its bumpers, and which are pressed; empty if it has none.
+    std::vector<Bumper> rim() {
+        const Fields fields = ask("BUMPER").fields;
+        std::vector<Bumper> rim;
+        for (const std::string& place : split(fields.text("at"), ';')) {
+            const std::vector<std::string> parts = split(place, ',');
+            if (parts.size() != 2) throw ProtocolError("`" + place + "` is no place of a bumper");
+            Bumper bumper;
+            bumper.from = numberOf(parts[0]);
+            bumper.to = numberOf(parts[1]);
+            rim.push_back(bumper);
+        }
+        const std::vector<double> hit = fields.numbers("hit");
+        if (hit.size() != rim.size()) throw ProtocolError("bumpers without places");
+        for (std::size_t i = 0; i < rim.size(); ++i) rim[i].hit = hit[i] != 0;
+        return rim;
     }
 };
 

@@ -2,15 +2,18 @@
 #ifndef SIM_ARIA_LINK_H
 #define SIM_ARIA_LINK_H
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ispace_client/robot.h>
 #include <ispace_client/world.h>
 #include <sim_aria/math.h>
+#include <sim_aria/util.h>
 
 namespace sim_aria {
 
@@ -21,6 +24,7 @@ struct Packet {
     double rot_vel = 0;  ///< degrees/s
     bool stalled = false;
     std::vector<int> sonar;  ///< mm, 5000 without an echo
+    int bumpers = 0;         ///< bits of ArRobot::getStallValue
 };
 
 /// One robot of simrun in ARIA's units. Functions throw ispace::client::Error.
@@ -44,17 +48,21 @@ class Link {
             }
         }
         if (!robot_) throw ispace::client::Error(server + " has no robot that is free");
-        max_vel_ = 1000 * limitOf("SPEED");
-        max_rot_vel_ = limitOf("ROTSPEED");
+        limits_ = robot_->limits();
         start_ = robot_->odometry().pose;
         findSonars();
+        findBumpers();
     }
 
     std::string id() const { return robot_->id(); }
     std::string model() const { return robot_->info().text("model", ""); }
     double radius() const { return 1000 * robot_->info().number("radius"); }
-    double maxVel() const { return max_vel_; }
-    double maxRotVel() const { return max_rot_vel_; }
+    double maxVel() const { return 1000 * limits_.max_speed; }
+    double maxRotVel() const { return limits_.max_rotspeed; }
+    double accel() const { return 1000 * limits_.accel; }
+    double rotAccel() const { return limits_.rotaccel; }
+    int frontBumpers() const { return front_bumpers_; }
+    int rearBumpers() const { return rear_bumpers_; }
     /// Where its sonars sit, mm and degrees in its own frame.
     const std::vector<ArPose>& sonars() const { return sonars_; }
 
@@ -68,6 +76,8 @@ class Link {
         packet.vel = std::round(1000 * odometry.speed);
         packet.rot_vel = odometry.rotspeed;
         packet.stalled = robot_->status().stall;
+        // It touches nothing before it has run into something.
+        if (packet.stalled && !bits_.empty()) packet.bumpers = bumpersHit();
         if (sonar && !sonars_.empty()) {
             for (const ispace::client::Sonar& sonar : robot_->sonar())
                 packet.sonar.push_back(sonar.range < 5 ? ArMath::roundInt(1000 * sonar.range)
@@ -90,21 +100,6 @@ class Link {
   private:
     static constexpr int kHeld = 409;
 
-    /// What the server says when it refuses far too much: "r1 goes at most 1.6 m/s".
-    double limitOf(const std::string& verb) {
-        const std::string before = " at most ";
-        try {
-            robot_->connection().ask(verb + " 1000000000");
-        } catch (const ispace::client::Refused& refused) {
-            const std::string text = refused.what();
-            const std::size_t found = text.find(before);
-            if (found == std::string::npos) throw;
-            const std::size_t begin = found + before.size();
-            return ispace::client::numberOf(text.substr(begin, text.find(' ', begin) - begin));
-        }
-        throw ispace::client::ProtocolError(id() + " has no limit of " + verb);
-    }
-
     void findSonars() {
         try {
             for (const ispace::client::Sonar& sonar : robot_->sonar())
@@ -115,10 +110,52 @@ class Link {
         }
     }
 
+    /// A Pioneer counts its bumpers clockwise: those in front in bits 9 to 15, those behind in 1
+    /// to 7.
+    void findBumpers() {
+        std::vector<ispace::client::Bumper> rim;
+        try {
+            rim = robot_->rim();
+        } catch (const ispace::client::Refused&) {
+            // It has none.
+        }
+        std::vector<std::pair<double, std::size_t>> front, rear;
+        for (std::size_t i = 0; i < rim.size(); ++i) {
+            const double middle = ArMath::fixAngle((rim[i].from + rim[i].to) / 2);
+            if (std::fabs(middle) <= 90)
+                front.emplace_back(-middle, i);
+            else
+                rear.emplace_back(middle < 0 ? -(middle + 360) : -middle, i);
+        }
+        bits_.assign(rim.size(), 0);
+        front_bumpers_ = number(front, ArUtil::BIT9);
+        rear_bumpers_ = number(rear, ArUtil::BIT1);
+    }
+    /// \param side less the middle of each bumper, and its index
+    int number(std::vector<std::pair<double, std::size_t>>& side, int bit) {
+        constexpr std::size_t kMost = 7;
+        std::sort(side.begin(), side.end());
+        if (side.size() > kMost) side.resize(kMost);
+        for (const auto& bumper : side) {
+            bits_[bumper.second] = bit;
+            bit *= 2;
+        }
+        return static_cast<int>(side.size());
+    }
+    int bumpersHit() {
+        const std::vector<bool> hit = robot_->bumpers();
+        int bits = 0;
+        for (std::size_t i = 0; i < hit.size() && i < bits_.size(); ++i)
+            if (hit[i]) bits |= bits_[i];
+        return bits;
+    }
+
     std::unique_ptr<ispace::client::Robot> robot_;
     ispace::client::Pose start_;
     std::vector<ArPose> sonars_;
-    double max_vel_ = 0, max_rot_vel_ = 0;
+    std::vector<int> bits_;  // of each bumper
+    int front_bumpers_ = 0, rear_bumpers_ = 0;
+    ispace::client::Limits limits_;
 };
 
 }  // namespace sim_aria

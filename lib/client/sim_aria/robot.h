@@ -131,7 +131,15 @@ class ArRobot {
     /// A simulated robot stalls as a whole.
     bool isLeftMotorStalled() const { return myPacket.stalled; }
     bool isRightMotorStalled() const { return myPacket.stalled; }
-    int getStallValue() const { return myPacket.stalled ? ArUtil::BIT0 | ArUtil::BIT8 : 0; }
+    /// Bits 0 and 8: the motors; bumpers clockwise, those in front from bit 9 on, those behind
+    /// from bit 1 on.
+    int getStallValue() const {
+        return myPacket.bumpers | (myPacket.stalled ? ArUtil::BIT0 | ArUtil::BIT8 : 0);
+    }
+    bool hasFrontBumpers() const { return myFrontBumpers > 0; }
+    bool hasRearBumpers() const { return myRearBumpers > 0; }
+    unsigned int getNumFrontBumpers() const { return static_cast<unsigned int>(myFrontBumpers); }
+    unsigned int getNumRearBumpers() const { return static_cast<unsigned int>(myRearBumpers); }
     int getFlags() const { return myMotorsEnabled ? ArUtil::BIT0 : 0; }
     bool areMotorsEnabled() const { return myMotorsEnabled; }
     /// Those of a full battery.
@@ -205,6 +213,7 @@ class ArRobot {
     unsigned int myCycleTime = 100;
     int myTimeout = 8000;
     double myRadius = 250;
+    int myFrontBumpers = 0, myRearBumpers = 0;
 
     sim_aria::Motion myMotion;
     sim_aria::Packet myPacket;

@@ -13,9 +13,13 @@ inline bool ArRobot::blockingConnect(bool /*tryHarder*/) {
         myRobotName = myLink->id();
         mySubType = subTypeOf(myLink->model());
         myRadius = myLink->radius();
+        myFrontBumpers = myLink->frontBumpers();
+        myRearBumpers = myLink->rearBumpers();
         myMotion = sim_aria::Motion();
         myMotion.max_vel = myLink->maxVel();
         myMotion.max_rot_vel = myLink->maxRotVel();
+        myMotion.accel = myLink->accel();
+        myMotion.rot_accel = myLink->rotAccel();
         myMotorsEnabled = false;
         mySonarEnabled = true;
         mySentVel = mySentRotVel = 0;

@@ -33,7 +33,7 @@ from .errors import (
     ToolError,
 )
 from .filters import Layout, Object, Record, arrange, coverage, info, scan
-from .movers import End, Motion, Odometry, Person, Robot, Sonar, Status
+from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
     Camera,
@@ -51,6 +51,7 @@ from .world import Event, World
 
 __all__ = [
     "Address",
+    "Bumper",
     "Burst",
     "Camera",
     "Cloud",
@@ -66,6 +67,7 @@ __all__ = [
     "Gate",
     "LaserSensor",
     "Layout",
+    "Limits",
     "Load",
     "Mat",
     "Message",

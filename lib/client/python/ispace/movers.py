@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import time
 from dataclasses import dataclass
@@ -29,6 +30,19 @@ class Status:
 
 
 @dataclass(frozen=True)
+class Limits:
+    """How fast a robot or person goes on a floor without friction."""
+
+    speed: float  #: m/s of forward() and backward()
+    rotspeed: float  #: degrees/s of left() and right()
+    max_speed: float  #: m/s, forward and backward
+    max_rotspeed: float  #: degrees/s, either way
+    max_sidespeed: float  #: m/s, to either side; 0: it cannot
+    accel: float  #: m/s², speeding up and braking
+    rotaccel: float  #: degrees/s²
+
+
+@dataclass(frozen=True)
 class Odometry:
     """What a robot's wheels tell it, from (0, 0, 0) where it started.
 
@@ -47,6 +61,15 @@ class Sonar:
 
     place: Pose  #: on the robot: m, degrees, in its own frame
     range: float  #: m; infinity: no echo
+
+
+@dataclass(frozen=True)
+class Bumper:
+    """One of the bumpers of a robot."""
+
+    from_: float  #: bearings of its ends, degrees, counter-clockwise
+    to: float
+    hit: bool
 
 
 @dataclass(frozen=True)
@@ -78,6 +101,10 @@ class Mover(Client):
         super().__init__(f"{role} {id}", address, timeout, token)
         self.id = id
         self._ended: Dict[int, End] = {}
+
+    @property
+    def limits(self) -> Limits:
+        return Limits(*(self.info.number(field.name) for field in dataclasses.fields(Limits)))
 
     def forward(self, metres: float) -> Motion:
         """So far, at the model's own speed; not negative."""
@@ -208,7 +235,16 @@ class Robot(Mover):
 
     def bumpers(self) -> List[bool]:
         """Which of its bumpers are pressed."""
-        return [value != 0 for value in self._ask("BUMPER").fields.numbers("hit")]
+        return [bumper.hit for bumper in self.rim()]
+
+    def rim(self) -> List[Bumper]:
+        """Its bumpers, and which are pressed; empty if it has none."""
+        fields = self._ask("BUMPER").fields
+        places = [tuple(map(number_of, place.split(","))) for place in split(fields["at"], ";")]
+        hit = fields.numbers("hit")
+        if len(places) != len(hit) or any(len(place) != 2 for place in places):
+            raise ProtocolError(f"bumpers at {fields['at']}, hit {fields['hit']}")
+        return [Bumper(place[0], place[1], value != 0) for place, value in zip(places, hit)]
 
 
 class Person(Mover):
