@@ -121,6 +121,31 @@ class Lab:
                      "--seed $seed; done")
         return [self.tool(name, *args, "--seed", seed, shown=False) for seed in seeds]
 
+    def shell(self, text):
+        """Runs a line of the shell, shown as it is; for files that a loop writes."""
+        self.command(text)
+        done = subprocess.run(["sh", "-ec", text], cwd=self.folder, capture_output=True, text=True,
+                              env=self._environment(), check=False, timeout=PATIENCE)
+        if done.returncode != 0:
+            raise ToolFailed(f"{text}: status {done.returncode}: {_last_line(done.stderr)}")
+        return done.stdout
+
+    def layout(self, name):
+        """The records of a layout of the folder: keyword and keys, as words."""
+        return [_record(line) for line in self.read(name).splitlines()
+                if line.strip() and not line.startswith("#")]
+
+    def result(self, name):
+        """What `arrange` says of a layout of the folder: numbers, shares in per cent."""
+        (record,) = [keys for keyword, keys in self.layout(name) if keyword == "result"]
+        return {key: float(value.rstrip("%")) for key, value in record.items()
+                if value.rstrip("%").replace(".", "", 1).isdigit()}
+
+    def poses(self, name, keyword="laser"):
+        """x, y and heading of each sensor of a layout."""
+        return [(*(float(word) for word in keys["at"].split(",")[:2]), float(keys.get("heading", 0)))
+                for found, keys in self.layout(name) if found == keyword]
+
     def command(self, text):
         """A command as it is shown, once."""
         if text not in self.commands:
@@ -147,14 +172,16 @@ class Lab:
     def text(self, paragraph):
         self.parts.append(("text", paragraph))
 
-    def row(self, what, thesis, ours, unit="", bound=None, note="", digits=2):
+    def row(self, what, thesis, ours, unit="", bound=None, note="", digits=None):
         """A line of the table: numbers, or words where there are none (None: nothing is said). `bound` is
-        (least, most), what ours must keep to; `note` says in a sentence why they differ."""
+        (least, most), what ours must keep to; `note` says in a sentence why they differ; whole numbers
+        are shown as they are and others with two decimals, unless `digits` says how many."""
         if not self.parts or self.parts[-1][0] != "rows":
             self.parts.append(("rows", []))
-        kept = bound is None or bound[0] <= ours <= bound[1]
+        kept = bound is None or (ours is not None and bound[0] <= ours <= bound[1])
         if not kept:
-            self.fail(f"{what}: {ours:.6g}{_gap(unit)} is not within {_interval(bound)}{_gap(unit)}")
+            value = "nothing" if ours is None else f"{ours:.6g}"
+            self.fail(f"{what}: {value}{_gap(unit)} is not within {_interval(bound)}{_gap(unit)}")
         self.parts[-1][1].append({"what": what, "thesis": thesis, "ours": ours, "unit": unit,
                                   "bound": bound, "kept": kept, "note": note, "digits": digits})
 
@@ -188,6 +215,11 @@ class Lab:
 
     def fail(self, why):
         self.failures.append(why)
+
+
+def _record(line):
+    keyword, *words = shlex.split(line, comments=True)
+    return keyword, dict(word.split("=", 1) for word in words)
 
 
 def _argument(value):

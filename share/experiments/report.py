@@ -125,8 +125,13 @@ def _table(rows):
     return "\n".join(out + ["</table>"])
 
 
+def _short(value, digits):
+    text = f"{value:.{digits}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
+
+
 def _bound(row):
-    low, high = (f"{value:g}".replace("-", "−") for value in row["bound"])
+    low, high = (_short(value, _digits(row)) for value in row["bound"])
     return (f"exactly {low}" if low == high else f"at least {low}" if high == "inf" else
             f"at most {high}" if low == "−inf" else f"{low} to {high}")
 
@@ -136,11 +141,17 @@ def _is_number(value):
 
 
 def _unit(row):
-    return f" {_safe(row['unit'])}" if row["unit"] else ""
+    space = "" if row["unit"] == "°" else " "
+    return f"{space}{_safe(row['unit'])}" if row["unit"] else ""
+
+
+def _digits(row):
+    return 2 if row["digits"] is None else row["digits"]
 
 
 def _number(value, row):
-    text = str(value) if isinstance(value, int) else f"{value:.{row['digits']}f}"
+    plain = isinstance(value, int) and row["digits"] is None
+    text = str(value) if plain else f"{value:.{_digits(row)}f}"
     return text.replace("-", "−") if text.strip("-0.") else text.lstrip("-")
 
 

@@ -33,7 +33,14 @@ def find_experiments():
     names = sorted(name[:-3] for name in os.listdir(HERE) if name.endswith(".py"))
     modules = [importlib.import_module(name) for name in names if name != "run"]
     found = [module for module in modules if hasattr(module, "TITLE")]
-    return sorted(found, key=lambda m: ([int(n) for n in re.findall(r"\d+", m.SOURCE)], m.__name__))
+    return sorted(found, key=lambda module: (place_in_thesis(module.SOURCE), module.__name__))
+
+
+def place_in_thesis(source):
+    """"section 3.4.8 i, fig. 3.23" as [3, 4, 8, 1, 3, 23]."""
+    roman = {"i": 1, "ii": 2, "iii": 3, "iv": 4}
+    words = re.findall(r"\d+|\b[iv]+\b", source)
+    return [roman[word] if word in roman else int(word) for word in words]
 
 
 def perform(name, build, folder, quick):
