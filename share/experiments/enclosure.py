@@ -52,7 +52,7 @@ def run(lab):
             note="Headings at the ends of walls are ours; the table's time is that of 124 scans.")
     for file, what in (("three", "Fig. 5.13: two lasers of 3 m along the walls."),
                        ("four", "The same with 4 m."), ("best", "The best for 3 m, anywhere.")):
-        lab.tool("coverage", "tracking.env", f"{file}.3dm", "--width", "700", "-o", f"{file}.png")
+        lab.tool("coverage", "tracking.env", f"{file}.3dm", "--width", "600", "-o", f"{file}.png")
         lab.picture(f"{file}.png", what)
     lab.tool("scan", "tracking.env", "three.3dm", "--view", "orbit", "--show", "area", "--size", "900,600",
              "-o", "scene.png")

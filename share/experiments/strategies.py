@@ -88,7 +88,7 @@ def maps(lab, middle_seed):
     for file, what in (("grid", "Fig. 4.16 a: Ordinary Grid."),
                        (f"random-{middle_seed}", "Fig. 4.16 b: Hierarchical Random, the seed in the middle."),
                        ("wall", "Fig. 4.16 c: Along Wall."), ("best", "The best there is, proven.")):
-        lab.tool("coverage", "facilities.env", f"{file}.3dm", "--color", "sensor", "--width", "700",
+        lab.tool("coverage", "facilities.env", f"{file}.3dm", "--color", "sensor", "--width", "600",
                  "-o", f"{file}.png")
         lab.picture(f"{file}.png", what)
 

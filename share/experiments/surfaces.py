@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles of a room, how far points are from them, and pictures of clouds of points."""
 
+import io
 import math
 import struct
-import zlib
 
-from plot import viridis
+from matplotlib import pyplot
+
+from plot import PIXELS
 
 
 def sub(a, b):
@@ -83,34 +85,17 @@ class Surfaces:
         return near
 
 
-def png(width, height, rows):
-    """A PNG of rows of (red, green, blue)."""
-    raw = b"".join(b"\0" + bytes(part for pixel in row for part in pixel) for row in rows)
-
-    def chunk(kind, data):
-        body = kind + data
-        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
-
-
-def cloud_png(points, width, height, metre, low, high):
-    """Points from above and aside without perspective, `metre` pixels a metre, the origin in the middle;
-    heights from low to high in colours, the nearest point in front."""
-    turn, lift = math.radians(30), math.radians(38)
-    depth = [[-math.inf] * width for _ in range(height)]
-    image = [[(255, 255, 255)] * width for _ in range(height)]
-    for x, y, z in points:
-        across = x * math.cos(turn) - y * math.sin(turn)
-        away = x * math.sin(turn) + y * math.cos(turn)
-        column = round(width / 2 + metre * across)
-        row = round(height / 2 - metre * (away * math.sin(lift) + (z - (low + high) / 2) * math.cos(lift)))
-        front = z * math.sin(lift) - away * math.cos(lift)
-        color = viridis((z - low) / (high - low))
-        rgb = tuple(int(color[k:k + 2], 16) for k in (1, 3, 5))
-        for i in (0, 1):
-            for j in (0, 1):
-                if 0 <= row + i < height and 0 <= column + j < width and depth[row + i][column + j] < front:
-                    depth[row + i][column + j] = front
-                    image[row + i][column + j] = rgb
-    return png(width, height, image)
+def cloud_png(points, width, height, low, high):
+    """Points from above and aside, heights from low to high in colours."""
+    figure = pyplot.figure(figsize=(width / PIXELS, height / PIXELS), dpi=PIXELS)
+    axes = figure.add_axes((-0.26, -0.3, 1.52, 1.56), projection="3d", computed_zorder=False)
+    x, y, z = zip(*points)
+    axes.scatter(x, y, z, c=z, s=1.5, marker="s", linewidths=0, cmap="viridis", vmin=low, vmax=high,
+                 depthshade=False)
+    axes.set_box_aspect((max(x) - min(x), max(y) - min(y), max(z) - min(z)))
+    axes.view_init(elev=38, azim=-120)
+    axes.set_axis_off()
+    out = io.BytesIO()
+    figure.savefig(out, format="png", metadata={"Software": None})
+    pyplot.close(figure)
+    return out.getvalue()

@@ -59,7 +59,7 @@ def run(lab):
     lab.picture("scene.png", "Fig. 5.19 a: the hall, its ceiling left out, and the beams.")
     below = [point for point in ideal if point[2] < 2.5]
     with open(lab.path("cloud.png"), "wb") as file:
-        file.write(cloud_png(below, 760, 570, 62, 0, 2.5))
+        file.write(cloud_png(below, 900, 675, 0, 2.5))
     lab.picture("cloud.png", "Fig. 5.19 b: the cloud below 2.5 m; the higher, the brighter. Things hide what is "
                 "behind them as seen from the laser.")
     plot = Plot((0, 40), (0, 100), "Distance of points from the true surfaces", "at most so many mm",
