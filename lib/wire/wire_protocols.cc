@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "base/message.h"
+#include "wire/scip_session.h"
 #include "wire/wire_session.h"
 
 namespace ispace {
 
 std::span<const WireProtocol* const> wireProtocols() {
-    static constexpr std::array<const WireProtocol*, 0> kProtocols{};
+    static constexpr std::array kProtocols{&kScip};
     return kProtocols;
 }
 

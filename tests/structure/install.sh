@@ -15,11 +15,12 @@ for format in env 3dm yaml; do
     [ -s "moved/share/man/man5/ispace-$format.5" ] || fail "no man page of the format $format"
 done
 [ -s moved/share/man/man7/ispace-protocol.7 ] || fail "no man page of the protocol"
+[ -s moved/share/man/man7/ispace-wire.7 ] || fail "no man page of device ports"
 for schema in "$source_dir"/share/schemas/*.json; do
     cmp "$schema" "moved/share/ispace/schemas/${schema##*/}" || fail "not installed: $schema"
 done
 if command -v man >/dev/null; then
-    for page in $tools ispace-env ispace-3dm ispace-yaml ispace-protocol; do
+    for page in $tools ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire; do
         man -M moved/share/man -w "$page" >page && grep -q moved "page" ||
             fail "man does not find $page: $(cat page)"
     done

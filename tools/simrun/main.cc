@@ -42,6 +42,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     Server server(simulation, options.listen, limitsOf(options, input));
     const std::string web =
         options.web ? server.serveWeb(*options.web, titleOf(options, input)) : "";
+    const DeviceAddresses devices = serveDevices(server, options.devices);
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -54,7 +55,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     if (!options.junit.empty()) junit.emplace(options.junit);
     const auto record = recordOf(simulation, options, input.scene, historyOf(command, input));
     const auto progress = progressOf(simulation, options);
-    announce(server, web);
+    announce(server, web, devices);
     if (port_file) port_file->commit();
     server.run();
     progress->end();

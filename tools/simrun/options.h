@@ -10,6 +10,7 @@
 #include "net/server.h"
 #include "sim/expect.h"
 #include "sim/simulation.h"
+#include "simrun/device_ports.h"
 
 namespace ispace {
 
@@ -45,6 +46,7 @@ struct SimrunOptions {
     std::string token_file;   ///< "" without
     std::string load_folder;  ///< "": that of the scene
     ServerLimits limits;
+    DevicePortOptions devices;
 };
 
 /// The value of an option that is a time. \throws UsageError unless it is one from `least` to

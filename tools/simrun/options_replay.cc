@@ -79,10 +79,13 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    for (const char* option :
-         {"--record", "--expect", "--clock", "--hold", "--listen", "--web", "--port-file"})
+    std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
+                                     "--listen", "--web",    "--port-file"};
+    for (const WireProtocol* const protocol : wireProtocols())
+        of_runs.push_back("--" + std::string(protocol->name));
+    for (const std::string& option : of_runs)
         if (line_.given(option))
-            throw UsageError(std::string(option) + " does not go with -o, which serves nobody");
+            throw UsageError(option + " does not go with -o, which serves nobody");
     const bool is_set = OutputSet::of(o.common.output).has_value();
     o.drawing.format = is_set && to_.empty()
                            ? "png"

@@ -24,6 +24,7 @@ void SimrunCommand::declareServer() {
                                  ": the page is for browsers of this machine; use 127.0.0.1");
         },
         "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
+    o.devices.declare(line_);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(
@@ -62,6 +63,7 @@ void SimrunCommand::takeServer() {
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
+    o.devices.take(line_, o.limits);
     if (!o.listen.is_loopback && o.token_file.empty())
         throw UsageError("--listen: `" + o.listen.address +
                          "`: other machines are served only with --token-file; or listen on "

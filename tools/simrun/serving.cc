@@ -17,13 +17,13 @@ namespace ispace {
 namespace {
 
 /// A client takes a file descriptor: as many as this process may have, less what it needs itself.
-ServerLimits withinFileLimit(ServerLimits limits) {
-    constexpr rlim_t kOwn = 32;
+ServerLimits withinFileLimit(ServerLimits limits, std::size_t of_devices) {
+    const rlim_t own = 32 + of_devices;
     rlimit files{};
     if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return limits;
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
-    const rlim_t most = files.rlim_cur > kOwn ? files.rlim_cur - kOwn : 1;
+    const rlim_t most = files.rlim_cur > own ? files.rlim_cur - own : 1;
     limits.clients = static_cast<std::size_t>(std::min<rlim_t>(limits.clients, most));
     return limits;
 }
@@ -31,7 +31,7 @@ ServerLimits withinFileLimit(ServerLimits limits) {
 }  // namespace
 
 ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
-    ServerLimits limits = withinFileLimit(options.limits);
+    ServerLimits limits = withinFileLimit(options.limits, options.devices.connections());
     if (!options.token_file.empty()) {
         limits.token = readToken(options.token_file);
         if (isOpenToOthers(options.token_file))
@@ -44,12 +44,18 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
     return limits;
 }
 
-void announce(const Server& server, const std::string& web) {
+void announce(const Server& server, const std::string& web, const DeviceAddresses& devices) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-simrun/1");
     json.key("listen").value(server.address());
-    json.key("p2os").beginObject().endObject();
-    json.key("scip").beginObject().endObject();
+    if (wireProtocols().front()->name != "p2os") json.key("p2os").beginObject().endObject();
+    for (const WireProtocol* const protocol : wireProtocols()) {
+        json.key(std::string(protocol->name)).beginObject();
+        const auto found = devices.find(protocol);
+        if (found != devices.end())
+            for (const auto& [id, address] : found->second) json.key(id).value(address);
+        json.endObject();
+    }
     if (!web.empty()) json.key("web").value(web);
     json.endObject();
     writeAll("-", json.take() + '\n');

@@ -15,6 +15,7 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 
 /// The first line of output: clients can connect now.
 /// \param web address of the page; "" without
-void announce(const Server& server, const std::string& web);
+/// \param devices where device ports are
+void announce(const Server& server, const std::string& web, const DeviceAddresses& devices);
 
 }  // namespace ispace

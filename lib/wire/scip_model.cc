@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wire/scip_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace ispace {
+
+namespace {
+
+/// Steps have four digits, distances 18 bits.
+constexpr int kMostSteps = 9999, kFarthest = (1 << 18) - 1;
+constexpr double kMillimetres = 1000;
+
+struct Row {
+    std::string_view model;  // of share/devices
+    std::string_view name, product;
+    int min_mm, max_mm, front, none, near, unused;
+    bool has_intensity;
+};
+
+constexpr std::array kRows{
+    Row{"urg-04lx", "URG-04LX(Hokuyo Automatic Co.,Ltd.)", "SOKUIKI Sensor URG-04LX", 20, 5600, 384,
+        0, 19, 19, false},
+    Row{"urg-04lx-ug01", "URG-04LX-UG01(Simple-URG)", "SOKUIKI Sensor URG-04LX-UG01(Simple-URG)",
+        20, 5600, 384, 0, 19, 19, false},
+    Row{"utm-30lx", "UTM-30LX(Hokuyo Automatic Co.,Ltd.)", "SOKUIKI Sensor TOP-URG UTM-30LX", 23,
+        60000, 540, 1, 2, 0, true},
+    Row{"utm-30lx-ew", "UTM-30LX-EW", "SOKUIKI Sensor UTM-30LX-EW", 23, 60000, 540, 1, 2, 0, true},
+    Row{"ust-10lx", "UST-10LX", "SOKUIKI Sensor UST-10LX", 20, 30000, 540, 65533, 2, 0, true},
+    Row{"ust-20lx", "UST-20LX", "SOKUIKI Sensor UST-20LX", 20, 60000, 540, 65533, 2, 0, true},
+};
+
+const Row* rowOf(const Laser& laser) {
+    const auto* const row = std::find_if(kRows.begin(), kRows.end(), [&laser](const Row& known) {
+        return known.model == laser.model;
+    });
+    return row == kRows.end() ? nullptr : row;
+}
+
+bool isWhole(double value) {
+    constexpr double kRounding = 1e-6;
+    return std::fabs(value - std::round(value)) < kRounding;
+}
+
+int rounded(double value) { return static_cast<int>(std::lround(value)); }
+
+/// Step of the first beam, counted from the front.
+int offsetOf(const Laser& laser) { return rounded(laser.first.degrees() / laser.step.degrees()); }
+
+int frontOf(const Laser& laser) {
+    const Row* const row = rowOf(laser);
+    if (row != nullptr && row->front + offsetOf(laser) >= 0) return row->front;
+    // Not from 0: some programs take a first step of 0 for a missing one.
+    return std::max(1, 1 - offsetOf(laser));
+}
+
+}  // namespace
+
+std::string ScipModel::refusal(const Laser& laser) {
+    if (laser.sweep != SweepAxis::None) return "it sweeps, which SCIP cannot tell";
+    const double turn = 360 / laser.step.degrees();
+    if (!isWhole(turn)) return "a turn is no whole number of its steps, as SCIP wants it";
+    if (!isWhole(laser.first.degrees() / laser.step.degrees()))
+        return "no step of it looks straight ahead, as SCIP wants it";
+    if (frontOf(laser) + offsetOf(laser) + laser.beams - 1 > kMostSteps)
+        return "it has more steps than SCIP can number";
+    return "";
+}
+
+ScipModel ScipModel::of(const Laser& laser) {
+    constexpr double kSecondsAMinute = 60;
+    ScipModel out;
+    out.turn = rounded(360 / laser.step.degrees());
+    out.front = frontOf(laser);
+    out.first = out.front + offsetOf(laser);
+    out.last = out.first + laser.beams - 1;
+    out.rpm = std::max(1, rounded(laser.rate * kSecondsAMinute));
+    if (const Row* const row = rowOf(laser)) {
+        out.name = row->name;
+        out.product = row->product;
+        out.min_mm = row->min_mm;
+        out.max_mm = row->max_mm;
+        out.none = row->none;
+        out.near = row->near;
+        out.unused = row->unused;
+        out.has_intensity = row->has_intensity;
+        return out;
+    }
+    out.name = laser.model.empty() ? "ispace laser" : "ispace " + laser.model;
+    out.product = "simulated laser";
+    const double most = std::min(laser.max_range * kMillimetres, double{kFarthest});
+    out.max_mm = std::max(1, static_cast<int>(std::ceil(most)));
+    out.min_mm = std::clamp(rounded(laser.min_range * kMillimetres), 1, out.max_mm);
+    out.has_intensity = true;
+    return out;
+}
+
+int ScipModel::number(float range) const {
+    if (!std::isfinite(range)) return none;
+    const double mm = std::round(static_cast<double>(range) * kMillimetres);
+    if (mm < min_mm) return near;
+    return mm > max_mm ? none : static_cast<int>(mm);
+}
+
+std::vector<int> ScipModel::numbers(const std::vector<float>& ranges, int start, int end,
+                                    int cluster) const {
+    std::vector<int> out;
+    out.reserve(static_cast<std::size_t>((end - start) / cluster + 1));
+    for (int from = start; from <= end; from += cluster) {
+        const int to = std::min(end, from + cluster - 1);
+        std::optional<int> best;
+        for (int step = from; step <= to; ++step) {
+            const auto beam = static_cast<std::size_t>(step - first);
+            const bool is_used = step >= first && beam < ranges.size();
+            const int value = is_used ? number(ranges[beam]) : unused;
+            if (!best || (isDistance(value) && (!isDistance(*best) || value < *best))) best = value;
+        }
+        out.push_back(*best);
+    }
+    return out;
+}
+
+}  // namespace ispace
