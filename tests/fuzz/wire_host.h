@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A small run for the fuzzers of devices' languages.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "layout/schemas.h"
+#include "record/text.h"
+#include "wire/wire_session.h"
+
+namespace ispace::fuzz {
+
+/// A world of its own with a room of 8 m by 6 m, in which everybody may hold everything.
+class RoomHost : public WireHost {
+  public:
+    /// \param layout records
+    explicit RoomHost(const std::string& layout)
+        : scene_(makeScene(
+              readRecordText("#env 1\nispace size=8,6\n" + layout, "room.env", sceneSchemas()),
+              nullptr, DeviceCatalogue())),
+          world_(scene_, std::chrono::milliseconds(100)) {}
+
+    [[nodiscard]] World& world() override { return world_; }
+    [[nodiscard]] bool isReplay() const override { return false; }
+    [[nodiscard]] WorldEditor* editor() override { return nullptr; }
+    std::optional<std::int64_t> hold(std::string_view /*robot*/) override { return 1; }
+    [[nodiscard]] bool holds(std::string_view /*robot*/, std::int64_t /*hold*/) override {
+        return true;
+    }
+    void release(std::string_view /*robot*/, std::int64_t /*hold*/) override {}
+    [[nodiscard]] std::chrono::nanoseconds clock() const override { return world_.time(); }
+
+  private:
+    Scene scene_;
+    World world_;
+};
+
+/// What a session answers to bytes that arrive in pieces of this size; it is read from meanwhile.
+inline std::string answered(WireSession& session, std::string_view bytes, std::size_t piece) {
+    std::string out;
+    while (!bytes.empty() && !session.closing()) {
+        session.receive(bytes.substr(0, piece));
+        bytes.remove_prefix(std::min(piece, bytes.size()));
+        out += session.take();
+    }
+    return out;
+}
+
+}  // namespace ispace::fuzz
