@@ -18,6 +18,11 @@ SimTime simSeconds(double seconds) {
     return SimTime(static_cast<SimTime::rep>(std::llround(seconds * 1e9)));
 }
 
+/// m/s: who is fast looks for a way at down to this speed.
+constexpr double kPace = 1;
+/// Degrees: who has to turn farther does so in place.
+constexpr double kWide = 30;
+
 double degreesOff(Angle a, Angle b) { return wrapped(a - b).degrees(); }
 
 }  // namespace
@@ -35,7 +40,7 @@ void Pilot::follow(const Course& course, double speed, bool commanded) {
     next_ = 0;
     nearest_ = kForever;
     gained_ = blocked_since_ = kNever;
-    has_aim_ = idle_ = false;
+    has_aim_ = idle_ = bumped_ = false;
 }
 
 /// In [0, 1).
@@ -46,9 +51,9 @@ double Pilot::random() {
 }
 
 /// Seconds ahead that have to be free: enough to brake.
-double Pilot::horizon() const {
+double Pilot::horizon(double speed) const {
     constexpr double kLeast = 2, kSlack = 0.5;
-    return std::max(kLeast, speed_ / model_.accel + kSlack);
+    return std::max(kLeast, speed / model_.accel + kSlack);
 }
 
 void Pilot::steer(const Helm& helm, Motion& motion) {
@@ -121,27 +126,33 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
             leave(helm.time);
         return;
     }
-    const Steering steering(*helm.around, helm.mover, *helm.obstacles, helm.clearance, speed_,
-                            horizon());
+    const Steering steering = lookAbout(helm, speed_);
     if (helm.time < aside_until_) {
         if (steering.freeTime(aside_) > 0) return go(motion, aside_, speed_ / 2, kForever);
         aside_until_ = {};
     }
-    // What lies behind the place does not matter.
     const Angle direct = Angle::radians(std::atan2(way.y, way.x));
-    const double needed = std::min(horizon(), left / speed_);
-    const FreeWay free = steering.choose(direct, needed);
+    // What lies behind the place does not matter.
+    const auto needed = [&](double speed) { return std::min(horizon(speed), left / speed); };
     constexpr double kLeast = 0.3;  // seconds
-    if (free.time < std::min(kLeast, needed)) {
+    double pace = speed_;
+    FreeWay free = steering.choose(direct, needed(pace));
+    while (free.time < std::min(kLeast, needed(pace)) && pace >= 2 * kPace) {
+        pace /= 2;
+        free = lookAbout(helm, pace).choose(direct, needed(pace));
+    }
+    if (free.time < std::min(kLeast, needed(pace))) {
         stand(motion);
         return stepAside(helm, steering, motion);
     }
     blocked_since_ = kNever;
-    const bool is_direct = free.direction == direct;
-    const double speed = speed_ * std::min(1.0, free.time / std::min(1.0, needed));
-    double length = kForever;
-    if (is_direct && stops) length = left;
-    go(motion, free.direction, speed, length);
+    const double speed = pace * std::min(1.0, free.time / std::min(1.0, needed(pace)));
+    const bool rests = free.direction == direct && stops && pace == speed_;
+    go(motion, free.direction, speed, rests ? left : kForever);
+}
+
+Steering Pilot::lookAbout(const Helm& helm, double speed) const {
+    return {*helm.around, helm.mover, *helm.obstacles, helm.clearance, speed, horizon(speed)};
 }
 
 /// Waits a while, then tries a way aside.
@@ -169,16 +180,24 @@ void Pilot::wander(const Helm& helm, Motion& motion) {
         turn_at_ = helm.time + simSeconds(kOften + kSeldom * random());
     }
     has_aim_ = true;
-    const Steering steering(*helm.around, helm.mover, *helm.obstacles, helm.clearance, speed_,
-                            horizon());
-    FreeWay free = steering.choose(aim_, horizon());
-    if (free.time < kLeast) free = steering.choose(aim_ + Angle::degrees(180), horizon());
+    double pace = speed_;
+    FreeWay free = lookAbout(helm, pace).choose(aim_, horizon(pace));
+    const auto suits = [&] {
+        return free.time >= horizon(pace) &&
+               std::abs(degreesOff(free.direction, motion.pose.heading)) < kWide;
+    };
+    while (pace >= 2 * kPace && !suits()) {
+        pace /= 2;
+        free = lookAbout(helm, pace).choose(aim_, horizon(pace));
+    }
+    if (free.time < kLeast)
+        free = lookAbout(helm, pace).choose(aim_ + Angle::degrees(180), horizon(pace));
     if (free.time < kLeast) {
         aim_ = aim_ + Angle::degrees(360 * random());
         return stand(motion);
     }
     aim_ = wrapped(free.direction);
-    go(motion, aim_, speed_ * std::min(1.0, free.time), kForever);
+    go(motion, aim_, pace * std::min(1.0, free.time), kForever);
 }
 
 void Pilot::stand(Motion& motion) {
@@ -186,8 +205,8 @@ void Pilot::stand(Motion& motion) {
     motion.drive.goal = motion.turn.goal = motion.side.goal = {};
 }
 
-void Pilot::go(Motion& motion, Angle direction, double speed, double stop) const {
-    constexpr double kWide = 30, kAligned = 1, kExact = 1e-9;  // degrees
+void Pilot::go(Motion& motion, Angle direction, double speed, double stop) {
+    constexpr double kAligned = 1, kExact = 1e-9;  // degrees
     const double off = degreesOff(direction, motion.pose.heading);
     if (std::abs(off) > kExact) {
         motion.turn.goal = {AxisGoal::Kind::Distance, off};
@@ -196,6 +215,7 @@ void Pilot::go(Motion& motion, Angle direction, double speed, double stop) const
         motion.turn.goal = {};
     }
     motion.side.goal = {};
+    if (std::abs(off) <= kAligned) bumped_ = false;
     if (std::abs(off) <= kAligned && stop < kForever) {
         motion.drive.goal = {AxisGoal::Kind::Distance, stop};
         return;
@@ -204,7 +224,8 @@ void Pilot::go(Motion& motion, Angle direction, double speed, double stop) const
     speed = std::min(speed, std::sqrt(2 * model_.accel * stop));
     const double aside = Angle::degrees(off).radians();
     const bool sidles = model_.drive == Drive::Omni && std::abs(off) < 2 * kWide;
-    const double ahead = sidles ? speed * std::cos(aside) : std::abs(off) < kWide ? speed : 0;
+    const bool turns = std::abs(off) >= kWide || bumped_;  // in place
+    const double ahead = sidles ? speed * std::cos(aside) : turns ? 0 : speed;
     motion.drive.goal = {AxisGoal::Kind::Speed, ahead};
     if (sidles)
         motion.side.goal = {

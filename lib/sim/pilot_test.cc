@@ -186,6 +186,52 @@ TEST(Pilot, SomebodyInACornerGetsOut) {
     EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return !isAt(world, 0, {-5.7, -3.7}, 2); }));
 }
 
+TEST(Pilot, FastWanderersSlowDownToWhatTheRoomAllows) {
+    for (const char* who : {"robot id=a speed=5 max_speed=5 accel=5", "human id=a speed=5",
+                            "robot id=a speed=20 max_speed=20 accel=5", "human id=a speed=20"}) {
+        const Scene cell = scene("ispace size=8,8\n", std::string(who) + " walk=wander\n");
+        World world(cell, milliseconds(10));
+        double path = 0;
+        int stood = 0;
+        while (world.time() < seconds(60)) {
+            const Point2 before = world.status(0).pose.position;
+            world.step();
+            const double way = distance(before, world.status(0).pose.position);
+            path += way;
+            stood += way == 0 ? 1 : 0;
+        }
+        EXPECT_GT(path, 90) << who;
+        EXPECT_LT(stood, 600) << who;
+    }
+}
+
+/// Two barriers of the thesis' room.
+constexpr const char* kBarriers = "barrier at=0.5,0.3\nbarrier at=1.2,0.95 heading=90\n";
+
+TEST(Pilot, WhoTouchesAThingTurnsAwayInPlace) {
+    const Scene room =
+        scene(std::string(kRoom) + kBarriers,
+              "robot id=r1 model=pioneer-2dx at=1.475,1.263 heading=-93.327 walk=wander\n");
+    World world(room, kStep);
+    EXPECT_TRUE(timeUntil(world, seconds(5), [&] { return !isAt(world, 0, {1.475, 1.263}, 1); }));
+}
+
+TEST(Pilot, APathLeadsAwayFromAThing) {
+    for (const Point2 target : {Point2{0.5, -2}, Point2{1.475, -1}, Point2{3, 1.3}, Point2{2, 3}}) {
+        const Scene room = scene(std::string(kRoom) + kBarriers,
+                                 "robot id=r1 model=pioneer-2dx at=1.475,1.263 heading=-93.327\n");
+        World world(room, kStep);
+        world.command(0, pathCommand({.path = {target}}));
+        std::vector<CommandEnd> ends;
+        timeUntil(world, seconds(60), [&] {
+            ends.assign(world.ends().begin(), world.ends().end());
+            return !ends.empty();
+        });
+        ASSERT_EQ(ends.size(), 1U);
+        EXPECT_EQ(ends[0].outcome, Outcome::Done) << target.x << ',' << target.y;
+    }
+}
+
 TEST(Pilot, WanderersKeepMoving) {
     std::string layout;
     for (int i = 0; i < 6; ++i) {
