@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""quick.py BUILD: every experiment with few seeds keeps to its bounds, twice with the same bytes; what
+fails is shown as failed, and mistakes of the command line are told."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+from running import check, skip
+
+try:
+    import matplotlib  # noqa: F401
+except ImportError:
+    skip("no matplotlib here (Debian: python3-matplotlib)")
+
+BUILD = sys.argv[1]
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+DRIVER = os.path.join(SOURCE, "share", "experiments", "run.py")
+SCRATCH = os.path.join(BUILD, "tests", "scratch", "experiments")
+
+
+def run(folder, *options, build=BUILD):
+    return subprocess.run([sys.executable, "-B", DRIVER, "--build", build, "--quick", *options, "-o",
+                           os.path.join(SCRATCH, folder)], capture_output=True, text=True, check=False)
+
+
+def report(folder):
+    with open(os.path.join(SCRATCH, folder, "index.html"), encoding="utf-8") as file:
+        return file.read()
+
+
+def twice():
+    for folder in ("first", "second"):
+        done = run(folder)
+        check(done.returncode == 0, f"status {done.returncode}: {done.stderr}")
+        index = os.path.join(SCRATCH, folder, "index.html")
+        check(done.stdout == f"the report: {index}\n", f"it ends with {done.stdout}")
+        check(os.path.getsize(os.path.join(SCRATCH, folder, "timings.csv")) > 100, "no timings")
+    check(report("first") == report("second"), "the report differs from run to run")
+    listed = run("none", "--list").stdout.splitlines()
+    check(len(listed) >= 10 and report("first").count("<section ") == len(listed),
+          f"the report does not have the {len(listed)} experiments there are")
+
+
+def what_goes_wrong():
+    """A build whose coverage tool fails: the others are shown, and so is that one."""
+    build = os.path.join(SCRATCH, "broken")
+    os.makedirs(os.path.join(build, "bin"))
+    for tool in ("envc", "arrange", "scan", "simrun"):
+        os.symlink(os.path.join(BUILD, "bin", tool), os.path.join(build, "bin", tool))
+    done = run("none", "--only", "judge", build=build)
+    check(done.returncode == 1 and "no program" in done.stderr and "make experiments" in done.stderr,
+          f"without a tool: {done.returncode} {done.stderr}")
+    coverage = os.path.join(build, "bin", "coverage")
+    with open(coverage, "w", encoding="utf-8") as file:
+        file.write("#!/bin/sh\necho 'coverage: out of order' >&2\nexit 1\n")
+    os.chmod(coverage, 0o755)
+    done = run("failed", "--only", "judge", build=build)
+    check(done.returncode == 1 and "1 of 1 failed" in done.stderr, f"it did not fail: {done.stderr}")
+    check("Failed." in report("failed") and "out of order" in report("failed"), "failure not shown")
+    done = run("none", "--only", "nothing")
+    check(done.returncode == 2 and "no experiment nothing" in done.stderr, f"unknown: {done.stderr}")
+
+
+shutil.rmtree(SCRATCH, ignore_errors=True)
+os.makedirs(SCRATCH)
+twice()
+what_goes_wrong()
