@@ -256,6 +256,15 @@ MotionLimits limitsOf(const RobotModel& model, double friction) {
             {share * model.max_sidespeed, share * model.max_sidespeed, share * model.accel}};
 }
 
+MotionLimits narrowed(const MotionLimits& model, const MotionLimits& order, double friction) {
+    const auto narrow = [friction](const AxisLimits& axis, const AxisLimits& own) {
+        const double most = std::min(axis.max, (1 - friction) * own.max);
+        return AxisLimits{std::min(most, (1 - friction) * own.top), most,
+                          (1 - friction) * own.accel};
+    };
+    return {narrow(model.drive, order.drive), narrow(model.turn, order.turn), model.side};
+}
+
 void Motion::command(const Command& command) {
     const auto speed_of = [](const Axis& axis) {
         return axis.goal.kind == AxisGoal::Kind::Speed ? axis.goal : AxisGoal{};
@@ -298,6 +307,15 @@ void Motion::command(const Command& command) {
             drive.goal = turn.goal = side.goal = {};
             return;
     }
+}
+
+void Motion::steer(const WheelOrder& order) {
+    side.goal = {};
+    if (order.drive) drive.goal = *order.drive;
+    if (!order.turn) return;
+    turn.goal = *order.turn;
+    if (turn.goal.kind == AxisGoal::Kind::Distance)
+        turn_end = wrapped(pose.heading + Angle::degrees(turn.goal.value));
 }
 
 bool Motion::arrived() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "env/environment.h"
@@ -37,15 +38,20 @@ struct AxisLimits {
     double top = 0;    ///< speed of commands that come to an end
     double max = 0;    ///< greatest speed in either direction
     double accel = 0;  ///< of speeding up and braking
+    friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
 };
 
 /// What a robot or a person can do where it stands.
 struct MotionLimits {
     AxisLimits drive, turn, side;
+    friend bool operator==(const MotionLimits&, const MotionLimits&) = default;
 };
 
 /// The model's limits, each times (1 - friction).
 MotionLimits limitsOf(const RobotModel& model, double friction);
+
+/// The limits of a robot on this floor, with those of an order in place of its usual ones.
+MotionLimits narrowed(const MotionLimits& model, const MotionLimits& order, double friction);
 
 /// What one axis is to do.
 struct AxisGoal {
@@ -54,6 +60,14 @@ struct AxisGoal {
         Distance  ///< go that far and come to rest exactly there
     } kind = Kind::Speed;
     double value = 0;  ///< the speed, or the signed distance left
+    friend bool operator==(const AxisGoal&, const AxisGoal&) = default;
+};
+
+/// What a program that speaks to the wheels asks of a robot: each axis by itself, and how hard.
+struct WheelOrder {
+    std::optional<AxisGoal> drive, turn;  ///< nothing: it goes on as it does
+    /// Of both axes, until the next Command. Speeds count up to the model's greatest ones.
+    AxisLimits drive_limits, turn_limits;
 };
 
 /// One axis: its speed, and what it does next.
@@ -75,6 +89,8 @@ struct Motion {
     /// Sets the goals of a command. Speed, Rotspeed and Sidespeed keep the speeds that the others
     /// have set. Path brings all to rest: who walks it sets the goals, see route.h.
     void command(const Command& command);
+    /// Sets the goals of an order; a goal that is not in it stays.
+    void steer(const WheelOrder& order);
     /// All axes at rest and no distance left.
     [[nodiscard]] bool arrived() const;
     /// At rest at once, without a goal.

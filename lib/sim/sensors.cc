@@ -274,6 +274,15 @@ void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, Sim
     reading.value = std::move(hearings);
 }
 
+Scan SensorReader::look(const Sensor& laser, const Movers& movers) {
+    Scan scan;
+    scan.pose = poseOf(laser, movers);
+    worlds_.prepare(scan.pose);
+    updateBodies(movers);
+    LaserCaster(worlds_, bodies_, laser, true, ReadingOptions()).cast(scan);
+    return scan;
+}
+
 const MovingBodies& SensorReader::bodies(const Movers& movers) {
     updateBodies(movers);
     return bodies_;

@@ -56,6 +56,8 @@ class SensorReader {
     [[nodiscard]] const FloorSensors& floor() const { return floor_; }
     /// The bodies of robots and people where they are.
     const MovingBodies& bodies(const Movers& movers);
+    /// What a laser on a robot would measure now, see World::look.
+    Scan look(const Sensor& laser, const Movers& movers);
     /// What surrounds them, as light or sound meets it.
     const RayWorld& mesh(Surfaces surfaces);
 

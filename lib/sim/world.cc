@@ -156,6 +156,8 @@ int World::command(std::size_t mover, const Command& command) {
         data.end(mover, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
     }
     state.stall = false;
+    if (std::exchange(state.own_limits, std::nullopt))
+        state.limits = limitsOf(data.movers[mover].model, 0);
     data.motions[mover].command(command);
     data.pilots[mover].turnOff();
     if (command.verb == Verb::Path) {
@@ -165,6 +167,18 @@ int World::command(std::size_t mover, const Command& command) {
     if (comesToAnEnd(command.verb)) state.running = ++state.ids;
     return state.running;
 }
+
+void World::steer(std::size_t robot, const WheelOrder& order) {
+    Data& data = *data_;
+    MoverState& state = data.states[robot];
+    if (state.running != 0) data.end(robot, Outcome::Replaced);
+    if (order.drive) state.stall = false;
+    state.own_limits = {order.drive_limits, order.turn_limits, {}};
+    data.motions[robot].steer(order);
+    data.pilots[robot].turnOff();
+}
+
+Scan World::look(const Sensor& laser) { return data_->sensors.look(laser, data_->where()); }
 
 void World::change(Scene scene, std::span<const std::string> placed) {
     auto stayers = stayersOf(*data_->scene, scene);

@@ -55,6 +55,8 @@ struct Collision {
     SimTime time{};
 };
 
+struct WheelOrder;
+
 /// What a run is besides its scene.
 struct RunOptions {
     std::uint64_t seed = 0;  ///< of all that is random
@@ -135,6 +137,12 @@ class World {
     /// Sidespeed keep the goals set by the others. \returns for a command that comes to an end its
     /// id, counting from 1 for each mover; else 0. \pre refusal() is empty
     int command(std::size_t mover, const Command& command);
+    /// Gives an order to a robot's wheels; a running command ends as Replaced. The stall flag stays
+    /// unless the order has a goal for the drive. \pre speeds and accelerations are not negative
+    void steer(std::size_t robot, const WheelOrder& order);
+    /// What a laser with this mount on a robot would measure now, all beams at once and without
+    /// noise. \pre it is a Laser on a robot
+    [[nodiscard]] Scan look(const Sensor& laser);
 
     void step();
     /// A step in which everybody gets where a record says, instead of where commands lead: `states`

@@ -101,6 +101,10 @@ void World::Data::setLimits(std::size_t mover) {
     MotionLimits& limits = states[mover].limits;
     const double rough = friction.at(motions[mover].pose.position);
     if (!friction.empty()) limits = limitsOf(movers[mover].model, rough);
+    if (const auto& own = states[mover].own_limits) {
+        limits = narrowed(limitsOf(movers[mover].model, rough), *own, rough);
+        return;
+    }
     const double speed = pilots[mover].isOn() ? pilots[mover].speed() : movers[mover].model.speed;
     limits.drive.top = (1 - rough) * speed;
 }
@@ -227,6 +231,7 @@ std::unique_ptr<World::Data> World::Data::next(
         if (stayers.contains(id)) {
             state.stall = states[*old].stall;
             state.bump = states[*old].bump;
+            state.own_limits = states[*old].own_limits;
             after->motions[i] = motions[*old];
             if (after->movers[i].course == movers[*old].course) after->pilots[i] = pilots[*old];
             after->keepGait(i, *this, *old);

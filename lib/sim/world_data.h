@@ -24,6 +24,7 @@ namespace ispace {
 struct MoverState {
     const Obstacles* obstacles = nullptr;
     MotionLimits limits;
+    std::optional<MotionLimits> own_limits;  // of its wheels' orders
     double clearance = 0;  // it may go at least as far before it meets an obstacle
     int ids = 0;           // given so far
     int running = 0;       // id of the command that comes to an end, or 0
