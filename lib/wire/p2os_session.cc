@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wire/p2os_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+constexpr double kMillimetres = 1000;
+constexpr std::uint8_t kLastSync = 2;
+/// Of names that are sent.
+constexpr std::size_t kLongestName = 24;
+
+Pose2 product(const Pose2& a, const Pose2& b) {
+    return {a * b.position, wrapped(a.heading + b.heading)};
+}
+
+Pose2 inverse(const Pose2& pose) {
+    const Pose2 turned{{}, -pose.heading};
+    const Point2 p = pose.position;
+    return {turned * Point2{-p.x, -p.y}, -pose.heading};
+}
+
+}  // namespace
+
+Pose2 P2osOdometer::pose() const { return product(inverse(origin_), counted_); }
+
+void P2osOdometer::set(const Pose2& pose) { origin_ = product(counted_, inverse(pose)); }
+
+void P2osOdometer::follow(const Pose2& counted, double most) {
+    const Pose2 before = pose();
+    const bool jumped = distance(counted.position, counted_.position) > most ||
+                        std::abs(wrapped(counted.heading - counted_.heading).radians()) > most;
+    counted_ = counted;
+    if (jumped) set(before);
+}
+
+P2osSession::P2osSession(WireHost& host, std::string robot, const P2osType* type,
+                         WallClock wall_clock)
+    : host_(&host),
+      id_(std::move(robot)),
+      type_(type != nullptr ? *type : p2osTypeOf(model())),
+      wall_clock_(std::move(wall_clock)),
+      hold_(host.hold(id_)),
+      start_(host.world().robots()[this->robot()].pose),
+      drive_(type_, model()),
+      odometer_(host.world().odometry(this->robot()).pose) {
+    if (!hold_) close();
+}
+
+P2osSession::~P2osSession() {
+    if (hold_) host_->release(id_, *hold_);
+}
+
+const RobotModel& P2osSession::model() const { return host_->world().robots()[robot()].model; }
+
+bool P2osSession::isLost() { return !hold_ || !host_->holds(id_, *hold_); }
+
+std::string P2osSession::name() const { return id_.substr(0, kLongestName); }
+
+Pose2 P2osSession::pose() {
+    const World& world = host_->world();
+    // Twice as far as in a step, as the step before may be new, too.
+    const double step = seconds(world.stepLength());
+    const double speed = std::max(model().max_speed, model().max_rotspeed.radians());
+    constexpr double kSlack = 0.01;
+    odometer_.follow(world.odometry(robot()).pose, 4 * step * speed + kSlack);
+    return odometer_.pose();
+}
+
+void P2osSession::feed() {
+    fed_ = host_->world().time();
+    fed_wall_ = wall_clock_();
+    drive_.hush(false);
+}
+
+void P2osSession::watch() {
+    if (drive_.isHushed() || host_->world().time() - fed_ < kWatchdog) return;
+    if (wall_clock_() - fed_wall_ >= kWatchdog) drive_.hush(true);
+}
+
+void P2osSession::receive(std::string_view bytes) {
+    if (isLost()) return close();
+    parser_.append(bytes);
+    while (const auto packet = parser_.take()) {
+        feed();
+        greeted_ ? obey(*packet) : greet(*packet);
+        if (closing()) return;
+    }
+    if (!host_->isReplay()) drive_.apply(host_->world(), robot(), pose().heading);
+}
+
+void P2osSession::stepped(std::size_t unsent) {
+    if (isLost()) return close();
+    World& world = host_->world();
+    watch();
+    drive_.stepped(world, robot());
+    if (!host_->isReplay()) drive_.apply(world, robot(), pose().heading);
+    if (!opened_ || world.time() < next_) return;
+    while (next_ <= world.time()) next_ += kCycle;
+    // What nobody reads now is old news when it is read.
+    constexpr std::size_t kMostUnsent = 16384;
+    if (unsent > kMostUnsent) return;
+    if (tells_sim_) sendSim();
+    sendStatus();
+    sendScan();
+}
+
+void P2osSession::greet(const P2osPacket& packet) {
+    if (packet.id > kLastSync) return;
+    if (packet.id < kLastSync) return send(p2osBytes(packet.id));
+    P2osWriter out;
+    send(out.text(name()).text("Pioneer").text(type_.name).packet(kLastSync));
+    greeted_ = true;
+}
+
+void P2osSession::sendStatus() {
+    World& world = host_->world();
+    const Odometry odometry = world.odometry(robot());
+    P2osStatus status;
+    status.pose = pose();
+    status.speed = odometry.speed;
+    status.rotspeed = odometry.rotspeed;
+    status.stall = drive_.isStalled();
+    status.motors = drive_.motors();
+    status.stopped = drive_.isStopping();
+    status.sonars = sonars_;
+    if (sonars_) status.ranges = world.sonar(robot());
+    status.first_sonar = first_sonar_;
+    status.bumpers = p2osBumpers(model(), world.bumper(robot()));
+    send(p2osStatusPacket(type_, status));
+    if (status.ranges.size() > kMaxP2osSonars)
+        first_sonar_ = (first_sonar_ + kMaxP2osSonars) % status.ranges.size();
+}
+
+/// The laser of the robot, where there is one, else one where clients take it to be; with the beams
+/// that the client has asked for.
+void P2osSession::sendScan() {
+    const int readings = laser_.readings();
+    if (laser_.mode == 0 || readings == 0) return;
+    constexpr double kUsualRange = 32;
+    World& world = host_->world();
+    Sensor sensor{.id = "", .model = Laser(), .pose = {}};
+    auto& laser = sensor.as<Laser>();
+    laser.max_range = kUsualRange;
+    sensor.mount = Mount{
+        robot(),
+        {{type_.laser_x / kMillimetres, type_.laser_y / kMillimetres, kScanHeight}, {}, {}, {}}};
+    for (const RunSensor& own : world.sensors()) {
+        if (own.model<Laser>() == nullptr || !own.isOn(robot())) continue;
+        sensor.mount = own.sensor()->mount;
+        laser.min_range = own.model<Laser>()->min_range;
+        laser.max_range = own.model<Laser>()->max_range;
+        break;
+    }
+    laser.beams = readings;
+    laser.first = laser_.first;
+    laser.step = laser_.last < laser_.first ? -laser_.step : laser_.step;
+    const Scan scan = world.look(sensor);
+    send(p2osLaserPackets(laser_.mode, type_, pose(), scan.ranges, laser.max_range));
+}
+
+void P2osSession::sendSim() {
+    const World& world = host_->world();
+    send(p2osSimPacket(world.status(robot()).pose, world.stepLength()));
+}
+
+}  // namespace ispace

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For the tests of this folder: a run, and devices in it without a network.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "record/edit.h"
+#include "sim/simulation.h"
+#include "sim/test_source.h"
+#include "sim/world_editor.h"
+#include "wire/wire_session.h"
+
+namespace ispace::testing {
+
+/// A world with steps of 10 ms.
+class TestHost : public WireHost {
+  public:
+    explicit TestHost(const std::string& layout, const std::string& room = "ispace size=8,6\n")
+        : scene_(scene(room, layout)),
+          world_(scene_, std::chrono::milliseconds(10)),
+          simulation_(world_, {}, {Clock::Kind::Step, 1}, {}),
+          editor_(simulation_, std::make_shared<TextSource>()) {}
+
+    World& world() override { return world_; }
+    [[nodiscard]] bool isReplay() const override { return false; }
+    bool change(std::string_view request) override {
+        EXPECT_TRUE(request.starts_with("SET "));
+        const std::vector<Edit> edits = {parseEdit(Edit::Kind::Set, request.substr(4))};
+        try {
+            editor_.adopt(editor_.edited(edits), edits);
+        } catch (const FormatError&) {
+            return false;
+        }
+        return true;
+    }
+    std::optional<std::int64_t> hold(std::string_view robot) override {
+        if (held_) return std::nullopt;
+        held_ = robot;
+        return 1;
+    }
+    bool holds(std::string_view robot, std::int64_t /*hold*/) override {
+        return held_ == robot && world_.robotNamed(robot).has_value();
+    }
+    void release(std::string_view robot, std::int64_t /*hold*/) override {
+        held_.reset();
+        if (const auto index = world_.robotNamed(robot)) world_.command(*index, {Verb::Stop});
+    }
+    [[nodiscard]] std::chrono::nanoseconds clock() const override { return world_.time(); }
+
+    [[nodiscard]] bool isHeld() const { return held_.has_value(); }
+    /// Lets time pass for a session.
+    void run(WireSession& session, double seconds) {
+        const SimTime end = world_.time() + std::chrono::milliseconds(std::lround(seconds * 1000));
+        while (world_.time() < end) {
+            world_.step();
+            session.stepped(0);
+        }
+    }
+
+  private:
+    Scene scene_;
+    World world_;
+    Simulation simulation_;
+    WorldEditor editor_;
+    std::optional<std::string> held_;
+};
+
+}  // namespace ispace::testing
