@@ -5,6 +5,9 @@
 #include <chrono>
 #include <utility>
 
+#include "base/error.h"
+#include "record/edit.h"
+
 namespace ispace {
 
 namespace {
@@ -18,10 +21,27 @@ constexpr auto kMute = std::chrono::seconds(1);
 
 }  // namespace
 
-WorldEditor* DeviceHost::editor() {
+DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Nobody shows a token here.
-    const bool may = state_->mayChange() && state_->limits().token.empty();
-    return may ? &state_->editor() : nullptr;
+    if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
+    const WallTime began = steady_clock::now();
+    if (!state_->changes().mayBegin(began)) return Change::Later;
+    Change result = Change::Done;
+    try {
+        std::vector<Edit> edits;
+        for (const std::string& assignment : assignments)
+            edits.push_back(parseEdit(Edit::Kind::Set, assignment));
+        state_->editor().adopt(state_->editor().edited(edits), edits);
+        for (const std::string& assignment : assignments)
+            state_->simulation().events().add(EventKind::Change, "SET " + assignment);
+    } catch (const UsageError&) {
+        result = Change::Refused;
+    } catch (const FormatError&) {
+        result = Change::Refused;
+    }
+    state_->changes().spend(began, steady_clock::now());
+    state_->sync();
+    return result;
 }
 
 std::optional<std::int64_t> DeviceHost::hold(std::string_view robot) {

@@ -185,28 +185,32 @@ void P2osSession::setLaser(const P2osPacket& packet) {
 void P2osSession::setPose(const P2osPacket& packet) {
     constexpr std::size_t kSize = 13;
     if (packet.data.size() < kSize) return;
-    place({{p2osInteger(packet.data, 1, 4) / kMillimetres,
-            p2osInteger(packet.data, 5, 4) / kMillimetres},
-           Angle::degrees(p2osInteger(packet.data, 9, 4))});
+    new_place_ = {{p2osInteger(packet.data, 1, 4) / kMillimetres,
+                   p2osInteger(packet.data, 5, 4) / kMillimetres},
+                  wrapped(Angle::degrees(p2osInteger(packet.data, 9, 4)))};
+    place();
 }
 
 void P2osSession::reset(const P2osPacket& /*packet*/) {
-    place(start_);
+    new_place_ = start_;
+    place();
     pose();
     odometer_.set({});
 }
 
 /// Puts the robot elsewhere, unless it would stand in something there. Odometry knows nothing of
 /// it.
-void P2osSession::place(const Pose2& pose) {
-    this->pose();
-    const std::string of_robot = "SET " + id_;
-    const Point2 at = pose.position;
-    const bool placed =
-        host_->change(of_robot + ".at=" + formatDouble(at.x) + "," + formatDouble(at.y)) &&
-        host_->change(of_robot + ".heading=" + formatDouble(pose.heading.degrees()));
-    if (!placed || isLost()) return;
-    this->pose();
+void P2osSession::place() {
+    pose();
+    const auto& [at, heading] = *new_place_;
+    const std::array<std::string, 2> keys = {
+        id_ + ".at=" + formatDouble(at.x) + "," + formatDouble(at.y),
+        id_ + ".heading=" + formatDouble(heading.degrees())};
+    const WireHost::Change change = host_->change(keys);
+    if (change == WireHost::Change::Later) return;
+    new_place_.reset();
+    if (change == WireHost::Change::Refused || isLost()) return;
+    pose();
     drive_.renew();
 }
 

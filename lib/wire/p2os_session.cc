@@ -96,6 +96,7 @@ void P2osSession::receive(std::string_view bytes) {
 void P2osSession::stepped(std::size_t unsent) {
     if (isLost()) return close();
     World& world = host_->world();
+    if (new_place_) place();
     watch();
     drive_.stepped(world, robot());
     if (!host_->isReplay()) drive_.apply(world, robot(), pose().heading);
@@ -167,5 +168,19 @@ void P2osSession::sendSim() {
     const World& world = host_->world();
     send(p2osSimPacket(world.status(robot()).pose, world.stepLength()));
 }
+
+namespace {
+
+constexpr std::uint16_t kPort = 8101;
+
+std::unique_ptr<WireSession> openP2os(WireHost& host, const std::string& id) {
+    return std::make_unique<P2osSession>(host, id);
+}
+
+}  // namespace
+
+const WireProtocol kP2os{"p2os",  "ROBOT", "the packets of Pioneer robots, for ARIA and Player",
+                         kPort,   1,       refusalOfRobot,
+                         openP2os};
 
 }  // namespace ispace

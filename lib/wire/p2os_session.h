@@ -87,7 +87,7 @@ class P2osSession : public WireSession {
     void setPose(const P2osPacket& packet);
     void reset(const P2osPacket& packet);
     void stat(const P2osPacket& packet);
-    void place(const Pose2& pose);
+    void place();
 
     WireHost* host_;
     std::string id_;
@@ -95,6 +95,7 @@ class P2osSession : public WireSession {
     WallClock wall_clock_;
     std::optional<std::int64_t> hold_;
     Pose2 start_;
+    std::optional<Pose2> new_place_;  // where it is to be put
     P2osParser parser_;
     P2osDrive drive_;
     P2osOdometer odometer_;

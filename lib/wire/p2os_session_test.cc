@@ -419,11 +419,13 @@ TEST(P2osSession, IsPutElsewhere) {
     robot.run(4);
     EXPECT_EQ(robot.x(), 1000);
     EXPECT_NEAR(host.world().status(0).pose.position.y, -0.9, 1e-9);
-    // Into a wall: refused.
+    // Into a wall: refused. Others' changes come first.
     P2osWriter wall;
     robot.send(wall.u8(0x3b).u32(4000).u32(0).u32(0).packet(224));
     EXPECT_NEAR(host.world().status(0).pose.position.y, -0.9, 1e-9);
+    host.changes_later = 3;
     robot.command(225);
+    EXPECT_NEAR(host.world().status(0).pose.position.y, -0.9, 1e-9);
     robot.run(0.1);
     EXPECT_EQ(host.world().status(0).pose.position, (Point2{-2, 0}));
     EXPECT_EQ(robot.x(), 0);

@@ -28,15 +28,16 @@ class TestHost : public WireHost {
 
     World& world() override { return world_; }
     [[nodiscard]] bool isReplay() const override { return false; }
-    bool change(std::string_view request) override {
-        EXPECT_TRUE(request.starts_with("SET "));
-        const std::vector<Edit> edits = {parseEdit(Edit::Kind::Set, request.substr(4))};
+    Change change(std::span<const std::string> assignments) override {
+        if (changes_later-- > 0) return Change::Later;
+        std::vector<Edit> edits;
+        for (const std::string& one : assignments) edits.push_back(parseEdit(Edit::Kind::Set, one));
         try {
             editor_.adopt(editor_.edited(edits), edits);
         } catch (const FormatError&) {
-            return false;
+            return Change::Refused;
         }
-        return true;
+        return Change::Done;
     }
     std::optional<std::int64_t> hold(std::string_view robot) override {
         if (held_) return std::nullopt;
@@ -61,6 +62,8 @@ class TestHost : public WireHost {
             session.stepped(0);
         }
     }
+
+    int changes_later = 0;  ///< so often a change has to wait
 
   private:
     Scene scene_;

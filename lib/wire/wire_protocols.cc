@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "base/message.h"
+#include "wire/p2os_session.h"
 #include "wire/scip_session.h"
 #include "wire/wire_session.h"
 
 namespace ispace {
 
 std::span<const WireProtocol* const> wireProtocols() {
-    static constexpr std::array kProtocols{&kScip};
+    static constexpr std::array kProtocols{&kP2os, &kScip};
     return kProtocols;
 }
 

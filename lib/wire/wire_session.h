@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "sim/world.h"
-#include "sim/world_editor.h"
 
 namespace ispace {
 
@@ -31,8 +30,13 @@ class WireHost {
     [[nodiscard]] virtual World& world() = 0;
     /// True if robots go as recorded, whatever they are told.
     [[nodiscard]] virtual bool isReplay() const = 0;
-    /// Null if clients may not change the world.
-    [[nodiscard]] virtual WorldEditor* editor() = 0;
+    enum class Change {
+        Done,
+        Refused,  ///< clients may not change the world, or it cannot be like that
+        Later     ///< changes leave the world time to go on: ask again after the next step
+    };
+    /// Changes the world as requests `SET ID.key=value` do, all at once.
+    virtual Change change(std::span<const std::string> assignments) = 0;
 
     /// A number for the hold of this robot; nothing if another client, of any protocol, has it.
     virtual std::optional<std::int64_t> hold(std::string_view robot) = 0;
