@@ -109,6 +109,10 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                     .type = KeyType::Choice,
                     .help = "two driven wheels, or omnidirectional: sideways, too",
                     .choices = {"differential", "omni"}});
+    keys.push_back({.name = "p2os",
+                    .type = KeyType::Choice,
+                    .help = "type of Pioneer that programs for such robots find (simrun --p2os)",
+                    .choices = {"p3dx-sh", "p3dx", "p2dx", "p3at-sh", "p3at"}});
     keys.push_back(positiveKey("max_sidespeed", Unit::Length,
                                "greatest speed to a side with drive=omni, metres a second; "
                                "without it max_speed",

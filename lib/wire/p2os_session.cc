@@ -38,11 +38,10 @@ void P2osOdometer::follow(const Pose2& counted, double most) {
     if (jumped) set(before);
 }
 
-P2osSession::P2osSession(WireHost& host, std::string robot, const P2osType* type,
-                         WallClock wall_clock)
+P2osSession::P2osSession(WireHost& host, std::string robot, WallClock wall_clock)
     : host_(&host),
       id_(std::move(robot)),
-      type_(type != nullptr ? *type : p2osTypeOf(model())),
+      type_(p2osTypeOf(host.world().scene(), id_)),
       wall_clock_(std::move(wall_clock)),
       hold_(host.hold(id_)),
       start_(host.world().robots()[this->robot()].pose),

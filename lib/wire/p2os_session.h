@@ -42,8 +42,8 @@ class P2osSession : public WireSession {
     static constexpr std::chrono::milliseconds kWatchdog{2000}, kCycle{100};
     using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-    /// \pre the robot exists. \param type nothing: that of its model
-    P2osSession(WireHost& host, std::string robot, const P2osType* type = nullptr,
+    /// \pre the robot exists
+    P2osSession(WireHost& host, std::string robot,
                 WallClock wall_clock = &std::chrono::steady_clock::now);
     ~P2osSession() override;
     P2osSession(const P2osSession&) = delete;

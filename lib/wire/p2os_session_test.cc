@@ -17,8 +17,8 @@ using testing::TestHost;
 /// A client that puts packets together by hand.
 class Pioneer {
   public:
-    explicit Pioneer(TestHost& host, const P2osType* type = nullptr)
-        : host_(&host), session_(host, "r1", type, [this] { return wall_; }) {}
+    explicit Pioneer(TestHost& host)
+        : host_(&host), session_(host, "r1", [this] { return wall_; }) {}
 
     P2osSession& session() { return session_; }
     /// Wall time goes on.
@@ -354,8 +354,9 @@ TEST(P2osSession, HearsWalls) {
 
 TEST(P2osSession, ConvertsAsItsTypeDoes) {
     for (const P2osType& type : p2osTypes()) {
-        TestHost host(kRobot);
-        Pioneer robot(host, &type);
+        TestHost host("robot id=r1 model=pioneer-3dx at=-2,0 p2os=" + std::string(type.name) +
+                      "\n");
+        Pioneer robot(host);
         for (const int id : {0, 1, 2}) robot.command(id);
         EXPECT_NE(robot.last(2).find(std::string(type.name) + '\0'), std::string::npos);
         robot.packets.clear();
@@ -372,6 +373,12 @@ TEST(P2osSession, ConvertsAsItsTypeDoes) {
         EXPECT_EQ(robot.left(), -120) << type.name;
         EXPECT_NEAR(robot.rotspeed(), 10 * Angle::radians(120 * type.turn).degrees(), 1);
     }
+    const Scene scene = testing::scene(
+        "ispace size=8,6\n",
+        "robot id=a\nrobot id=b model=pioneer-2dx at=1,1\nrobot id=c model=pioneer-3at at=2,2\n");
+    EXPECT_EQ(p2osTypeOf(scene, "a").name, "p3dx-sh");
+    EXPECT_EQ(p2osTypeOf(scene, "b").name, "p2dx");
+    EXPECT_EQ(p2osTypeOf(scene, "c").name, "p3at-sh");
     EXPECT_EQ(p2osTypeNamed("p3dx")->distance, 0.485);
     EXPECT_EQ(p2osTypeNamed("pioneer"), nullptr);
 }

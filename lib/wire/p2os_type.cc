@@ -26,10 +26,14 @@ const P2osType* p2osTypeNamed(std::string_view name) {
     return found == kTypes.end() ? nullptr : found;
 }
 
-const P2osType& p2osTypeOf(const RobotModel& model) {
-    if (model.model == "pioneer-2dx") return *p2osTypeNamed("p2dx");
-    if (model.model == "pioneer-3at" || model.model == "pioneer-2at")
-        return *p2osTypeNamed("p3at-sh");
+const P2osType& p2osTypeOf(const Scene& scene, std::string_view robot) {
+    const auto index = static_cast<std::size_t>(
+        std::find(scene.ids.begin(), scene.ids.end(), robot) - scene.ids.begin());
+    const Record& record = scene.records[index];
+    if (record.has("p2os")) return *p2osTypeNamed(record.text("p2os"));
+    const std::string model = record.has("model") ? record.text("model") : "";
+    if (model == "pioneer-2dx") return *p2osTypeNamed("p2dx");
+    if (model == "pioneer-3at" || model == "pioneer-2at") return *p2osTypeNamed("p3at-sh");
     return kTypes.front();
 }
 

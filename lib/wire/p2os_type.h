@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "layout/robot.h"
+#include "layout/scene.h"
 
 namespace ispace {
 
@@ -23,8 +23,8 @@ struct P2osType {
 std::span<const P2osType> p2osTypes();
 /// Null if there is none of that name.
 const P2osType* p2osTypeNamed(std::string_view name);
-/// That of a robot's model.
-const P2osType& p2osTypeOf(const RobotModel& model);
+/// That of a robot: what its record says, else that of its model. \pre the scene has it
+const P2osType& p2osTypeOf(const Scene& scene, std::string_view robot);
 
 /// Clients count 4096 units of heading in a turn.
 constexpr int kP2osTurn = 4096;
