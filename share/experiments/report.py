@@ -24,7 +24,7 @@ td.note { border-top: 0; padding-top: 0; text-align: left; color: var(--pale); f
 .good { color: var(--good); } .bad { color: var(--bad); font-weight: 600; }
 .failure { border-left: 4px solid var(--bad); padding: .3rem .8rem; background: #fff1f0; }
 .pictures { display: flex; flex-wrap: wrap; gap: 1rem; margin: 1rem 0; }
-figure { margin: 0; flex: 1 1 25rem; min-width: 0; max-width: 100%; }
+figure { margin: 0; flex: 1 1 25rem; min-width: 0; max-width: min(34rem, 100%); }
 figure .frame { overflow-x: auto; border: 1px solid var(--line); background: #fff; }
 figure input { position: absolute; opacity: 0; }
 figure img { display: block; max-width: 100%; height: auto; margin: 0 auto; cursor: zoom-in; }
@@ -141,7 +141,7 @@ def _is_number(value):
 
 
 def _unit(row):
-    space = "" if row["unit"] == "°" else " "
+    space = "" if row["unit"] == "°" else "\u00a0"  # no line ends there
     return f"{space}{_safe(row['unit'])}" if row["unit"] else ""
 
 

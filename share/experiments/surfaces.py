@@ -88,7 +88,7 @@ class Surfaces:
 def cloud_png(points, width, height, low, high):
     """Points from above and aside, heights from low to high in colours."""
     figure = pyplot.figure(figsize=(width / PIXELS, height / PIXELS), dpi=PIXELS)
-    axes = figure.add_axes((-0.26, -0.3, 1.52, 1.56), projection="3d", computed_zorder=False)
+    axes = figure.add_axes((-0.2, -0.22, 1.4, 1.42), projection="3d", computed_zorder=False)
     x, y, z = zip(*points)
     axes.scatter(x, y, z, c=z, s=1.5, marker="s", linewidths=0, cmap="viridis", vmin=low, vmax=high,
                  depthshade=False)
