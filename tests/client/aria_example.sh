@@ -11,7 +11,7 @@ run() {
     server=$!
     trap 'kill "$server" 2>/dev/null || true; cleanup' EXIT
     for ((i = 0; i < 3000; ++i)); do [ -s port ] && break; sleep 0.02; done
-    ISPACE_SIMRUN=127.0.0.1:$(cat port) timeout 60 "$binary_dir/tests/aria_wander" "$2" >out ||
+    ISPACE_SIMRUN=127.0.0.1:$(cat port) timeout 60 "$binary_dir/examples/wander" "$2" >out ||
         fail "status $? with the clock $1: $(cat out)"
     grep -qE '^p2dx: [0-9]+ mm in [0-9]+ s, stalled [0-9]+ times, now at [-0-9. ]+, -?[0-9]+ mm/s$' out ||
         fail "with the clock $1: $(cat out)"
@@ -29,6 +29,6 @@ run real:20 40
 [ $(($(date +%s) - begun)) -le 30 ] || fail "40 s took longer than 30 at twenty times real time"
 
 status=0
-ISPACE_SIMRUN=127.0.0.1:1 "$binary_dir/tests/aria_wander" >out || status=$?
+ISPACE_SIMRUN=127.0.0.1:1 "$binary_dir/examples/wander" >out || status=$?
 [ "$status" -eq 1 ] || fail "status $status without a server"
 grep -q '^cannot open the port: ' out || fail "$(cat out)"

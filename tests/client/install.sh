@@ -13,6 +13,12 @@ if cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1; th
     fail "version 0.1 is taken for 0.2"
 fi
 
+# The examples are copied from there and built with what is installed.
+cp -r prefix/share/ispace/examples .
+cmake -S examples -B examples/build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 ||
+    fail "the examples are not configured: $(cat cmake.log)"
+cmake --build examples/build -j 2 >build.log 2>&1 || fail "$(cat build.log)"
+
 for header in Aria.h Aria/Aria.h Sim_Aria.h; do
     sed "s:Aria[.]h:$header:" "$source_dir/share/examples/aria/wander.cpp" >wander.cpp
     "${CXX:-c++}" -std=c++11 -Wall -Wextra -Werror -pthread -I prefix/include/ispace_aria -I prefix/include \
