@@ -43,7 +43,8 @@ def table(lab):
             bound=(78.6, 82.6))
     lab.row(f"Hierarchical Random, R1 = 20, R2 = 5, Deg = 8: coverage, the median of {len(seeds)} seeds",
             THESIS["random"], middle, "%", bound=(69.9, 77.9),
-            note=f"The thesis had one run; ours are from {min(shares):.1f} to {max(shares):.1f} %.")
+            note=f"The thesis had one run. Ours are from {min(shares):.1f} to {max(shares):.1f} %, and "
+            f"{sum(1 for share in shares if share <= THESIS['random'])} of {len(shares)} are not above its figure.")
     lab.row("Order", "grid ≥ wall > random",
             " > ".join(name for _, name in sorted([(-grid["coverage"], "grid"), (-middle, "random"),
                                                    (-wall["coverage"], "wall")])))
@@ -136,7 +137,7 @@ def wide_rooms(lab):
             "twentieth of the scans: in an empty wide room three sensors anywhere cover nearly the same.")
         lab.row(f"{side} m: Hierarchical Random, 600 scans, median", "outperforms" if side > 8 else None,
                 random, "%", note=note)
-        lab.require(abs(random - grid["coverage"]) < 2, f"{side} m: random and grid differ")
+        lab.require(side == 8 or abs(random - grid["coverage"]) < 1, f"{side} m: random and grid differ")
 
 
 def run(lab):
