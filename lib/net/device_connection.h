@@ -29,6 +29,8 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     void end();
     void close();
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
+    /// False once its session has ended: only what is pending is still sent.
+    [[nodiscard]] bool serving() const { return session_ != nullptr; }
     /// True if its client has said nothing since that time, and nothing before it.
     [[nodiscard]] bool isMute(WallTime since) const { return !heard_ && began_ <= since; }
 

@@ -18,6 +18,8 @@ using std::chrono::steady_clock;
 
 /// A client that has said nothing for so long makes room for another.
 constexpr auto kMute = std::chrono::seconds(1);
+/// Connections of a port that only have to close.
+constexpr std::size_t kMaxLeaving = 8;
 
 }  // namespace
 
@@ -79,7 +81,14 @@ void DevicePort::welcome(tcp::socket socket) {
     const auto peer = socket.remote_endpoint(error);
     if (error || !isAllowed(allowed_, peer.address().to_string())) return;
     sweep();
-    if (connections_.size() >= protocol_->clients && !makeRoom()) return;
+    const auto serving = std::count_if(connections_.begin(), connections_.end(),
+                                       [](const auto& one) { return one->serving(); });
+    if (static_cast<std::size_t>(serving) >= protocol_->clients && !makeRoom()) return;
+    // Those that only have to close are no hindrance; the first of them has had the most time.
+    if (connections_.size() >= protocol_->clients + kMaxLeaving)
+        (*std::find_if(connections_.begin(), connections_.end(), [](const auto& one) {
+            return !one->serving();
+        }))->close();
     if (!protocol_->refusal(host_->world(), id_).empty()) return;  // the world has lost it
     connections_.push_back(
         std::make_shared<DeviceConnection>(std::move(socket), protocol_->open(*host_, id_)));

@@ -2,6 +2,7 @@
 // The transport of device ports, with a language made for the purpose.
 #include <atomic>
 #include <chrono>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -157,6 +158,18 @@ TEST(DevicePort, WhoSaysNothingMakesRoom) {
     }));
     EXPECT_EQ(mute.rest(), "");
     EXPECT_EQ(other.ask("still"), "still");
+}
+
+TEST(DevicePort, WhoHasLeftIsNoHindrance) {
+    EchoServer run;
+    std::list<Client> left;
+    for (int i = 0; i < 20; ++i) {
+        Client& client = left.emplace_back(run.echoPort());
+        client.connect().send("quit\n");
+        EXPECT_EQ(client.line(), "quit");  // it does not close
+    }
+    Client next(run.echoPort());
+    EXPECT_EQ(next.connect().ask("me"), "me");
 }
 
 TEST(DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
