@@ -2,6 +2,7 @@
 """A 3-D range camera near and far, and the colours of its depths."""
 
 import json
+import math
 import statistics
 
 TITLE = "A 3-D ranger, near and far"
@@ -11,6 +12,7 @@ SECONDS = 8
 DISTANCE = {"one": 1.0, "two": 2.0, "three": 3.0}
 COLUMNS, ROWS, FOCAL = 176, 144, 200.0  # of the SR-3000, in pixels
 BOX = 0.6                               # metres that the box is wide and high
+BACK = 7.0                              # metres from the camera to the wall behind, along the axis
 
 
 def frames(lab, file):
@@ -45,23 +47,30 @@ def near_and_far(lab):
 
 def spectrum(lab):
     lab.text("In fig. 3.27 the background of the real sensor is blue and full of noise, and that of the "
-             "simulated one red: its spectrum could not be set. Here it can (--spectrum). The real one repeats "
-             "its distances after 7.5 m, which a wall 10 m away shows, with the noise that grows with the distance.")
-    lab.write("deep.env", "#env 1\nispace at=3.5,0 size=11,5,4\ncube at=0.25,0 size=0.5,0.6,0.6\n"
+             "simulated one is red: its spectrum could not be set. Here it can (--spectrum). The real sensor's "
+             "distances repeat after 7.5 m, so a wall at the end of its range breaks up into blue and red.")
+    lab.write("deep.env", "#env 1\nispace at=1.2,0 size=7.6,7,4\ncube at=0.25,0 size=0.5,0.6,0.6\n"
               "cylinder at=0.3,-0.7 size=0.4,0.4,0.8\nchair at=0.4,0.8 heading=200\n")
-    lab.write("deep.3dm", "#3dm 1\nranger id=r model=sr-3000 at=-1,0,0.4\n")
+    lab.write("deep.3dm", "#3dm 1\nranger id=simulated at=-2,0,0.5 range=12 fov=47.5,39.6 pixels=176,144\n"
+              "ranger id=real model=sr-3000 at=-2,0,0.5\n")
     for name, options, caption in (
-            ("simulated", ("--spectrum", "6,0.5"), "Fig. 3.27 c, as the thesis' simulator: far is red, no noise."),
-            ("real", ("--spectrum", "0.5,6", "--noise"),
-             "Fig. 3.27 a, as the real sensor: far is blue; noise, and the far wall reads 7.5 m too near.")):
-        lab.tool("scan", "deep.env", "deep.3dm", *options, "--to", "png", "-o", f"{name}.png")
+            ("simulated", ("--spectrum", "8,0.5"), "Fig. 3.27 c, as the thesis' simulator: far is red, no noise."),
+            ("real", ("--spectrum", "0.5,7.5", "--noise"),
+             "Fig. 3.27 a, as the real sensor: far is blue, with noise; beyond 7.5 m it begins anew with red.")):
+        lab.tool("scan", "deep.env", "deep.3dm", "--select", name, *options, "--to", "png", "-o", f"{name}.png")
         lab.picture(f"{name}-color.png", caption)
-    lab.tool("scan", "deep.env", "--view", "first-person:-1.2,0,0,-18", "--size", "720,540", "-o", "view.png")
+    lab.tool("scan", "deep.env", "--view", "first-person:-2.2,0,0,-12", "--size", "720,540", "-o", "view.png")
     lab.picture("view.png", "Fig. 3.27 d: the scene.")
     lab.tool("scan", "deep.env", "deep.3dm", "-o", "deep.jsonl")
-    far = frames(lab, "deep.jsonl")["r"][15 * COLUMNS + COLUMNS // 2]
-    lab.row("The wall behind, 10 m away along the axis, reads", "noise", far, "m", digits=2, bound=(0, 7.5),
-            note="Distances beyond 7.5 m are read modulo 7.5 m, as the device does with its modulation.")
+    depths = frames(lab, "deep.jsonl")
+    row, column = 15, 20
+    slope = math.hypot(1, (column - (COLUMNS - 1) / 2) / FOCAL, (row - (ROWS - 1) / 2) / FOCAL)
+    pixel = row * COLUMNS + column
+    lab.row("Background, a corner of the picture: depth by the simulated sensor", "far", depths["simulated"][pixel],
+            "m", bound=(BACK - 0.001, BACK + 0.001), digits=3)
+    lab.row("The same by the real one, without noise", "noise", depths["real"][pixel], "m", digits=3,
+            bound=(BACK - 7.5 / slope - 0.001, BACK - 7.5 / slope + 0.001),
+            note=f"The wall is {BACK * slope:.2f} m away along this ray, of which the device reads what exceeds 7.5 m.")
 
 
 def run(lab):
