@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/message.h"
+#include "wire/cola_session.h"
 #include "wire/p2os_session.h"
 #include "wire/scip_session.h"
 #include "wire/wire_session.h"
@@ -11,7 +12,7 @@
 namespace ispace {
 
 std::span<const WireProtocol* const> wireProtocols() {
-    static constexpr std::array kProtocols{&kP2os, &kScip};
+    static constexpr std::array kProtocols{&kP2os, &kScip, &kCola};
     return kProtocols;
 }
 

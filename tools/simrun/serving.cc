@@ -48,11 +48,13 @@ void announce(const Server& server, const std::string& web, const DeviceAddresse
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-simrun/1");
     json.key("listen").value(server.address());
-    if (wireProtocols().front()->name != "p2os") json.key("p2os").beginObject().endObject();
     for (const WireProtocol* const protocol : wireProtocols()) {
-        json.key(std::string(protocol->name)).beginObject();
         const auto found = devices.find(protocol);
-        if (found != devices.end())
+        const bool is_used = found != devices.end();
+        // The first two are there in any case; those that came later would surprise old readers.
+        if (!is_used && protocol->name != "p2os" && protocol->name != "scip") continue;
+        json.key(std::string(protocol->name)).beginObject();
+        if (is_used)
             for (const auto& [id, address] : found->second) json.key(id).value(address);
         json.endObject();
     }
