@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef TRACKER_SEPARATE_TRACKER_H
+#define TRACKER_SEPARATE_TRACKER_H
+
+#include <algorithm>
+#include <vector>
+
+#include "clusters.h"
+#include "track.h"
+
+namespace tracker {
+
+/// One laser on its own, as simply as can be: legs that stand together are a person, and each track
+/// goes on with the person nearest to where it expects its own. Where one hides another, two tracks
+/// go on with the same one, and who is who is lost: what fig. 5.15 of the thesis shows.
+class SeparateTracker {
+  public:
+    void update(double time, const std::vector<Cluster>& clusters) {
+        const std::vector<Cluster> people = peopleOf(clusters);
+        std::vector<bool> taken(people.size(), false);
+        for (Track& track : tracks_) {
+            track.predict(time);
+            std::size_t nearest = people.size();
+            double least = kGate;
+            for (std::size_t i = 0; i < people.size(); ++i) {
+                const double off = (people[i].surface - track.place()).norm();
+                if (off < least) least = off, nearest = i;
+            }
+            if (nearest == people.size()) continue;
+            track.update(people[nearest].surface, kSigma, people[nearest].kind);
+            taken[nearest] = true;
+        }
+        for (std::size_t i = 0; i < people.size(); ++i) {
+            if (taken[i]) continue;
+            tracks_.emplace_back(++last_id_, time, people[i].surface);
+            tracks_.back().update(people[i].surface, kSigma, people[i].kind);
+        }
+        tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
+                                     [this](const Track& track) { return isGone(track); }),
+                      tracks_.end());
+    }
+
+    /// Those that are sure enough to be told of.
+    Tracks tracks() const {
+        Tracks sure;
+        for (const Track& track : tracks_)
+            if (track.hits() >= kSure) sure.push_back(track);
+        return sure;
+    }
+
+  private:
+    static constexpr double kGate = 1;       // m
+    static constexpr double kSame = 0.02;    // m: two tracks so near follow the same person
+    static constexpr double kStride = 0.45;  // m between the legs of one person
+    static constexpr double kSigma = 0.08;   // m
+    static constexpr double kPatience = 1;   // s
+    static constexpr int kSure = 3;          // scans
+
+    /// Two legs that stand together become one, in the middle.
+    static std::vector<Cluster> peopleOf(const std::vector<Cluster>& clusters) {
+        std::vector<Cluster> people;
+        std::vector<bool> used(clusters.size(), false);
+        for (std::size_t i = 0; i < clusters.size(); ++i) {
+            if (used[i]) continue;
+            Cluster person = clusters[i];
+            std::size_t other = clusters.size();
+            double least = kStride;
+            for (std::size_t k = i + 1; k < clusters.size(); ++k) {
+                if (used[k] || clusters[k].kind != Kind::Leg || person.kind != Kind::Leg) continue;
+                const double off = (clusters[k].surface - person.surface).norm();
+                if (off < least) least = off, other = k;
+            }
+            if (other < clusters.size()) {
+                used[other] = true;
+                person.surface = (person.surface + clusters[other].surface) / 2;
+            }
+            people.push_back(person);
+        }
+        return people;
+    }
+
+    bool isGone(const Track& track) const {
+        if (track.unseen() > kPatience) return true;
+        return std::any_of(tracks_.begin(), tracks_.end(), [&track](const Track& other) {
+            return other.id() < track.id() && (other.place() - track.place()).norm() < kSame;
+        });
+    }
+
+    Tracks tracks_;
+    int last_id_ = 0;
+};
+
+}  // namespace tracker
+
+#endif  // TRACKER_SEPARATE_TRACKER_H

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef TRACKER_TRACK_H
+#define TRACKER_TRACK_H
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "clusters.h"
+#include "geometry.h"
+
+namespace tracker {
+
+/// Somebody who is followed: a Kalman filter of place and velocity, m and m/s, which takes it that
+/// they go on as they do, give or take an acceleration.
+class Track {
+  public:
+    Track(int id, double time, const Vector2d& place)
+        : id_(id), born_(time), seen_(time), now_(time) {
+        state_ << place, Vector2d::Zero();
+        covariance_.diagonal() << 0.15 * 0.15, 0.15 * 0.15, 1, 1;
+    }
+
+    int id() const { return id_; }
+    double age() const { return now_ - born_; }
+    double unseen() const { return now_ - seen_; }  ///< s
+    int hits() const { return hits_; }
+    Vector2d place() const { return state_.head<2>(); }
+    Kind kind() const { return robots_ > legs_ ? Kind::Robot : Kind::Leg; }
+
+    void predict(double time) {
+        const double dt = time - now_;
+        now_ = time;
+        Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
+        step.topRightCorner<2, 2>() = dt * Eigen::Matrix2d::Identity();
+        // Nobody goes on for ever unseen.
+        if (unseen() > 0.5) step.bottomRightCorner<2, 2>() *= 0.8;
+        Eigen::Matrix<double, 4, 2> push;
+        push << dt * dt / 2 * Eigen::Matrix2d::Identity(), dt * Eigen::Matrix2d::Identity();
+        state_ = step * state_;
+        covariance_ = step * covariance_ * step.transpose() +
+                      kAcceleration * kAcceleration * push * push.transpose();
+    }
+
+    /// How far a place is from the predicted one, squared, in standard deviations.
+    /// \param sigma of a measurement there, m
+    double distance(const Vector2d& place, double sigma) const {
+        const Vector2d off = place - state_.head<2>();
+        return off.dot(spread(sigma).inverse() * off);
+    }
+
+    void update(const Vector2d& place, double sigma, Kind kind) {
+        const Eigen::Matrix<double, 4, 2> gain =
+            covariance_.leftCols<2>() * spread(sigma).inverse();
+        state_ += gain * (place - state_.head<2>());
+        covariance_ -= gain * covariance_.topRows<2>().eval();
+        covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+        if (seen_ < now_ || hits_ == 0) ++hits_;
+        seen_ = now_;
+        ++(kind == Kind::Robot ? robots_ : legs_);
+    }
+
+  private:
+    static constexpr double kAcceleration = 1.5;  // m/s²
+
+    Eigen::Matrix2d spread(double sigma) const {
+        return covariance_.topLeftCorner<2, 2>() + sigma * sigma * Eigen::Matrix2d::Identity();
+    }
+
+    int id_;
+    double born_, seen_, now_;
+    int hits_ = 0, legs_ = 0, robots_ = 0;
+    Eigen::Vector4d state_ = Eigen::Vector4d::Zero();
+    Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Zero();
+};
+
+/// Tracks hold fixed-size vectors of Eigen.
+using Tracks = std::vector<Track, Eigen::aligned_allocator<Track>>;
+
+}  // namespace tracker
+
+#endif  // TRACKER_TRACK_H

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tracks people and robots by the lasers of a room: background subtraction, legs and robots as
+// clusters, Kalman filters, and two ways to say which cluster is whose. Each laser on its own with
+// the nearest neighbour, as in the thesis, mixes people up who meet; all lasers together with
+// global nearest neighbour does not.
+//
+//   simrun share/scenes/tracking.env share/scenes/walkers.3dm --clock step --listen 127.0.0.1:7001
+//   --record run & tracker 127.0.0.1:7001 share/scenes/walkers.3dm --until 60 -o tracks.csv; kill
+//   %1 python3 share/examples/tracker/judge_tracks.py tracks.csv run
+//
+// The layout tells where the lasers stand. tracks.csv has a row for each track and scan:
+// t,source,track,kind,x,y, where the source is the laser's id or `joint`. With `--clock step` the
+// tracker advances the world, and each run is the same; with `--clock real` it follows the lasers'
+// streams.
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ispace_client.h>
+
+#include "clusters.h"
+#include "geometry.h"
+#include "joint_tracker.h"
+#include "separate_tracker.h"
+
+namespace {
+
+struct Task {
+    std::string server, layout, output;
+    double until = std::numeric_limits<double>::infinity();  // s of the world
+};
+
+bool parse(int argc, char** argv, Task& task) {
+    std::vector<std::string> words;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "-o" && i + 1 < argc) {
+            task.output = argv[++i];
+        } else if (word == "--until" && i + 1 < argc) {
+            task.until = std::atof(argv[++i]);
+        } else {
+            words.push_back(word);
+        }
+    }
+    if (words.size() != 2 || !(task.until > 0)) {
+        std::fprintf(
+            stderr,
+            "usage: tracker [HOST:]PORT LAYOUT.3dm [--until SECONDS] [-o FILE]\n"
+            "Tracks people and robots by the lasers of the layout, in a running simrun.\n");
+        return false;
+    }
+    task.server = words[0].find(':') == std::string::npos ? "127.0.0.1:" + words[0] : words[0];
+    task.layout = words[1];
+    return true;
+}
+
+/// A laser, what it sees, and who follows it alone.
+struct Eye {
+    Eye(const std::string& server, const tracker::Mount& mount)
+        : laser(server, mount.id), finder(mount, laser.rangeMax()) {}
+
+    ispace::client::LaserSensor laser;
+    tracker::ClusterFinder finder;
+    tracker::SeparateTracker alone;
+};
+
+class Program {
+  public:
+    explicit Program(const Task& task) : task_(task), world_(task.server) {
+        for (const tracker::Mount& mount : tracker::readMounts(task.layout))
+            eyes_.emplace_back(new Eye(task.server, mount));
+        by_steps_ = world_.clock() == "step";
+        for (const auto& eye : eyes_)
+            if (!by_steps_) eye->laser.stream();
+        file_ = task.output.empty() ? stdout : std::fopen(task.output.c_str(), "w");
+        if (!file_) throw std::runtime_error("cannot write " + task.output);
+        std::fprintf(file_, "t,source,track,kind,x,y\n");
+    }
+    ~Program() {
+        if (file_ && file_ != stdout) std::fclose(file_);
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    void run() {
+        try {
+            while (cycle()) {
+            }
+        } catch (const ispace::client::ConnectionError&) {
+            // The run is over.
+        }
+    }
+
+  private:
+    /// One scan of each laser.
+    /// \return whether there is time left
+    bool cycle() {
+        if (by_steps_) {
+            const long steps = std::lround(1 / (eyes_.front()->laser.rate() * world_.dt()));
+            if (world_.step(steps) < steps) return false;
+        }
+        double time = 0;
+        std::vector<std::vector<tracker::Cluster>> seen;
+        for (const auto& eye : eyes_) {
+            const ispace::client::Scan scan = by_steps_ ? eye->laser.scan() : eye->laser.next();
+            time = scan.time;
+            seen.push_back(eye->finder.find(scan));
+            eye->alone.update(time, seen.back());
+            write(time, eye->laser.id(), eye->alone.tracks());
+        }
+        joint_.update(time, seen);
+        write(time, "joint", joint_.tracks());
+        return time < task_.until;
+    }
+
+    void write(double time, const std::string& source, const tracker::Tracks& tracks) {
+        for (const tracker::Track& track : tracks)
+            std::fprintf(file_, "%.3f,%s,%d,%s,%.3f,%.3f\n", time, source.c_str(), track.id(),
+                         track.kind() == tracker::Kind::Robot ? "robot" : "person",
+                         track.place().x(), track.place().y());
+        if (file_ == stdout) std::fflush(file_);
+    }
+
+    const Task& task_;
+    ispace::client::World world_;
+    std::vector<std::unique_ptr<Eye>> eyes_;
+    tracker::JointTracker joint_;
+    bool by_steps_ = false;
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    Task task;
+    if (!parse(argc, argv, task)) return 2;
+    Program(task).run();
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "tracker: %s\n", error.what());
+    return 1;
+}

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Two people cross each other's way (thesis, section 5.3.2): the tracker that shares their legs out among all
+# tracks mixes up nobody, the simple one does; judged against the record. By steps it does the same twice. Streams
+# of a world in real time are followed, too.
+. "$(dirname "$0")/../pipelines/common.sh"
+
+tracker=$binary_dir/examples/tracker
+envc "$scenes/walkers.3dm" --delete guest --set l1.sigma=0.01 --set l2.sigma=0.01 --to 3dm -o walkers.3dm
+
+# follow LAYOUT SIMRUN_OPTION…
+follow() {
+    local layout=$1
+    shift
+    rm -f port
+    simrun "$scenes/tracking.env" "$layout" "$@" --noise --record run --port-file port >announced 2>warnings &
+    server=$!
+    trap 'kill "$server" 2>/dev/null || true; cleanup' EXIT
+    for ((i = 0; i < 3000; ++i)); do [ -s port ] && break; sleep 0.02; done
+    timeout 60 "$tracker" "$(cat port)" "$layout" --until 40 -o tracks.csv >out 2>err ||
+        fail "status $? of tracker: $(cat out err)"
+    kill "$server"
+    wait "$server" || fail "simrun with $*: status $?, $(cat warnings)"
+}
+
+# judged SOURCE: error at 95 %, share followed, switches.
+judged() {
+    sed -nE "s/^$1: error .* mean, ([0-9.]+) m at .* followed ([0-9.]+) %; ([0-9]+) identity.*/\1 \2 \3/p" verdicts
+}
+
+mixed=0
+for seed in 1 2 3; do
+    envc walkers.3dm --set "left.speed=0.$((6 + seed))" --set "right.pause=0.$((2 * seed))" --to 3dm -o walk.3dm
+    follow walk.3dm --clock step --seed "$seed"
+    "$source_dir/share/examples/tracker/judge_tracks.py" tracks.csv run >verdicts
+    read -r error followed switches <<<"$(judged joint)"
+    [ "$switches" -eq 0 ] || fail "seed $seed: the joint tracker mixes people up: $(cat verdicts)"
+    awk "BEGIN { exit !($error < 0.1 && $followed > 98) }" || fail "seed $seed: $(cat verdicts)"
+    for laser in l1 l2; do
+        read -r _ _ switches <<<"$(judged $laser)"
+        mixed=$((mixed + switches))
+    done
+done
+[ "$mixed" -gt 0 ] || fail "the simple tracker mixes up nobody"
+cp tracks.csv first.csv
+follow walk.3dm --clock step --seed 3
+expect_same first.csv tracks.csv "other tracks the second time"
+
+follow walkers.3dm --clock real:10
+"$source_dir/share/examples/tracker/judge_tracks.py" tracks.csv run >verdicts
+read -r error followed _ <<<"$(judged joint)"
+awk "BEGIN { exit !($error < 0.3 && $followed > 60) }" || fail "in real time: $(cat verdicts)"
+
+expect_status 2 "$tracker"
+expect_status 1 "$tracker" 1 walkers.3dm
+expect_status 1 "$tracker" 1 none.3dm
