@@ -182,6 +182,8 @@ class Lab:
         if not kept:
             value = "nothing" if ours is None else f"{ours:.6g}"
             self.fail(f"{what}: {value}{_gap(unit)} is not within {_interval(bound)}{_gap(unit)}")
+        if not note and _differ(thesis, ours, digits):
+            self.fail(f"{what}: ours differs from the thesis, and no note says why")
         self.parts[-1][1].append({"what": what, "thesis": thesis, "ours": ours, "unit": unit,
                                   "bound": bound, "kept": kept, "note": note, "digits": digits})
 
@@ -234,6 +236,13 @@ def _line(name, args):
 
 def _last_line(text):
     return (text.strip().splitlines() or ["nothing said"])[-1]
+
+
+def _differ(thesis, ours, digits):
+    """Whether the report shows two numbers that are not the same."""
+    numbers = all(isinstance(value, (int, float)) for value in (thesis, ours))
+    places = 2 if digits is None else digits
+    return numbers and abs(ours - thesis) >= 0.5 * 10 ** -places
 
 
 def _gap(unit):
