@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "layout/table_lines.h"
 
 namespace ispace {
 
@@ -37,54 +38,6 @@ enum Column {
     kPhase,
     kSidespeed
 };
-
-constexpr std::size_t kLongestLine = 4096;
-
-/// Lines of a file or a text, read piece by piece. One without its end is none.
-class LineSource {
-  public:
-    explicit LineSource(std::optional<InputFile> file, std::string text)
-        : file_(std::move(file)), bytes_(std::move(text)) {}
-
-    std::optional<std::string_view> next() {
-        for (;;) {
-            const std::size_t end = bytes_.find('\n', searched_);
-            if (end != std::string::npos) {
-                std::string_view line(bytes_.data() + begin_, end - begin_);
-                if (line.ends_with('\r')) line.remove_suffix(1);
-                begin_ = searched_ = end + 1;
-                ++number_;
-                return line;
-            }
-            is_too_long_ = bytes_.size() - begin_ > kLongestLine;
-            if (is_too_long_ || !file_) return std::nullopt;
-            bytes_.erase(0, std::exchange(begin_, 0));
-            searched_ = bytes_.size();
-            if (!file_->read(bytes_)) file_.reset();
-        }
-    }
-    [[nodiscard]] int number() const { return number_; }
-    /// At the end: the last line lacks its own.
-    [[nodiscard]] bool isCut() const { return begin_ < bytes_.size(); }
-    [[nodiscard]] bool isTooLong() const { return is_too_long_; }
-
-  private:
-    std::optional<InputFile> file_;
-    std::string bytes_;
-    std::size_t begin_ = 0, searched_ = 0;  // of the rest; where no line ends before
-    int number_ = 0;
-    bool is_too_long_ = false;
-};
-
-void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
-    fields.clear();
-    for (;;) {
-        const std::size_t comma = line.find(',');
-        fields.push_back(line.substr(0, comma));
-        if (comma == std::string_view::npos) return;
-        line.remove_prefix(comma + 1);
-    }
-}
 
 /// The moments of one file.
 class MomentFile {
@@ -175,7 +128,8 @@ void MomentFile::readLine() {
     } while (line && line->empty());
     const std::optional<Row> before = std::exchange(row_, std::nullopt);
     if (!line) {
-        if (lines_.isTooLong()) fail("a line is longer than 4096 bytes");
+        if (lines_.isTooLong())
+            fail("a line is longer than " + std::to_string(kLongestLine) + " bytes");
         is_cut_ = is_cut_ || lines_.isCut();
         return;
     }
@@ -264,17 +218,6 @@ bool exists(const std::string& file) { return std::filesystem::exists(file); }
 
 }  // namespace
 
-RecordedFiles::RecordedFiles(const std::string& folder) {
-    const auto in_folder = [&folder](const char* file) {
-        return (std::filesystem::path(folder) / file).string();
-    };
-    robots = in_folder("robots.csv");
-    people = in_folder("people.csv");
-    events = in_folder("events.csv");
-    info = in_folder("info.csv");
-    scene = in_folder("scene.env");
-}
-
 struct RunReader::Data {
     void add(const std::string& name, LineSource lines, bool is_people) {
         files.emplace_back(name, std::move(lines), is_people, who);
@@ -282,10 +225,20 @@ struct RunReader::Data {
         if (files.size() > 1 && !files.back().upcoming()) files.pop_back();
     }
 
+    void addOdometry(const std::string& name, LineSource lines) {
+        odometry.emplace(name, std::move(lines), false, believers);
+        if (!odometry->upcoming()) odometry.reset();
+    }
+    [[nodiscard]] bool readOdometry();
+
     std::string name;
     std::vector<RunMember> who;
     std::vector<MomentFile> files;
     std::optional<EventFile> events;
+    // Rows of the robots of `files`, by members of its own.
+    std::vector<RunMember> believers;
+    std::optional<MomentFile> odometry;
+    std::vector<RunState> beliefs;
     std::vector<RunState> states;
     std::vector<RunCollision> collisions;
     double time = 0;
@@ -298,16 +251,43 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
     data_->add(files.robots, LineSource(InputFile(files.robots), ""), false);
     if (exists(files.people))
         data_->add(files.people, LineSource(InputFile(files.people), ""), true);
+    if (exists(files.odometry))
+        data_->addOdometry(files.odometry, LineSource(InputFile(files.odometry), ""));
     if (exists(files.events))
         data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
 }
 
-RunReader::RunReader(std::string robots, std::string people, std::string events)
+RunReader::RunReader(std::string robots, std::string people, std::string events,
+                     std::string odometry)
     : data_(std::make_unique<Data>()) {
     data_->name = "robots.csv";
     data_->add("robots.csv", LineSource({}, std::move(robots)), false);
     if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
+    if (!odometry.empty()) data_->addOdometry("odometry.csv", LineSource({}, std::move(odometry)));
     if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
+}
+
+/// Gives the robots of the moment what they believed at it; false if that was not recorded whole.
+bool RunReader::Data::readOdometry() {
+    const bool has_robots =
+        std::any_of(states.begin(), states.end(),
+                    [this](const RunState& state) { return !who[state.who].is_person; });
+    if (!has_robots) return true;
+    if (!odometry->upcoming()) return false;
+    if (*odometry->upcoming() != time)
+        odometry->fail("the moment t=" + formatDouble(*odometry->upcoming()) + " is none of " +
+                       name + ", which goes on at t=" + formatDouble(time));
+    beliefs.clear();
+    if (!odometry->read(beliefs)) return false;
+    // The same robots in the same order.
+    auto belief = beliefs.begin();
+    for (RunState& state : states) {
+        if (who[state.who].is_person) continue;
+        if (belief == beliefs.end() || believers[belief->who].id != who[state.who].id)
+            odometry->fail("the robots at t=" + formatDouble(time) + " are not those of " + name);
+        state.odometry = (belief++)->pose;
+    }
+    return true;
 }
 
 RunReader::~RunReader() = default;
@@ -335,6 +315,10 @@ bool RunReader::next() {
     }
     data.states = std::move(states);
     data.time = time;
+    if (data.odometry && !data.readOdometry()) {
+        data.is_cut = true;
+        return false;
+    }
     data.collisions.clear();
     if (data.events) data.events->read(time, data.collisions);
     return true;
@@ -348,21 +332,8 @@ std::optional<std::span<const RunCollision>> RunReader::collisions() const {
 }
 const std::vector<RunMember>& RunReader::who() const { return data_->who; }
 bool RunReader::isCut() const { return data_->is_cut; }
+bool RunReader::hasOdometry() const { return data_->odometry.has_value(); }
 const std::string& RunReader::name() const { return data_->name; }
-
-std::optional<double> recordedStep(const std::string& folder) {
-    const std::string name = RecordedFiles(folder).info;
-    if (!exists(name)) return std::nullopt;
-    const std::string text = readAll(name);
-    if (text.empty()) return std::nullopt;
-    const std::string_view rest = std::string_view(text).substr(text.find('\n') + 1);
-    const auto step = parseDouble(rest.substr(0, rest.find(',')));
-    if (!text.starts_with("dt,") || !step || *step <= 0 || *step > 1)
-        throw FormatError({name, 2, 0,
-                           "no length of a step: wanted the columns dt,control_interval,steps, as "
-                           "`simrun --record` writes"});
-    return step;
-}
 
 std::optional<double> recordedChange(const std::string& folder) {
     const std::string name = RecordedFiles(folder).events;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geom/pose.h"
+#include "layout/run_info.h"
 
 namespace ispace {
 
@@ -21,6 +22,8 @@ struct RunState {
     bool is_stalled = false;
     double phase = 0;      ///< of a person's gait
     double sidespeed = 0;  ///< m/s, to the left
+    /// Where a robot believed to be, from 0,0 and heading 0 at its start, if that was recorded.
+    std::optional<Pose2> odometry = {};
 };
 
 /// Somebody ran into something.
@@ -34,14 +37,8 @@ struct RunMember {
     bool is_person = false;
 };
 
-/// Names of the files in a folder that `simrun --record` has written.
-struct RecordedFiles {
-    explicit RecordedFiles(const std::string& folder);
-    std::string robots, people, events, info, scene;
-};
-
 /// Reads the poses of a recorded run, one moment after another, whatever its size: robots.csv, and
-/// people.csv and the collisions of events.csv if there are any.
+/// people.csv, odometry.csv and the collisions of events.csv if there are any.
 ///
 /// The record may still be growing, or its run may have been killed: a last line without its end,
 /// and a last moment at which some are missing, are left out.
@@ -50,7 +47,8 @@ class RunReader {
     /// \throws std::system_error if robots.csv cannot be read, FormatError as next()
     explicit RunReader(const std::string& folder);
     /// The content of the files in their place; all but the first may be empty. For tests.
-    RunReader(std::string robots, std::string people, std::string events = "");
+    RunReader(std::string robots, std::string people, std::string events = "",
+              std::string odometry = "");
     ~RunReader();
     RunReader(RunReader&&) noexcept;
     RunReader& operator=(RunReader&&) noexcept;
@@ -70,6 +68,8 @@ class RunReader {
     [[nodiscard]] const std::vector<RunMember>& who() const;
     /// True if an incomplete last moment was left out; known at the end.
     [[nodiscard]] bool isCut() const;
+    /// True if the record has odometry.
+    [[nodiscard]] bool hasOdometry() const;
     /// The file of the robots, for messages.
     [[nodiscard]] const std::string& name() const;
 
@@ -77,10 +77,6 @@ class RunReader {
     struct Data;
     std::unique_ptr<Data> data_;
 };
-
-/// The length of a step by info.csv; nothing if the run was killed before it was written, or wrote
-/// none. \throws FormatError if it says something else
-std::optional<double> recordedStep(const std::string& folder);
 
 /// When clients first changed the world of the run, by events.csv; nothing if they did not, or
 /// without that file. \throws FormatError if it holds no events

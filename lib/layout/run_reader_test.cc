@@ -105,8 +105,8 @@ TEST(RunReader, NamesTheLineOfWhatIsWrong) {
     EXPECT_EQ(errorOf(header + "1,r1,0,0,0\n1,r1,0,0,0\n"),
               "robots.csv:3: error: r1 is there twice at t=1\n");
     EXPECT_EQ(errorOf(header + "-1,r1,0,0,0\n"), "robots.csv:2: error: t is out of bounds: `-1`\n");
-    EXPECT_EQ(errorOf(header + std::string(5000, 'x')),
-              "robots.csv:1: error: a line is longer than 4096 bytes\n");
+    EXPECT_EQ(errorOf(header + std::string(20000, 'x')),
+              "robots.csv:1: error: a line is longer than 16384 bytes\n");
     EXPECT_EQ(errorOf(header + "0,r1,0,0,0\n2,r1,0,0,0\n", header + "0,h1,0,0,0\n1,h1,0,0,0\n"),
               "people.csv:3: error: the moment t=1 is none of robots.csv, which goes on at t=2\n");
 }
@@ -148,15 +148,47 @@ TEST(RunReader, ReadsFoldersPieceByPiece) {
     EXPECT_EQ(readAllOf(reader), kMoments);
     EXPECT_EQ(reader.states()[0].pose.position.x, kMoments - 1 + 0.125);
 
-    EXPECT_EQ(recordedStep(folder.string()), std::nullopt);
-    writeAll((folder / "info.csv").string(), "dt,control_interval,steps\n0.005,0.005,2000\n");
-    EXPECT_EQ(recordedStep(folder.string()), 0.005);
+    EXPECT_FALSE(recordedInfo(folder.string()));
+    const std::string info = (folder / "info.csv").string();
+    writeAll(info, "dt,control_interval,steps\n0.005,0.005,2000\n");
+    EXPECT_EQ(recordedInfo(folder.string()).value().step, 0.005);
+    EXPECT_FALSE(recordedInfo(folder.string()).value().noise);
+    writeAll(info,
+             "dt,control_interval,steps,elapsed,seed,noise\n0.01,0.1,1,0.01,9007199254740993,1\n");
+    EXPECT_EQ(recordedInfo(folder.string()).value().step, 0.01);
+    EXPECT_EQ(recordedInfo(folder.string()).value().seed, 9007199254740993U);
+    EXPECT_TRUE(recordedInfo(folder.string()).value().noise);
     for (const char* wrong : {"dt,control_interval,steps\n", "dt,x\n0,0\n", "a\n1\n"}) {
         writeAll((folder / "info.csv").string(), wrong);
-        EXPECT_THROW(recordedStep(folder.string()), FormatError) << wrong;
+        EXPECT_THROW(recordedInfo(folder.string()), FormatError) << wrong;
     }
     fs::remove_all(folder);
     EXPECT_THROW(RunReader{folder.string()}, std::system_error);
+}
+
+TEST(RunReader, ReadsWhatRobotsBelieve) {
+    const std::string odometry =
+        "t,id,x,y,heading_deg\n0,r1,0,0,0\n0,r2,0,0,0\n"
+        "0.005,r1,0.4,0.1,9\n0.005,r2,0,0,0\n";
+    RunReader reader(kRobots, kPeople, "", odometry);
+    EXPECT_TRUE(reader.hasOdometry());
+    ASSERT_TRUE(reader.next());
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.states()[0].odometry, (Pose2{{0.4, 0.1}, Angle::degrees(9)}));
+    EXPECT_FALSE(reader.states()[2].odometry) << "a person";
+    EXPECT_EQ(reader.who().size(), 3U);
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.isCut());
+
+    RunReader none(kRobots, kPeople, "", "t,id,x,y,heading_deg\n");
+    EXPECT_FALSE(none.hasOdometry());
+    EXPECT_EQ(readAllOf(none), 2);
+    // Of a killed run.
+    RunReader cut(kRobots, "", "", odometry.substr(0, odometry.size() - 3));
+    EXPECT_EQ(readAllOf(cut), 1);
+    EXPECT_TRUE(cut.isCut());
+    RunReader other(kRobots, "", "", "t,id,x,y,heading_deg\n0,r1,0,0,0\n0,r3,0,0,0\n");
+    EXPECT_THROW(readAllOf(other), FormatError);
 }
 
 }  // namespace

@@ -121,7 +121,8 @@ TEST(SessionSensors, APictureShowsTheWorldAsItIs) {
     const Scene turned = testing::scene("ispace size=8,6\n",
                                         "robot id=r1 model=pioneer-2dx at=0,0 heading=90\n"
                                         "camera id=c1 at=-3,0,1 pixels=8,6 rate=5\n");
-    const Photo photo = Photographer(turned, {}).take(turned.sensors[0], turned.sensors[0].pose, 0);
+    const Photo photo =
+        Photographer(turned, {.seed = 0}).take(turned.sensors[0], turned.sensors[0].pose, 0);
     EXPECT_EQ(bytesOf(after),
               std::string(reinterpret_cast<const char*>(photo.rgb.data()), photo.rgb.size()));
 }

@@ -55,6 +55,11 @@ class Odometer {
     [[nodiscard]] Pose2 pose(const Pose2& truth) const {
         return counts_ ? pose_ : relativePose(origin_, truth);
     }
+    /// It believes to be there, as a record says.
+    void put(const Pose2& pose) {
+        pose_ = pose;
+        counts_ = true;
+    }
     /// Moves stray, or are counted wrong.
     [[nodiscard]] bool isNoisy() const { return counts_; }
 

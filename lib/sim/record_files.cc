@@ -82,6 +82,8 @@ void LineFile::rewrite(std::string_view text) {
     if (error_ == 0) {
         const ssize_t n = ::pwrite(fd_, text.data(), text.size(), 0);
         if (n != static_cast<ssize_t>(text.size())) error_ = n < 0 ? errno : ENOSPC;
+        // It may have been longer.
+        if (error_ == 0 && ::ftruncate(fd_, static_cast<off_t>(text.size())) != 0) error_ = errno;
     }
     if (error_ != 0) fail(name_, error_);
 }

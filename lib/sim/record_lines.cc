@@ -38,6 +38,16 @@ void appendRobotRows(std::string& out, const World& world) {
     }
 }
 
+void appendOdometryRows(std::string& out, const World& world) {
+    const std::string t = formatSimTime(world.time());
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const Pose2 pose = world.odometry(i).pose;
+        appendRow(out, t, world.robots()[i].id,
+                  {pose.position.x, pose.position.y, pose.heading.degrees()});
+        out += '\n';
+    }
+}
+
 void appendPeopleRows(std::string& out, const World& world) {
     const std::string t = formatSimTime(world.time());
     for (std::size_t i = 0; i < world.people().size(); ++i) {

@@ -14,6 +14,8 @@ namespace ispace {
 constexpr std::string_view kRobotsHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
 void appendRobotRows(std::string& out, const World& world);
+constexpr std::string_view kOdometryHead = "t,id,x,y,heading_deg\n";
+void appendOdometryRows(std::string& out, const World& world);
 constexpr std::string_view kPeopleHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";
 void appendPeopleRows(std::string& out, const World& world);

@@ -26,9 +26,10 @@ constexpr auto kFlushEvery = std::chrono::milliseconds(100);
 constexpr std::size_t kMaxPending = std::size_t{1} << 20;  // bytes of a file
 
 /// Files that grow, in the order of Recorder::growingFilesIn, and the others behind them.
-enum File { kRobots, kPeople, kScans, kEvents, kTiming, kInfo, kScene, kFiles };
-constexpr std::array<const char*, kFiles> kNames = {
-    "robots.csv", "people.csv", "scans.jsonl", "events.csv", "timing.csv", "info.csv", "scene.env"};
+enum File { kRobots, kOdometry, kPeople, kScans, kEvents, kTiming, kInfo, kScene, kFiles };
+constexpr std::array<const char*, kFiles> kNames = {"robots.csv",  "odometry.csv", "people.csv",
+                                                    "scans.jsonl", "events.csv",   "timing.csv",
+                                                    "info.csv",    "scene.env"};
 constexpr const char *kPictures = "pictures", *kDepths = "depths";
 
 std::string pathIn(const std::string& folder, const char* name) {
@@ -50,6 +51,7 @@ struct Recorder::Data {
           folder(name),
           lock(madeFolder(folder)),
           robots(pathIn(folder, kNames[kRobots])),
+          odometry(pathIn(folder, kNames[kOdometry])),
           people(pathIn(folder, kNames[kPeople])),
           scans(pathIn(folder, kNames[kScans])),
           events(pathIn(folder, kNames[kEvents])),
@@ -63,11 +65,11 @@ struct Recorder::Data {
     EventLog* events_log;
     std::string folder;
     FolderLock lock;
-    LineFile robots, people, scans, events, timing, info, scene;
+    LineFile robots, odometry, people, scans, events, timing, info, scene;
     FrameFiles pictures, depths;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
-    SimTime time{}, step_length{};
+    SimTime time{}, step_length{}, control_interval{};
     std::int64_t steps = 0;
     bool flushed_all = false;  // nothing was recorded since the last flush
     std::exception_ptr ended;  // what ended the record early
@@ -82,8 +84,8 @@ struct Recorder::Data {
     [[nodiscard]] bool hasNewEvents() const {
         return events_log != nullptr && next_event < events_log->next();
     }
-    [[nodiscard]] std::array<LineFile*, 4> stepFiles() {
-        return {&robots, &people, &scans, &events};
+    [[nodiscard]] std::array<LineFile*, 5> stepFiles() {
+        return {&robots, &odometry, &people, &scans, &events};
     }
     void begin();
     void remember(const World& world);
@@ -102,6 +104,7 @@ struct Recorder::Data {
 
 void Recorder::Data::begin() {
     robots.pending = kRobotsHead;
+    odometry.pending = kOdometryHead;
     people.pending = kPeopleHead;
     scans.pending = scanHeaderLine(options.history, options.seed);
     events.pending = eventTableHead();
@@ -115,6 +118,7 @@ void Recorder::Data::begin() {
 void Recorder::Data::remember(const World& world) {
     time = world.time();
     step_length = world.stepLength();
+    control_interval = world.controlInterval();
     steps = world.steps();
     flushed_all = false;
 }
@@ -175,6 +179,8 @@ void Recorder::Data::appendEvents() {
 void Recorder::Data::append(World& world) {
     appendRobotRows(robots.pending, world);
     robots.endStep(steps);
+    if (options.odometry) appendOdometryRows(odometry.pending, world);
+    odometry.endStep(steps);
     appendPeopleRows(people.pending, world);
     people.endStep(steps);
     appendEvents();
@@ -182,16 +188,17 @@ void Recorder::Data::append(World& world) {
 }
 
 void Recorder::Data::writeInfo() {
-    const std::string dt = formatSimTime(step_length);
-    // Commands take effect at every step: the control interval is that of the steps.
-    std::string text = "dt,control_interval,steps\n";
-    text.append(dt).append(",").append(dt).append(",").append(std::to_string(steps)).append("\n");
+    std::string text = "dt,control_interval,steps,elapsed,seed,noise\n";
+    text.append(formatSimTime(step_length)).append(",").append(formatSimTime(control_interval));
+    text.append(",").append(std::to_string(steps));
+    text.append(",").append(formatSimTime(steps * step_length));
+    text.append(",").append(std::to_string(options.seed)).append(options.noise ? ",1\n" : ",0\n");
     info.rewrite(text);
 }
 
 std::uint64_t Recorder::Data::size() const {
-    return robots.size() + people.size() + scans.size() + events.size() + pictures.size() +
-           depths.size();
+    return robots.size() + odometry.size() + people.size() + scans.size() + events.size() +
+           pictures.size() + depths.size();
 }
 
 void Recorder::Data::writeLines() {

@@ -19,6 +19,8 @@ struct RecordOptions {
     History history = {};
     std::uint64_t seed = 0;
     std::string scene = {};  ///< the content of scene.env
+    bool odometry = false;   ///< odometry.csv gets rows: it differs from the true poses
+    bool noise = false;      ///< the sensors', from the seed; for info.csv
     /// Pictures and depth frames of each camera and ranger in a simulated second, at most; of those
     /// with a higher rate every second, third, … is recorded. 0: none.
     double frame_rate = 1;
@@ -32,13 +34,15 @@ struct RecordOptions {
 /// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
 ///   time 0 and after each step
 /// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall; likewise
+/// - odometry.csv: t,id,x,y,heading_deg; where each robot believes to be, from 0,0 and heading 0 at
+///   its start; likewise, if wanted
 /// - scans.jsonl: every reading, as `scan` writes it
 /// - pictures/ID-NNNNNN.png and depths/ID-NNNNNN.png: frames of cameras and rangers by the number
 /// of
 ///   their period
 /// - events.csv: what happened, see EventLog
 /// - scene.env: the scene of the run
-/// - info.csv: dt,control_interval,steps
+/// - info.csv: dt,control_interval,steps,elapsed,seed,noise; see World::controlInterval
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, the only thing that may differ
 ///   between runs
 ///

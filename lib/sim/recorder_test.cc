@@ -98,7 +98,7 @@ TEST_F(RecorderTest, WritesTheRobotsOfEachStep) {
                                           "1,r2,-1,-2,90,0,0,0,0,0\n"
                                           "2,r1,1,1,0,0.5,0,0.25,0,0\n"
                                           "2,r2,-1,-2,90,0,0,0,0,0\n");
-    EXPECT_EQ(text("run/info.csv"), "dt,control_interval,steps\n1,1,2\n");
+    EXPECT_EQ(text("run/info.csv"), "dt,control_interval,steps,elapsed,seed,noise\n1,1,2,2,7,0\n");
 }
 
 TEST_F(RecorderTest, WritesScansAsScanDoes) {
@@ -156,7 +156,8 @@ TEST_F(RecorderTest, AWorldWithNothingInItHasHeaders) {
     const Recorder recorder(path("run"), world, {});
     EXPECT_EQ(text("run/robots.csv"), kHeader);
     EXPECT_EQ(text("run/scans.jsonl"), scanHeaderLine({}, 0));
-    EXPECT_EQ(text("run/info.csv"), "dt,control_interval,steps\n0.005,0.005,0\n");
+    EXPECT_EQ(text("run/info.csv"),
+              "dt,control_interval,steps,elapsed,seed,noise\n0.005,0.005,0,0,0,0\n");
 }
 
 TEST_F(RecorderTest, DoesNotHoldMoreThanItShould) {
@@ -241,8 +242,9 @@ TEST_F(RecorderTest, KeepsWholeLinesWhenTheDiskIsFull) {
 
 /// Steps that robots.csv holds, as both robots have a line of each.
 std::string infoOf(const std::string& robots) {
-    return "dt,control_interval,steps\n0.005,0.005," +
-           std::to_string((linesOf(robots) - 1) / 2 - 1) + "\n";
+    const std::int64_t steps = (linesOf(robots) - 1) / 2 - 1;
+    return "dt,control_interval,steps,elapsed,seed,noise\n0.005,0.005," + std::to_string(steps) +
+           "," + formatSimTime(steps * milliseconds(5)) + ",0,0\n";
 }
 
 TEST_F(RecorderTest, InfoTellsTheStepsThatAreThereWhenTheDiskIsFull) {

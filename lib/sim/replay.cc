@@ -38,13 +38,14 @@ Replay::Replay(const std::string& folder) : reader_(folder) {
         throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
     if (const auto change = recordedChange(folder)) changed_ = timeOf(*change);
     const SimTime begin = timeOf(reader_.time());
-    const auto step = recordedStep(folder);
+    const auto info = recordedInfo(folder);
+    info_ = info.value_or(RunInfo());
     // Without a moment of the start nobody was there then.
-    const bool is_late = begin > SimTime(0) && step && isEmptyAt(SimTime(0));
+    const bool is_late = begin > SimTime(0) && info && isEmptyAt(SimTime(0));
     if (!is_late) start_.assign(reader_.states().begin(), reader_.states().end());
     is_ahead_ = is_late || reader_.next();
-    if (step)
-        step_ = timeOf(*step);
+    if (info)
+        step_ = timeOf(info->step);
     else if (is_ahead_)
         step_ = timeOf(reader_.time()) - begin;
     else
@@ -126,10 +127,15 @@ bool Replay::step(World& world) {
         world.stepTo(states_, {});
         return true;
     }
-    for (const RunState& state : reader_.states())
-        if (const auto mover = movers_[state.who]) states_[*mover] = statusOf(state);
+    odometries_.assign(world.robots().size(), std::nullopt);
+    for (const RunState& state : reader_.states()) {
+        const auto mover = movers_[state.who];
+        if (!mover) continue;
+        states_[*mover] = statusOf(state);
+        if (*mover < odometries_.size()) odometries_[*mover] = state.odometry;
+    }
     collide(world);
-    world.stepTo(states_, collisions_);
+    world.stepTo(states_, collisions_, odometries_);
     is_ahead_ = reader_.next();
     return true;
 }

@@ -22,6 +22,10 @@ class Replay {
 
     /// From one moment to the next.
     [[nodiscard]] SimTime stepLength() const { return step_; }
+    /// Seed and noise of the readings of then.
+    [[nodiscard]] const RunInfo& info() const { return info_; }
+    /// True if the record has odometry.
+    [[nodiscard]] bool hasOdometry() const { return reader_.hasOdometry(); }
     /// Puts everybody where the record begins. \throws FormatError for who is not in the scene
     void placeAtStart(Scene& scene) const;
     /// True if step() takes no more.
@@ -44,11 +48,13 @@ class Replay {
     [[nodiscard]] bool isEmptyAt(SimTime time) const;
 
     RunReader reader_;
+    RunInfo info_;
     SimTime step_{};
     std::optional<SimTime> changed_;
     std::vector<RunState> start_;
-    bool is_ahead_ = false;            // the reader's moment is that of the next step
-    std::vector<RobotStatus> states_;  // of all movers of the world
+    bool is_ahead_ = false;                         // the reader's moment is that of the next step
+    std::vector<RobotStatus> states_;               // of all movers of the world
+    std::vector<std::optional<Pose2>> odometries_;  // of all its robots
     std::vector<Collision> collisions_;
     std::vector<RunCollision> recorded_;              // what they name
     std::vector<std::optional<std::size_t>> movers_;  // of each in the record

@@ -205,6 +205,36 @@ TEST_F(ReplayTest, PassesTimesWithoutAnybody) {
               path("robots.csv") + ": error: goes on at t=0.09, wanted t=0.04");
 }
 
+TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
+    const Scene noisy = scene(kRoom,
+                              "robot id=r1 at=0,0 path=1,1;-1,-1 motion_noise=0.1,0.1,0.1,0.1\n"
+                              "laser id=l1 on=r1 range=4 sigma=0.05\nrobot id=r2 at=-2,-2\n");
+    World world(noisy, kStep, {.seed = 5, .noise = true, .sensor_noise = true});
+    std::vector<Odometry> believed;
+    std::vector<std::vector<float>> ranges;
+    {
+        Recorder recorder(folder_, world, {.seed = 5, .odometry = true, .noise = true});
+        for (int i = 0; i < 100; ++i) {
+            world.step();
+            recorder.record(world);
+            believed.push_back(world.odometry(0));
+            ranges.push_back(rangesOf(world, "l1"));
+        }
+    }
+    Replay replay(folder_);
+    EXPECT_TRUE(replay.hasOdometry());
+    EXPECT_EQ(replay.info().seed, 5U);
+    ASSERT_TRUE(replay.info().noise);
+    World again(noisy, kStep, {.seed = 5, .sensor_noise = true});
+    for (std::size_t i = 0; replay.step(again); ++i) {
+        const Odometry odometry = again.odometry(0);
+        ASSERT_EQ(odometry.pose, believed[i].pose) << i;
+        ASSERT_EQ(odometry.speed, believed[i].speed);
+        ASSERT_EQ(rangesOf(again, "l1"), ranges[i]) << i;
+    }
+    EXPECT_NE(again.odometry(0).pose.position, again.status(0).pose.position);
+}
+
 TEST_F(ReplayTest, BeginsWithNobody) {
     writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0.06,r1,1,0,0\n0.08,r1,1.01,0,0\n");
     writeAll(path("info.csv"), "dt,control_interval,steps\n0.02,0.1,4\n");

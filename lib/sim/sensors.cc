@@ -30,10 +30,26 @@ Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
             pose.roll};
 }
 
+/// As `scan` takes them with the same seed.
+std::optional<std::uint64_t> noiseSeedOf(const SensorReader::Options& options) {
+    return options.noise ? std::optional(options.seed) : std::nullopt;
+}
+
+PhotoOptions photoOptionsOf(const SensorReader::Options& options) {
+    PhotoOptions photo;
+    photo.with_noise = options.noise;
+    photo.seed = options.seed;
+    return photo;
+}
+
 }  // namespace
 
-SensorReader::SensorReader(const Scene& scene)
-    : scene_(&scene), floor_(scene), worlds_(scene.environment) {
+SensorReader::SensorReader(const Scene& scene, const Options& options)
+    : scene_(&scene),
+      options_{.noise_seed = noiseSeedOf(options)},
+      sound_{.noise_seed = noiseSeedOf(options)},
+      floor_(scene),
+      worlds_(scene.environment) {
     addSensors();
     const std::size_t count = sensors_.size();
     due_.resize(count);
@@ -57,9 +73,9 @@ SensorReader::SensorReader(const Scene& scene)
         if (laser == nullptr) continue;
         worlds_.prepare(sensor->pose);
         if (laser->sweep != SweepAxis::None) worlds_.prepareMesh();
-        casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), ReadingOptions());
+        casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
     }
-    if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, PhotoOptions());
+    if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, photoOptionsOf(options));
     for (const Placed& placed : scene.placed)
         if (scene.records[placed.record].keyword() == "human")
             people_starts_.push_back(
@@ -229,16 +245,16 @@ void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime time)
     Scan& scan = std::get<Scan>(reading.value);
     const std::int64_t scans = laser.scans();
     scan.number = static_cast<int>(reading.seq % scans);
-    scan.pose = reading.pose;
-    casters_[sensor]->cast(scan);
-    scan.time = seconds(time);
     scan.frame = frameOf(reading.seq / scans);
+    scan.pose = reading.pose;
+    scan.time = seconds(time);
+    casters_[sensor]->cast(scan);
 }
 
 void SensorReader::measure(const Ranger& /*ranger*/, std::size_t sensor, SimTime time) {
     SensorReading& reading = readings_[sensor];
     DepthFrame frame = castDepth(worlds_.mesh(), bodies_, *sensors_[sensor].sensor(), reading.pose,
-                                 frameOf(reading.seq), ReadingOptions());
+                                 frameOf(reading.seq), options_);
     frame.time = seconds(time);
     reading.value = std::move(frame);
 }
@@ -256,7 +272,7 @@ void SensorReader::measure(const Tag& /*tag*/, std::size_t sensor, SimTime time)
     Sensor tag = *sensors_[sensor].sensor();
     tag.pose = reading.pose;
     reading.value = castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, receivers_,
-                              frameOf(reading.seq), seconds(time), UltrasoundOptions());
+                              frameOf(reading.seq), seconds(time), sound_);
 }
 
 void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, SimTime time) {
@@ -267,7 +283,7 @@ void SensorReader::measure(const Receiver& /*receiver*/, std::size_t sensor, Sim
     for (const Sensor& tag : tags_) {
         const Burst burst =
             castBurst(worlds_.mesh(Surfaces::Solid), bodies_, tag, std::span(&receiver, 1),
-                      frameOf(reading.seq), seconds(time), UltrasoundOptions());
+                      frameOf(reading.seq), seconds(time), sound_);
         hearings.tags.push_back(
             {tag.id, burst.heard.empty() ? std::nullopt : std::optional(burst.heard.front().time)});
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,9 +25,13 @@ namespace ispace {
 /// a period, all at the moment of that step.
 class SensorReader {
   public:
+    struct Options {
+        std::uint64_t seed = 0;  ///< of noise, and of the light of pictures
+        bool noise = false;
+    };
     /// The scene must outlive it. \throws FormatError for a texture that cannot be read, if there
     /// are cameras
-    explicit SensorReader(const Scene& scene);
+    SensorReader(const Scene& scene, const Options& options);
 
     /// After each step: follows those who move, and reads what is due, in parallel. Heavy
     /// sensors are left out.
@@ -83,6 +88,8 @@ class SensorReader {
     void measure(const Receiver& receiver, std::size_t sensor, SimTime time);
 
     const Scene* scene_;
+    ReadingOptions options_;
+    UltrasoundOptions sound_;
     FloorSensors floor_;
     std::vector<RunSensor> sensors_;  // as they start
     Worlds worlds_;

@@ -380,7 +380,8 @@ TEST(SimulationRecord, IsWrittenOutWhileTheWorldRests) {
     }
     EXPECT_FALSE(again);  // nothing pending, nothing to do
     EXPECT_NE(readAll(folder + "/robots.csv").find("\n0.15,r1,"), std::string::npos);
-    EXPECT_EQ(readAll(folder + "/info.csv"), "dt,control_interval,steps\n0.05,0.05,3\n");
+    EXPECT_EQ(readAll(folder + "/info.csv"),
+              "dt,control_interval,steps,elapsed,seed,noise\n0.05,0.05,3,0.15,0,0\n");
     fs::remove_all(folder);
 }
 

@@ -34,6 +34,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 SimTime World::time() const { return data_->time; }
+const RunOptions& World::options() const { return data_->options; }
 const Scene& World::scene() const { return *data_->scene; }
 std::int64_t World::changes() const { return data_->changes; }
 SimTime World::stepLength() const { return data_->step_length; }
@@ -125,6 +126,16 @@ std::vector<bool> World::bumper(std::size_t robot) const {
     return pressedBumpers(model, data.motions[robot].pose, bump, nearest);
 }
 
+SimTime World::controlInterval() const {
+    SimTime sum{};
+    std::int64_t intervals = 0;
+    for (const MoverState& state : data_->states) {
+        sum += state.told_last - state.told_first;
+        intervals += std::max<std::int64_t>(0, state.told - 1);
+    }
+    return intervals == 0 ? data_->step_length : sum / intervals;
+}
+
 const FloorSensors& World::floorSensors() const { return data_->sensors.floor(); }
 
 std::string World::refusal(std::size_t mover, const Command& command) const {
@@ -158,6 +169,7 @@ int World::command(std::size_t mover, const Command& command) {
     state.stall = false;
     if (std::exchange(state.own_limits, std::nullopt))
         state.limits = limitsOf(data.movers[mover].model, 0);
+    data.tell(mover);
     data.motions[mover].command(command);
     data.pilots[mover].turnOff();
     if (command.verb == Verb::Path) {
@@ -189,11 +201,14 @@ void World::change(Scene scene, std::span<const std::string> placed) {
 
 void World::restart(Scene scene) { data_ = data_->next(std::move(scene), {}); }
 
-void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions) {
+void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
+                   std::span<const std::optional<Pose2>> odometries) {
     Data& data = *data_;
     assert(states.size() == data.movers.size());
     data.begin();
     for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
+    for (std::size_t i = 0; i < odometries.size(); ++i)
+        if (odometries[i]) data.odometers[i].put(*odometries[i]);
     data.collisions.assign(collisions.begin(), collisions.end());
     data.sensors.read(data.time, data.where());
 }

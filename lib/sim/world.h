@@ -61,6 +61,9 @@ struct WheelOrder;
 struct RunOptions {
     std::uint64_t seed = 0;  ///< of all that is random
     bool noise = false;      ///< motion, odometry and starts stray as the robots' records say
+    /// Readings have the noise of their sensors' records: that of the reading with the same number
+    /// and seed by `scan --noise`. Sonars, bumpers, mats and gates have none.
+    bool sensor_noise = false;
 };
 
 /// Robots, people and sensors in an environment, in fixed steps.
@@ -97,6 +100,7 @@ class World {
     [[nodiscard]] SimTime stepLength() const;
     [[nodiscard]] std::int64_t steps() const;  ///< taken so far
 
+    [[nodiscard]] const RunOptions& options() const;
     /// What is in it, as of the last change. Views of its ids last until the next one.
     [[nodiscard]] const Scene& scene() const;
     /// Robots and people, then robots or people alone, in the order of the scene.
@@ -113,6 +117,9 @@ class World {
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
     [[nodiscard]] RobotStatus status(std::size_t mover) const;
+    /// How often movers were told what to do: the mean time between two of the moments at which the
+    /// same one was given commands; the length of a step if none was told twice.
+    [[nodiscard]] SimTime controlInterval() const;
     /// Where a robot believes to be, from 0,0 and heading 0 at its start: what its wheels did, with
     /// the errors of its records' odometry_noise. Without noise its true pose seen from there.
     [[nodiscard]] Odometry odometry(std::size_t robot) const;
@@ -146,8 +153,10 @@ class World {
 
     void step();
     /// A step in which everybody gets where a record says, instead of where commands lead: `states`
-    /// are those after it, by index of movers(). \pre as many as movers()
-    void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions);
+    /// are those after it, by index of movers(), and `odometries` what robots then believe, where
+    /// that is known. \pre as many states as movers(), and odometries as robots() or none
+    void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
+                std::span<const std::optional<Pose2>> odometries = {});
 
     /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,

@@ -42,7 +42,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       pilots(movers.size()),
       moves(movers.size()),
       traffic(movers, order, seconds(length)),
-      sensors(*scene),
+      sensors(*scene, {run.seed, run.sensor_noise}),
       sensor_index(indexById(sensors.sensors())) {
     checkStart(scene->environment, movers, obstacles);
     if (options.noise) strayStarts(movers, obstacles, options.seed);
@@ -185,6 +185,13 @@ void World::Data::walk(std::size_t mover) {
     swings[person] = gaits[person].swing(speed);
 }
 
+void World::Data::tell(std::size_t mover) {
+    MoverState& state = states[mover];
+    if (state.told == 0) state.told_first = time;
+    if (state.told == 0 || state.told_last != time) ++state.told;
+    state.told_last = time;
+}
+
 void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
@@ -227,6 +234,9 @@ std::unique_ptr<World::Data> World::Data::next(
         if (!old) continue;
         MoverState& state = after->states[i];
         state.ids = states[*old].ids;
+        state.told = states[*old].told;
+        state.told_first = states[*old].told_first;
+        state.told_last = states[*old].told_last;
         state.running = states[*old].running;
         if (stayers.contains(id)) {
             state.stall = states[*old].stall;

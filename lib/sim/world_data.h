@@ -28,6 +28,9 @@ struct MoverState {
     double clearance = 0;  // it may go at least as far before it meets an obstacle
     int ids = 0;           // given so far
     int running = 0;       // id of the command that comes to an end, or 0
+    // Moments at which it was given commands, and when that was.
+    std::int64_t told = 0;
+    SimTime told_first{}, told_last{};
     bool stall = false;
     Vec2 bump;  // the way of the step that was cancelled when the stall began
     std::optional<std::size_t> blocked;  // by an element of the environment
@@ -54,6 +57,8 @@ struct World::Data {
         time += step_length;
         ++steps;
     }
+    /// Somebody is given a command.
+    void tell(std::size_t mover);
     /// Somebody gets where a record says.
     void put(std::size_t mover, const RobotStatus& status);
     /// What a step does, in this order: proposals in parallel, settled one by one.

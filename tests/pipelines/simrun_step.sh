@@ -93,7 +93,7 @@ for run in 1 2 again; do
 done
 diff -r script1 script2 || fail "-j changes the records"
 diff -r script2 scriptagain || fail "other records the second time"
-[ "$(cat script1/info.csv)" = "$(printf 'dt,control_interval,steps\n0.005,0.005,2000')" ] ||
+[ "$(cat script1/info.csv)" = "$(printf 'dt,control_interval,steps,elapsed,seed,noise\n0.005,3.333333333,2000,10,0,0')" ] ||
     fail "$(cat script1/info.csv)"
 head -n 1 script1/scans.jsonl |
     grep -q '"history":\["simrun square.env session.3dm --until 10 --script script.txt"\]' ||

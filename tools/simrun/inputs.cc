@@ -56,4 +56,11 @@ std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInpu
     return readScript(readAll(options.script), options.script, world);
 }
 
+RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay) {
+    if (replay && !options.noise)
+        return {.seed = replay->info().seed, .sensor_noise = replay->info().noise};
+    if (replay) return {.seed = options.common.seed, .sensor_noise = true};
+    return {.seed = options.common.seed, .noise = options.noise, .sensor_noise = options.noise};
+}
+
 }  // namespace ispace

@@ -31,4 +31,8 @@ History historyOf(const SimrunCommand& command, const SceneInput& input);
 std::vector<TimedCommand> scriptOf(const SimrunOptions& options, const SceneInput& input,
                                    const World& world);
 
+/// Robots of a record go where it says; its sensors have their noise of then, unless another is
+/// asked for.
+RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<Replay>& replay);
+
 }  // namespace ispace

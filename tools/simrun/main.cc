@@ -53,7 +53,9 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     // Before the run, so that none is lost for want of a folder.
     std::optional<OutputFile> junit;
     if (!options.junit.empty()) junit.emplace(options.junit);
-    const auto record = recordOf(simulation, options, input.scene, historyOf(command, input));
+    const bool odometry = replay ? replay->hasOdometry() : options.noise;
+    const auto record =
+        recordOf(simulation, options, input.scene, historyOf(command, input), odometry);
     const auto progress = progressOf(simulation, options);
     announce(server, web, devices);
     if (port_file) port_file->commit();
@@ -77,10 +79,9 @@ void simrun(const SimrunCommand& command) {
     std::optional<Replay> replay = openReplay(options, input.scene);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
-    const bool noise = options.noise && !replay;
-    if (noise) warnOfNoNoise(input.scene, options.common);
+    if (options.noise) warnOfNoNoise(input.scene, !replay, options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
-                {.seed = options.common.seed, .noise = noise});
+                runOptionsOf(options, replay));
     if (replay) warnOfChanges(*replay, options.common);
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);

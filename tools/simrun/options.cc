@@ -57,10 +57,11 @@ void SimrunCommand::declareRun() {
         "--until", "TIME",
         [&o](const std::string& text) { o.until = timeOption(text, SimTime(0), kLongestTime); },
         "end the run at this simulated time (90, 90s, 1.5min)", Enters::History);
-    line_.flag("--noise", o.noise,
-               "robots, their odometry and their starts stray as motion_noise, odometry_noise and "
-               "start_noise of their records say",
-               Enters::History);
+    line_.flag(
+        "--noise", o.noise,
+        "sensors have the noise of their records; robots, their odometry and their starts stray "
+        "as motion_noise, odometry_noise and start_noise say",
+        Enters::History);
     line_.file("--script", "FILE", o.script,
                "commands for the robots, lines `TIME ROBOT COMMAND` (- is stdin)",
                Enters::BaseName);

@@ -42,11 +42,13 @@ void checkRecord(const SimrunOptions& options, const World& world) {
 }
 
 std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
-                                        const Scene& scene, const History& history) {
+                                        const Scene& scene, const History& history, bool odometry) {
     if (options.record.empty()) return nullptr;
     RecordOptions record;
     record.history = history;
-    record.seed = options.common.seed;
+    record.seed = simulation.world().options().seed;
+    record.noise = simulation.world().options().sensor_noise;
+    record.odometry = odometry;
     record.scene = sceneText(scene, history, options.record);
     record.frame_rate = options.recorded_frames;
     record.max_bytes = options.max_recorded;

@@ -34,11 +34,31 @@ void CollisionLog::tell() {
     }
 }
 
-void warnOfNoNoise(const Scene& scene, const CommonOptions& options) {
-    for (const PlacedRobot& robot : scene.robots)
-        if (robot.model.noise != MotionNoise()) return;
+namespace {
+
+/// What is measured of a camera's light always spreads.
+bool isNoisy(const Sensor& sensor) {
+    const auto noise_of = [&sensor]() -> const RangeNoise* {
+        if (const auto* laser = std::get_if<Laser>(&sensor.model)) return &laser->noise;
+        if (const auto* ranger = std::get_if<Ranger>(&sensor.model)) return &ranger->noise;
+        if (const auto* receiver = std::get_if<Receiver>(&sensor.model)) return &receiver->noise;
+        return nullptr;
+    };
+    if (const auto* tag = std::get_if<Tag>(&sensor.model)) return tag->is_simple;
+    return sensor.is<Camera>() || (noise_of() != nullptr && !noise_of()->isNone());
+}
+
+}  // namespace
+
+void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options) {
+    const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
+                                             [](const PlacedRobot& robot) {
+                                                 return robot.model.noise != MotionNoise();
+                                             });
+    if (strays || std::any_of(scene.sensors.begin(), scene.sensors.end(), isNoisy)) return;
     warn(options, kTool,
-         "--noise changes nothing: no robot has motion_noise, odometry_noise or start_noise");
+         "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
+         "odometry_noise or start_noise");
 }
 
 void warnOfOutside(const Scene& scene, const CommonOptions& options) {

@@ -22,8 +22,8 @@ class CollisionLog {
     int count_ = 0;
 };
 
-/// Says so if no robot has noise to take part.
-void warnOfNoNoise(const Scene& scene, const CommonOptions& options);
+/// Says so if no sensor has noise, nor a robot that moves by itself.
+void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
 
 /// Says which robots and people begin outside the room, and whose path leads there.
 void warnOfOutside(const Scene& scene, const CommonOptions& options);

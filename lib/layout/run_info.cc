@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/run_info.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "layout/table_lines.h"
+
+namespace ispace {
+
+RecordedFiles::RecordedFiles(const std::string& folder) {
+    const auto in_folder = [&folder](const char* file) {
+        return (std::filesystem::path(folder) / file).string();
+    };
+    robots = in_folder("robots.csv");
+    odometry = in_folder("odometry.csv");
+    people = in_folder("people.csv");
+    events = in_folder("events.csv");
+    info = in_folder("info.csv");
+    scene = in_folder("scene.env");
+}
+
+std::optional<RunInfo> recordedInfo(const std::string& folder) {
+    const std::string name = RecordedFiles(folder).info;
+    if (!std::filesystem::exists(name)) return std::nullopt;
+    const std::string text = readAll(name);
+    if (text.empty()) return std::nullopt;
+    std::vector<std::string_view> columns, fields;
+    const std::string_view all(text);
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    splitFields(all.substr(0, end), columns);
+    const std::string_view rest = all.substr(std::min(end + 1, text.size()));
+    splitFields(rest.substr(0, rest.find('\n')), fields);
+    const auto field = [&](std::string_view column) -> std::optional<double> {
+        const auto found = std::find(columns.begin(), columns.end(), column);
+        const auto at = static_cast<std::size_t>(found - columns.begin());
+        return at < fields.size() ? parseDouble(fields[at]) : std::nullopt;
+    };
+    const auto step = field("dt");
+    if (!step || *step <= 0 || *step > 1)
+        throw FormatError({name, 2, 0,
+                           "no length of a step: wanted the columns dt,control_interval,steps, as "
+                           "`simrun --record` writes"});
+    RunInfo info{.step = *step};
+    // Whole numbers, too large for a double.
+    if (const auto seed = std::find(columns.begin(), columns.end(), "seed");
+        seed != columns.end()) {
+        const auto at = static_cast<std::size_t>(seed - columns.begin());
+        const auto value = at < fields.size() ? parseInteger(fields[at]) : std::nullopt;
+        info.seed = static_cast<std::uint64_t>(value.value_or(0));
+    }
+    info.noise = field("noise").value_or(0) != 0;
+    return info;
+}
+
+}  // namespace ispace

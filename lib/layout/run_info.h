@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace ispace {
+
+/// Names of the files in a folder that `simrun --record` has written.
+struct RecordedFiles {
+    explicit RecordedFiles(const std::string& folder);
+    std::string robots, odometry, people, events, info, scene;
+};
+
+/// What info.csv says of a run.
+struct RunInfo {
+    double step = 0;  ///< seconds
+    std::uint64_t seed = 0;
+    bool noise = false;  ///< of sensors
+};
+
+/// Nothing if the run was killed before info.csv was written, or wrote none. Old records have no
+/// seed. \throws FormatError if it says something else
+std::optional<RunInfo> recordedInfo(const std::string& folder);
+
+}  // namespace ispace
