@@ -120,32 +120,22 @@ class ShortenedRanges {
     std::span<float> ranges_, cosines_;
 };
 
-/// A scan from one place whose ranges bodies shorten.
+/// Rays of any directions from one place whose ranges bodies shorten.
 class BodyScan {
   public:
     BodyScan(Point3 origin, const Directions& directions, double max_range,
-             const ShortenedRanges& ranges);
+             const ShortenedRanges& ranges)
+        : origin_(origin), directions_(directions), far_(max_range), ranges_(ranges) {}
 
     /// Bodies outside this part of the floor are not met.
     [[nodiscard]] Box2 box() const;
     void meet(const MovingBody& body, const BodyExtent& extent);
 
   private:
-    void meetArc(const MovingBody& body, const BodyExtent& extent);
-    void meetAll(const BodyFrom& body);
-    [[nodiscard]] bool approach(const MovingBody& body, const BodyExtent& extent);
-    void meetBetween(const BodyFrom& body, double middle, double half);
-    void meetBeams(const BodyFrom& body, std::size_t begin, std::size_t end);
-
     Point3 origin_;
     const Directions& directions_;
     double far_;
     ShortenedRanges ranges_;
-    double first_ = 0, step_ = 0;  // of an arc, degrees
-    Vec2 ahead_;  // no beam points away from it; null if there is no such direction
-    // Of the body at hand, on the floor.
-    Vec2 way_;
-    double distance_ = 0, reach_ = 0;
 };
 
 /// The pixels [left, right) x [top, bottom) of a picture.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to FlatWorld: lines and round bodies as seen from the origin of a ray, and three ways to
+// Private to lib/trace: lines and round bodies as seen from the origin of a ray, and three ways to
 // find what level rays meet first, which agree to the last bit.
 #pragma once
 

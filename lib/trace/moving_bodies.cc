@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trace/body_arc.h"
 #include "trace/body_rays.h"
 #include "trace/rays.h"
 
@@ -56,6 +57,21 @@ std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
     return cell < static_cast<double>(count) ? static_cast<std::size_t>(cell) : count - 1;
 }
 
+void BodyTable::fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
+                     std::span<const BodyExtent> extents) {
+    for (auto* const figures : {&x, &y, &reach, &bottom, &top})
+        figures->resize(order.size() + kLanes);
+    index.assign(order.begin(), order.end());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const MovingBody& body = bodies[order[i]];
+        x[i] = body.pose.position.x;
+        y[i] = body.pose.position.y;
+        reach[i] = extents[order[i]].reach;
+        bottom[i] = body.bottom;
+        top[i] = body.top;
+    }
+}
+
 MovingBodies::MovingBodies(std::vector<MovingBody> bodies) : bodies_(std::move(bodies)) { index(); }
 
 void MovingBodies::rebuild(std::span<const MovingBody> bodies) {
@@ -75,6 +91,7 @@ void MovingBodies::index() {
         reach = std::max(reach, extents_.back().reach);
     }
     grid_.rebuild(places_, reach);
+    table_.fill(grid_.order(), bodies_, extents_);
 }
 
 void MovingBodies::shorten(Point3 origin, const Directions& directions, double max_range,
@@ -82,7 +99,15 @@ void MovingBodies::shorten(Point3 origin, const Directions& directions, double m
                            std::span<float> cosines) const {
     assert(directions.size() == ranges.size());
     if (ranges.empty() || grid_.empty()) return;
-    BodyScan scan(origin, directions, max_range, {max_range, ranges, cosines});
+    const ShortenedRanges shortened(max_range, ranges, cosines);
+    if (directions.arc && directions.arc->step > Angle()) {
+        BodyArc arc(origin, directions, max_range, bodies_, extents_, shortened);
+        grid_.forEachRun(arc.box(), [&](std::size_t begin, std::size_t end) {
+            arc.look(table_, begin, end, own);
+        });
+        return arc.meetAll();
+    }
+    BodyScan scan(origin, directions, max_range, shortened);
     grid_.forEachNear(scan.box(), [&](std::size_t i) {
         if (bodies_[i].owner != own) scan.meet(bodies_[i], extents_[i]);
     });

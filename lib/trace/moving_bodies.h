@@ -44,7 +44,12 @@ class FloorGrid {
     /// Calls visit(index) once for each thing that may extend into the box, in a fixed order.
     template <typename Visit>
     void forEachNear(const Box2& box, Visit visit) const;
+    /// The same in runs of order(): calls visit(begin, end) for each.
+    template <typename Visit>
+    void forEachRun(const Box2& box, Visit visit) const;
     [[nodiscard]] bool empty() const { return indices_.empty(); }
+    /// The indices of all things, those of one cell one after the other.
+    [[nodiscard]] std::span<const std::uint32_t> order() const { return indices_; }
 
   private:
     [[nodiscard]] std::size_t cellOf(double offset, std::size_t count) const;
@@ -53,6 +58,17 @@ class FloorGrid {
     double size_ = 1, reach_ = 0;
     std::size_t columns_ = 1, rows_ = 1;
     std::vector<std::uint32_t> first_ = {0, 0}, indices_;
+};
+
+/// Bodies in the order of their grid, a figure an array, for loops over several at a time. Behind
+/// the last there is room to read on for kLanes.
+struct BodyTable {
+    static constexpr std::size_t kLanes = 8;
+    std::vector<double> x, y, reach, bottom, top;
+    std::vector<std::uint32_t> index;  ///< of MovingBodies::bodies()
+
+    void fill(std::span<const std::uint32_t> order, std::span<const MovingBody> bodies,
+              std::span<const BodyExtent> extents);
 };
 
 /// The moving bodies at one moment. Moving them leaves the ray worlds of the environment alone.
@@ -89,10 +105,18 @@ class MovingBodies {
     std::vector<BodyExtent> extents_;
     std::vector<Point2> places_;  // of the bodies; kept for its memory
     FloorGrid grid_;
+    BodyTable table_;
 };
 
 template <typename Visit>
 void FloorGrid::forEachNear(const Box2& box, Visit visit) const {
+    forEachRun(box, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) visit(std::size_t{indices_[i]});
+    });
+}
+
+template <typename Visit>
+void FloorGrid::forEachRun(const Box2& box, Visit visit) const {
     if (indices_.empty() || box.empty()) return;
     const std::size_t left = cellOf(box.low.x - reach_ - box_.low.x, columns_);
     const std::size_t right = cellOf(box.high.x + reach_ - box_.low.x, columns_);
@@ -100,9 +124,9 @@ void FloorGrid::forEachNear(const Box2& box, Visit visit) const {
     const std::size_t high = cellOf(box.high.y + reach_ - box_.low.y, rows_);
     for (std::size_t row = low; row <= high; ++row) {
         // The cells of a row lie behind each other.
-        const std::uint32_t begin = first_[row * columns_ + left];
-        const std::uint32_t end = first_[row * columns_ + right + 1];
-        for (std::uint32_t i = begin; i < end; ++i) visit(std::size_t{indices_[i]});
+        const std::size_t begin = first_[row * columns_ + left];
+        const std::size_t end = first_[row * columns_ + right + 1];
+        if (begin < end) visit(begin, end);
     }
 }
 

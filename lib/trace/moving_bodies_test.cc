@@ -300,7 +300,8 @@ TEST(MovingBodies, AgreeWithEveryBodyAndBeam) {
     std::size_t shortened = 0;
     for (int round = 0; round < 400; ++round) {
         std::vector<MovingBody> made;
-        const auto count = static_cast<std::uint32_t>(unit(random) * 60);
+        // Some are crowds in which nearly all are hidden.
+        const auto count = static_cast<std::uint32_t>(unit(random) * (round % 10 == 1 ? 900 : 60));
         for (std::uint32_t i = 0; i < count; ++i) {
             const double bottom = i % 4 == 0 ? 0.2 : 0;
             made.push_back(i % 3 == 0 ? cylinder(place(random), place(random),
