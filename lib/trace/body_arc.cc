@@ -106,13 +106,40 @@ void BodyArc::findFarthest(std::size_t block) {
     const std::size_t end = std::min((block + 1) * kBlock, directions_.size());
     float farthest = 0;
     for (std::size_t k = block * kBlock; k < end; ++k) farthest = std::max(farthest, ranges_[k]);
-    farthest_[block] = farthest;
+    farthest_[block] = std::min(farthest, static_cast<float>(far_ * (1 + kFarSlack)));
 }
 
-Box2 BodyArc::box() const {
-    const Point2 middle = origin_.onFloor();
-    const Vec2 corner{far_ * (1 + kFarSlack), far_ * (1 + kFarSlack)};
-    return {middle - corner, middle + corner};
+Box2 BodyArc::view() const {
+    Box2 box;
+    box.add(origin_.onFloor());
+    const std::size_t count = directions_.size();
+    for (std::size_t block = 0; block < farthest_.size(); ++block) {
+        const double far = static_cast<double>(farthest_[block]) * (1 + kFarSlack);
+        const std::size_t end = std::min((block + 1) * kBlock, count);
+        for (std::size_t k = block * kBlock; k < end; ++k)
+            box.add(origin_.onFloor() + far * Vec2{directions_.x[k], directions_.y[k]});
+    }
+    return box;
+}
+
+void BodyArc::meetFrom(const FloorGrid& grid, const BodyTable& table, std::uint32_t own) {
+    // A few cells at first, then four times as many each time.
+    constexpr double kCells = 2.5;
+    const auto within = [](const Box2& a, const Box2& b) {
+        return Box2{{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+                    {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+    };
+    Box2 done;
+    for (double half = kCells * grid.cellSize();; half *= 2) {
+        const Point2 middle = origin_.onFloor();
+        const Box2 view = this->view();
+        const Box2 box = within(view, {middle - Vec2{half, half}, middle + Vec2{half, half}});
+        grid.forEachRun(box, done,
+                        [&](std::size_t begin, std::size_t end) { look(table, begin, end, own); });
+        meetCollected();
+        if (box.low == view.low && box.high == view.high) return;
+        done = box;
+    }
 }
 
 bool BodyArc::isSeen(std::int32_t first, std::int32_t last, double nearest) const {
@@ -139,13 +166,13 @@ void BodyArc::look(const BodyTable& table, std::size_t begin, std::size_t end, s
             const Waiting waiting{seen.nearest[k], table.index[i + k],  seen.first[k],
                                   seen.last[k],    seen.other_first[k], seen.other_last[k]};
             if (!isSeen(waiting) || bodies_[waiting.body].owner == own) continue;
-            if (size_ == kMost) meetAll();
+            if (size_ == kMost) meetCollected();
             waiting_[size_++] = waiting;
         }
     }
 }
 
-void BodyArc::meetAll() {
+void BodyArc::meetCollected() {
     std::sort(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size_),
               [](const Waiting& a, const Waiting& b) { return a.nearest < b.nearest; });
     for (std::size_t i = 0; i < size_; ++i) {

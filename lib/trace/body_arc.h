@@ -13,9 +13,9 @@
 
 namespace ispace {
 
-/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected first, eight at a
-/// time, then met from the nearest on. Those hidden behind what their beams meet already, walls or
-/// other bodies, are passed over, which in rooms are nearly all.
+/// A level scan of equal steps whose ranges bodies shorten. Bodies are collected in growing
+/// squares about it, eight at a time, and met from the nearest on. Those hidden behind what their
+/// beams meet already, walls or other bodies, are passed over: in rooms and crowds nearly all.
 class BodyArc {
   public:
     /// \pre directions.arc, with a step above 0
@@ -23,12 +23,9 @@ class BodyArc {
             std::span<const MovingBody> bodies, std::span<const BodyExtent> extents,
             const ShortenedRanges& ranges);
 
-    /// Bodies outside this part of the floor are not met.
-    [[nodiscard]] Box2 box() const;
-    /// Collects bodies of the table that may shorten a beam; the others are nothing to it.
-    void look(const BodyTable& table, std::size_t begin, std::size_t end, std::uint32_t own);
-    /// Meets what was collected.
-    void meetAll();
+    /// Meets all bodies but those of `own`, cells near to the scan before those that are farther
+    /// away. \pre the table is in the order of the grid
+    void meetFrom(const FloorGrid& grid, const BodyTable& table, std::uint32_t own);
 
   private:
     static constexpr std::size_t kBlock = 8, kMost = 256;
@@ -40,6 +37,11 @@ class BodyArc {
         std::uint32_t body;
         std::int32_t first, last, other_first, other_last;
     };
+    /// The part of the floor where bodies still matter.
+    [[nodiscard]] Box2 view() const;
+    /// Collects bodies of the table that may shorten a beam.
+    void look(const BodyTable& table, std::size_t begin, std::size_t end, std::uint32_t own);
+    void meetCollected();
     [[nodiscard]] bool isSeen(const Waiting& waiting) const;
     [[nodiscard]] bool isSeen(std::int32_t first, std::int32_t last, double nearest) const;
     void meetBeams(const BodyFrom& body, std::int32_t first, std::int32_t last, double nearest);

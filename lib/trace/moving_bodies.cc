@@ -51,6 +51,14 @@ void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
         indices_[--first_[cell(places[i])]] = static_cast<std::uint32_t>(i);
 }
 
+FloorGrid::Cells FloorGrid::cellsAbout(const Box2& box) const {
+    if (box.empty()) return {};
+    return {cellOf(box.low.x - reach_ - box_.low.x, columns_),
+            cellOf(box.high.x + reach_ - box_.low.x, columns_),
+            cellOf(box.low.y - reach_ - box_.low.y, rows_),
+            cellOf(box.high.y + reach_ - box_.low.y, rows_)};
+}
+
 std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
     const double cell = offset / size_;
     if (!(cell > 0)) return 0;
@@ -102,10 +110,7 @@ void MovingBodies::shorten(Point3 origin, const Directions& directions, double m
     const ShortenedRanges shortened(max_range, ranges, cosines);
     if (directions.arc && directions.arc->step > Angle()) {
         BodyArc arc(origin, directions, max_range, bodies_, extents_, shortened);
-        grid_.forEachRun(arc.box(), [&](std::size_t begin, std::size_t end) {
-            arc.look(table_, begin, end, own);
-        });
-        return arc.meetAll();
+        return arc.meetFrom(grid_, table_, own);
     }
     BodyScan scan(origin, directions, max_range, shortened);
     grid_.forEachNear(scan.box(), [&](std::size_t i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -44,14 +45,21 @@ class FloorGrid {
     /// Calls visit(index) once for each thing that may extend into the box, in a fixed order.
     template <typename Visit>
     void forEachNear(const Box2& box, Visit visit) const;
-    /// The same in runs of order(): calls visit(begin, end) for each.
+    /// The same in runs of order(), without the cells of another box: calls visit(begin, end).
     template <typename Visit>
-    void forEachRun(const Box2& box, Visit visit) const;
+    void forEachRun(const Box2& box, const Box2& without, Visit visit) const;
+    /// Side of a cell.
+    [[nodiscard]] double cellSize() const { return size_; }
     [[nodiscard]] bool empty() const { return indices_.empty(); }
     /// The indices of all things, those of one cell one after the other.
     [[nodiscard]] std::span<const std::uint32_t> order() const { return indices_; }
 
   private:
+    /// Cells from low to high, both included; none if `right` is less than `left`.
+    struct Cells {
+        std::size_t left = 1, right = 0, low = 1, high = 0;
+    };
+    [[nodiscard]] Cells cellsAbout(const Box2& box) const;
     [[nodiscard]] std::size_t cellOf(double offset, std::size_t count) const;
 
     Box2 box_;
@@ -110,23 +118,28 @@ class MovingBodies {
 
 template <typename Visit>
 void FloorGrid::forEachNear(const Box2& box, Visit visit) const {
-    forEachRun(box, [&](std::size_t begin, std::size_t end) {
+    forEachRun(box, {}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) visit(std::size_t{indices_[i]});
     });
 }
 
 template <typename Visit>
-void FloorGrid::forEachRun(const Box2& box, Visit visit) const {
+void FloorGrid::forEachRun(const Box2& box, const Box2& without, Visit visit) const {
     if (indices_.empty() || box.empty()) return;
-    const std::size_t left = cellOf(box.low.x - reach_ - box_.low.x, columns_);
-    const std::size_t right = cellOf(box.high.x + reach_ - box_.low.x, columns_);
-    const std::size_t low = cellOf(box.low.y - reach_ - box_.low.y, rows_);
-    const std::size_t high = cellOf(box.high.y + reach_ - box_.low.y, rows_);
-    for (std::size_t row = low; row <= high; ++row) {
-        // The cells of a row lie behind each other.
-        const std::size_t begin = first_[row * columns_ + left];
-        const std::size_t end = first_[row * columns_ + right + 1];
+    const Cells cells = cellsAbout(box), done = cellsAbout(without);
+    // The cells of a row lie behind each other.
+    const auto run = [&](std::size_t row, std::size_t from, std::size_t to) {
+        const std::size_t begin = first_[row * columns_ + from], end = first_[row * columns_ + to];
         if (begin < end) visit(begin, end);
+    };
+    for (std::size_t row = cells.low; row <= cells.high; ++row) {
+        if (row < done.low || row > done.high) {
+            run(row, cells.left, cells.right + 1);
+        } else {
+            if (cells.left < done.left) run(row, cells.left, std::min(cells.right + 1, done.left));
+            if (cells.right > done.right)
+                run(row, std::max(cells.left, done.right + 1), cells.right + 1);
+        }
     }
 }
 
