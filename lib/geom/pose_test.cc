@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "geom/point.h"
@@ -23,6 +24,28 @@ TEST(Point, vectorsAndPlaces) {
     EXPECT_EQ(distance({1, 1}, {4, 5}), 5);
     EXPECT_EQ(length(Vec3{2, 3, 6}), 7);
     EXPECT_EQ((Point3{1, 2, 3} + 2 * Vec3{1, 0, 1}).onFloor(), (Point2{3, 2}));
+}
+
+TEST(Angle, cosSinIsThatOfTheExactRemainder) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> few(-800, 800), many(-3e6, 3e6);
+    const auto expect = [](double degrees) {
+        int quadrant = 0;
+        const double rest = std::remquo(degrees, 90.0, &quadrant) * (std::numbers::pi / 180);
+        const double c = std::cos(rest), s = std::sin(rest);
+        const CosSin turned[] = {{c, s}, {-s, c}, {-c, -s}, {s, -c}};
+        const auto [cos, sin] = cosSin(Angle::degrees(degrees));
+        EXPECT_EQ(cos, turned[static_cast<unsigned>(quadrant) & 3U].cos) << degrees;
+        EXPECT_EQ(sin, turned[static_cast<unsigned>(quadrant) & 3U].sin) << degrees;
+    };
+    for (int k = -100; k <= 100; ++k)
+        for (const double way : {-1e9, 0.0, 1e9})
+            expect(way == 0 ? 22.5 * k : std::nextafter(22.5 * k, way));
+    for (int i = 0; i < 20000; ++i) {
+        expect(few(random));
+        expect(many(random));
+    }
+    EXPECT_EQ(cosSin(Angle::degrees(-0.0)).cos, 1);
 }
 
 TEST(Pose2, takesPointsToTheOuterFrame) {

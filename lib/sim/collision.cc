@@ -90,6 +90,27 @@ double Obstacles::nearest(Point2 p, double farthest) const {
     return nearest;
 }
 
+void Obstacles::findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const {
+    std::vector<std::uint32_t> indices;
+    const auto visit = [&](std::span<const std::uint32_t> cell) {
+        indices.insert(indices.end(), cell.begin(), cell.end());
+    };
+    grid_.searchBox({p - Vec2{reach, reach}, p + Vec2{reach, reach}}, visit);
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    for (const std::uint32_t i : indices)
+        if (squaredDistance(p, lines_[i]) <= reach * reach) lines.push_back(lines_[i]);
+}
+
+void Vicinity::find(const Obstacles& obstacles, Point2 p, double reach) {
+    constexpr double kMore = 0.4;  // metres
+    constexpr double kSlack = 1e-6;
+    middle_ = p;
+    reach_ = reach + kMore;
+    lines_.clear();
+    obstacles.findAbout(p, reach_ + kSlack, lines_);
+}
+
 bool Obstacles::near(const Segment2& way, double distance) const {
     const double reach = distance + ispace::distance(way.a, way.b);
     const auto owner = find(way.a, reach, [&](const Segment2& line) {

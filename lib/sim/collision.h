@@ -50,16 +50,8 @@ class Obstacles {
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
     /// Distance to the nearest line, at most `farthest`. The nearer the line, the cheaper.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
-    /// Calls visit(line, its distance) for the lines nearer than `reach`, for some more than once.
-    template <typename Visit>
-    void forEachWithin(Point2 p, double reach, Visit visit) const {
-        const auto look = [&](std::span<const std::uint32_t> cell) {
-            for (const std::uint32_t i : cell)
-                if (const double square = squaredDistance(p, lines_[i]); square < reach * reach)
-                    visit(lines_[i], std::sqrt(square));
-        };
-        grid_.searchFrom(p, look, [&](double seen) { return seen >= reach; });
-    }
+    /// Appends the lines that are nearer to p than `reach`, and perhaps others, each once.
+    void findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const;
     /// True if the path comes nearer than `distance` to a line.
     [[nodiscard]] bool near(const Segment2& way, double distance) const;
     /// An element that stops a circle whose centre moves along the path: one it enters deeper than
@@ -75,6 +67,33 @@ class Obstacles {
     std::vector<Segment2> lines_;
     std::vector<std::size_t> solid_owners_, line_owners_;
     SegmentGrid grid_;
+};
+
+/// The lines about somebody: found for more than is asked, and again only after some way.
+class Vicinity {
+  public:
+    /// Calls visit(line, its distance) for the lines nearer to p than `reach`, each once.
+    /// \pre the obstacles are the same each time
+    template <typename Visit>
+    void forEachWithin(const Obstacles& obstacles, Point2 p, double reach, Visit visit) {
+        if (!(std::hypot(p.x - middle_.x, p.y - middle_.y) + reach <= reach_))
+            find(obstacles, p, reach);
+        const auto apart = [reach](double at, double a, double b) {
+            return std::min(a, b) - at > reach || at - std::max(a, b) > reach;
+        };
+        for (const Segment2& line : lines_) {
+            if (apart(p.x, line.a.x, line.b.x) || apart(p.y, line.a.y, line.b.y)) continue;
+            if (const double square = squaredDistance(p, line); square < reach * reach)
+                visit(line, std::sqrt(square));
+        }
+    }
+
+  private:
+    void find(const Obstacles& obstacles, Point2 p, double reach);
+
+    Point2 middle_;
+    double reach_ = -1;
+    std::vector<Segment2> lines_;
 };
 
 /// A robot's or a person's proposed step.

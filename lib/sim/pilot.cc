@@ -152,7 +152,7 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
 }
 
 Steering Pilot::lookAbout(const Helm& helm, double speed) const {
-    return {*helm.around, helm.mover, *helm.obstacles, helm.clearance, speed, horizon(speed)};
+    return {helm, speed, horizon(speed)};
 }
 
 /// Waits a while, then tries a way aside.

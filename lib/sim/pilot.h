@@ -12,15 +12,6 @@
 
 namespace ispace {
 
-/// Where a pilot is, and what it knows besides Surroundings.
-struct Helm {
-    const Surroundings* around = nullptr;
-    const Obstacles* obstacles = nullptr;
-    std::size_t mover = 0;
-    double clearance = 0;  ///< nothing is nearer to the mover's circle
-    SimTime time{}, step{};
-};
-
 /// Takes a mover along a path or lets it wander, by setting the goals of its motion ten times a
 /// second and whenever they are reached. It goes where the way is free for two seconds, or for as
 /// long as it takes to brake; who is faster than the room allows goes at a half, a quarter … of

@@ -14,6 +14,9 @@ namespace {
 constexpr double kGap = 0.05;
 /// Metres beyond which nobody is looked at.
 constexpr double kSight = 4;
+/// As many as are near as a rule.
+constexpr std::size_t kUsual = 32;
+constexpr double kHair = 1e-6;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Vec2 velocityOf(const Motion& motion) {
@@ -37,34 +40,40 @@ bool comesNear(const Segment2& way, const Segment2& line, double reach) {
 
 }  // namespace
 
-Steering::Steering(const Surroundings& around, std::size_t mover, const Obstacles& obstacles,
-                   double clearance, double speed, double horizon)
-    : place_(around.motions[mover].pose.position),
-      radius_(around.movers[mover].model.radius),
+Steering::Steering(const Helm& helm, double speed, double horizon)
+    : place_(helm.around->motions[helm.mover].pose.position),
+      radius_(helm.around->movers[helm.mover].model.radius),
       speed_(speed),
       horizon_(horizon) {
-    findNeighbours(around, mover);
-    findLines(obstacles, clearance);
+    neighbours_.reserve(kUsual);
+    lines_.reserve(kUsual);
+    findNeighbours(*helm.around, helm.mover);
+    findLines(helm);
 }
 
 void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
-    around.traffic->forEachNear(
-        place_, radius_ + std::min(kSight, 2 * speed_ * horizon_), [&](std::size_t other) {
-            if (other == mover) return;
-            const Motion& motion = around.motions[other];
-            const double reach = radius_ + around.movers[other].model.radius + kGap;
-            neighbours_.push_back({motion.pose.position - place_, velocityOf(motion), reach});
-        });
+    const double sight = radius_ + std::min(kSight, 2 * speed_ * horizon_);
+    around.traffic->forEachNear(place_, sight, [&](std::size_t other) {
+        if (other == mover) return;
+        const Motion& motion = around.motions[other];
+        const Vec2 offset = motion.pose.position - place_;
+        const double reach = radius_ + around.movers[other].model.radius + kGap;
+        // Most are too far away to meet within the horizon.
+        const double fastest = speed_ + std::abs(motion.drive.speed) + std::abs(motion.side.speed);
+        const double farthest = (reach + fastest * horizon_) * (1 + kHair);
+        if (dot(offset, offset) > farthest * farthest) return;
+        neighbours_.push_back({offset, velocityOf(motion), reach});
+    });
 }
 
-void Steering::findLines(const Obstacles& obstacles, double clearance) {
+void Steering::findLines(const Helm& helm) {
     const double ahead = speed_ * horizon_ + kGap;
-    if (clearance > ahead) return;
-    obstacles.forEachWithin(place_, radius_ + ahead, [&](const Segment2& line, double apart) {
-        // A hair less, so that going along it is free.
-        constexpr double kHair = 1e-6;
-        lines_.push_back({line, std::min(radius_ + kGap, apart - kHair)});
-    });
+    if (helm.clearance > ahead) return;
+    helm.vicinity->forEachWithin(
+        *helm.obstacles, place_, radius_ + ahead, [&](const Segment2& line, double apart) {
+            // A hair less, so that going along it is free.
+            lines_.push_back({line, std::min(radius_ + kGap, apart - kHair)});
+        });
 }
 
 double Steering::untilNeighbour(Vec2 velocity) const {

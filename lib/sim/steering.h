@@ -9,6 +9,7 @@
 #include "sim/collision.h"
 #include "sim/motion.h"
 #include "sim/people.h"
+#include "sim/sim_time.h"
 
 namespace ispace {
 
@@ -17,6 +18,16 @@ struct Surroundings {
     std::span<const Mover> movers;
     std::span<const Motion> motions;
     const Traffic* traffic = nullptr;  ///< rebuilt for that moment
+};
+
+/// Where somebody is who looks about.
+struct Helm {
+    const Surroundings* around = nullptr;
+    const Obstacles* obstacles = nullptr;
+    Vicinity* vicinity = nullptr;  ///< of the mover, among these obstacles
+    std::size_t mover = 0;
+    double clearance = 0;  ///< nothing is nearer to the mover's circle
+    SimTime time{}, step{};
 };
 
 /// A direction, and for how many seconds one can go there.
@@ -31,10 +42,8 @@ struct FreeWay {
 /// nearer.
 class Steering {
   public:
-    /// Looks ahead as far as one gets in `horizon` seconds at `speed`; `clearance`: nothing is
-    /// nearer to the mover's circle than that.
-    Steering(const Surroundings& around, std::size_t mover, const Obstacles& obstacles,
-             double clearance, double speed, double horizon);
+    /// Looks ahead as far as one gets in `horizon` seconds at `speed`.
+    Steering(const Helm& helm, double speed, double horizon);
 
     /// Seconds until somebody or something is in the way, at most `horizon`; until things in steps
     /// of a half, a quarter, an eighth of it.
@@ -51,7 +60,7 @@ class Steering {
         double reach;  // of both circles and the gap
     };
     void findNeighbours(const Surroundings& around, std::size_t mover);
-    void findLines(const Obstacles& obstacles, double clearance);
+    void findLines(const Helm& helm);
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
     [[nodiscard]] double untilLine(Vec2 velocity, double most) const;
     [[nodiscard]] double freeTime(Angle direction, double share) const;

@@ -80,9 +80,9 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
     Motion& motion = motions[mover];
     states[mover].blocked.reset();
     if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
-        pilots[mover].steer(
-            {&around, states[mover].obstacles, mover, states[mover].clearance, now, step_length},
-            motion);
+        pilots[mover].steer({&around, states[mover].obstacles, &states[mover].vicinity, mover,
+                             states[mover].clearance, now, step_length},
+                            motion);
     if (motion.arrived()) {
         move.to = {.motion = motion};
         move.drift = {};

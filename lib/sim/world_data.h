@@ -23,6 +23,7 @@ namespace ispace {
 /// What somebody is besides the motion.
 struct MoverState {
     const Obstacles* obstacles = nullptr;
+    Vicinity vicinity;  // among them
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // of its wheels' orders
     double clearance = 0;  // it may go at least as far before it meets an obstacle
