@@ -121,7 +121,6 @@ class Session {
     void shutdown(Words words);
     void change(Words words);
     void carryOut(std::string_view line);
-    [[nodiscard]] std::string applied(Words words, std::string_view line);
     void events(Words words);
     void mark(Words words);
 

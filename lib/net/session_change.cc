@@ -14,6 +14,7 @@
 #include "net/request_parts.h"
 #include "net/session.h"
 #include "net/token.h"
+#include "sim/start_warnings.h"
 
 namespace ispace {
 
@@ -84,9 +85,30 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// \returns the id of what was added, or ""
-std::string edit(WorldEditor& editor, const World& world, std::span<const std::string_view> words,
-                 std::string_view rest) {
+/// What came of a change.
+struct Changed {
+    std::string added = {};                // id; "" if nothing was
+    std::vector<std::string> movers = {};  // who was changed or added; one "" for all
+};
+
+/// What a client should know of those whom a change is about.
+std::string warningOf(const World& world, const Changed& changed) {
+    constexpr std::size_t kMost = 3;
+    std::vector<std::string> warnings;
+    for (const std::string& id : changed.movers) {
+        for (const auto& more : {outsideWarnings(world.scene(), id), startWarnings(world, id)})
+            warnings.insert(warnings.end(), more.begin(), more.end());
+        if (warnings.size() > kMost) break;
+    }
+    if (warnings.size() > kMost) {
+        warnings.resize(kMost);
+        warnings.emplace_back("and more");
+    }
+    return joined(warnings, "; ");
+}
+
+Changed edit(WorldEditor& editor, const World& world, std::span<const std::string_view> words,
+             std::string_view rest) {
     const std::vector<Edit> edits = editsOf(words, rest);
     const bool adds = words[0] == "ADD";
     for (const Edit& each : edits)
@@ -99,7 +121,31 @@ std::string edit(WorldEditor& editor, const World& world, std::span<const std::s
         throw Refusal{400, messageOf(error, words[0])};
     }
     editor.adopt(std::move(records), edits);
-    return adds ? world.scene().ids.back() : "";
+    if (adds) return {world.scene().ids.back(), {world.scene().ids.back()}};
+    if (words[0] != "SET") return {};
+    // Each of many would be looked for among all.
+    constexpr std::size_t kMany = 100;
+    std::vector<std::string> movers = editor.moversOf(edits.front());
+    if (movers.size() > kMany) movers = {""};
+    return {"", std::move(movers)};
+}
+
+/// Changes the world.
+Changed applied(WorldEditor& editor, const World& world, std::span<const std::string_view> words,
+                std::string_view line) {
+    if (words[0] == "RESET") {
+        editor.reset();
+        return {};
+    }
+    if (words[0] != "LOAD") {
+        const auto begin = static_cast<std::size_t>(words[1].data() - line.data());
+        return edit(editor, world, words, line.substr(begin));
+    }
+    for (const std::string_view name : words.subspan(1))
+        if (printable(name) != name)
+            throw Refusal{400, "the name of a file holds no control characters"};
+    editor.load(std::string(words[1]), words.size() > 2 ? std::string(words[2]) : "");
+    return {"", {""}};
 }
 
 }  // namespace
@@ -142,11 +188,14 @@ void Session::carryOut(std::string_view line) {
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     const auto began = std::chrono::steady_clock::now();
     try {
-        const std::string id = applied(words, line);
+        const Changed changed = applied(state_->editor(), world(), words, line);
         state_->simulation().events().add(EventKind::Change, printable(line.substr(0, kMaxText)));
         out_.append("OK ").append(words[0]);
-        if (!id.empty()) out_.append(" id=").append(id);
-        out_.append(" t=").append(formatMilliseconds(world().time())).append("\n");
+        if (!changed.added.empty()) out_.append(" id=").append(changed.added);
+        out_.append(" t=").append(formatMilliseconds(world().time()));
+        if (const std::string warning = warningOf(world(), changed); !warning.empty())
+            out_.append(" warning=").append(warning);
+        out_ += '\n';
     } catch (const Refusal& refusal) {
         error(refusal.code, {refusal.message});
     } catch (const FormatError& failure) {
@@ -159,23 +208,6 @@ void Session::carryOut(std::string_view line) {
     }
     state_->changes().spend(began, std::chrono::steady_clock::now());
     sync();
-}
-
-/// Changes the world. \returns the id of what was added, or ""
-std::string Session::applied(Words words, std::string_view line) {
-    WorldEditor& editor = state_->editor();
-    if (words[0] == "RESET") {
-        editor.reset();
-    } else if (words[0] == "LOAD") {
-        for (const std::string_view name : words.subspan(1))
-            if (printable(name) != name)
-                throw Refusal{400, "the name of a file holds no control characters"};
-        editor.load(std::string(words[1]), words.size() > 2 ? std::string(words[2]) : "");
-    } else {
-        const auto begin = static_cast<std::size_t>(words[1].data() - line.data());
-        return edit(editor, world(), words, line.substr(begin));
-    }
-    return "";
 }
 
 void Session::events(Words words) {

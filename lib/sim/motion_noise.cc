@@ -45,8 +45,9 @@ bool strays(const std::array<double, 4>& alphas) {
     return std::any_of(alphas.begin(), alphas.end(), [](double alpha) { return alpha != 0; });
 }
 
-void strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles, std::uint64_t seed) {
-    constexpr std::uint64_t kTries = 8;
+std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles,
+                                     std::uint64_t seed) {
+    constexpr std::uint64_t kTries = 100;
     const auto is_free = [&](std::size_t i, const Pose2& pose) {
         const RobotModel& model = movers[i].model;
         // Nor through a wall.
@@ -58,20 +59,23 @@ void strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles, std::ui
                 return false;
         return true;
     };
+    std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < movers.size(); ++i) {
         const MotionNoise& noise = movers[i].model.noise;
         if (noise.start_place == 0 && noise.start_heading == Angle()) continue;
-        for (std::uint64_t k = 0; k < kTries; ++k) {
-            const std::uint64_t id = hashOf(movers[i].id);
+        const std::uint64_t id = hashOf(movers[i].id);
+        bool found = false;
+        for (std::uint64_t k = 0; k < kTries && !found; ++k) {
             const auto [dx, dy] = normals({seed, Purpose::Start, id, 2 * k});
             const auto [turn, unused] = normals({seed, Purpose::Start, id, 2 * k + 1});
             const Pose2 pose{movers[i].pose.position + noise.start_place * Vec2{dx, dy},
                              wrapped(movers[i].pose.heading + turn * noise.start_heading)};
-            if (!is_free(i, pose)) continue;
-            movers[i].pose = pose;
-            break;
+            found = is_free(i, pose);
+            if (found) movers[i].pose = pose;
         }
+        if (!found) kept.push_back(i);
     }
+    return kept;
 }
 
 Odometer::Odometer(const Mover& mover, std::uint64_t seed, bool noise)

@@ -33,9 +33,10 @@ Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const Ra
 /// True if one of them is not 0.
 bool strays(const std::array<double, 4>& alphas);
 
-/// Moves the robots' starts by their start errors, where there is room: drawn again up to eight
-/// times, a robot else starts as written.
-void strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles, std::uint64_t seed);
+/// Moves the robots' starts by their start errors, where there is room: drawn up to a hundred
+/// times, a robot else starts as written. \returns those who do
+std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles,
+                                     std::uint64_t seed);
 
 /// What a robot makes of its wheels: pose and nothing else, from 0,0 and heading 0 at the start.
 class Odometer {

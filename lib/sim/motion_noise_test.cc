@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "layout/test_layout.h"
+#include "sim/start_warnings.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -144,6 +145,34 @@ TEST(MotionNoise, ACollisionStopsTheWheels) {
     while (world.time() < std::chrono::seconds(9)) world.step();
     EXPECT_TRUE(world.status(0).stall);
     EXPECT_NEAR(world.odometry(0).pose.position.x, world.status(0).pose.position.x, 0.01);
+}
+
+TEST(MotionNoise, AStartIsDrawnUntilThereIsRoom) {
+    // One place in fifteen is in the room.
+    const Scene room = scene("ispace size=12,8\n", "robot id=r1 at=1,2 start_noise=15\n");
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const World world(room, milliseconds(5), {.seed = seed, .noise = true});
+        EXPECT_TRUE(world.keptStarts().empty()) << seed;
+        const Point2 p = world.status(0).pose.position;
+        EXPECT_NE(p, (Point2{1, 2})) << seed;
+        EXPECT_TRUE(std::abs(p.x) <= 6 - 0.3 && std::abs(p.y) <= 4 - 0.3) << seed;
+    }
+}
+
+TEST(MotionNoise, AStartThatLeadsNowhereIsToldOf) {
+    const Scene room = scene("ispace size=1,1\n",
+                             "robot id=r1 at=0,0 start_noise=50\n"
+                             "robot id=r2 at=9,0 start_noise=0.1\nhuman id=h1 at=20,0\n");
+    const World world(room, milliseconds(5), {.seed = 1, .noise = true});
+    ASSERT_EQ(world.keptStarts().size(), 1U);
+    EXPECT_EQ(world.keptStarts()[0], 0U);
+    EXPECT_EQ(world.status(0).pose.position, (Point2{0, 0}));
+    EXPECT_EQ(startWarnings(world), std::vector<std::string>({"the start_noise of r1 leads nowhere "
+                                                              "free: it starts where its record "
+                                                              "says"}));
+    EXPECT_EQ(startWarnings(world, "r1").size(), 1U);
+    EXPECT_TRUE(startWarnings(world, "r2").empty());
+    EXPECT_TRUE(World(room, milliseconds(5), {.seed = 1}).keptStarts().empty());
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ std::span<const PlacedPerson> World::people() const { return data_->scene->peopl
 std::span<const RunSensor> World::sensors() const { return data_->sensors.sensors(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
+std::span<const std::size_t> World::keptStarts() const { return data_->kept_starts; }
 std::span<const std::size_t> World::read() const { return data_->sensors.latest(); }
 
 std::optional<std::size_t> World::moverNamed(std::string_view id) const {

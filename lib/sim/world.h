@@ -116,6 +116,10 @@ class World {
     [[nodiscard]] std::span<const RunSensor> sensors() const;
     [[nodiscard]] std::optional<std::size_t> sensorNamed(std::string_view id) const;
 
+    /// Robots whose start_noise led nowhere free, and who start as their records say; as of the
+    /// last change, of which it counts for the new ones alone.
+    [[nodiscard]] std::span<const std::size_t> keptStarts() const;
+
     [[nodiscard]] RobotStatus status(std::size_t mover) const;
     /// How often movers were told what to do: the mean time between two of the moments at which the
     /// same one was given commands; the length of a step if none was told twice.

@@ -45,7 +45,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       sensors(*scene, {run.seed, run.sensor_noise}),
       sensor_index(indexById(sensors.sensors())) {
     checkStart(scene->environment, movers, obstacles);
-    if (options.noise) strayStarts(movers, obstacles, options.seed);
+    if (options.noise) kept_starts = strayStarts(movers, obstacles, options.seed);
     odometers.reserve(scene->robots.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
         const auto& [id, model, pose, course, place, is_person] = movers[i];

@@ -96,7 +96,8 @@ struct World::Data {
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
     std::vector<Pilot> pilots;
-    std::vector<Odometer> odometers;  // of robots
+    std::vector<Odometer> odometers;       // of robots
+    std::vector<std::size_t> kept_starts;  // whose start errors lead nowhere
     std::vector<Move> moves;
     Traffic traffic;
     bool moved = true;  // since the traffic was looked at

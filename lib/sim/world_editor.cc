@@ -42,6 +42,13 @@ bool WorldEditor::finds(const Edit& edit) const {
                        [&](const std::string& id) { return matches(edit, id); });
 }
 
+std::vector<std::string> WorldEditor::moversOf(const Edit& edit) const {
+    std::vector<std::string> ids;
+    for (const Mover& mover : simulation_->world().movers())
+        if (matches(edit, mover.id)) ids.push_back(mover.id);
+    return ids;
+}
+
 std::vector<Record> WorldEditor::edited(const std::vector<Edit>& edits) const {
     const World& world = simulation_->world();
     const Scene& scene = world.scene();

@@ -35,6 +35,8 @@ class WorldEditor {
 
     /// True if an edit other than Add is about anything that is there.
     [[nodiscard]] bool finds(const Edit& edit) const;
+    /// The robots and people that an edit other than Add is about.
+    [[nodiscard]] std::vector<std::string> moversOf(const Edit& edit) const;
     /// The records after these edits. Robots and people whose place or heading is set are where
     /// they are now but for that. \throws FormatError, std::system_error
     [[nodiscard]] std::vector<Record> edited(const std::vector<Edit>& edits) const;

@@ -89,6 +89,10 @@ TEST_F(LivingWorld, ThingsComeAndGo) {
     EXPECT_TRUE(robot.wait(slow).done);
     EXPECT_THROW(world.set("r1", "speed", "fast"), Refused);
     EXPECT_THROW(world.add("cube size=much"), Refused);
+    EXPECT_EQ(world.add("human id=far at=50,50"), "far");
+    EXPECT_EQ(world.warning(), "far stands outside the room at 50,50");
+    world.set("far", "at", "1.5,-1.5");
+    EXPECT_EQ(world.warning(), "");
 }
 
 TEST_F(LivingWorld, SensorsAndRobotsComeToo) {

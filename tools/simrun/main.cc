@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "net/server.h"
+#include "sim/start_warnings.h"
 #include "simrun/drawing.h"
 #include "simrun/inputs.h"
 #include "simrun/options.h"
@@ -75,13 +76,14 @@ void simrun(const SimrunCommand& command) {
     SceneInput input = readInput(options);
     warn(options.common, "simrun", input.environment.warnings);
     warnOfLeftOut(input.scene, options.common);
-    warnOfOutside(input.scene, options.common);
+    warn(options.common, "simrun", outsideWarnings(input.scene));
     std::optional<Replay> replay = openReplay(options, input.scene);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
     if (options.noise) warnOfNoNoise(input.scene, !replay, options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
                 runOptionsOf(options, replay));
+    warn(options.common, "simrun", startWarnings(world));
     if (replay) warnOfChanges(*replay, options.common);
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/warnings.h"
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
 #include "base/number.h"
-#include "env/point_location.h"
 #include "layout/scene.h"
 #include "sensor/kind.h"
 
@@ -59,21 +57,6 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
     warn(options, kTool,
          "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
          "odometry_noise or start_noise");
-}
-
-void warnOfOutside(const Scene& scene, const CommonOptions& options) {
-    const RegionIndex& indoor = scene.environment.indoorIndex();
-    const auto look = [&](const std::string& id, const Pose2& pose, const Course& course) {
-        const auto is_outside = [&indoor](Point2 p) { return indoor.locate(p) == Side::Outside; };
-        const auto place = [](Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); };
-        if (is_outside(pose.position))
-            return warn(options, kTool, id + " stands outside the room at " + place(pose.position));
-        const auto lost = std::find_if(course.path.begin(), course.path.end(), is_outside);
-        if (lost != course.path.end())
-            warn(options, kTool, "the path of " + id + " leads out of the room to " + place(*lost));
-    };
-    for (const PlacedRobot& robot : scene.robots) look(robot.id, robot.pose, robot.course);
-    for (const PlacedPerson& person : scene.people) look(person.id, person.pose, person.course);
 }
 
 void warnOfChanges(const Replay& replay, const CommonOptions& options) {

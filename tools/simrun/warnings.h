@@ -25,9 +25,6 @@ class CollisionLog {
 /// Says so if no sensor has noise, nor a robot that moves by itself.
 void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
 
-/// Says which robots and people begin outside the room, and whose path leads there.
-void warnOfOutside(const Scene& scene, const CommonOptions& options);
-
 /// Says that a replay goes on in the scene of the start of a run that changed its world.
 void warnOfChanges(const Replay& replay, const CommonOptions& options);
 

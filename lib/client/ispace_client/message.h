@@ -156,13 +156,14 @@ inline std::string fromBase64(const std::string& text) {
     return bytes;
 }
 
-/// A line taken apart. `text=` and `what=`, in events, go to the end of their line.
+/// A line taken apart. `text=` and `what=`, in events, and `warning=` go to the end of their line.
 inline Message parseMessage(const std::string& line) {
     Message message;
     message.line = line;
     for (std::size_t begin = 0; begin < line.size();) {
         std::size_t end = line.find(' ', begin);
-        if (line.compare(begin, 5, "text=") == 0 || line.compare(begin, 5, "what=") == 0)
+        if (line.compare(begin, 5, "text=") == 0 || line.compare(begin, 5, "what=") == 0 ||
+            line.compare(begin, 8, "warning=") == 0)
             end = std::string::npos;
         const std::string word = line.substr(begin, end == std::string::npos ? end : end - begin);
         const std::size_t equal = word.find('=');

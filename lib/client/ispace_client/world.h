@@ -76,19 +76,22 @@ class World {
     void shutdown() { ask("SHUTDOWN"); }
 
     /// Robots and people go back to where they started; time goes on.
-    void reset() { ask("RESET"); }
+    void reset() { change("RESET"); }
     /// Changes a key of a record: set("r1", "speed", "0.3").
     void set(const std::string& id, const std::string& key, const std::string& value) {
-        ask("SET " + id + "." + key + "=" + value);
+        change("SET " + id + "." + key + "=" + value);
     }
     /// Adds a record, as in an environment or layout: add("cube id=b at=1,1 size=1,1,1").
     /// \return its id
-    std::string add(const std::string& record) { return ask("ADD " + record).fields.text("id"); }
-    void remove(const std::string& id) { ask("DELETE " + id); }
+    std::string add(const std::string& record) { return change("ADD " + record).text("id"); }
+    void remove(const std::string& id) { change("DELETE " + id); }
     /// Another room. Names of files as the server sees them; without `layout` there is none.
     void load(const std::string& environment, const std::string& layout = "") {
-        connection_.ask("LOAD " + environment + (layout.empty() ? "" : " " + layout), kLoadTimeout);
+        const std::string files = environment + (layout.empty() ? "" : " " + layout);
+        warning_ = connection_.ask("LOAD " + files, kLoadTimeout).fields.text("warning", "");
     }
+    /// What the server warned of at the last change, as of a robot outside the room; "" of nothing.
+    const std::string& warning() const { return warning_; }
     /// Writes a line into the records and to all who follow events.
     void mark(const std::string& text) { ask("MARK " + text); }
 
@@ -119,8 +122,15 @@ class World {
 
     Message ask(const std::string& request) { return connection_.ask(request); }
 
+    Fields change(const std::string& request) {
+        const Fields fields = ask(request).fields;
+        warning_ = fields.text("warning", "");
+        return fields;
+    }
+
     Connection connection_;
     Fields info_;
+    std::string warning_;
 };
 
 }  // namespace client

@@ -93,9 +93,9 @@ class Message:
 
 
 def parse_message(line: str) -> Message:
-    """A line taken apart. ``text=`` and ``what=``, in events, go to the end of their line."""
+    """A line taken apart. ``text=`` and ``what=``, in events, and ``warning=`` go to its end."""
     message = Message(line)
-    ending = re.search(" (text|what)=", line)
+    ending = re.search(" (text|what|warning)=", line)
     head = line[: ending.start()] if ending else line
     for word in head.split(" "):
         key, equal, value = word.partition("=")

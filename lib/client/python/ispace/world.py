@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Optional, Union
 
@@ -85,18 +86,18 @@ class World(Client):
 
     def reset(self) -> None:
         """Robots and people go back to where they started; time goes on."""
-        self._ask("RESET")
+        self._change("RESET")
 
     def set(self, id: str, key: str, value: str) -> None:
         """Changes a key of a record: ``set("r1", "speed", "0.3")``."""
-        self._ask(f"SET {id}.{key}={value}")
+        self._change(f"SET {id}.{key}={value}")
 
     def add(self, record: str) -> str:
         """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``; its id."""
-        return self._ask(f"ADD {record}").fields["id"]
+        return self._change(f"ADD {record}")["id"]
 
     def remove(self, id: str) -> None:
-        self._ask(f"DELETE {id}")
+        self._change(f"DELETE {id}")
 
     def load(
         self,
@@ -106,7 +107,14 @@ class World(Client):
     ) -> None:
         """Another room. Names of files as the server sees them; without ``layout`` there is none."""
         names = [os.fspath(environment)] + ([] if layout is None else [os.fspath(layout)])
-        self._ask("LOAD " + " ".join(names), timeout)
+        self._change("LOAD " + " ".join(names), timeout)
+
+    def _change(self, request: str, timeout: Optional[float] = None) -> Fields:
+        """Changes the world; what the server warns of, as of a robot outside the room, is a UserWarning."""
+        fields = self._ask(request, timeout).fields
+        if "warning" in fields:
+            warnings.warn(fields["warning"], stacklevel=3)
+        return fields
 
     def mark(self, text: str) -> None:
         """Writes a line into the records and to all who follow events."""
