@@ -21,6 +21,7 @@ class DeviceHost : public WireHost {
 
     [[nodiscard]] World& world() override { return state_->simulation().world(); }
     [[nodiscard]] bool isReplay() const override { return state_->simulation().isReplay(); }
+    [[nodiscard]] bool isPaused() const override { return state_->simulation().paused(); }
     Change change(std::span<const std::string> assignments) override;
     std::optional<std::int64_t> hold(std::string_view robot) override;
     [[nodiscard]] bool holds(std::string_view robot, std::int64_t hold) override;

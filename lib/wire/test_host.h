@@ -28,6 +28,7 @@ class TestHost : public WireHost {
 
     World& world() override { return world_; }
     [[nodiscard]] bool isReplay() const override { return false; }
+    [[nodiscard]] bool isPaused() const override { return true; }
     Change change(std::span<const std::string> assignments) override {
         if (changes_later-- > 0) return Change::Later;
         std::vector<Edit> edits;

@@ -22,6 +22,7 @@ class LaserHost : public WireHost {
 
     [[nodiscard]] World& world() override { return world_; }
     [[nodiscard]] bool isReplay() const override { return is_replay; }
+    [[nodiscard]] bool isPaused() const override { return true; }
     Change change(std::span<const std::string> /*assignments*/) override { return Change::Refused; }
     std::optional<std::int64_t> hold(std::string_view robot) override {
         if (held_.count(std::string(robot)) > 0) return std::nullopt;

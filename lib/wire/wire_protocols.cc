@@ -5,14 +5,16 @@
 
 #include "base/message.h"
 #include "wire/cola_session.h"
+#include "wire/mjpeg_session.h"
 #include "wire/p2os_session.h"
 #include "wire/scip_session.h"
 #include "wire/wire_session.h"
+#include "wire/zps_session.h"
 
 namespace ispace {
 
 std::span<const WireProtocol* const> wireProtocols() {
-    static constexpr std::array kProtocols{&kP2os, &kScip, &kCola};
+    static constexpr std::array kProtocols{&kP2os, &kScip, &kCola, &kMjpeg, &kZps};
     return kProtocols;
 }
 

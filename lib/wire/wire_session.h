@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "sim/world.h"
+#include "wire/picture_files.h"
 
 namespace ispace {
 
@@ -30,6 +31,8 @@ class WireHost {
     [[nodiscard]] virtual World& world() = 0;
     /// True if robots go as recorded, whatever they are told.
     [[nodiscard]] virtual bool isReplay() const = 0;
+    /// True while the world waits to be told to go on, as always with the clock `step`.
+    [[nodiscard]] virtual bool isPaused() const = 0;
     enum class Change {
         Done,
         Refused,  ///< clients may not change the world, or it cannot be like that
@@ -47,6 +50,12 @@ class WireHost {
 
     /// What clocks of devices show: the time since the start of the run, simulated or of the wall.
     [[nodiscard]] virtual std::chrono::nanoseconds clock() const = 0;
+
+    /// Of all sessions together.
+    [[nodiscard]] PictureFiles& pictures() { return pictures_; }
+
+  private:
+    PictureFiles pictures_;
 };
 
 /// The device's end of one client's dialogue.

@@ -26,6 +26,7 @@ class RoomHost : public WireHost {
 
     [[nodiscard]] World& world() override { return world_; }
     [[nodiscard]] bool isReplay() const override { return false; }
+    [[nodiscard]] bool isPaused() const override { return true; }
     Change change(std::span<const std::string> /*assignments*/) override { return Change::Refused; }
     std::optional<std::int64_t> hold(std::string_view /*robot*/) override { return 1; }
     [[nodiscard]] bool holds(std::string_view /*robot*/, std::int64_t /*hold*/) override {

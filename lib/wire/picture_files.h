@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "sim/world.h"
+
+namespace ispace {
+
+/// A picture or a depth frame as a file.
+struct PictureFile {
+    std::int64_t seq = 0;  ///< of the sensor's period
+    SimTime time{};
+    std::string_view type;  ///< "image/jpeg", or "image/png" of depths: 16 bits, millimetres
+    std::string bytes;
+};
+
+/// The newest picture of every camera and depth frame of every ranger that somebody asks for, taken
+/// and encoded once for all of them. That takes half of the time at most, and each sensor's turn
+/// comes a hundred times a second at most.
+class PictureFiles {
+  public:
+    using WallTime = std::chrono::steady_clock::time_point;
+
+    /// Nothing if there is a newer one than last time that has to wait for its turn: ask again.
+    /// With `at_once` none has to wait. \throws FormatError where OpenCV's imgcodecs, which write
+    /// JPEG, cannot be opened
+    std::shared_ptr<const PictureFile> newest(World& world, std::size_t sensor, WallTime now,
+                                              bool at_once);
+
+  private:
+    struct Entry {
+        std::shared_ptr<const PictureFile> file;
+        std::int64_t changes = 0;  // of the world, when it was taken
+        WallTime next{};
+    };
+
+    std::map<std::string, Entry, std::less<>> entries_;  // by the sensor's id
+    WallTime next_{};
+};
+
+}  // namespace ispace
