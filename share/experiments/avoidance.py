@@ -113,11 +113,11 @@ def summary(lab, what, trials, least, thesis=None):
     lab.row(f"{what}: collisions", None, sum(t.collisions for t in trials),
             bound=None if least is None else (0, 0))
     lab.row(f"{what}: distance to the target at the end, median and greatest", None,
-            f"{statistics.median(t.off for t in trials):.2f} and {max(t.off for t in trials):.2f}", "m")
+            f"{statistics.median(t.off for t in trials):.2f} and {max(t.off for t in trials):.2f} m")
     lab.row(f"{what}: length of the way, least to greatest", None,
-            f"{min(t.length for t in trials):.2f} to {max(t.length for t in trials):.2f}", "m")
+            f"{min(t.length for t in trials):.2f} to {max(t.length for t in trials):.2f} m")
     lab.row(f"{what}: closest distance, median and least", None,
-            f"{statistics.median(t.closest for t in trials):.2f} and {min(t.closest for t in trials):.2f}", "m")
+            f"{statistics.median(t.closest for t in trials):.2f} and {min(t.closest for t in trials):.2f} m")
 
 
 def series(lab, obstacles, cause, count, options=(), few=2):
@@ -148,7 +148,7 @@ def run(lab):
     for what, errors in (("odometry", [t.odometry_error for t in every]),
                          ("filter", [t.estimate_error for t in every])):
         lab.row(f"All three: error of the place by the {what} at the end, mean and 95th percentile", None,
-                f"{statistics.fmean(errors):.3f} and {ways.percentile(errors, 0.95):.3f}", "m")
+                f"{statistics.fmean(errors):.3f} and {ways.percentile(errors, 0.95):.3f} m")
     better = statistics.fmean(t.estimate_error for t in every) < statistics.fmean(t.odometry_error for t in every)
     lab.require(better, "the filter knows the place no better than the odometry")
     shown = max(every[:20], key=lambda t: t.odometry_error)
