@@ -42,7 +42,7 @@ def off(kerb):
 
 def standing(lab):
     found, _ = look(lab, "road.3dm", 0, shown=True)
-    lab.row("Without noise: edges found", 2, len(found), bound=(2, 2))
+    lab.row("Without noise: edges found, of 2", "a pattern at both", len(found), bound=(2, 2))
     lab.row("Without noise: greatest error of an edge", None, 1000 * max(abs(off(kerb)) for kerb in found), "mm",
             bound=(0, 5), digits=2)
     for side in ("left", "right"):
@@ -52,8 +52,8 @@ def standing(lab):
     seeds = lab.seeds(20, 2)
     noisy = [kerb for seed in seeds for kerb in look(lab, "noisy.3dm", seed, "--scans", 10, shown=seed == 0)[0]]
     errors = sorted(abs(off(kerb)) for kerb in noisy)
-    lab.row("Noise of 10 mm: edges found", 20 * len(seeds), len(noisy), bound=(20 * len(seeds), 20 * len(seeds)),
-            note="Two in each of ten scans of each seed; the thesis has no figure.")
+    lab.row("Noise of 10 mm: edges found", None, len(noisy), bound=(20 * len(seeds), 20 * len(seeds)),
+            note="Two in each of ten scans of each seed.")
     lab.row("Noise of 10 mm: mean error of an edge", None, 1000 * statistics.fmean(errors), "mm", bound=(0.1, 10))
     lab.row("Noise of 10 mm: 95th percentile of the errors", None, 1000 * errors[math.ceil(0.95 * len(errors)) - 1],
             "mm", bound=(0, 20))
@@ -84,9 +84,9 @@ def driving(lab):
             turned.append(abs(degrees + heading))
         shown = shown or (found, round(y, 3), math.radians(round(heading, 2)))
     count = len(beside)
-    lab.row("On a robot that drives 6 m: edges found", 2 * len(lab.seeds(10, 1)), count,
-            bound=(2 * len(lab.seeds(10, 1)), 2 * len(lab.seeds(10, 1))),
-            note="Each is a line fitted through all scans, two in each drive; the thesis has no figure.")
+    edges = 2 * len(lab.seeds(10, 1))
+    lab.row("On a robot that drives 6 m: edges found", None, count, bound=(edges, edges),
+            note="Each is a line fitted through all scans, two in each drive.")
     lab.row("On a robot: mean error of the edge beside its start", None, 1000 * statistics.fmean(beside), "mm",
             bound=(0, 10))
     lab.row("On a robot: mean error of the direction of the road", None, statistics.fmean(turned), "°", bound=(0, 0.3),
