@@ -22,6 +22,7 @@ ISPACE_WEB_FILE(kWebPlan, "plan.js");
 ISPACE_WEB_FILE(kWebMovers, "movers.js");
 ISPACE_WEB_FILE(kWebDrive, "drive.js");
 ISPACE_WEB_FILE(kWebEvents, "events.js");
+ISPACE_WEB_FILE(kWebCamera, "camera.js");
 
 namespace ispace {
 
@@ -30,7 +31,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 10> files = {{
+    static const std::array<WebFile, 11> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
@@ -41,6 +42,7 @@ const WebFile* webFile(std::string_view path) {
         {"/movers.js", kScript, between(kWebMovers, kWebMoversEnd)},
         {"/drive.js", kScript, between(kWebDrive, kWebDriveEnd)},
         {"/events.js", kScript, between(kWebEvents, kWebEventsEnd)},
+        {"/camera.js", kScript, between(kWebCamera, kWebCameraEnd)},
     }};
     const auto* const found = std::find_if(files.begin(), files.end(),
                                            [&](const WebFile& file) { return file.path == path; });

@@ -30,7 +30,8 @@ void addMovers(JsonWriter& json, const Scene& scene) {
         json.key("kind").value(mover.is_person ? "person" : "robot");
         json.key("model").value(model.model).key("radius").value(model.radius);
         json.key("length").value(model.length).key("width").value(model.width);
-        json.key("center").value(model.center).key("height").value(model.height).endObject();
+        json.key("center").value(model.center).key("height").value(model.height);
+        json.key("side").value(model.max_sidespeed).endObject();
     }
     json.endArray();
 }

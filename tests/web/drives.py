@@ -2,38 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What people do on the page happens in the world: keys, drags, buttons, the pad of phones."""
 
-import socket
 import time
 
 from page import Page
-from running import Run, check, eventually, skip
+from running import Run, ask, check, eventually, pose, skip
 
 try:
     from selenium.webdriver import ActionChains, Keys
 except ImportError:
     skip("no selenium here (Debian: python3-selenium)")
-
-
-def ask(run, *requests):
-    """The answers of a connection of its own."""
-    with socket.create_connection(("127.0.0.1", run.port)) as client:
-        lines = client.makefile("rw", newline="\n")
-        lines.readline()
-        answers = []
-        for request in requests:
-            lines.write(request + "\n")
-            lines.flush()
-            answers.append(lines.readline().rstrip("\n"))
-        return answers
-
-
-def pose(run, mover):
-    """x and y as the server says them."""
-    poses = ask(run, "WORLD", "POSES")[1].split("poses=")[1].split()[0]
-    for row in poses.split(";"):
-        name, x, y = row.split(",")[:3]
-        if name == mover:
-            return float(x), float(y)
 
 
 def drives_by_keys(run, page):

@@ -4,6 +4,7 @@
 import json
 import os
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -85,6 +86,28 @@ class Run:
             self.process.wait()
         self.process.stdout.close()
         shutil.rmtree(self.folder)
+
+
+def ask(run, *requests):
+    """The answers of a connection of its own."""
+    with socket.create_connection(("127.0.0.1", run.port)) as client:
+        lines = client.makefile("rw", newline="\n")
+        lines.readline()
+        answers = []
+        for request in requests:
+            lines.write(request + "\n")
+            lines.flush()
+            answers.append(lines.readline().rstrip("\n"))
+        return answers
+
+
+def pose(run, mover):
+    """x and y as the server says them."""
+    poses = ask(run, "WORLD", "POSES")[1].split("poses=")[1].split()[0]
+    for row in poses.split(";"):
+        name, x, y = row.split(",")[:3]
+        if name == mover:
+            return float(x), float(y)
 
 
 def start_browser(width, height, touch=False):

@@ -3,16 +3,20 @@
 // selected or on its way.
 import {Link, complaint, keysOf} from './link.js';
 
-const kSpeed = {robot: 0.5, person: 1.2}, kTurn = 45;  // of the arrow keys: m/s, degrees a second
+// Of the arrow keys and of Q and E, at most: m/s, degrees a second.
+const kSpeed = {robot: 0.5, person: 1.2}, kTurn = 45, kSide = 0.3;
+
+const kStill = '0,0,0';
 
 export class Driver {
   /** tell(text, bad): says something to people; changed(): something is to be drawn anew */
   constructor(mover, tell, changed) {
     Object.assign(this, {mover, tell, changed});
     this.keys = new Set();
-    this.speeds = '0,0';
+    this.speeds = kStill;
     this.link = new Link({line: line => this.event(line), close: () => { this.gone = true; this.goal = null; this.changed(); }});
     this.ready = this.link.takeRole(`${mover.kind === 'person' ? 'PERSON' : 'ROBOT'} ${mover.id}`).then(answer => {
+      this.limits = keysOf(answer);
       if (answer.startsWith('OK')) return true;
       tell(`${mover.id}: ${complaint(answer)}`, true);
       this.release();
@@ -56,30 +60,33 @@ export class Driver {
     this.changed();
   }
 
-  /** Keeps to the speeds of the arrow keys that are down. */
-  press(key, down) {
+  /** Keeps to the speeds of the keys that are down. */
+  async press(key, down) {
     if (down) this.keys.add(key);
     else this.keys.delete(key);
     const held = name => this.keys.has(name) ? 1 : 0;
-    const speed = kSpeed[this.mover.kind] * (held('ArrowUp') - held('ArrowDown'));
-    const turn = kTurn * (held('ArrowLeft') - held('ArrowRight'));
-    const speeds = `${speed},${turn}`;
+    const along = held('ArrowUp') - held('ArrowDown'), round = held('ArrowLeft') - held('ArrowRight');
+    const side = this.mover.side > 0 ? held('q') - held('e') : 0;
+    const speeds = `${along},${round},${side}`;
     if (speeds === this.speeds) return;
     this.speeds = speeds;
     this.goal = null;
-    this.ask(`SPEED ${speed}`);
-    this.ask(`ROTSPEED ${turn}`);
+    if (!await this.ready || speeds !== this.speeds) return;  // others were pressed meanwhile
+    const {max_speed, max_rotspeed, max_sidespeed} = this.limits;
+    this.ask(`SPEED ${along * Math.min(kSpeed[this.mover.kind], max_speed)}`);
+    this.ask(`ROTSPEED ${round * Math.min(kTurn, max_rotspeed)}`);
+    if (this.mover.side > 0) this.ask(`SIDESPEED ${side * Math.min(kSide, max_sidespeed)}`);
   }
 
   stop() {
     this.keys.clear();
-    this.speeds = '0,0';
+    this.speeds = kStill;
     this.goal = null;
     this.ask('STOP');
   }
 
   /** True if it would leave somebody standing to let go now. */
-  get busy() { return Boolean(this.goal) || this.speeds !== '0,0'; }
+  get busy() { return Boolean(this.goal) || this.speeds !== kStill; }
 
   /** Lets go: others may drive it. */
   release() {

@@ -7,11 +7,12 @@ function isAnswer(line) {
 }
 
 export class Link {
-  /** on: {open, close(code), line(text), json(object)}, all optional */
+  /** on: {open, close(code), line(text), json(object), bytes(line, bytes)}, all optional */
   constructor(on = {}) {
     this.on = on;
     this.waiting = [];  // of each request without an answer, who wants it
     this.socket = new WebSocket(`ws://${location.host}/ws`);
+    this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => this.on.open?.();
     this.socket.onclose = event => {
       for (const tell of this.waiting.splice(0)) tell('ERR 0 the connection is closed');
@@ -21,13 +22,22 @@ export class Link {
   }
 
   receive(data) {
-    if (typeof data !== 'string') return;
+    if (typeof data !== 'string') return this.receiveBytes(data);
     if (data.startsWith('{')) return this.on.json?.(JSON.parse(data));
     for (const line of data.split('\n')) {
       if (line === '' || line.startsWith('ISPACE ')) continue;
       if (isAnswer(line)) this.waiting.shift()?.(line);
       else this.on.line?.(line);
     }
+  }
+
+  /** A line and the bytes that it counts. */
+  receiveBytes(data) {
+    const all = new Uint8Array(data), end = all.indexOf(10);
+    if (end < 0) return;
+    const line = new TextDecoder().decode(all.subarray(0, end));
+    this.waiting.shift()?.(line);
+    this.on.bytes?.(line, all.subarray(end + 1));
   }
 
   /** The answer to the request for a role. Where the run has a token, the page's address gives it:

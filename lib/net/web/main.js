@@ -5,12 +5,14 @@ import {View} from './view.js';
 import {Plan} from './plan.js';
 import {Movers} from './movers.js';
 import {Driver} from './drive.js';
+import {Cameras} from './camera.js';
 import {eventText} from './events.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
 const view = new View(canvas);
 const drivers = new Map();  // by id
+const cameras = new Cameras(part, why => tell(why, true));
 let plan, movers, frame, selected, following = false, fitted = false;
 let link, dirty = false, asked = false;
 
@@ -53,6 +55,7 @@ function takeScene(scene) {
     fitted = true;
   }
   listMovers();
+  cameras.list(movers.sensors);
 }
 
 function takeFrame(next) {
@@ -122,15 +125,22 @@ function drawGoal(mover, goal, color) {
 // Beside the map.
 
 let pace = null;
-function showClock(next) {
-  part('time').textContent = `${next.t.toFixed(2)} s`;
+/** How fast the world goes, once a second. */
+function paceOf(next) {
   const now = performance.now();
   if (!frame || next.paused || next.t < pace?.t) pace = null;
   if (!pace || now - pace.now > 1000) {
-    if (pace) pace.rate = (next.t - pace.t) / (now - pace.now) * 1000;
-    pace = {...pace, now, t: next.t};
+    const rate = pace ? (next.t - pace.t) / (now - pace.now) * 1000 : 0;
+    pace = {now, t: next.t, rate};
   }
-  const rate = pace.rate === undefined ? '' : `${pace.rate >= 9.5 ? pace.rate.toFixed(0) : pace.rate.toFixed(1)} × real time`;
+  const digits = pace.rate >= 9.5 ? 0 : pace.rate >= 0.95 ? 1 : 2;
+  // One that has just begun has none yet.
+  return pace.rate < 0.005 ? '' : `${pace.rate.toFixed(digits)} × real time`;
+}
+
+function showClock(next) {
+  part('time').textContent = `${next.t.toFixed(2)} s`;
+  const rate = paceOf(next);
   part('pace').textContent = (next.replay ? 'record, ' : '') + (next.over ? 'at its end' : next.paused ? 'paused' : rate);
   document.body.classList.toggle('paused', next.paused);
   part('run').textContent = next.paused ? 'Resume' : 'Pause';
@@ -142,10 +152,11 @@ function showClock(next) {
 /** Who is in a record goes where it went. */
 function showHelp(is_replay) {
   part('pad').hidden = !selected || is_replay;
-  part('hint').hidden = Boolean(selected);
+  part('pad').classList.toggle('sidles', selected?.side > 0);
   part('hint').textContent = is_replay ?
     'This is a record: pause it, take single steps, follow who is in it.' :
-    'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.';
+    !selected ? 'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.' :
+    `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go.`;
 }
 
 function listMovers() {
@@ -236,7 +247,11 @@ for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan &
 for (const id of ['scans', 'trails', 'names']) part(id).onchange = redraw;
 
 const shortcuts = {' ': 'run', '.': 'step', f: 'follow', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
-const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60]};
+/** Of keys that drive, how far they move the map when nobody is selected. */
+const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60], q: [0, 0], e: [0, 0]};
+
+/** As on a keyboard with Caps Lock or without. */
+function keyName(event) { return event.key.length === 1 ? event.key.toLowerCase() : event.key; }
 
 function key(name, down, repeated = false) {
   if (name in arrows) {
@@ -263,9 +278,9 @@ window.addEventListener('keydown', event => {
   if (!plan || event.ctrlKey || event.metaKey || event.altKey) return;
   const onButton = event.target.closest?.('button, input');
   if (onButton && event.key === ' ') return;  // presses that
-  if (key(event.key, true, event.repeat)) event.preventDefault();
+  if (key(keyName(event), true, event.repeat)) event.preventDefault();
 });
-window.addEventListener('keyup', event => { if (plan && event.key in arrows) key(event.key, false); });
+window.addEventListener('keyup', event => { if (plan && keyName(event) in arrows) key(keyName(event), false); });
 window.addEventListener('blur', () => { for (const driver of drivers.values()) if (driver.keys.size) driver.stop(); });
 for (const button of part('pad').children) {
   button.addEventListener('pointerdown', event => {
@@ -325,7 +340,7 @@ canvas.addEventListener('pointermove', event => {
       Object.assign(drag, {px, py});
     }
   }
-  const over = movers.at(view, px, py);
+  const over = movers.at(view, px, py) ?? movers.cameraAt(view, px, py);
   canvas.classList.toggle('over', Boolean(over));
   canvas.classList.toggle('moving', Boolean(drag?.moved));
   const what = over?.id ?? plan.titleAt(x, y);
@@ -340,7 +355,11 @@ function letGo(event) {
   drag = null;
   canvas.classList.remove('moving');
   if (event.type === 'pointerup' && done?.x !== undefined && done.moved) driverOf(done.mover).goTo(done.x, done.y);
-  else if (event.type === 'pointerup' && done && !done.mover && !done.moved) select();
+  else if (event.type === 'pointerup' && done && !done.mover && !done.moved) {
+    const camera = movers.cameraAt(view, ...placeOf(event));
+    if (camera) cameras.look(camera.id);
+    else select();
+  }
   redraw();
 }
 canvas.addEventListener('pointerup', letGo);

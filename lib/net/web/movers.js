@@ -226,7 +226,9 @@ export class Movers {
     context.lineWidth = 3;
     context.lineJoin = 'round';
     context.strokeStyle = '#fffdf8d9';
-    const write = (text, x, y, color) => {
+    const taken = [];
+    const write = (text, x, wanted, color) => {
+      const y = this.freeRow(taken, x, wanted, context.measureText(text).width / 2);
       context.strokeText(text, x, y);
       context.fillStyle = color;
       context.fillText(text, x, y);
@@ -242,6 +244,25 @@ export class Movers {
       const gate = this.floor.get(id);
       write(gate?.in === undefined ? id : `${id} ${gate.in} in, ${gate.out} out`, px, py - 9, this.colors.faint);
     }
+  }
+
+  /** Where a label is in nobody's way, at best where it belongs. */
+  freeRow(taken, x, wanted, half) {
+    const kRow = 14, rows = [0, -1, 1, -2, 2].map(row => wanted + row * kRow);
+    const isFree = y => taken.every(other => Math.abs(other.y - y) >= kRow || Math.abs(other.x - x) >= other.half + half);
+    const y = rows.find(isFree) ?? wanted;
+    taken.push({x, y, half});
+    return y;
+  }
+
+  /** The camera with a place of its own at a pixel. */
+  cameraAt(view, px, py) {
+    const kFinger = 14;
+    return this.sensors.find(({kind, on, pose}) => {
+      if (kind !== 'camera' || on !== undefined) return false;
+      const [x, y] = view.toPage(pose[0], pose[1]);
+      return Math.hypot(px - x, py - y) <= kFinger;
+    });
   }
 
   /** Who is at a pixel; a finger's width counts. */
