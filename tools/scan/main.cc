@@ -14,6 +14,7 @@
 #include "layout/scene.h"
 #include "scan/options.h"
 #include "scan/readings.h"
+#include "scan/recorded.h"
 #include "scan/views.h"
 #include "sense/sensors.h"
 #include "sense/warnings.h"
@@ -72,23 +73,6 @@ std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const S
                                           options.frames);
 }
 
-FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {
-    const ScanToolOptions& options = command.options();
-    History history = input.layout ? input.layout->history : History();
-    history.push_back(command.historyLine(input.named));
-    return {.history = std::move(history),
-            .seed = options.common.seed,
-            .coordinates = options.coordinates,
-            .encoding = options.encoding,
-            .depth_per_metre = options.depth_per_metre,
-            .color = options.color,
-            .spectrum = options.spectrum,
-            .map_pixels = options.map_pixels,
-            .labels = options.photo.labels,
-            .depths = options.photo.depths,
-            .scene = &input.scene};
-}
-
 SceneRequest requestOf(const ScanToolOptions& options) {
     // The sensor of --poses may come from a LAYOUT, too.
     const bool wants_layout =
@@ -111,6 +95,7 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
     limitThreads(options.common.threads);
     if (!options.view.views.empty()) return takeViews(command);
+    if (!options.view.run.empty()) return writeRecorded(command);
     const SceneInput input = readScene(requestOf(options));
     warn(options.common, "scan", input.environment.warnings);
     const Scene& scene = input.scene;

@@ -166,6 +166,11 @@ void ScanCommand::declarePictures() {
 void ScanCommand::check() {
     ScanToolOptions& o = options_;
     if (!o.view.views.empty()) return checkViews();
+    if (!o.view.run.empty())
+        for (const char* name : {"--frames", "--poses", "--model", "--motion", "--noise"})
+            if (line_.given(name))
+                throw UsageError(std::string(name) +
+                                 " does not go with --run, whose readings are taken already");
     if (o.picture_size) {
         constexpr int kLeast = 200, kMost = 8000;
         o.map_pixels = o.picture_size->columns;

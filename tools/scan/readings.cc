@@ -200,6 +200,23 @@ class OneCloud final : public Delivery {
 
 }  // namespace
 
+FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {
+    const ScanToolOptions& options = command.options();
+    History history = input.layout ? input.layout->history : History();
+    history.push_back(command.historyLine(input.named));
+    return {.history = std::move(history),
+            .seed = options.common.seed,
+            .coordinates = options.coordinates,
+            .encoding = options.encoding,
+            .depth_per_metre = options.depth_per_metre,
+            .color = options.color,
+            .spectrum = options.spectrum,
+            .map_pixels = options.map_pixels,
+            .labels = options.photo.labels,
+            .depths = options.photo.depths,
+            .scene = &input.scene};
+}
+
 std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sensors& sensors,
                                        const ReadingFormat& format, std::int64_t count) {
     const std::string& output = options.common.output;

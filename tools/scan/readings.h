@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/operands.h"
 #include "scan/options.h"
 #include "sense/reading_run.h"
 #include "sense/sensors.h"
@@ -17,6 +18,9 @@ namespace ispace {
 /// which; FormatError as laserOf
 Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
                        const DeviceCatalogue& devices, std::vector<std::string>& sources);
+
+/// What formats need to know, with the history of the scene and of this command.
+FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input);
 
 /// Where readings go: one stream, a set of files, or one cloud.
 class Delivery {

@@ -149,10 +149,11 @@ void addViewOptions(CommandLine& line, ViewToolOptions& options) {
     line.switchFlag("--labels", "--no-labels", options.labels,
                     "views: ids of sensors and robots, red dots for cameras (default)",
                     "views: no ids and dots", Enters::History);
-    line.file("--run", "DIR", options.run,
-              "views: robots as `simrun --record` has recorded them there, in --frames pictures "
-              "from beginning to end (default 1, the end)",
-              Enters::BaseName);
+    line.file(
+        "--run", "DIR", options.run,
+        "a record of `simrun --record`: its scans, in the format of --to; or views with robots as "
+        "they were, in --frames pictures from beginning to end (default 1, the end)",
+        Enters::BaseName);
 }
 
 ShownSight shownSight(const std::string& text) {
@@ -166,7 +167,7 @@ void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
     options.drawing.labels = options.labels.value_or(true);
     nameApart(options.views);
     if (!options.views.empty()) return;
-    for (const char* name : {"--show", "--highlight", "--labels", "--no-labels", "--run"})
+    for (const char* name : {"--show", "--highlight", "--labels", "--no-labels"})
         if (line.given(name)) throw UsageError(std::string(name) + " is for pictures: give --view");
 }
 

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/recorded.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "io/recorded_scans.h"
+#include "layout/run_reader.h"
+#include "scan/readings.h"
+#include "sense/reading_format.h"
+#include "sense/sensors.h"
+
+namespace ispace {
+
+namespace {
+
+/// Where robots believed to be, at times that grow.
+class RecordedOdometry {
+  public:
+    RecordedOdometry(const std::string& folder, const Scene& scene) : run_(folder) {
+        for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
+        has_next_ = run_.next();
+    }
+    /// Its pose by its odometry, or its true one if that was not recorded: nothing before the
+    /// record begins.
+    std::optional<Pose2> poseOf(std::size_t robot, double time) {
+        constexpr double kRounding = 1e-9;
+        while (has_next_ && run_.time() <= time + kRounding) {
+            latest_.clear();
+            for (const RunState& state : run_.states()) {
+                const std::string& id = run_.who()[state.who].id;
+                latest_.emplace_back(id, state.odometry.value_or(state.pose));
+            }
+            has_next_ = run_.next();
+        }
+        const auto found = std::find_if(latest_.begin(), latest_.end(), [&](const auto& known) {
+            return known.first == robots_[robot];
+        });
+        if (found == latest_.end()) return std::nullopt;
+        return found->second;
+    }
+
+  private:
+    RunReader run_;
+    std::vector<std::string> robots_;
+    std::vector<std::pair<std::string, Pose2>> latest_;
+    bool has_next_ = false;
+};
+
+Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
+    Sensors lasers = sensorsOf(scene, options.select);
+    std::erase_if(lasers.read, [](const Sensor& sensor) { return !sensor.is<Laser>(); });
+    if (lasers.read.empty())
+        throw UsageError("--run: the record has no scans of " +
+                         std::string(options.select.empty() ? "lasers" : "such lasers") +
+                         ", and other readings stay as they are recorded");
+    return lasers;
+}
+
+/// A record knows its scene.
+SceneInput sceneOf(const ScanToolOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (operands.empty()) operands.push_back(RecordedFiles(options.view.run).scene);
+    return readScene({operands, options.any_environment, false, {}});
+}
+
+}  // namespace
+
+void writeRecorded(const ScanCommand& command) {
+    const ScanToolOptions& options = command.options();
+    const SceneInput input = sceneOf(options);
+    const Sensors lasers = recordedLasers(options, input.scene);
+    const auto format = makeFormat(options.format, lasers, formatOptions(command, input));
+    if (!format->isStream())
+        throw UsageError("--run: " + options.format +
+                         " holds one reading a file; take one of jsonl|csv|raw|carmen");
+    format->checkStream();
+    const std::string name = options.view.run + "/scans.jsonl";
+    const auto file = std::make_shared<InputFile>(name);
+    RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
+    RecordedOdometry odometry(options.view.run, input.scene);
+    const bool wants_odometry = options.format == "carmen";
+    OutputFile output(options.common.output);
+    output.write(format->header());
+    std::int64_t count = 0;
+    while (const auto found = scans.next()) {
+        const auto laser =
+            std::find_if(lasers.read.begin(), lasers.read.end(),
+                         [&](const Sensor& sensor) { return sensor.id == found->sensor; });
+        if (laser == lasers.read.end()) continue;
+        if (found->ranges.size() != static_cast<std::size_t>(laser->as<Laser>().beams))
+            throw FormatError({name, 0, 0,
+                               "a scan of " + laser->id + " with " +
+                                   std::to_string(found->ranges.size()) +
+                                   " beams, which it does not have in this scene"});
+        Scan scan{.time = found->time,
+                  .frame = found->frame,
+                  .number = found->number,
+                  .pose = found->pose,
+                  .beam_poses = {},
+                  .ranges = found->ranges};
+        if (wants_odometry && laser->mount) {
+            const auto robot = odometry.poseOf(laser->mount->robot, scan.time);
+            if (robot) scan.pose = mountedPose(*robot, laser->mount->robot_from_sensor);
+        }
+        std::string text;
+        format->append(text, static_cast<std::size_t>(laser - lasers.read.begin()),
+                       std::vector<Scan>{std::move(scan)});
+        output.write(text);
+        ++count;
+    }
+    output.commit();
+    std::vector<std::string> files = filesOf(input);
+    files.push_back(name);
+    writeDependencies(options.common, files);
+    talk(options.common, "scan", std::to_string(count) + " scans written");
+}
+
+}  // namespace ispace
