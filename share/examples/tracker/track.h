@@ -14,14 +14,12 @@ namespace tracker {
 /// they go on as they do, give or take an acceleration.
 class Track {
   public:
-    Track(int id, double time, const Vector2d& place)
-        : id_(id), born_(time), seen_(time), now_(time) {
+    Track(int id, double time, const Vector2d& place) : id_(id), seen_(time), now_(time) {
         state_ << place, Vector2d::Zero();
         covariance_.diagonal() << 0.15 * 0.15, 0.15 * 0.15, 1, 1;
     }
 
     int id() const { return id_; }
-    double age() const { return now_ - born_; }
     double unseen() const { return now_ - seen_; }  ///< s
     int hits() const { return hits_; }
     Vector2d place() const { return state_.head<2>(); }
@@ -67,7 +65,7 @@ class Track {
     }
 
     int id_;
-    double born_, seen_, now_;
+    double seen_, now_;
     int hits_ = 0, legs_ = 0, robots_ = 0;
     Eigen::Vector4d state_ = Eigen::Vector4d::Zero();
     Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Zero();
