@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -67,9 +70,18 @@ class SentenceReader {
         return words_[next_++];
     }
 
+    /// People write `1 s` for `1s`.
+    void joinUnit(std::initializer_list<std::string_view> units) {
+        if (next_ + 1 >= words_.size()) return;
+        const auto unit = words_.begin() + static_cast<std::ptrdiff_t>(next_) + 1;
+        if (std::find(units.begin(), units.end(), *unit) == units.end()) return;
+        words_[next_] += *unit;
+        words_.erase(unit);
+    }
     /// A number from 0, with a unit.
     double amount(Unit unit, const std::string& wanted) {
         if (atEnd()) want(wanted);
+        if (unit == Unit::Length) joinUnit({"m", "cm", "mm"});
         const KeySpec key{
             .name = "amount", .type = KeyType::Number, .unit = unit, .help = "", .lower = 0};
         try {
@@ -81,6 +93,7 @@ class SentenceReader {
         }
     }
     SimTime time(const std::string& wanted) {
+        joinUnit({"s", "ms", "min"});
         const auto parsed = atEnd() ? std::nullopt : parseSimTime(words_[next_]);
         if (!parsed) want(wanted + ", in seconds or with a unit");
         ++next_;
@@ -137,6 +150,7 @@ class SentenceReader {
             result_.state = words_[next_++] == "faster" ? State::Faster : State::Slower;
             if (!take("than")) want("`than`", {"than"});
             result_.amount = amount(Unit::None, "a speed in m/s");
+            take("m/s");
         } else {
             want(
                 "a state (within, in zone, seen, unseen, stalled, still, faster than, slower than)",

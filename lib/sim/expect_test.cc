@@ -85,6 +85,16 @@ std::string refusal(const std::string& text) {
     return "";
 }
 
+TEST(ParseExpectation, TakesABlankBeforeAUnit) {
+    const Expectation unseen = parseExpectation("h1 unseen for at most 1 s before 2 min");
+    EXPECT_EQ(unseen.when, When::AtMost);
+    EXPECT_EQ(unseen.span, seconds(1));
+    EXPECT_EQ(unseen.before, seconds(120));
+    EXPECT_EQ(parseExpectation("r1 within 40 cm of 2,1").amount, 0.4);
+    EXPECT_EQ(parseExpectation("r1 faster than 1 m/s never").amount, 1);
+    EXPECT_THROW(parseExpectation("r1 still for at least 1 m"), UsageError);
+}
+
 TEST(ParseExpectation, SaysWhatIsWanted) {
     EXPECT_EQ(refusal(""), "an expectation is wanted, like `r1 within 0.4 of 2,1 before 60`");
     EXPECT_EQ(refusal("no colision"),
