@@ -117,10 +117,8 @@ void MjpegSession::receive(std::string_view bytes) {
     if (request_) return;
     head_ += bytes;
     const std::size_t end = std::min(head_.find("\r\n\r\n"), head_.find("\n\n"));
-    if (end == std::string::npos) {
-        if (head_.size() > kMaxHead) refuse(kTooLong, "the request is too long");
-        return;
-    }
+    if (std::min(end, head_.size()) > kMaxHead) return refuse(kTooLong, "the request is too long");
+    if (end == std::string::npos) return;
     request_ = parsePictureRequest(std::string_view(head_).substr(0, end));
     std::string().swap(head_);
     answer(*request_);

@@ -146,6 +146,9 @@ TEST(MjpegSession, RefusesInWords) {
     MjpegSession endless(host, "c1");
     for (int i = 0; i < 100 && !endless.closing(); ++i) endless.receive(std::string(100, 'a'));
     EXPECT_TRUE(endless.take().starts_with("HTTP/1.1 431"));
+    MjpegSession whole(host, "c1");
+    whole.receive("GET / HTTP/1.1\r\nCookie: " + std::string(10'000, 'a') + "\r\n\r\n");
+    EXPECT_TRUE(whole.take().starts_with("HTTP/1.1 431"));
 }
 
 TEST(MjpegSession, EndsWithItsSensor) {
