@@ -123,6 +123,7 @@ void Session::request(std::string_view line) {
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
     sync();
+    tellEvents();  // what happened before the request is told before its answer
     const bool first = std::exchange(first_, false);
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.

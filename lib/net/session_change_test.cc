@@ -294,6 +294,15 @@ TEST(SessionChange, EventsAreTold) {
     EXPECT_EQ(talk.ask(world, "EVENTS").substr(0, 32), "OK EVENTS kinds=collision,stall,");
 }
 
+TEST(SessionChange, EventsComeBeforeTheAnswersToLaterRequests) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    ASSERT_EQ(talk.answer(world, "EVENTS change,mark"), "OK EVENTS kinds=mark,change\n");
+    world.request("MARK a");
+    world.request("MARK b");
+    EXPECT_EQ(world.take(), "OK MARK t=0.000\nEVENT mark t=0.000 text=a\nOK MARK t=0.000\n");
+}
+
 TEST(SessionChange, WhoHasNoRoomMissesEvents) {
     Changing talk;
     Session& world = talk.client("WORLD");
