@@ -15,7 +15,7 @@ constexpr std::size_t kHead = 3, kLeast = 3, kChecksum = 2;
 constexpr std::size_t kMost = 200;
 constexpr std::uint8_t kNegative = 0x1B;
 
-std::uint8_t byteAt(std::string_view bytes, std::size_t at) {
+unsigned byteAt(std::string_view bytes, std::size_t at) {
     return static_cast<std::uint8_t>(bytes[at]);
 }
 
@@ -65,7 +65,7 @@ std::optional<P2osPacket> P2osParser::take() {
         const std::size_t sum = kHead + body.size();
         const unsigned wanted = byteAt(rest, sum) << 8U | byteAt(rest, sum + 1);
         if (p2osChecksum(body) == wanted) {
-            packet = P2osPacket{byteAt(body, 0), std::string(body.substr(1))};
+            packet = P2osPacket{static_cast<std::uint8_t>(body[0]), std::string(body.substr(1))};
             at += kHead + length;
         } else {
             ++at;
@@ -87,8 +87,7 @@ P2osWriter& P2osWriter::number(std::int64_t value, int bytes) {
 
 std::int32_t p2osInteger(std::string_view data, std::size_t at, std::size_t bytes) {
     std::uint32_t value = 0;
-    for (std::size_t i = 0; i < bytes; ++i)
-        value |= static_cast<std::uint32_t>(byteAt(data, at + i)) << (8 * i);
+    for (std::size_t i = 0; i < bytes; ++i) value |= byteAt(data, at + i) << (8 * i);
     const auto unused = static_cast<unsigned>(8 * (sizeof value - bytes));
     return static_cast<std::int32_t>(value << unused) >> unused;
 }
@@ -96,7 +95,7 @@ std::int32_t p2osInteger(std::string_view data, std::size_t at, std::size_t byte
 std::optional<int> p2osNumber(const P2osPacket& command) {
     constexpr std::size_t kSize = 3;
     if (command.data.size() < kSize) return std::nullopt;
-    const int magnitude = byteAt(command.data, 1) | byteAt(command.data, 2) << 8;
+    const int magnitude = p2osInteger(command.data, 1, 2) & 0xFFFF;
     return byteAt(command.data, 0) == kNegative ? -magnitude : magnitude;
 }
 
