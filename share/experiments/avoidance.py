@@ -10,7 +10,7 @@ import ways
 
 TITLE = "A robot avoids obstacles"
 SOURCE = "section 5.2.2, fig. 5.4 to 5.9 a"
-SECONDS = 70
+SECONDS = 60
 
 START, GOAL, RADIUS = (0.5, 2), (0.5, -2), 0.25
 REACHED = 0.4  # m
@@ -58,6 +58,7 @@ def rooms_and_layouts(lab):
               "section 5.2.2")
     lab.assumption("The places of the barriers, which fig. 5.4 shows without figures: one across the way, one "
                    "beside it on the right as the map is drawn, two that keep off the rest of the room.")
+    lab.assumption("“Robots are both at the start point” is read as the real and the simulated one: one robot drives.")
     lab.assumption("The filter corrects the odometry by the robot's 16 sonars and a map of the room with cells of "
                    "2 cm; the robot drives at 0.4 m/s at most.")
     lab.assumption("Noise: odometry that errs, after a turn of 180° and 4.5 m of way, by some 7° and 7 cm "
