@@ -156,7 +156,8 @@ class Lab:
             return sys.executable
         path = shutil.which(name, path=self._environment()["PATH"])
         if not path:
-            raise ToolFailed(f"no program {name} in {self.build}/bin, {self.build}/examples or PATH")
+            raise ToolFailed(f"no program {name} in bin or examples of the build or in PATH: run `make "
+                             "experiments`, which builds it")
         return path
 
     def _environment(self):

@@ -15,6 +15,7 @@ experiment is a file of this folder with
 import argparse
 import concurrent.futures
 import importlib
+import importlib.util
 import os
 import re
 import sys
@@ -103,6 +104,10 @@ def arguments():
 
 def main():
     args = arguments()
+    if importlib.util.find_spec("matplotlib") is None:
+        print(f"experiments: {sys.executable} has no matplotlib: install Debian's python3-matplotlib, which "
+              "`make experiments` does", file=sys.stderr)
+        return 1
     modules = find_experiments()
     if args.list:
         for module in modules:

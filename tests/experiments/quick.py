@@ -60,6 +60,10 @@ def what_goes_wrong():
     done = run("failed", "--only", "judge", build=build)
     check(done.returncode == 1 and "1 of 1 failed" in done.stderr, f"it did not fail: {done.stderr}")
     check("Failed." in report("failed") and "out of order" in report("failed"), "failure not shown")
+    bare = subprocess.run([sys.executable, "-S", "-B", DRIVER, "--list"], capture_output=True,
+                          text=True, check=False)
+    check(bare.returncode == 1 and "python3-matplotlib" in bare.stderr and len(bare.stderr) < 200,
+          f"without matplotlib: {bare.stderr}")
     done = run("none", "--only", "nothing")
     check(done.returncode == 2 and "no experiment nothing" in done.stderr, f"unknown: {done.stderr}")
 
