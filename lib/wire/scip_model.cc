@@ -108,7 +108,7 @@ int ScipModel::number(float range) const {
 std::vector<int> ScipModel::numbers(const std::vector<float>& ranges, int start, int end,
                                     int cluster) const {
     std::vector<int> out;
-    out.reserve(static_cast<std::size_t>((end - start) / cluster + 1));
+    out.reserve(static_cast<std::size_t>((end - start) / cluster) + 1);
     for (int from = start; from <= end; from += cluster) {
         const int to = std::min(end, from + cluster - 1);
         std::optional<int> best;
