@@ -4,10 +4,12 @@
 // robot's pose from its odometry and its sonars. It stops when it believes to be within 0.4 m of
 // the goal.
 //
-//   envc share/scenes/ispace.env --slice 0.1 --resolution 0.02 -o map.yaml
-//   simrun share/scenes/ispace.env share/scenes/ispace.3dm --clock step --listen 127.0.0.1:7001
-//   --record run & avoid map.yaml 0.5,2,-90 0.5,-2 -rrtp 7001 -o way.csv; kill %1 simrun --replay
-//   run -o ways.svg
+//   cd share/scenes
+//   envc ispace.env --slice 0.1 --resolution 0.02 -o map.yaml
+//   simrun ispace.env ispace.3dm --clock step --listen 127.0.0.1:7001 --record run &
+//   avoid map.yaml 0.5,2,-90 0.5,-2 -rrtp 7001 -o way.csv
+//   kill %1
+//   simrun --replay run -o ways.svg
 //
 // Written for ARIA: on a real Pioneer, only the include path changes. With `--clock step` the world
 // advances while the program sleeps, and each run is the same; with `--clock real` it takes its

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wanders about for some seconds (30, or the first argument): ahead where the sonars find room, aside
-// where they do not, back where the robot is stuck. Written for ARIA and a Pioneer; with simrun, the include
-// path alone changes:
+// Wanders about for some seconds (30, or the first argument): ahead where the sonars find room,
+// aside where they do not, back where the robot is stuck. Written for ARIA and a Pioneer; with
+// simrun, the include path alone changes:
 //
-//   g++ -std=c++11 -pthread -I lib/client -I lib/client/aria share/examples/aria/wander.cpp -o wander
+//   g++ -std=c++11 -pthread -I lib/client -I lib/client/aria share/examples/aria/wander.cpp
 //   simrun share/scenes/ispace.env share/scenes/ispace.3dm --listen 127.0.0.1:7001 &
-//   ISPACE_SIMRUN=127.0.0.1:7001 ./wander
+//   ISPACE_SIMRUN=127.0.0.1:7001 ./a.out
 #include "Aria.h"
 
 #include <cstdio>

@@ -4,9 +4,11 @@
 // the nearest neighbour, as in the thesis, mixes people up who meet; all lasers together with
 // global nearest neighbour does not.
 //
-//   simrun share/scenes/tracking.env share/scenes/walkers.3dm --clock step --listen 127.0.0.1:7001
-//   --record run & tracker 127.0.0.1:7001 share/scenes/walkers.3dm --until 60 -o tracks.csv; kill
-//   %1 python3 share/examples/tracker/judge_tracks.py tracks.csv run
+//   cd share/scenes
+//   simrun tracking.env walkers.3dm --clock step --listen 127.0.0.1:7001 --record run &
+//   tracker 127.0.0.1:7001 walkers.3dm --until 60 -o tracks.csv
+//   kill %1
+//   python3 ../examples/tracker/judge_tracks.py tracks.csv run
 //
 // The layout tells where the lasers stand. tracks.csv has a row for each track and scan:
 // t,source,track,kind,x,y, where the source is the laser's id or `joint`. With `--clock step` the
