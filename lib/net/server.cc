@@ -32,8 +32,10 @@ namespace {
 using asio::ip::tcp;
 using std::chrono::steady_clock;
 
-/// Of the world, and of the clients, before it is the other's turn.
+/// Of the world, and of the clients, before it is the other's turn; of clients when the world's
+/// next step is due sooner.
 constexpr auto kTurn = std::chrono::milliseconds(2);
+constexpr auto kShortTurn = std::chrono::microseconds(500);
 /// Connections beyond those served that get a last message.
 constexpr std::size_t kMaxLingering = 64;
 /// Marks and changes between steps are told to all so often at most.
@@ -144,9 +146,11 @@ WallTime Server::Data::nextTurn() const {
     return next;
 }
 
-/// Runs handlers that are ready, for one turn at most.
+/// Runs handlers that are ready, for one turn at most, or until the world's next step is due.
 void Server::Data::serveClients() {
-    const WallTime end = steady_clock::now() + kTurn;
+    const WallTime now = steady_clock::now();
+    WallTime end = now + kTurn;
+    if (const auto due = simulation.due()) end = std::min(end, std::max(*due, now + kShortTurn));
     while (io.poll_one() > 0 && steady_clock::now() < end) continue;
     for (const auto& connection : connections)
         if (connection->waiting()) connection->proceed();

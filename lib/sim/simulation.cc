@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/simulation.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,6 +23,13 @@ using std::chrono::steady_clock;
 constexpr double kFastestRate = 1e6;
 constexpr nanoseconds kLongestLag = std::chrono::milliseconds(250);
 constexpr std::string_view kReal = "real:";
+
+/// Processor time of this thread.
+nanoseconds threadTime() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec);
+}
 
 double parseRate(std::string_view text) {
     const auto rate = parseDouble(text);
@@ -134,10 +143,16 @@ WallTime Simulation::dueAt() const {
     return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kFarthest)));
 }
 
+std::optional<WallTime> Simulation::due() const {
+    const bool follows = clock_.kind == Clock::Kind::Real && started_ && !paused_ && !finished_;
+    return follows ? std::optional(dueAt()) : std::nullopt;
+}
+
 void Simulation::noteLateness() {
     const nanoseconds late = steady_clock::now() - dueAt();
     ++lateness_.steps;
     lateness_.most = std::max(lateness_.most, late);
+    lateness_.own = std::max(lateness_.own, std::min(late, threadTime() - work_));
     const auto step = static_cast<double>(world_->stepLength().count());
     if (static_cast<double>(late.count()) > step / clock_.rate) ++lateness_.late;
 }
@@ -156,6 +171,12 @@ bool Simulation::isDue(WallTime now) const {
 }
 
 std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
+    const auto next = runDue(now, budget);
+    work_ = threadTime();
+    return next;
+}
+
+std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
     if (finished_) return std::nullopt;
     const bool follows = clock_.kind == Clock::Kind::Real;
     if (follows && !started_) startAt(now);

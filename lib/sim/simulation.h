@@ -87,17 +87,22 @@ class Simulation {
     /// goes slower, instead of faster later. \returns when to call again; nothing: only once told
     /// to step or resume
     std::optional<WallTime> run(WallTime now, std::chrono::nanoseconds budget);
+    /// When the next step is due by the clock Real; nothing with others, or while paused.
+    [[nodiscard]] std::optional<WallTime> due() const;
     /// How punctual the steps were that were due by the clock Real: the latest of them, and how
-    /// many began later than a step after their time (as a step lasts in wall time).
+    /// many began later than a step after their time (as a step lasts in wall time). `own`: the
+    /// most of that for which this thread was at work since the steps before it, instead of waiting
+    /// for the processor.
     struct Lateness {
         std::int64_t steps = 0, late = 0;
-        std::chrono::nanoseconds most{};
+        std::chrono::nanoseconds most{}, own{};
     };
     [[nodiscard]] const Lateness& lateness() const { return lateness_; }
     /// Wall time lost so far because steps took too long.
     [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
 
   private:
+    std::optional<WallTime> runDue(WallTime now, std::chrono::nanoseconds budget);
     void giveScripted();
     void step();
     void endIfReached();
@@ -129,6 +134,7 @@ class Simulation {
     std::optional<std::chrono::nanoseconds>
         ahead_;  // of a pause to the next step; less than 0: lag
     std::chrono::nanoseconds lost_{};
+    std::chrono::nanoseconds work_{};  // of the thread until run() returned
     Lateness lateness_;
 };
 

@@ -114,17 +114,24 @@ std::vector<bool> World::bumper(std::size_t robot) const {
     const Data& data = *data_;
     const MoverState& state = data.states[robot];
     const RobotModel& model = data.movers[robot].model;
+    if (!state.stall) return pressedBumpers(model, data.motions[robot].pose, {}, {});
+    // Of thousands only those that touch it matter.
+    const Point2 middle = data.motions[robot].pose.position;
+    const double touch = 1.1 * model.radius + length(state.bump) + 0.01;
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < data.movers.size(); ++i)
+        if (i != robot &&
+            distance(data.motions[i].pose.position, middle) < touch + data.movers[i].model.radius)
+            others.push_back(i);
     const auto nearest = [&](Point2 place, double farthest) {
         double least = state.obstacles->nearest(place, farthest);
-        for (std::size_t i = 0; i < data.movers.size(); ++i) {
-            if (i == robot) continue;
+        for (const std::size_t i : others) {
             const double apart = distance(data.motions[i].pose.position, place);
             least = std::min(least, apart - data.movers[i].model.radius);
         }
         return least;
     };
-    const Vec2 bump = state.stall ? state.bump : Vec2();
-    return pressedBumpers(model, data.motions[robot].pose, bump, nearest);
+    return pressedBumpers(model, data.motions[robot].pose, state.bump, nearest);
 }
 
 SimTime World::controlInterval() const {

@@ -213,10 +213,10 @@ def silent():
     check(greeting == "ISPACE 1" and answer.startswith("ERR 408 "), f"the first: {answer}")
 
 
-def crowd(role, count):
-    """As many clients, connected at once, without waiting for any."""
+def crowd(firsts):
+    """Clients that connect at once, without waiting for any; then each sends its first bytes."""
     clients = []
-    for _ in range(count):
+    for _ in firsts:
         client = socket.socket()
         client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
         client.setblocking(False)
@@ -225,24 +225,33 @@ def crowd(role, count):
         except BlockingIOError:
             pass
         clients.append(client)
-    for client in clients:
+    for client, first in zip(clients, firsts):
         client.setblocking(True)
         client.settimeout(60)
-        client.sendall(role)
+        client.sendall(first)
     return clients
 
 
 def storm():
-    """A thousand at once, none of whom reads its events and scans."""
-    world = Client("WORLD")
+    """A thousand at once: half never read, others send a byte a second or garbage. Meanwhile one
+    dies with the robot in hand."""
+    world, driver = Client("WORLD"), Client("ROBOT r1")
+    check(driver.ask("SPEED 0.1").startswith("OK SPEED"), "no robot")
     begin = time.monotonic()
-    clients = crowd(b"WORLD\nEVENTS\n", 500) + crowd(b"LASER l1\nSTREAM\n", 500)
-    for client in clients:
+    clients = crowd([b"WORLD\nEVENTS\n", b"LASER l1\nSTREAM\n", b"W",
+                     os.urandom(3000) + b"\n"] * 250)
+    slow = clients[2::4]
+    for client in clients[0::4] + clients[1::4] + slow:
         check(client.recv(8) == b"ISPACE 1", "no greeting")
     print(f"1000 connections at once: {time.monotonic() - begin:.2f} s")
-    for i in range(300):
-        check(world.ask(f"MARK {'x' * 250}").startswith("OK MARK "), "no MARK")
-    time.sleep(1)
+    driver.reset()
+    for byte in b"ORL":
+        for _ in range(100):
+            check(world.ask(f"MARK {'x' * 250}").startswith("OK MARK "), "no MARK")
+        for client in slow:
+            client.send(bytes([byte]))
+        time.sleep(1)
+    check(Client("ROBOT r1").ask("STATUS").startswith("OK STATUS "), "the robot is still held")
     check(world.ask("TIME").startswith("OK TIME "), "the world is gone")
 
 

@@ -20,11 +20,11 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
     const World& world = simulation.world();
     talk(options.common, "simrun",
          std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
-    if (const auto& [steps, late, most] = simulation.lateness(); steps > 0)
+    if (const auto& [steps, late, most, own] = simulation.lateness(); steps > 0)
         talk(options.common, "simrun",
              std::to_string(late) + " of " + std::to_string(steps) +
                  " steps began more than a step late, the latest by " + formatMilliseconds(most) +
-                 " s");
+                 " s, the program itself at work for " + formatMilliseconds(own) + " s of that");
     if (const SimTime lost = simulation.lost(); lost > SimTime(0))
         talk(options.common, "simrun",
              "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
