@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kPacket = 20000, kRoom = 50000;
 
 /// Echoes lines; `hold` takes the robot, `stream` sends a numbered packet after each step, `many` a
-/// long answer, `quit` ends.
+/// long answer, `clock` the time, `quit` ends.
 class EchoSession : public WireSession {
   public:
     EchoSession(WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {}
@@ -47,6 +47,7 @@ class EchoSession : public WireSession {
   private:
     void answer(const std::string& line) {
         if (line == "quit") close();
+        if (line == "clock") return send(std::to_string(host_->clock().count()) + "\n");
         if (line == "hold") {
             hold_ = host_->hold(id_);
             if (hold_) host_->world().command(0, {Verb::Speed, 0.1});
@@ -72,9 +73,9 @@ const WireProtocol kEcho{"echo", "ROBOT", "for tests", 7, 2, refusalOfRobot, ope
 /// A server with such a port, in a thread.
 class EchoServer {
   public:
-    explicit EchoServer(Clock clock = {Clock::Kind::Real, 100})
+    explicit EchoServer(Clock clock = {Clock::Kind::Real, 100}, const ServerLimits& limits = {})
         : room_(clock),
-          server_(room_.simulation, parseEndpoint("127.0.0.1:0")),
+          server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
           address_(server_.serveDevice(kEcho, "r1", parseEndpoint("127.0.0.1:0"))),
           thread_([this] { server_.run(); }) {}
     ~EchoServer() {
@@ -189,6 +190,22 @@ TEST(DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
     EXPECT_TRUE(comes(robot, "ROBOT r1", "OK ROBOT"));
     EXPECT_EQ(step(world, 10).substr(0, 7), "OK STEP");
     EXPECT_NE(robot.ask("STATUS").find(" speed=0.000 "), std::string::npos);
+}
+
+TEST(DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
+    EchoServer simulated({Clock::Kind::Step, 1});
+    Client device(simulated.echoPort()), world(simulated.server().port());
+    EXPECT_EQ(device.connect().ask("clock"), "0");
+    world.take("WORLD");
+    EXPECT_EQ(step(world, 3).substr(0, 7), "OK STEP");
+    EXPECT_EQ(device.ask("clock"), "300000000");
+    ServerLimits limits;
+    limits.wall_clock = true;
+    EchoServer wall({Clock::Kind::Step, 1}, limits);
+    Client other(wall.echoPort());
+    const auto first = std::stoll(other.connect().ask("clock"));
+    EXPECT_GT(first, 0);
+    EXPECT_TRUE(soon([&] { return std::stoll(other.ask("clock")) > first + 20'000'000; }));
 }
 
 TEST(DevicePort, ASlowReaderMissesWholePackets) {
