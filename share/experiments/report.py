@@ -35,7 +35,12 @@ pre { overflow-x: auto; background: #f6f8fa; padding: .7rem; font: 13px/1.45 ui-
 code { font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; }
 details { margin: .6rem 0; } summary { cursor: pointer; font-weight: 600; }
 ul { padding-left: 1.3rem; margin: .3rem 0; }
-@media (max-width: 40rem) { body { padding: .6rem; } th, td { padding: .25rem .3rem; } figure { flex-basis: 100%; } }
+@media (max-width: 40rem) {
+  body { padding: .6rem; } figure { flex-basis: 100%; }
+  table, tbody { display: block; } tr { display: grid; grid-template-columns: 1fr 1fr 1fr; }
+  tr > * { padding: .2rem .3rem; } tr > :first-child { grid-column: 1 / -1; }
+  td:not(:first-child) { border-top: 0; }
+}
 @media print { details > * { display: block; } }
 """
 
