@@ -34,6 +34,7 @@ void P2osDrive::setSpeed(double speed) {
     if (!mayMove()) return;
     const AxisGoal goal{AxisGoal::Kind::Speed, speed / kMillimetres};
     if (goal == drive_) return;
+    if (goal.value * drive_.value <= 0) stalled_ = false;
     drive_ = goal;
     new_drive_ = true;
 }
@@ -49,6 +50,7 @@ void P2osDrive::move(double distance) {
     if (!mayMove()) return;
     drive_ = {AxisGoal::Kind::Distance, distance / kMillimetres};
     new_drive_ = true;
+    stalled_ = false;
 }
 
 void P2osDrive::turnTo(Angle heading, Angle now) {
@@ -80,6 +82,7 @@ void P2osDrive::halt() {
     heading_.reset();
     new_drive_ = new_turn_ = true;
     stopping_ = moving_;
+    stalled_ = false;
 }
 
 void P2osDrive::stopHard() { halt(); }
@@ -143,10 +146,14 @@ void P2osDrive::stepped(const World& world, std::size_t robot) {
     if (hit) {
         // It stands, where it was to turn as well.
         stalled_ = wants(drive_);
+        stall_place_ = status.pose.position;
+        retry_ = world.time() + kRetryAfter;
         new_turn_ = is_resumed_ = wants(turn_);
         if (drive_.kind == AxisGoal::Kind::Distance) drive_.value = 0;
     }
-    if (!status.stall) stalled_ = false;
+    // Up to a step away from the thing it can go, which frees it from nothing.
+    constexpr double kFree = 0.02;
+    if (distance(status.pose.position, stall_place_) > kFree) stalled_ = false;
     if (stalled_ && drive_.kind == AxisGoal::Kind::Speed && world.time() >= retry_)
         new_drive_ = true;
 }

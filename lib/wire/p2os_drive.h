@@ -70,6 +70,7 @@ class P2osDrive {
     bool owns_ = false;        // the motors were on: until then the robot goes its own way
     bool motors_ = false, moving_ = false, stopping_ = false, hushed_ = false, stalled_ = false;
     SimTime retry_{};
+    Point2 stall_place_;
     AxisLimits drive_limits_, turn_limits_;  // that the wheels have
 };
 

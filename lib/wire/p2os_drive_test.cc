@@ -184,6 +184,24 @@ TEST(P2osDrive, StallsAtAWall) {
     EXPECT_EQ(robot.left() + robot.right(), -400);
 }
 
+TEST(P2osDrive, StaysStalledWhereverItsStepsEnd) {
+    for (int k = 0; k < 12; ++k) {
+        TestHost host("robot id=r1 model=pioneer-3dx at=" + std::to_string(2 + 0.00037 * k) +
+                      ",0\n");
+        Pioneer robot(host);
+        robot.drive().command(11, 400);
+        while (host.world().collisions().empty()) robot.run(0.01);
+        for (int i = 0; i < 20; ++i) {
+            robot.run(0.1);
+            ASSERT_EQ(robot.stall() & 0x0101, 0x0101) << k;
+            ASSERT_NE(robot.stall() & 0x3E00, 0) << k;
+        }
+        robot.command(11, 0);
+        robot.run(0.2);
+        EXPECT_EQ(robot.stall() & 0x0101, 0) << k;
+    }
+}
+
 TEST(P2osDrive, TurnsOnAfterItRanIntoSomething) {
     TestHost host(kRobot);
     Pioneer robot(host);

@@ -130,7 +130,10 @@ void P2osSession::sendStatus() {
     status.sonars = sonars_;
     if (sonars_) status.ranges = world.sonar(robot());
     status.first_sonar = first_sonar_;
-    status.bumpers = p2osBumpers(model(), world.bumper(robot()));
+    // Those that were pressed stay so while it tries to get nearer.
+    if (!status.stall || world.status(robot()).stall)
+        bumpers_ = p2osBumpers(model(), world.bumper(robot()));
+    status.bumpers = bumpers_;
     send(p2osStatusPacket(type_, status));
     if (status.ranges.size() > kMaxP2osSonars)
         first_sonar_ = (first_sonar_ + kMaxP2osSonars) % status.ranges.size();

@@ -101,6 +101,7 @@ class P2osSession : public WireSession {
     P2osOdometer odometer_;
     bool greeted_ = false, opened_ = false, sonars_ = true;
     std::size_t first_sonar_ = 0;
+    std::uint16_t bumpers_ = 0;
     P2osLaser laser_;
     bool tells_sim_ = false;
     SimTime next_{};  // status
