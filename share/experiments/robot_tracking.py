@@ -46,7 +46,7 @@ def run(lab):
     outcome = Outcome(lab, "tracks.csv", "run", begin=0)
     for source, (name, _) in NAMES.items():
         verdict = outcome.verdicts[source]
-        lab.row(f"Mean error of the place, {name}", None if source == "joint" else "“big bias”", verdict.mean, "m",
+        lab.row(f"Mean error of the place, {name}", None if source == "joint" else "biased", verdict.mean, "m",
                 digits=3, bound=(0, 0.1) if source == "joint" else (0.1, 0.4))
         lab.row(f"95th percentile of the errors, {name}", None, verdict.percentile95, "m", digits=3)
         lab.row(f"Followed, {name}", None, 100 * verdict.followed, "% of the time", digits=0)
