@@ -240,7 +240,8 @@ class Png final : public Base {
             addFilesBeside(sensor(index), *photo, options_, files);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const Sensor& placed = sensor(index);
-            if (options_.color) files.push_back({kColor, colorDepthPng(placed, *frame, options_.spectrum)});
+            if (options_.color)
+                files.push_back({kColor, colorDepthPng(placed, *frame, options_.spectrum)});
             if (placed.as<Ranger>().projection == Projection::Pinhole)
                 files.push_back({kCameraInfo, cameraInfoYaml(placed.as<Ranger>(), placed.id)});
         }
