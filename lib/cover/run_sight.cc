@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -34,11 +35,14 @@ class Members {
     Members(const Scene& scene, const RunReader& reader) : scene_(&scene), reader_(&reader) {
         for (const PlacedRobot& robot : scene.robots) robots.push_back(robot.pose);
         for (const PlacedPerson& person : scene.people) people.push_back(person.pose);
-        for (const RunState& state : reader.states())
+    }
+    /// \throws FormatError for who is there and not in the scene
+    void check() {
+        for (const RunState& state : reader_->states())
             if (ownerOf(state.who) == MovingBodies::kNobody)
-                throw FormatError({reader.name(), 0, 0,
+                throw FormatError({reader_->name(), 0, 0,
                                    "the scene has no robot or person " +
-                                       excerpt(reader.who()[state.who].id) +
+                                       excerpt(reader_->who()[state.who].id) +
                                        ": it is not that of the record"});
     }
 
@@ -235,11 +239,15 @@ void flush(const Watch& watch, Members& members, std::vector<Sample>& samples, S
 
 }  // namespace
 
-RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& options) {
+RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
+                    RunChanges* changes) {
     if (!reader.next())
         throw FormatError({reader.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
-    const Watch watch(scene, options);
-    Members members(scene, reader);
+    // As changes leave it.
+    std::optional<Scene> changed;
+    std::optional<Watch> watch(std::in_place, start, options);
+    std::optional<Members> members(std::in_place, start, reader);
+    if (reader.time() == 0 || changes == nullptr || changes->empty()) members->check();
     SightSum sum;
     constexpr std::size_t kTogether = 256;
     std::vector<Sample> samples;
@@ -247,16 +255,31 @@ RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& o
     double next = reader.time();
     const auto take = [&](Sample sample) {
         samples.push_back(std::move(sample));
-        if (samples.size() == kTogether) flush(watch, members, samples, sum);
+        if (samples.size() == kTogether) flush(*watch, *members, samples, sum);
+    };
+    const auto make_changes = [&] {
+        if (changes == nullptr) return;
+        const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+        const Scene* now = changed ? &*changed : &start;
+        while (auto step = changes->next(reader.time(), *now, unknown)) {
+            flush(*watch, *members, samples, sum);
+            members.reset();
+            watch.reset();
+            changed.emplace(std::move(step->scene));
+            now = &*changed;
+            watch.emplace(*now, options);
+            members.emplace(*now, reader);
+        }
     };
     constexpr double kRounding = 1e-9;
     do {
+        make_changes();
         Sample sample{
             reader.time(), {reader.states().begin(), reader.states().end()}, {}, {}, {}, {}};
-        for (const RunState& state : sample.states) members.move(state);
-        if (watch.rides()) {
-            sample.robots = members.robots;
-            sample.people = members.people;
+        for (const RunState& state : sample.states) members->move(state);
+        if (watch->rides()) {
+            sample.robots = members->robots;
+            sample.people = members->people;
         }
         passed.reset();
         if (sample.time < next - kRounding) {
@@ -267,7 +290,7 @@ RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& o
         take(std::move(sample));
     } while (reader.next());
     if (passed) take(std::move(*passed));
-    flush(watch, members, samples, sum);
+    flush(*watch, *members, samples, sum);
     return sum.finish(reader);
 }
 

@@ -8,6 +8,7 @@
 
 #include "cover/coverage.h"
 #include "geom/point.h"
+#include "layout/run_changes.h"
 #include "layout/run_reader.h"
 #include "layout/scene.h"
 #include "sense/watch.h"
@@ -64,7 +65,9 @@ struct RunSight {
 /// memory for the ways, thinned to 0.02 m.
 /// \throws FormatError as the reader does, for a record without a moment, and for who was there at
 ///         its beginning and is not in the scene
-RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& options);
+/// \param changes of the world in the run, which are made again; null: none
+RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& options,
+                    RunChanges* changes = nullptr);
 
 /// Metrics for people, aligned lines.
 std::string runText(const RunSight& run);

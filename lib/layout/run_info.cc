@@ -2,6 +2,7 @@
 #include "layout/run_info.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -36,24 +37,21 @@ std::optional<RunInfo> recordedInfo(const std::string& folder) {
     splitFields(all.substr(0, end), columns);
     const std::string_view rest = all.substr(std::min(end + 1, text.size()));
     splitFields(rest.substr(0, rest.find('\n')), fields);
-    const auto field = [&](std::string_view column) -> std::optional<double> {
+    const auto text_of = [&](std::string_view column) -> std::string_view {
         const auto found = std::find(columns.begin(), columns.end(), column);
         const auto at = static_cast<std::size_t>(found - columns.begin());
-        return at < fields.size() ? parseDouble(fields[at]) : std::nullopt;
+        return at < fields.size() ? fields[at] : std::string_view();
     };
+    const auto field = [&](std::string_view column) { return parseDouble(text_of(column)); };
     const auto step = field("dt");
     if (!step || *step <= 0 || *step > 1)
         throw FormatError({name, 2, 0,
                            "no length of a step: wanted the columns dt,control_interval,steps, as "
                            "`simrun --record` writes"});
     RunInfo info{.step = *step};
-    // Whole numbers, too large for a double.
-    if (const auto seed = std::find(columns.begin(), columns.end(), "seed");
-        seed != columns.end()) {
-        const auto at = static_cast<std::size_t>(seed - columns.begin());
-        const auto value = at < fields.size() ? parseInteger(fields[at]) : std::nullopt;
-        info.seed = static_cast<std::uint64_t>(value.value_or(0));
-    }
+    info.steps = std::llround(std::clamp(field("steps").value_or(0), 0.0, 1e15));
+    // Too large for a double.
+    info.seed = static_cast<std::uint64_t>(parseInteger(text_of("seed")).value_or(0));
     info.noise = field("noise").value_or(0) != 0;
     return info;
 }

@@ -15,7 +15,8 @@ struct RecordedFiles {
 
 /// What info.csv says of a run.
 struct RunInfo {
-    double step = 0;  ///< seconds
+    double step = 0;         ///< seconds
+    std::int64_t steps = 0;  ///< 0: not known
     std::uint64_t seed = 0;
     bool noise = false;  ///< of sensors
 };

@@ -57,6 +57,8 @@ class MomentFile {
     bool read(std::vector<RunState>& states);
 
     [[nodiscard]] bool isCut() const { return is_cut_; }
+    /// Members come and go: a last moment with fewer than before may be whole.
+    void letGo() { may_lack_ = true; }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[noreturn]] void fail(const std::string& what) const {
         throw FormatError({name_, lines_.number(), 0, what});
@@ -84,7 +86,7 @@ class MomentFile {
     std::optional<Row> row_;  // read ahead
     std::unordered_map<std::size_t, double> latest_;
     std::size_t count_ = 0;  // of the last moment
-    bool is_cut_ = false;
+    bool is_cut_ = false, may_lack_ = false;
 };
 
 void MomentFile::readHeader() {
@@ -165,7 +167,7 @@ bool MomentFile::read(std::vector<RunState>& states) {
         states.push_back(row_->state);
         readLine();
     }
-    const bool is_whole = row_ || count >= count_;
+    const bool is_whole = row_ || count >= count_ || may_lack_;
     is_cut_ = is_cut_ || !is_whole;
     count_ = count;
     return is_whole;
@@ -229,7 +231,15 @@ struct RunReader::Data {
         odometry.emplace(name, std::move(lines), false, believers);
         if (!odometry->upcoming()) odometry.reset();
     }
+    /// The world was changed: there may be moments without robots, or without people.
+    void letGo(double last) {
+        end = last;
+        for (MomentFile& file : files) file.letGo();
+        if (odometry) odometry->letGo();
+    }
     [[nodiscard]] bool readOdometry();
+    /// When the next moment is; nothing at the end.
+    [[nodiscard]] std::optional<double> upcoming();
 
     std::string name;
     std::vector<RunMember> who;
@@ -242,8 +252,27 @@ struct RunReader::Data {
     std::vector<RunState> states;
     std::vector<RunCollision> collisions;
     double time = 0;
+    /// Of a changed world, the last moment that all files have.
+    std::optional<double> end;
     bool is_cut = false;
 };
+
+std::optional<double> RunReader::Data::upcoming() {
+    std::optional<double> next;
+    bool is_over = false;
+    for (const MomentFile& file : files) {
+        const auto start = file.upcoming();
+        is_over = is_over || !start;
+        if (start && (!next || *start < *next)) next = start;
+    }
+    // One of the files of a killed run may be behind the other.
+    for (const MomentFile& file : files)
+        is_cut = is_cut || file.isCut() || (!end && is_over && file.upcoming());
+    if (!end) return is_over ? std::nullopt : files.front().upcoming();
+    constexpr double kRounding = 5e-10;
+    if (next && *next > *end + kRounding) is_cut = true;
+    return next && *next <= *end + kRounding ? next : std::nullopt;
+}
 
 RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()) {
     const RecordedFiles files(folder);
@@ -253,8 +282,12 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
         data_->add(files.people, LineSource(InputFile(files.people), ""), true);
     if (exists(files.odometry))
         data_->addOdometry(files.odometry, LineSource(InputFile(files.odometry), ""));
-    if (exists(files.events))
-        data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
+    if (!exists(files.events)) return;
+    data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
+    if (!recordedChange(folder)) return;
+    const auto info = recordedInfo(folder);
+    data_->letGo(info && info->steps > 0 ? info->step * static_cast<double>(info->steps)
+                                         : std::numeric_limits<double>::infinity());
 }
 
 RunReader::RunReader(std::string robots, std::string people, std::string events,
@@ -264,6 +297,8 @@ RunReader::RunReader(std::string robots, std::string people, std::string events,
     data_->add("robots.csv", LineSource({}, std::move(robots)), false);
     if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
     if (!odometry.empty()) data_->addOdometry("odometry.csv", LineSource({}, std::move(odometry)));
+    if (events.find(",change,") != std::string::npos)
+        data_->letGo(std::numeric_limits<double>::infinity());
     if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
 }
 
@@ -296,15 +331,12 @@ RunReader& RunReader::operator=(RunReader&&) noexcept = default;
 
 bool RunReader::next() {
     Data& data = *data_;
-    const bool is_over = std::any_of(data.files.begin(), data.files.end(),
-                                     [](const MomentFile& file) { return !file.upcoming(); });
-    for (const MomentFile& file : data.files)
-        // One of the files of a killed run may be behind the other.
-        data.is_cut = data.is_cut || file.isCut() || (is_over && file.upcoming());
-    if (is_over) return false;
-    const double time = *data.files.front().upcoming();
+    const auto next = data.upcoming();
+    if (!next) return false;
+    const double time = *next;
     std::vector<RunState> states;
     for (MomentFile& file : data.files) {
+        if (data.end && file.upcoming() != time) continue;
         if (*file.upcoming() != time)
             file.fail("the moment t=" + formatDouble(*file.upcoming()) + " is none of " +
                       data.name + ", which goes on at t=" + formatDouble(time));

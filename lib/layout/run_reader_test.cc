@@ -166,6 +166,23 @@ TEST(RunReader, ReadsFoldersPieceByPiece) {
     EXPECT_THROW(RunReader{folder.string()}, std::system_error);
 }
 
+TEST(RunReader, PeopleComeAndGoInAChangedWorld) {
+    const std::string robots =
+        "t,id,x,y,heading_deg\n0,r1,0,0,0\n0,r2,0,0,0\n1,r1,1,0,0\n2,r1,2,0,0\n5,r1,5,0,0\n";
+    const std::string people = "t,id,x,y,heading_deg\n1,h1,0,0,0\n3,h1,0,0,0\n";
+    const std::string events = "t,kind,id,other,x,y,value,text\n0,change,,,,,,DELETE r2\n";
+    RunReader reader(robots, people, events);
+    std::string moments;
+    while (reader.next()) {
+        moments += std::to_string(static_cast<int>(reader.time()));
+        for (const RunState& state : reader.states()) moments += ' ' + reader.who()[state.who].id;
+        moments += '\n';
+    }
+    EXPECT_EQ(moments, "0 r1 r2\n1 r1 h1\n2 r1\n3 h1\n5 r1\n");
+    EXPECT_FALSE(reader.isCut());
+    EXPECT_THROW(momentsOf(robots, people), FormatError) << "nobody came or went";
+}
+
 TEST(RunReader, ReadsWhatRobotsBelieve) {
     const std::string odometry =
         "t,id,x,y,heading_deg\n0,r1,0,0,0\n0,r2,0,0,0\n"

@@ -94,6 +94,7 @@ std::span<const Session::Request> Session::requests() {
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
         {"STEP", "[n]", Role::World, 0, 1, &C::step},
+        {"SEEK", "t", Role::World, 1, 1, &C::seek},
         {"RESET", "", Role::World, 0, 0, &C::change, true},
         {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
         {"ADD", "record", Role::World, 1, kAny, &C::change, true},
@@ -329,6 +330,7 @@ void Session::help(Words /*words*/) {
         if (request.role.value_or(role_) != role_) continue;
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
         if (request.answer == &Session::change && !state_->mayChange()) continue;
+        if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
         if (request.answer == &Session::token && state_->limits().token.empty()) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);

@@ -117,6 +117,7 @@ class Session {
     void poses(Words words);
     void pause(Words words);
     void resume(Words words);
+    void seek(Words words);
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "layout/scene_edit.h"
 #include "layout/schemas.h"
 #include "net/request_parts.h"
 #include "net/session.h"
@@ -189,7 +190,10 @@ void Session::carryOut(std::string_view line) {
     const auto began = std::chrono::steady_clock::now();
     try {
         const Changed changed = applied(state_->editor(), world(), words, line);
-        state_->simulation().events().add(EventKind::Change, printable(line.substr(0, kMaxText)));
+        const bool loads = words[0] == "LOAD";
+        const bool needs_scene =
+            loads || (words[0] != "RESET" && touchFiles(parseEdits(line), world().scene()));
+        state_->simulation().tellChange(printable(line), needs_scene);
         out_.append("OK ").append(words[0]);
         if (!changed.added.empty()) out_.append(" id=").append(changed.added);
         out_.append(" t=").append(formatMilliseconds(world().time()));
@@ -291,7 +295,7 @@ void appendEvent(std::string& out, const Event& event) {
             add("text", event.text);
             break;
         case EventKind::Change:
-            add("what", event.text);
+            add("what", printable(std::string_view(event.text).substr(0, kMaxText)));
             break;
         case EventKind::Stall:
         case EventKind::Lost:

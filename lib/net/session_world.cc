@@ -3,6 +3,8 @@
 #include <chrono>
 #include <string>
 
+#include "base/error.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "net/request_parts.h"
 #include "net/session.h"
@@ -37,7 +39,10 @@ void Session::list(Words /*words*/) {
 
 void Session::time(Words /*words*/) {
     out_.append("OK TIME t=").append(formatMilliseconds(world().time()));
-    out_.append(" steps=").append(std::to_string(world().steps())).append("\n");
+    out_.append(" steps=").append(std::to_string(world().steps()));
+    if (const auto end = state_->simulation().end())
+        out_.append(" end=").append(formatMilliseconds(*end));
+    out_ += '\n';
 }
 
 void Session::poses(Words /*words*/) {
@@ -95,6 +100,26 @@ void Session::resume(Words words) {
         simulation.resume(std::chrono::steady_clock::now());
     }
     out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
+}
+
+void Session::seek(Words words) {
+    Simulation& simulation = state_->simulation();
+    if (!simulation.isReplay())
+        return error(405, {"a run goes on: only a replay has a time to go to"});
+    if (!simulation.maySeek())
+        return error(405, {"this replay is recorded or judged, step by step"});
+    const auto time = parseSimTime(words[1]);
+    if (!time || *time < SimTime(0))
+        return error(416, {excerpt(words[1]), " is no time in seconds from 0 on"});
+    if (!mayAskFor(words.front())) return;
+    state_->steps().cut();
+    try {
+        simulation.seek(*time, std::chrono::steady_clock::now());
+    } catch (const FormatError& failure) {
+        return error(409, {failure.what()});
+    }
+    sync();
+    out_.append("OK SEEK t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
 void Session::step(Words words) {

@@ -23,6 +23,7 @@ ISPACE_WEB_FILE(kWebMovers, "movers.js");
 ISPACE_WEB_FILE(kWebDrive, "drive.js");
 ISPACE_WEB_FILE(kWebEvents, "events.js");
 ISPACE_WEB_FILE(kWebCamera, "camera.js");
+ISPACE_WEB_FILE(kWebSeek, "seek.js");
 
 namespace ispace {
 
@@ -43,6 +44,7 @@ const WebFile* webFile(std::string_view path) {
         {"/drive.js", kScript, between(kWebDrive, kWebDriveEnd)},
         {"/events.js", kScript, between(kWebEvents, kWebEventsEnd)},
         {"/camera.js", kScript, between(kWebCamera, kWebCameraEnd)},
+        {"/seek.js", kScript, between(kWebSeek, kWebSeekEnd)},
     }};
     const auto* const found = std::find_if(files.begin(), files.end(),
                                            [&](const WebFile& file) { return file.path == path; });

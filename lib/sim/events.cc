@@ -293,10 +293,10 @@ void EventLog::stepped() {
     data_->tellSight();
 }
 
-void EventLog::add(EventKind kind, std::string text) {
+void EventLog::add(EventKind kind, std::string text, std::string other) {
     assert(kind == EventKind::Mark || kind == EventKind::Change);
     data_->forget();
-    data_->put({.kind = kind, .text = std::move(text)});
+    data_->put({.kind = kind, .other = std::move(other), .text = std::move(text)});
 }
 
 std::int64_t EventLog::next() const {

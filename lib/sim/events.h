@@ -27,7 +27,7 @@ enum class EventKind {
     Seen,    ///< `id` comes into sight of `value` sensors, after none
     Lost,    ///< no sensor sees `id` any more
     Mark,    ///< somebody wrote `text`
-    Change,  ///< the world was changed: `text` says how
+    Change,  ///< the world was changed by the request `text`; `other`: file of the scene after it
 };
 constexpr std::size_t kEventKinds = 10;
 /// "collision".
@@ -72,7 +72,7 @@ class EventLog {
     /// Looks at the world after a step.
     void stepped();
     /// What happened between steps, at the world's time. \pre Mark or Change
-    void add(EventKind kind, std::string text);
+    void add(EventKind kind, std::string text, std::string other = {});
 
     /// Events have numbers from 0 in their order: that of the next one.
     [[nodiscard]] std::int64_t next() const;

@@ -148,13 +148,12 @@ FolderLock::~FolderLock() {
 namespace {
 
 /// True for names that frames have, and for those under which they are written.
-bool isFrameName(const std::string& name) {
-    constexpr std::string_view kEnding = ".png";
+bool isFrameName(const std::string& name, std::string_view ending) {
     constexpr std::size_t kDigits = 6;
     std::string_view stem = name;
     if (stem.ends_with(FrameFiles::kUnfinished)) stem.remove_suffix(FrameFiles::kUnfinished.size());
-    if (!stem.ends_with(kEnding)) return false;
-    stem.remove_suffix(kEnding.size());
+    if (!stem.ends_with(ending)) return false;
+    stem.remove_suffix(ending.size());
     const std::size_t dash = stem.rfind('-');
     if (dash == std::string_view::npos || stem.size() - dash - 1 < kDigits) return false;
     return stem.find_first_not_of("0123456789", dash + 1) == std::string_view::npos;
@@ -162,13 +161,13 @@ bool isFrameName(const std::string& name) {
 
 }  // namespace
 
-FrameFiles::FrameFiles(std::string folder) : folder_(std::move(folder)) {
+FrameFiles::FrameFiles(std::string folder, std::string_view ending) : folder_(std::move(folder)) {
     struct stat info {};
     if (::lstat(folder_.c_str(), &info) != 0) return;
     if (S_ISLNK(info.st_mode)) refuseLink(folder_, "folder");
     if (!S_ISDIR(info.st_mode)) fail(folder_, ENOTDIR);
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-        if (isFrameName(entry.path().filename().string())) fs::remove(entry.path());
+        if (isFrameName(entry.path().filename().string(), ending)) fs::remove(entry.path());
 }
 
 void FrameFiles::write(const std::string& name, std::string_view bytes, std::int64_t step) {

@@ -87,7 +87,7 @@ class FrameFiles {
 
     /// What an earlier run left there is removed. \throws std::system_error naming what cannot be
     /// removed; FormatError where the folder is a link
-    explicit FrameFiles(std::string folder);
+    explicit FrameFiles(std::string folder, std::string_view ending = ".png");
 
     /// Writes a frame, whole or not at all. \throws std::system_error
     void write(const std::string& name, std::string_view bytes, std::int64_t step);

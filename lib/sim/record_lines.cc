@@ -128,7 +128,7 @@ void appendReadingLine(std::string& out, const RunSensor& sensor, const SensorRe
     std::visit(LineWriter{out, sensor, reading, receivers, file}, reading.value);
 }
 
-std::string frameName(const std::string& id, std::int64_t seq) {
+std::string frameName(const std::string& id, std::int64_t seq, std::string_view ending) {
     constexpr std::size_t kDigits = 6;
     std::string name;
     for (const char c : id) {
@@ -140,7 +140,7 @@ std::string frameName(const std::string& id, std::int64_t seq) {
     }
     const std::string number = std::to_string(seq);
     name.append("-").append(kDigits - std::min(kDigits, number.size()), '0');
-    return name.append(number).append(".png");
+    return name.append(number).append(ending);
 }
 
 std::string frameBytes(const RunSensor& sensor, const SensorReading& reading) {

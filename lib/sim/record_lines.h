@@ -26,7 +26,7 @@ void appendReadingLine(std::string& out, const RunSensor& sensor, const SensorRe
                        std::span<const Sensor> receivers, const std::string& file = "");
 
 /// The name of a frame's file: the sensor's id and the number of the period.
-std::string frameName(const std::string& id, std::int64_t seq);
+std::string frameName(const std::string& id, std::int64_t seq, std::string_view ending = ".png");
 /// The frame as PNG: of a ranger 16-bit grey in millimetres, 0 for none. \pre the reading is heavy
 std::string frameBytes(const RunSensor& sensor, const SensorReading& reading);
 

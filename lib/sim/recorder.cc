@@ -30,7 +30,7 @@ enum File { kRobots, kOdometry, kPeople, kScans, kEvents, kTiming, kInfo, kScene
 constexpr std::array<const char*, kFiles> kNames = {"robots.csv",  "odometry.csv", "people.csv",
                                                     "scans.jsonl", "events.csv",   "timing.csv",
                                                     "info.csv",    "scene.env"};
-constexpr const char *kPictures = "pictures", *kDepths = "depths";
+constexpr const char *kPictures = "pictures", *kDepths = "depths", *kScenes = "scenes";
 
 std::string pathIn(const std::string& folder, const char* name) {
     return (std::filesystem::path(folder) / name).string();
@@ -59,14 +59,16 @@ struct Recorder::Data {
           info(pathIn(folder, kNames[kInfo])),
           scene(pathIn(folder, kNames[kScene])),
           pictures(pathIn(folder, kPictures)),
-          depths(pathIn(folder, kDepths)) {}
+          depths(pathIn(folder, kDepths)),
+          scenes(pathIn(folder, kScenes), ".env") {}
 
     RecordOptions options;
     EventLog* events_log;
     std::string folder;
     FolderLock lock;
     LineFile robots, odometry, people, scans, events, timing, info, scene;
-    FrameFiles pictures, depths;
+    FrameFiles pictures, depths, scenes;
+    std::int64_t scene_count = 0;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
     // As of the last record, for what the destructor writes.
     SimTime time{}, step_length{}, control_interval{};
@@ -206,6 +208,7 @@ void Recorder::Data::writeLines() {
     for (LineFile* file : stepFiles()) file->forget();
     pictures.forget();
     depths.forget();
+    scenes.forget();
     writeInfo();
     const std::chrono::duration<double> wall = flushed - started;
     timing.pending.append(formatSimTime(time)).append(",").append(formatFixed(wall.count(), 6));
@@ -226,6 +229,7 @@ void Recorder::Data::endEarly() {
     for (LineFile* file : stepFiles()) file->cutBehind(steps);
     pictures.cutBehind(steps);
     depths.cutBehind(steps);
+    scenes.cutBehind(steps);
     flushed_all = true;
     try {
         writeInfo();
@@ -291,6 +295,19 @@ void Recorder::record(World& world) {
     const bool much =
         std::max(data.robots.pending.size(), data.people.pending.size()) > kMaxPending;
     if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
+}
+
+std::string Recorder::recordScene(const Scene& scene) {
+    Data& data = *data_;
+    if (data.ended || !data.options.scene_text) return "";
+    const std::string name = frameName("scene", ++data.scene_count, ".env");
+    try {
+        data.scenes.write(name, data.options.scene_text(scene), data.steps);
+    } catch (const std::system_error&) {
+        data.endEarly();
+        return "";
+    }
+    return std::string(kScenes) + "/" + name;
 }
 
 int Recorder::lock() const { return data_->lock.descriptor(); }

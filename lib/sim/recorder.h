@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -19,8 +20,10 @@ struct RecordOptions {
     History history = {};
     std::uint64_t seed = 0;
     std::string scene = {};  ///< the content of scene.env
-    bool odometry = false;   ///< odometry.csv gets rows: it differs from the true poses
-    bool noise = false;      ///< the sensors', from the seed; for info.csv
+    /// A scene as a file in the folder `scenes` of the record; null: see recordScene().
+    std::function<std::string(const Scene&)> scene_text = {};
+    bool odometry = false;  ///< odometry.csv gets rows: it differs from the true poses
+    bool noise = false;     ///< the sensors', from the seed; for info.csv
     /// Pictures and depth frames of each camera and ranger in a simulated second, at most; of those
     /// with a higher rate every second, third, … is recorded. 0: none.
     double frame_rate = 1;
@@ -41,7 +44,7 @@ struct RecordOptions {
 /// of
 ///   their period
 /// - events.csv: what happened, see EventLog
-/// - scene.env: the scene of the run
+/// - scene.env: the scene of the run; scenes/scene-NNNNNN.env: those that clients loaded
 /// - info.csv: dt,control_interval,steps,elapsed,seed,noise; see World::controlInterval
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, the only thing that may differ
 ///   between runs
@@ -67,6 +70,9 @@ class Recorder {
     /// Records the state after a step, and takes the frames that are due; flushes if 0.1 s have
     /// passed.
     void record(World& world);
+    /// Writes a scene after a change that its request does not say all about. \returns its file
+    /// within the folder; "" without scene_text, or if it cannot be written: record() then throws
+    std::string recordScene(const Scene& scene);
     /// Writes out what is pending. \throws std::system_error, also for a full disk
     void flush(const World& world);
     /// The descriptor that holds the lock, or -1 on a file system without: a process that inherits

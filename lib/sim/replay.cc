@@ -33,7 +33,7 @@ RobotStatus statusOf(const RunState& state) {
 
 }  // namespace
 
-Replay::Replay(const std::string& folder) : reader_(folder) {
+Replay::Replay(const std::string& folder) : folder_(folder), reader_(folder) {
     if (!reader_.next())
         throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
     if (const auto change = recordedChange(folder)) changed_ = timeOf(*change);
@@ -41,16 +41,16 @@ Replay::Replay(const std::string& folder) : reader_(folder) {
     const auto info = recordedInfo(folder);
     info_ = info.value_or(RunInfo());
     // Without a moment of the start nobody was there then.
-    const bool is_late = begin > SimTime(0) && info && isEmptyAt(SimTime(0));
-    if (!is_late) start_.assign(reader_.states().begin(), reader_.states().end());
-    is_ahead_ = is_late || reader_.next();
+    is_late_ = begin > SimTime(0) && info && isEmptyAt(SimTime(0));
+    if (!is_late_) start_.assign(reader_.states().begin(), reader_.states().end());
+    is_ahead_ = is_late_ || reader_.next();
     if (info)
         step_ = timeOf(info->step);
     else if (is_ahead_)
         step_ = timeOf(reader_.time()) - begin;
     else
         step_ = std::chrono::milliseconds(5);
-    if ((begin != SimTime(0) && !is_late) || step_ < World::kShortestStep ||
+    if ((begin != SimTime(0) && !is_late_) || step_ < World::kShortestStep ||
         step_ > World::kLongestStep)
         throw FormatError({reader_.name(), 0, 0,
                            "begins at t=" + formatSimTime(begin) + " with steps of " +
@@ -86,6 +86,26 @@ bool Replay::isEmptyAt(SimTime time) const {
     return changed_ && *changed_ <= next && time < next;
 }
 
+/// Makes the changes before the next step.
+void Replay::change(World& world) {
+    if (!run_changes_) return;
+    const auto place_of = [&world](const std::string& id) {
+        const auto mover = world.moverNamed(id);
+        return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
+    };
+    const double before = seconds(world.time() + step_);
+    while (auto step = run_changes_->next(before, world.scene(), place_of)) {
+        try {
+            if (step->restarts)
+                world.restart(std::move(step->scene));
+            else
+                world.change(std::move(step->scene), step->placed);
+        } catch (const FormatError& error) {
+            run_changes_->refuse(error.what());
+        }
+    }
+}
+
 /// Indices shift when a world changes, and members are added while the record is read.
 void Replay::find(const World& world) {
     if (changes_ != world.changes()) movers_.clear();
@@ -111,7 +131,9 @@ void Replay::collide(const World& world) {
             collisions_.push_back({i, std::nullopt, "something", time});
 }
 
-bool Replay::step(World& world) {
+bool Replay::step(World& world) { return step(world, true); }
+
+bool Replay::step(World& world, bool reads) {
     if (!is_ahead_) return false;
     const SimTime time = timeOf(reader_.time());
     const SimTime now = world.time() + step_;
@@ -120,11 +142,12 @@ bool Replay::step(World& world) {
         throw FormatError(
             {reader_.name(), 0, 0,
              "goes on at t=" + formatSimTime(time) + ", wanted t=" + formatSimTime(now)});
+    change(world);
     find(world);
     states_.resize(world.movers().size());
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
     if (is_empty) {
-        world.stepTo(states_, {});
+        reads ? world.stepTo(states_, {}) : world.passTo(states_);
         return true;
     }
     odometries_.assign(world.robots().size(), std::nullopt);
@@ -134,10 +157,37 @@ bool Replay::step(World& world) {
         states_[*mover] = statusOf(state);
         if (*mover < odometries_.size()) odometries_[*mover] = state.odometry;
     }
-    collide(world);
-    world.stepTo(states_, collisions_, odometries_);
+    if (reads) {
+        collide(world);
+        world.stepTo(states_, collisions_, odometries_);
+    } else {
+        world.passTo(states_);
+    }
     is_ahead_ = reader_.next();
     return true;
+}
+
+void Replay::rewind(World& world) {
+    RunReader again(folder_);
+    is_ahead_ = again.next() && (is_late_ || again.next());
+    reader_ = std::move(again);
+    movers_.clear();
+    if (run_changes_) run_changes_->rewind();
+    world.rewind();
+}
+
+void Replay::seek(World& world, SimTime time) {
+    if (time < world.time()) rewind(world);
+    // Every sensor is read once in its turn before that time.
+    double period = 0;
+    for (const RunSensor& sensor : world.sensors()) period = std::max(period, 1 / sensor.rate());
+    const double settle = period + 2 * seconds(step_);
+    while (world.time() + step_ <= time)
+        if (!step(world, seconds(time - world.time()) <= settle)) break;
+}
+
+std::optional<SimTime> Replay::end() const {
+    return info_.steps == 0 ? std::nullopt : std::optional(info_.steps * step_);
 }
 
 Motion motionOf(const RobotStatus& status) {

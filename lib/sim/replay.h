@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "layout/run_changes.h"
 #include "layout/run_reader.h"
 #include "sim/motion.h"
 #include "sim/sim_time.h"
@@ -37,21 +38,39 @@ class Replay {
     /// \throws FormatError as RunReader, and for a moment that is not one step after the last,
     /// unless the run had changed its world
     bool step(World& world);
-    /// When clients first changed the world of the run, which the replay does not do.
+    /// From now on the changes that clients made to the world of the run are made again, each
+    /// after the step after which it was made.
+    void makeChanges(RunChanges changes) { run_changes_.emplace(std::move(changes)); }
+    /// What became of the first change that could not be made; "" if all could.
+    [[nodiscard]] std::string failure() const {
+        return run_changes_ ? run_changes_->failure() : "";
+    }
+    /// Takes the world to its last step at or before a time, back or forth, or to the end of the
+    /// record. Sensors are read as if all steps had been taken one by one. \throws as step()
+    void seek(World& world, SimTime time);
+    /// When the record ends, as far as that is known.
+    [[nodiscard]] std::optional<SimTime> end() const;
+    /// When clients first changed the world of the run.
     [[nodiscard]] const std::optional<SimTime>& changedAt() const { return changed_; }
     /// True if the record ends with a moment that is not whole; known at its end.
     [[nodiscard]] bool isCut() const { return reader_.isCut(); }
 
   private:
+    bool step(World& world, bool reads);
+    void rewind(World& world);
+    void change(World& world);
     void find(const World& world);
     void collide(const World& world);
     [[nodiscard]] bool isEmptyAt(SimTime time) const;
 
+    std::string folder_;
     RunReader reader_;
     RunInfo info_;
     SimTime step_{};
     std::optional<SimTime> changed_;
+    std::optional<RunChanges> run_changes_;
     std::vector<RunState> start_;
+    bool is_late_ = false;                          // it has no moment of the start
     bool is_ahead_ = false;                         // the reader's moment is that of the next step
     std::vector<RobotStatus> states_;               // of all movers of the world
     std::vector<std::optional<Pose2>> odometries_;  // of all its robots

@@ -235,6 +235,40 @@ TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
     EXPECT_NE(again.odometry(0).pose.position, again.status(0).pose.position);
 }
 
+TEST_F(ReplayTest, SeeksBackAndForth) {
+    record();
+    // As step by step, whatever was sought before.
+    std::vector<RobotStatus> states;
+    std::vector<std::vector<float>> ranges;
+    {
+        Replay replay(folder_);
+        World world(scene_, kStep);
+        do {
+            states.push_back(world.status(0));
+            ranges.push_back(rangesOf(world, "l1"));
+        } while (replay.step(world));
+    }
+    Replay replay(folder_);
+    EXPECT_EQ(replay.end(), 200 * kStep);
+    World world(scene_, kStep);
+    for (const int step : {150, 20, 21, 199, 0, 200}) {
+        const auto i = static_cast<std::size_t>(step);
+        const std::int64_t changes = world.changes();
+        const bool is_back = step < world.steps();
+        replay.seek(world, step * kStep + kStep / 2);
+        EXPECT_EQ(world.steps(), step);
+        EXPECT_EQ(world.status(0).pose, states[i].pose) << step;
+        EXPECT_EQ(rangesOf(world, "l1"), ranges[i]) << step;
+        EXPECT_EQ(world.changes() > changes, is_back) << "indices may be others";
+    }
+    EXPECT_TRUE(replay.atEnd());
+    replay.seek(world, hours(1));
+    EXPECT_EQ(world.steps(), 200);
+    replay.seek(world, kStep);
+    EXPECT_TRUE(replay.step(world));
+    EXPECT_EQ(world.status(0).pose, states[2].pose);
+}
+
 TEST_F(ReplayTest, BeginsWithNobody) {
     writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0.06,r1,1,0,0\n0.08,r1,1.01,0,0\n");
     writeAll(path("info.csv"), "dt,control_interval,steps\n0.02,0.1,4\n");

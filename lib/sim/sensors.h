@@ -36,6 +36,11 @@ class SensorReader {
     /// After each step: follows those who move, and reads what is due, in parallel. Heavy
     /// sensors are left out.
     void read(SimTime time, const Movers& movers);
+    /// After a step that nobody looks at: what is due is read after a later one.
+    void pass(const Movers& movers) {
+        latest_.clear();
+        floor_.follow(movers);
+    }
     /// Before the first reading in another scene: those that stay as they are keep their last
     /// reading, and gates their counts.
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers);

@@ -109,10 +109,26 @@ void Simulation::giveScripted() {
     }
 }
 
+void Simulation::tellChange(std::string request, bool with_scene) {
+    std::string scene;
+    if (with_scene && recorder_ != nullptr) scene = recorder_->recordScene(world_->scene());
+    events_.add(EventKind::Change, std::move(request), std::move(scene));
+}
+
 void Simulation::replay(Replay& replay, bool holds) {
     replay_ = &replay;
     holds_ = holds;
     endIfReached();
+}
+
+void Simulation::seek(SimTime time, WallTime now) {
+    assert(maySeek());
+    owed_ = 0;
+    replay_->seek(*world_, std::min(time, until_));
+    events_.stepped();
+    endIfReached();
+    ahead_.reset();
+    if (started_) startAt(now);
 }
 
 void Simulation::step() {

@@ -49,6 +49,10 @@ class Simulation {
     [[nodiscard]] EventLog& events() { return events_; }
     [[nodiscard]] const EventLog& events() const { return events_; }
 
+    /// Says that the world was changed by this request, which a record holds.
+    /// \param with_scene it does not say all: the record gets the scene, too
+    void tellChange(std::string request, bool with_scene);
+
     /// Adds an observer, called after every step once it is recorded and the script's commands for
     /// the next one are given. It must stay valid until the last step.
     void onStep(std::function<void()> observer) { observers_.push_back(std::move(observer)); }
@@ -63,6 +67,19 @@ class Simulation {
     [[nodiscard]] bool isReplay() const { return replay_ != nullptr; }
     /// True if a record that is to hold has come to its end: there are no more steps.
     [[nodiscard]] bool isHeld() const { return holds_ && replay_ != nullptr && replay_->atEnd(); }
+
+    /// True if seek() may be called: the steps of this replay may be taken in any order.
+    [[nodiscard]] bool maySeek() const {
+        return replay_ != nullptr && recorder_ == nullptr && !is_in_order_;
+    }
+    /// Somebody needs the steps of a replay from the first to the last.
+    void keepOrder() { is_in_order_ = true; }
+    /// Takes a replay to a time, see Replay::seek; steps allowed are dropped. \pre maySeek()
+    void seek(SimTime time, WallTime now);
+    /// When a replay ends, as far as that is known.
+    [[nodiscard]] std::optional<SimTime> end() const {
+        return replay_ == nullptr ? std::nullopt : replay_->end();
+    }
 
     /// Always true with the clock Step.
     [[nodiscard]] bool paused() const { return paused_; }
@@ -123,7 +140,8 @@ class Simulation {
     std::size_t next_ = 0;               // of script_
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;
-    bool holds_ = false;  // at the end of the record
+    bool holds_ = false;        // at the end of the record
+    bool is_in_order_ = false;  // it is taken step by step
     Clock clock_;
     SimTime until_;
     std::vector<std::function<void()>> observers_;

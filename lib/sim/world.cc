@@ -221,6 +221,20 @@ void World::stepTo(std::span<const RobotStatus> states, std::span<const Collisio
     data.sensors.read(data.time, data.where());
 }
 
+void World::passTo(std::span<const RobotStatus> states) {
+    Data& data = *data_;
+    data.begin();
+    for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
+    data.sensors.pass(data.where());
+}
+
+void World::rewind() {
+    const std::int64_t changes = data_->changes + 1;
+    data_ = std::make_unique<Data>(data_->start, data_->step_length, data_->options);
+    data_->changes = changes;
+    data_->sensors.read(data_->time, data_->where());
+}
+
 void World::step() {
     Data& data = *data_;
     data.begin();

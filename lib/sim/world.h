@@ -161,6 +161,11 @@ class World {
     /// that is known. \pre as many states as movers(), and odometries as robots() or none
     void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
                 std::span<const std::optional<Pose2>> odometries = {});
+    /// The same, but sensors that are due are read after a later step: for steps that nobody looks
+    /// at. Mats and gates go on.
+    void passTo(std::span<const RobotStatus> states);
+    /// Back to time 0 and the scene of then, as it was made. Counts as a change.
+    void rewind();
 
     /// Goes on in another scene, between steps. What has the same id in both stays as it is: robots
     /// keep pose, motion, command and stall, unless `at` or `heading` of their record is another,

@@ -27,7 +27,8 @@ std::map<std::string_view, std::size_t> indexById(const auto& things) {
 }  // namespace
 
 World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOptions& run)
-    : scene(std::move(room)),
+    : scene(room),
+      start(std::move(room)),
       options(run),
       step_length(length),
       movers(moversOf(*scene)),
@@ -225,6 +226,7 @@ std::unique_ptr<World::Data> World::Data::next(
     Scene next_scene, const std::unordered_set<std::string_view>& stayers) const {
     auto after = std::make_unique<Data>(std::make_shared<const Scene>(std::move(next_scene)),
                                         step_length, options);
+    after->start = start;
     after->time = time;
     after->steps = steps;
     after->changes = changes + 1;

@@ -82,6 +82,7 @@ struct World::Data {
         Scene scene, const std::unordered_set<std::string_view>& stayers) const;
 
     std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const Scene> start;  // of the run
     RunOptions options;
     SimTime step_length, time{};
     std::int64_t steps = 0, changes = 0;

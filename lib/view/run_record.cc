@@ -33,19 +33,17 @@ RunRecord::RunRecord(RunReader reader) : name_(reader.name()) {
     if (steps_.empty()) throw FormatError({name_, 0, 0, "holds no pose of a robot"});
 }
 
-bool RunRecord::wasThereAtStart(std::size_t who) const {
+void RunRecord::checkStart(const Scene& scene) const {
+    // One that begins later began with nobody.
+    if (begin() > 0) return;
     for (const Step& step : steps_) {
-        if (step.time > begin()) return false;
-        if (step.who == who) return true;
+        if (step.time > begin()) return;
+        const RunMember& member = who_[step.who];
+        if (!has(scene, member.id))
+            throw FormatError({name_, 0, 0,
+                               std::string("the scene has no ") +
+                                   (member.is_person ? "person " : "robot ") + excerpt(member.id)});
     }
-    return false;
-}
-
-std::vector<std::string> RunRecord::joinedWithout(const Scene& scene) const {
-    std::vector<std::string> ids;
-    for (std::size_t who = 0; who < who_.size(); ++who)
-        if (!has(scene, who_[who].id) && !wasThereAtStart(who)) ids.push_back(who_[who].id);
-    return ids;
 }
 
 void RunRecord::apply(Scene& scene, double time) const {
@@ -55,11 +53,7 @@ void RunRecord::apply(Scene& scene, double time) const {
     for (auto step = steps_.begin(); step != later; ++step) poses[step->who] = step->pose;
     for (const auto& [who, pose] : poses) {
         const std::string& id = who_[who].id;
-        if (!has(scene, id) && !wasThereAtStart(who)) continue;
-        if (!has(scene, id))
-            throw FormatError({name_, 0, 0,
-                               std::string("the scene has no ") +
-                                   (who_[who].is_person ? "person " : "robot ") + excerpt(id)});
+        if (!has(scene, id)) continue;
         const auto robot = std::find_if(scene.robots.begin(), scene.robots.end(),
                                         [&id](const PlacedRobot& r) { return r.id == id; });
         if (robot != scene.robots.end())

@@ -20,12 +20,11 @@ class RunRecord {
     /// The first and last time, seconds.
     [[nodiscard]] double begin() const { return steps_.front().time; }
     [[nodiscard]] double end() const { return steps_.back().time; }
-    /// Puts robots and people where they were at the last step at or before this time, robots with
-    /// what they carry. Who joined the run later is passed over if the scene does not have it.
     /// \throws FormatError for one of the start that the scene does not have
+    void checkStart(const Scene& scene) const;
+    /// Puts robots and people where they were at the last step at or before this time, robots with
+    /// what they carry. Who is not in the scene is passed over.
     void apply(Scene& scene, double time) const;
-    /// Ids of those who joined the run later and that the scene does not have.
-    [[nodiscard]] std::vector<std::string> joinedWithout(const Scene& scene) const;
     /// The ways of all from the beginning up to this time, on the floor, without turns on
     /// the spot.
     [[nodiscard]] std::vector<std::vector<Point2>> waysUntil(double time) const;
@@ -36,7 +35,6 @@ class RunRecord {
         std::size_t who = 0;
         Pose2 pose;
     };
-    [[nodiscard]] bool wasThereAtStart(std::size_t who) const;
 
     std::string name_;
     std::vector<RunMember> who_;

@@ -210,19 +210,18 @@ TEST(RunRecord, PutsRobotsWhereTheyWere) {
 
 TEST(RunRecord, RefusesOtherRuns) {
     EXPECT_THROW(RunRecord(RunReader("t,id,x,y,heading_deg\n", "")), FormatError);
-    Scene scene = room();
+    const Scene scene = room();
     const RunRecord other(RunReader("t,id,x,y,heading_deg\n0,r9,0,0,0\n", ""));
-    EXPECT_THROW(other.apply(scene, 0), FormatError);
-    EXPECT_TRUE(other.joinedWithout(scene).empty());
+    EXPECT_THROW(other.checkStart(scene), FormatError);
 }
 
 TEST(RunRecord, PassesOverWhoJoinedLater) {
     Scene scene = room();
     const RunRecord run(
         RunReader("t,id,x,y,heading_deg\n0,r1,0,0,0\n1,r1,1,0.5,90\n1,r9,3,3,0\n", ""));
+    run.checkStart(scene);
     run.apply(scene, 1);
     EXPECT_EQ(scene.robots[0].pose, (Pose2{{1, 0.5}, Angle::degrees(90)}));
-    EXPECT_EQ(run.joinedWithout(scene), std::vector<std::string>{"r9"});
 }
 
 }  // namespace

@@ -48,3 +48,18 @@ with tempfile.TemporaryDirectory() as scratch:
               f"r1 is not where the record has it: {facts}")
         check(not page.part("run").is_enabled(), "the record can go on")
         page.screenshot("replay_1280.png")
+
+        # Back to the beginning and on by keys of the slider; r1 is where it was then.
+        slider = page.part("seek")
+        check(slider.is_displayed(), "there is no slider")
+        slider.send_keys(Keys.HOME)
+        eventually("the beginning", lambda: page.text("time") == "0.00 s" and page.facts()["x"] == 2)
+        for _ in range(20):
+            slider.send_keys(Keys.ARROW_RIGHT)
+        eventually("0.2 s later", lambda: page.text("time") == "0.20 s")
+        slider.send_keys(Keys.END)
+        eventually("the end again", lambda: abs(page.facts()["x"] - end_of_r1(folder)) < 0.002)
+        page.browser.set_window_size(400, 800)
+        wide = page.browser.execute_script("return document.documentElement.scrollWidth")
+        check(slider.is_displayed() and wide <= 400, f"the slider makes the page {wide} pixels wide")
+        page.screenshot("replay_400.png")

@@ -12,6 +12,7 @@
 #include "base/run_files.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
+#include "cli/recorded_changes.h"
 #include "cli/run_tool.h"
 #include "cover/coverage_formats.h"
 #include "cover/run_sight.h"
@@ -123,8 +124,11 @@ SceneInput readInput(const CoverageToolOptions& options) {
 std::optional<RunSight> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
     if (options.run.empty()) return std::nullopt;
     RunReader reader(options.run);
-    RunSight run = measureRun(scene, reader,
-                              {.plane = options.measure.plane, .density = options.measure.density});
+    RunChanges changes = changesOfRun(options.run, scene);
+    RunSight run =
+        measureRun(scene, reader,
+                   {.plane = options.measure.plane, .density = options.measure.density}, &changes);
+    if (!changes.failure().empty()) warn(options.common, "coverage", changes.failure());
     run.name = baseName(options.run);
     if (reader.isCut())
         warn(options.common, "coverage",

@@ -11,6 +11,7 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "cli/recorded_changes.h"
 #include "raster/encode.h"
 #include "render/render.h"
 #include "scan/options.h"
@@ -129,6 +130,12 @@ class PictureFiles {
     bool is_jpeg_;
 };
 
+/// What clients did to the world of a run before a time.
+void makeChanges(RunChanges& changes, Scene& scene, double time) {
+    const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+    while (auto step = changes.next(time, scene, unknown)) scene = std::move(step->scene);
+}
+
 }  // namespace
 
 void addViewOptions(CommandLine& line, ViewToolOptions& options) {
@@ -192,16 +199,12 @@ void takeViews(const ScanCommand& command) {
     Scene scene = input.scene;
     std::vector<std::string> files = filesOf(input);
     std::optional<RunRecord> run;
+    std::optional<RunChanges> changes;
     if (!options.view.run.empty()) {
         run.emplace(RunReader(options.view.run));
+        run->checkStart(scene);
+        changes.emplace(changesOfRun(options.view.run, scene));
         files.push_back(RecordedFiles(options.view.run).robots);
-        if (const auto joined = run->joinedWithout(scene); !joined.empty())
-            warn(options.common, "scan",
-                 joined.front() +
-                     (joined.size() > 1 ? " and " + std::to_string(joined.size() - 1) + " more"
-                                        : "") +
-                     " joined the run later and " + (joined.size() > 1 ? "are" : "is") +
-                     " left out: not in the scene");
     }
     const int frames = options.frames.value_or(1);
     const std::vector<ViewSpec>& views = options.view.views;
@@ -218,6 +221,7 @@ void takeViews(const ScanCommand& command) {
             // One picture is of the end.
             const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
             const double time = run->begin() + share * (run->end() - run->begin());
+            makeChanges(*changes, scene, time);
             run->apply(scene, time);
             drawing.ways = run->waysUntil(time);
         }
@@ -228,6 +232,7 @@ void takeViews(const ScanCommand& command) {
         pictures.write(views, frame, {options, scene, drawing, *progress});
     }
     progress->end();
+    if (run && !changes->failure().empty()) warn(options.common, "scan", changes->failure());
     const std::vector<std::string> textures = textureFiles(scene);
     files.insert(files.end(), textures.begin(), textures.end());
     writeDependencies(options.common, files);

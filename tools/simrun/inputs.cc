@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
+#include "cli/recorded_changes.h"
 
 namespace ispace {
 
@@ -29,6 +30,7 @@ std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
 std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
     if (options.replay.empty()) return std::nullopt;
     Replay replay(options.replay);
+    if (replay.changedAt()) replay.makeChanges(changesOfRun(options.replay, scene));
     replay.placeAtStart(scene);
     return replay;
 }

@@ -38,6 +38,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
     judge.observe();
     simulation.onStep([&judge] { judge.observe(); });
+    if (!options.expected.empty()) simulation.keepOrder();
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
@@ -78,18 +79,22 @@ void simrun(const SimrunCommand& command) {
     warnOfLeftOut(input.scene, options.common);
     warn(options.common, "simrun", outsideWarnings(input.scene));
     std::optional<Replay> replay = openReplay(options, input.scene);
+    if (!options.drawing.format.empty() && replay) warnOfChanges(*replay, options.common);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
     if (options.noise) warnOfNoNoise(input.scene, !replay, options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
                 runOptionsOf(options, replay));
     warn(options.common, "simrun", startWarnings(world));
-    if (replay) warnOfChanges(*replay, options.common);
     if (replay) forward(*replay, world, options.from);
     Simulation simulation(world, scriptOf(options, input, world), options.clock, options.until);
     if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
-    if (!replay) simulation.onStep([&collisions] { collisions.tell(); });
+    FailureLog failures(replay, options.common);
+    if (replay)
+        simulation.onStep([&failures] { failures.tell(); });
+    else
+        simulation.onStep([&collisions] { collisions.tell(); });
     serve(simulation, command, input, replay);
 }
 

@@ -50,6 +50,9 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
     record.noise = simulation.world().options().sensor_noise;
     record.odometry = odometry;
     record.scene = sceneText(scene, history, options.record);
+    record.scene_text = [history, folder = options.record + "/scenes"](const Scene& loaded) {
+        return sceneText(loaded, history, folder);
+    };
     record.frame_rate = options.recorded_frames;
     record.max_bytes = options.max_recorded;
     auto running = std::make_unique<RunningRecord>(options, simulation, record);

@@ -59,12 +59,18 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
          "odometry_noise or start_noise");
 }
 
+void FailureLog::tell() {
+    if (is_told_ || replay_ == nullptr) return;
+    const std::string failure = replay_->failure();
+    is_told_ = !failure.empty();
+    if (is_told_) warn(*options_, kTool, failure);
+}
+
 void warnOfChanges(const Replay& replay, const CommonOptions& options) {
     if (const auto& time = replay.changedAt())
         warn(options, kTool,
              "the world of the run was changed at t=" + formatMilliseconds(*time) +
-                 ": it is replayed in the scene of its start, and who was taken out stays where "
-                 "it was last");
+                 ": the room is drawn as it was at the start");
 }
 
 void warnOfLeftOut(const Scene& scene, const CommonOptions& options) {

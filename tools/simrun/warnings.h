@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "cli/common_options.h"
 #include "layout/scene.h"
 #include "sim/replay.h"
@@ -25,7 +27,20 @@ class CollisionLog {
 /// Says so if no sensor has noise, nor a robot that moves by itself.
 void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
 
-/// Says that a replay goes on in the scene of the start of a run that changed its world.
+/// Says once what change of a recorded run cannot be made again.
+class FailureLog {
+  public:
+    FailureLog(const std::optional<Replay>& replay, const CommonOptions& options)
+        : replay_(replay ? &*replay : nullptr), options_(&options) {}
+    void tell();
+
+  private:
+    const Replay* replay_;
+    const CommonOptions* options_;
+    bool is_told_ = false;
+};
+
+/// Says that a run changed its world, of which the picture shows the start.
 void warnOfChanges(const Replay& replay, const CommonOptions& options);
 
 /// Says what takes no part: sensors without a place, and what is not simulated yet.

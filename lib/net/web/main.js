@@ -7,12 +7,14 @@ import {Movers} from './movers.js';
 import {Driver} from './drive.js';
 import {Cameras} from './camera.js';
 import {eventText} from './events.js';
+import {SeekBar} from './seek.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
 const view = new View(canvas);
 const drivers = new Map();  // by id
 const cameras = new Cameras(part, why => tell(why, true));
+const seekBar = new SeekBar(part('seek'), tell);
 let plan, movers, frame, selected, following = false, fitted = false;
 let link, dirty = false, asked = false;
 
@@ -24,7 +26,10 @@ function connect() {
       banner('');
       link.takeRole('WORLD').then(answer => {
         if (answer.startsWith('ERR')) tell(complaint(answer), true);
-        else link.ask('EVENTS');
+        else {
+          link.ask('EVENTS');
+          seekBar.open(link);
+        }
       });
       link.send('FRAME');
       asked = true;
@@ -140,6 +145,7 @@ function paceOf(next) {
 
 function showClock(next) {
   part('time').textContent = `${next.t.toFixed(2)} s`;
+  seekBar.show(next.t);
   const rate = paceOf(next);
   part('pace').textContent = (next.replay ? 'record, ' : '') + (next.over ? 'at its end' : next.paused ? 'paused' : rate);
   document.body.classList.toggle('paused', next.paused);
@@ -154,7 +160,7 @@ function showHelp(is_replay) {
   part('pad').hidden = !selected || is_replay;
   part('pad').classList.toggle('sidles', selected?.side > 0);
   part('hint').textContent = is_replay ?
-    'This is a record: pause it, take single steps, follow who is in it.' :
+    'This is a record: pause it, take single steps, go to a time by the slider, follow who is in it.' :
     !selected ? 'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.' :
     `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go.`;
 }
@@ -278,6 +284,7 @@ window.addEventListener('keydown', event => {
   if (!plan || event.ctrlKey || event.metaKey || event.altKey) return;
   const onButton = event.target.closest?.('button, input');
   if (onButton && event.key === ' ') return;  // presses that
+  if (onButton === part('seek') && event.key in arrows) return;  // moves that
   if (key(keyName(event), true, event.repeat)) event.preventDefault();
 });
 window.addEventListener('keyup', event => { if (plan && keyName(event) in arrows) key(keyName(event), false); });

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/recorded_changes.h"
+
+#include "cli/common_options.h"
+#include "cli/operands.h"
+
+namespace ispace {
+
+RunChanges changesOfRun(const std::string& folder, const Scene& start) {
+    return {folder, start, loadDevices(shareFolder() + "/devices"), [](const std::string& file) {
+                return readScene({{file}, true, false}).scene;
+            }};
+}
+
+}  // namespace ispace
