@@ -32,7 +32,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 11> files = {{
+    static const std::array<WebFile, 12> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
