@@ -59,7 +59,13 @@ with tempfile.TemporaryDirectory() as scratch:
         eventually("0.2 s later", lambda: page.text("time") == "0.20 s")
         slider.send_keys(Keys.END)
         eventually("the end again", lambda: abs(page.facts()["x"] - end_of_r1(folder)) < 0.002)
-        page.browser.set_window_size(400, 800)
-        wide = page.browser.execute_script("return document.documentElement.scrollWidth")
-        check(slider.is_displayed() and wide <= 400, f"the slider makes the page {wide} pixels wide")
-        page.screenshot("replay_400.png")
+
+        with Page(run.url, 400, 800) as phone:
+            slider = phone.part("seek")
+            eventually("the slider", slider.is_displayed)
+            wide = phone.browser.execute_script("return document.documentElement.scrollWidth")
+            check(wide <= 400, f"the page is {wide} pixels wide")
+            slider.send_keys(Keys.HOME)
+            eventually("the beginning", lambda: phone.text("time") == "0.00 s")
+            eventually("the other page", lambda: page.text("time") == "0.00 s")
+            phone.screenshot("replay_400.png")
