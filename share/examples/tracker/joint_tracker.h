@@ -25,8 +25,9 @@ class JointTracker {
         for (const std::vector<Cluster>& clusters : seen) share(clusters, strangers);
         greet(time, strangers);
         tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
-                                     [this](const Track& track) { return isGone(track); }),
+                                     [](const Track& track) { return isGone(track); }),
                       tracks_.end());
+        eraseDoubles(tracks_, kSame, kSure);
     }
 
     /// Those that are sure enough to be told of.
@@ -43,6 +44,7 @@ class JointTracker {
     static constexpr double kBothSigma = 0.05;  // m: the middle of both
     static constexpr double kRobotSigma = 0.06;
     static constexpr double kGate = 9;        // standard deviations, squared
+    static constexpr double kNobody = 30;     // more than any within the gate
     static constexpr double kApart = 0.45;    // m: nobody stands nearer to anybody else
     static constexpr double kSame = 0.2;      // m: two tracks so near are of the same person
     static constexpr double kPatience = 1.5;  // s
@@ -50,19 +52,21 @@ class JointTracker {
 
     static double sigmaOf(Kind kind) { return kind == Kind::Leg ? kLegSigma : kRobotSigma; }
 
-    /// Each cluster to a place of a track, or to none, which costs the gate.
+    /// Each cluster to a place of a track, or to none, which costs most. The likeliest
+    /// whole is the cheapest, so that a track that has lost its person takes nobody else's legs.
     void share(const std::vector<Cluster>& clusters, std::vector<Cluster>& strangers) {
         const auto rows = static_cast<Eigen::Index>(clusters.size());
         const auto places = static_cast<Eigen::Index>(kLegs * tracks_.size());
         if (rows == 0) return;
-        Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, places + rows, kGate);
+        Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, places + rows, kNobody);
         for (Eigen::Index row = 0; row < rows; ++row) {
             const Cluster& cluster = clusters[static_cast<std::size_t>(row)];
             for (Eigen::Index place = 0; place < places; ++place) {
                 const Track& track = tracks_[static_cast<std::size_t>(place / kLegs)];
-                const double far = track.distance(cluster.centre, sigmaOf(cluster.kind));
+                const double sigma = sigmaOf(cluster.kind);
+                const double far = track.distance(cluster.centre, sigma);
                 // What is beyond the gate must never pay.
-                cost(row, place) = far < kGate ? far : 1000 * kGate;
+                cost(row, place) = far < kGate ? far + track.vagueness(sigma) : 1000 * kNobody;
             }
         }
         const std::vector<int> chosen = assign(cost);
@@ -111,11 +115,8 @@ class JointTracker {
         });
     }
 
-    bool isGone(const Track& track) const {
-        if (track.unseen() > (track.hits() >= kSure ? kPatience : 0.3)) return true;
-        return std::any_of(tracks_.begin(), tracks_.end(), [&track](const Track& other) {
-            return other.id() < track.id() && (other.place() - track.place()).norm() < kSame;
-        });
+    static bool isGone(const Track& track) {
+        return track.unseen() > (track.hits() >= kSure ? kPatience : 0.3);
     }
 
     Tracks tracks_;

@@ -36,8 +36,9 @@ class SeparateTracker {
             tracks_.back().update(people[i].surface, kSigma, people[i].kind);
         }
         tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
-                                     [this](const Track& track) { return isGone(track); }),
+                                     [](const Track& track) { return track.unseen() > kPatience; }),
                       tracks_.end());
+        eraseDoubles(tracks_, kSame, kSure);
     }
 
     /// Those that are sure enough to be told of.
@@ -77,13 +78,6 @@ class SeparateTracker {
             people.push_back(person);
         }
         return people;
-    }
-
-    bool isGone(const Track& track) const {
-        if (track.unseen() > kPatience) return true;
-        return std::any_of(tracks_.begin(), tracks_.end(), [&track](const Track& other) {
-            return other.id() < track.id() && (other.place() - track.place()).norm() < kSame;
-        });
     }
 
     Tracks tracks_;

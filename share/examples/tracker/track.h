@@ -2,6 +2,11 @@
 #ifndef TRACKER_TRACK_H
 #define TRACKER_TRACK_H
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 
@@ -30,7 +35,7 @@ class Track {
         now_ = time;
         Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
         step.topRightCorner<2, 2>() = dt * Eigen::Matrix2d::Identity();
-        // Nobody goes on for ever unseen.
+        // Nobody goes on for ever unseen. The damping is that of a scan, for ten or so a second.
         if (unseen() > 0.5) step.bottomRightCorner<2, 2>() *= 0.8;
         Eigen::Matrix<double, 4, 2> push;
         push << dt * dt / 2 * Eigen::Matrix2d::Identity(), dt * Eigen::Matrix2d::Identity();
@@ -44,6 +49,12 @@ class Track {
     double distance(const Vector2d& place, double sigma) const {
         const Vector2d off = place - state_.head<2>();
         return off.dot(spread(sigma).inverse() * off);
+    }
+
+    /// How much less likely any one place is for being spread wide: the logarithm of how many times
+    /// the spread is that of the measurement alone, squared, as distance() is.
+    double vagueness(double sigma) const {
+        return std::log(spread(sigma).determinant()) - 4 * std::log(sigma);
     }
 
     void update(const Vector2d& place, double sigma, Kind kind) {
@@ -73,6 +84,26 @@ class Track {
 
 /// Tracks hold fixed-size vectors of Eigen.
 using Tracks = std::vector<Track, Eigen::aligned_allocator<Track>>;
+
+/// Gives up one of each two tracks that are nearer to each other than `same`, in m: they are of one
+/// person. The one to go is not sure yet, that is has less than `sure` hits, or is longer unseen,
+/// or is younger, in this order.
+inline void eraseDoubles(Tracks& tracks, double same, int sure) {
+    const auto rank = [sure](const Track& track) {
+        return std::make_tuple(track.hits() < sure, track.unseen(), track.id());
+    };
+    std::vector<int> doubles;
+    for (const Track& one : tracks)
+        for (const Track& other : tracks)
+            if (rank(other) < rank(one) && (other.place() - one.place()).norm() < same)
+                doubles.push_back(one.id());
+    tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                                [&doubles](const Track& track) {
+                                    return std::find(doubles.begin(), doubles.end(), track.id()) !=
+                                           doubles.end();
+                                }),
+                 tracks.end());
+}
 
 }  // namespace tracker
 
