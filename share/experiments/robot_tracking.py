@@ -30,13 +30,15 @@ def draw(lab, outcome):
 
 def run(lab):
     lab.text("The robot of the experiment before drives once more, as simrun replays its record to the tracker of share/"
-             "examples/tracker. The thesis finds big biases in the tracks of both sensors and suspects the model of "
-             "the robot: whoever takes the middle of what is seen for the robot's place is too near to the "
+             "examples/tracker. The thesis finds big biases in the tracks of both sensors, for which it expects two "
+             "reasons: the error grows when the target does not move in a line, and the model of the robot in the "
+             "tracker does not match. Of the second: whoever takes the middle of what is seen for the robot's place is too near to the "
              "sensor. The joint tracker knows it as a disc of 0.2 m and follows it with both sensors.")
     lab.scene("ispace.env", "ispace.3dm")
     lab.given("two lasers, drawn as red arrows, track the simulated robot", "section 5.2.2, fig. 5.6 and 5.9 b")
     lab.assumption("Where the lasers stand; their range of 8 m; that the thesis' tracker takes the middle of what a "
                    "sensor sees for the robot's place.")
+    lab.assumption("Ranges have no noise; it is one drive.")
     lab.tool("envc", "ispace.env", "--slice", "0.1", "--resolution", "0.02", "--to", "ros", "-o", "map.yaml")
     with lab.serve("ispace.env", "ispace.3dm", "--clock", "step", "--record", "run") as port:
         lab.tool("avoid", "map.yaml", "0.5,2,-90", "0.5,-2", "-rrtp", port)
@@ -48,7 +50,12 @@ def run(lab):
         verdict = outcome.verdicts[source]
         lab.row(f"Mean error of the place, {name}", None if source == "joint" else "biased", verdict.mean, "m",
                 digits=3, bound=(0, 0.1) if source == "joint" else (0.1, 0.4))
-        lab.row(f"95th percentile of the errors, {name}", None, verdict.percentile95, "m", digits=3)
-        lab.row(f"Followed, {name}", None, 100 * verdict.followed, "% of the time", digits=0)
+        lab.row(f"95th percentile of the errors, {name}", None, verdict.percentile95, "m", digits=3,
+                bound=(0, 0.13) if source == "joint" else None)
+        lab.row(f"Followed, {name}", None, 100 * verdict.followed, "% of the time", digits=0,
+                bound=(98, 100) if source == "joint" else None)
+    late = Outcome(lab, "tracks.csv", "run", begin=2).verdicts["joint"]
+    lab.row("95th percentile of the errors, both, from 2 s on", None, late.percentile95, "m", digits=3, bound=(0, 0.1),
+            note="Before, the robot still covers the place where it stood at first, which the tracker took for background.")
     lab.require(outcome.verdicts["joint"].switches == 0, "the robot has several joint tracks")
     draw(lab, outcome)

@@ -76,21 +76,23 @@ def match(truth, tracks, before, near):
     return found
 
 
-def judge(truth, tracks, near=NEAR, begin=0.0):
-    """A Verdict on one source; what is before `begin`, in seconds, does not count."""
+def judge(truth, sources, name, near=NEAR, begin=0.0):
+    """A Verdict on one of the sources; what is before `begin`, in seconds, does not count. A source that has no track
+    at a time that another has one follows nobody then."""
     verdict, last, owner = Verdict(), {}, {}
-    for at in sorted(tracks):
+    for at in sorted(set().union(*sources.values())):
         if at < 1000 * begin or at not in truth:
             continue
-        found = match(truth[at], tracks[at], last, near)
+        tracks = sources[name].get(at, {})
+        found = match(truth[at], tracks, last, near)
         verdict.present += len(truth[at])
-        verdict.false += len(tracks[at]) - len(found)
+        verdict.false += len(tracks) - len(found)
         for who, track in found.items():
-            verdict.errors.append(math.dist(truth[at][who], tracks[at][track]))
+            verdict.errors.append(math.dist(truth[at][who], tracks[track]))
             if last.get(who, track) != track:
                 verdict.switches += 1
             last[who] = track
-        for track, place in tracks[at].items():
+        for track, place in tracks.items():
             who = min(truth[at], key=lambda one: math.dist(truth[at][one], place))
             if math.dist(truth[at][who], place) <= near / 2:
                 verdict.handovers += owner.get(track, who) != who
@@ -106,8 +108,9 @@ def main():
     parser.add_argument("--begin", type=float, default=3, help="seconds that do not count")
     args = parser.parse_args()
     truth = read_truth(args.record)
-    for source, tracks in sorted(read_tracks(args.tracks).items()):
-        verdict = judge(truth, tracks, args.near, args.begin)
+    sources = read_tracks(args.tracks)
+    for source in sorted(sources):
+        verdict = judge(truth, sources, source, args.near, args.begin)
         print(f"{source}: error {verdict.mean:.3f} m in the mean, {verdict.percentile95:.3f} m at 95 %; followed "
               f"{100 * verdict.followed:.1f} %; {verdict.switches} identity switches, tracks went over {verdict.handovers} times, "
               f"{verdict.false} false places")
