@@ -3,7 +3,9 @@
 """Finds the kerbs of a road by a laser that is tilted down, standing or on a robot that drives along it.
 
     simrun road.env road.3dm --clock step --listen 127.0.0.1:7001 &
+    sleep 1
     road_side.py 127.0.0.1:7001 front --height 0.5 --tilt -30
+    kill $!; wait
 
 The beams meet the road on a line across it; where that bends up there is a kerb. Prints where both kerbs are,
 fitted through all scans: how far to the side of the start, in which direction, how high. With --drive r1,6 the

@@ -92,8 +92,10 @@ class Lab:
     def serve(self, *args, shown=True):
         """A simrun with these arguments that serves clients on a port (the value, for tool()) as long as
         the block lasts. With --clock step what clients get does not depend on the machine."""
+        start = _line("simrun", [*args, "--listen", f"127.0.0.1:{Port.SHOWN}"]) + " &\nsleep 1"
+        shown = shown and start not in self.commands
         if shown:
-            self.command(_line("simrun", [*args, "--listen", f"127.0.0.1:{Port.SHOWN}"]) + " &")
+            self.command(start)
         with subprocess.Popen([self._program("simrun"), *map(_argument, args), "-q", "--listen",
                                "127.0.0.1:0"], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True,
@@ -106,6 +108,8 @@ class Lab:
             finally:
                 server.terminate()
                 server.communicate(timeout=PATIENCE)
+                if shown:
+                    self.commands.append("kill $!; wait")  # as often as a simrun has begun
 
     def json(self, name, *args, shown=True):
         """The report of a tool as a value."""

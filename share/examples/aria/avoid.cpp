@@ -7,8 +7,9 @@
 //   cd share/scenes
 //   envc ispace.env --slice 0.1 --resolution 0.02 -o map.yaml
 //   simrun ispace.env ispace.3dm --clock step --listen 127.0.0.1:7001 --record run &
+//   sleep 1
 //   avoid map.yaml 0.5,2,-90 0.5,-2 -rrtp 7001 -o way.csv
-//   kill %1
+//   kill $!; wait
 //   simrun --replay run -o ways.svg
 //
 // Written for ARIA: on a real Pioneer, only the include path changes. With `--clock step` the world

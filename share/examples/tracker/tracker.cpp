@@ -6,8 +6,9 @@
 //
 //   cd share/scenes
 //   simrun tracking.env walkers.3dm --clock step --listen 127.0.0.1:7001 --record run &
+//   sleep 1
 //   tracker 127.0.0.1:7001 walkers.3dm --until 60 -o tracks.csv
-//   kill %1
+//   kill $!; wait
 //   python3 ../examples/tracker/judge_tracks.py tracks.csv run
 //
 // The layout tells where the lasers stand. tracks.csv has a row for each track and scan:
