@@ -22,7 +22,7 @@ def place(lab, file, range_m, *options):
 def run(lab):
     lab.text("Two lasers are placed along the walls of a small place between barriers, with the parameters of "
              "the table. The text gives their effective distance once as 4 m and once as 3 m, and the coverage "
-             "as 97.4 and 97.5 %; both ranges are shown.")
+             "for 3 m by its table as 97.4 %, by its text as 97.5 %; both ranges are shown.")
     lab.scene("tracking.env")
     lab.given("Along Wall with dist = 0.05 m and times = 11; poses and coverage", "table 5.2")
     lab.given("two sensors of 180 degrees; 4 m before the arrangement, 3 m with its result; two chairs",
@@ -41,12 +41,14 @@ def run(lab):
                     "The table has two decimals, ours is a twelfth of the fitted wall.")
         lab.row(f"3 m: sensor {k}, heading", f"{'180' if k == 1 else '135'}°, ours {thesis[2]}°".replace("-", "−"),
                 found[2], "°", bound=(thesis[2] - 0.1, thesis[2] + 0.1), digits=1)
-        lab.row(f"3 m: sensor {k}, distance between the places", 0,
+        lab.row(f"3 m: sensor {k}, distance between the places", None,
                 math.hypot(found[0] - thesis[0], found[1] - thesis[1]), "m", bound=(0, 0.02), digits=3,
                 note="The two above together.")
-    lab.row("3 m: coverage", 97.4, three["coverage"], "%", bound=(96.4, 98.4),
+    lab.row("3 m: coverage, by the table", 97.4, three["coverage"], "%", bound=(96.4, 98.4),
             note="The outline of the room is fitted to the poses, which leaves this difference.")
-    lab.row("4 m: coverage", 97.5, four["coverage"], "%",
+    lab.row("3 m: coverage, by the text", 97.5, three["coverage"], "%", bound=(96.4, 98.4),
+            note="As above: the thesis has two figures for this arrangement.")
+    lab.row("4 m: coverage", None, four["coverage"], "%",
             note="With 4 m other places are better, so the table's poses are those of 3 m.")
     lab.row("3 m, any place, proven best: coverage", None, best["coverage"], "%")
     lab.require(best["coverage"] >= three["coverage"], "the best anywhere is worse than along walls")

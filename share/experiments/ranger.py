@@ -47,7 +47,8 @@ def near_and_far(lab):
 
 def spectrum(lab):
     lab.text("In fig. 3.27 the background of the real sensor is blue and full of noise, and that of the "
-             "simulated one is red: its spectrum could not be set. Here it can (--spectrum). The real sensor's "
+             "simulated one is red: the real sensor does not show the values of its spectrum, so the thesis could only "
+             "approach them. Here they can be set (--spectrum). The real sensor's "
              "distances repeat after 7.5 m, so a wall at the end of its range breaks up into blue and red.")
     lab.write("deep.env", "#env 1\nispace at=1.2,0 size=7.6,7,4\ncube at=0.25,0 size=0.5,0.6,0.6\n"
               "cylinder at=0.3,-0.7 size=0.4,0.4,0.8\nchair at=0.4,0.8 heading=200\n")

@@ -23,18 +23,23 @@ def place(lab, room, file, *options, sensors=SENSORS, shown=True):
 
 
 def random_runs(lab, room, seeds, sensors=SENSORS):
-    """The coverage for each seed."""
+    """The results for each seed."""
     lab.command(f"for seed in $(seq {seeds[0]} {seeds[-1]}); do arrange {room} --sensor {sensors} "
                 f"{' '.join(RANDOM)} --seed $seed -q -o random-$seed.3dm; done")
     return [place(lab, room, f"random-{seed}.3dm", *RANDOM, "--seed", seed, sensors=sensors,
-                  shown=False)["coverage"] for seed in seeds]
+                  shown=False) for seed in seeds]
+
+
+def median(results):
+    """Of their coverages."""
+    return statistics.median(result["coverage"] for result in results)
 
 
 def table(lab):
     grid = place(lab, "facilities.env", "grid.3dm", *GRID)
     wall = place(lab, "facilities.env", "wall.3dm", *WALL)
     seeds = lab.seeds(101, 11)
-    shares = random_runs(lab, "facilities.env", seeds)
+    shares = [run["coverage"] for run in random_runs(lab, "facilities.env", seeds)]
     middle = statistics.median(shares)
     best = place(lab, "facilities.env", "best.3dm", "--optimize", "exact")
     lab.row("Ordinary Grid, X = Y = 11, Deg = 8: coverage", THESIS["grid"], grid["coverage"], "%",
@@ -49,7 +54,7 @@ def table(lab):
             " > ".join(name for _, name in sorted([(-grid["coverage"], "grid"), (-middle, "random"),
                                                    (-wall["coverage"], "wall")])))
     lab.require(grid["coverage"] >= wall["coverage"] > middle, "the order is not grid ≥ wall > random")
-    lab.row("Our best of 26 000 poses (--optimize exact): coverage", None, best["coverage"], "%")
+    lab.row(f"Our best of {int(best['candidates'])} poses (--optimize exact): coverage", None, best["coverage"], "%")
     lab.row("No choice among them covers more than", None, best["bound"], "%",
             note="The bound is met: the best is proven.")
     lab.require(best["bound"] <= best["coverage"] + 0.01, "the best is not proven")
@@ -62,7 +67,7 @@ def times(lab, grid, wall):
              "timings.csv):")
     for name, scans, rate, thesis, note in (
             ("Ordinary Grid", int(grid["candidates"]), 330, 520,
-             "121 places with 8 headings, less those that stand in things, of which the lost room had one fewer."),
+             "121 places with 8 headings, less those that stand in things; the thesis' time is that of 948."),
             ("Along Wall", int(wall["candidates"]), 320, 110,
              "Fits if the first and the last third of a wall's places are tried with three headings, and "
              "those in the middle with one: the thesis asks for more at the ends of a wall."),
@@ -101,7 +106,7 @@ def cluttered_walls(lab):
     seeds = lab.seeds(21, 3)
     grid = place(lab, "crowded.env", "crowded-grid.3dm", *GRID)["coverage"]
     wall = place(lab, "crowded.env", "crowded-wall.3dm", *WALL)["coverage"]
-    random = statistics.median(random_runs(lab, "crowded.env", seeds))
+    random = median(random_runs(lab, "crowded.env", seeds))
     lab.row("Cluttered walls: Ordinary Grid", "better", grid, "%")
     lab.row("Cluttered walls: Hierarchical Random, median", "better", random, "%")
     lab.row("Cluttered walls: Along Wall", "not well", wall, "%")
@@ -116,7 +121,7 @@ def wide_views(lab):
         sensors = f"laser,range=4,fov={fov}:3"
         grid = place(lab, "facilities.env", f"grid-{fov}.3dm", *GRID, sensors=sensors)["coverage"]
         wall = place(lab, "facilities.env", f"wall-{fov}.3dm", *WALL, sensors=sensors)["coverage"]
-        random = statistics.median(random_runs(lab, "facilities.env", seeds, sensors))
+        random = median(random_runs(lab, "facilities.env", seeds, sensors))
         lab.row(f"{fov}°: Ordinary Grid", "exceeds", grid, "%")
         lab.row(f"{fov}°: Hierarchical Random, median", "exceeds", random, "%")
         lab.row(f"{fov}°: Along Wall", "exceeded by both", wall, "%")
@@ -131,14 +136,19 @@ def wide_rooms(lab):
         room = f"room-{side}.env"
         lab.write(room, f"#env 1\nispace size={side},{side},2.5\n")
         grid = place(lab, room, f"grid-{side}.3dm", "--strategy", "grid")
-        random = statistics.median(random_runs(lab, room, seeds))
+        wall = place(lab, room, f"wall-{side}.3dm", *WALL)
+        runs = random_runs(lab, room, seeds)
+        random = median(runs)
         lab.row(f"{side} m: Ordinary Grid, {int(grid['candidates'])} scans", None, grid["coverage"], "%")
-        note = "" if side < 32 else (
-            "Random is said to be the better one in wide rooms. It is as good within a point, for a "
-            "twentieth of the scans: in an empty wide room three sensors anywhere cover nearly the same.")
-        lab.row(f"{side} m: Hierarchical Random, 600 scans, median", "outperforms" if side > 8 else None,
-                random, "%", note=note)
-        lab.require(side == 8 or abs(random - grid["coverage"]) < 1, f"{side} m: random and grid differ")
+        lab.row(f"{side} m: Along Wall, {int(wall['candidates'])} scans", None, wall["coverage"], "%")
+        wide = side > 8
+        better = sum(random > other["coverage"] for other in (grid, wall))
+        lab.row(f"{side} m: Hierarchical Random, {int(runs[0]['candidates'])} scans, median",
+                "outperforms" if wide else None, random, "%",
+                bound=(0.95 * grid["coverage"], 1.05 * grid["coverage"]) if wide else None,
+                note="" if not wide else f"Better than {('neither', 'one', 'both')[better]} of the other two: in an "
+                "empty wide room three sensors anywhere cover nearly the same. What random does not need there is "
+                "more scans.")
 
 
 def run(lab):
@@ -148,9 +158,10 @@ def run(lab):
     lab.given("three lasers with an effective distance of 4 m and a range of 180 degrees", "section 4.6.1")
     lab.given("X = Y = 11, Deg = 8; R1 = 20, R2 = 5, Deg = 8; dist = 0.05 m, times = 21", "table 4.1")
     lab.given("100 x 100 cells, coverage by cells", "sections 4.5.2 and 4.5.3")
-    lab.given("walls are mostly free in the room of the table", "section 4.6.2")
     lab.assumption("The cluttered room (crowded.env) and the empty wide rooms; that a disc of a fifth of the range "
-                   "is the scope of R2; that random draws anew for each sensor.")
+                   "is the scope of R2; that random draws anew for each sensor; that walls "
+                   "are mostly free in the room of the table, where Along Wall does well (section 4.6.2); that one beam is "
+                   "one picture, as section 3.4.3 i has it: so we read the average FPS of table 4.1.")
     lab.fitted("The room facilities.env: 8 m by 8 m like the ZPS zone, things of kinds that the thesis has, at "
                "places found by search so that the three coverages and their order come out.")
     lab.fitted("That a third of a wall's places counts as its end: read off the thesis' times.")
