@@ -61,12 +61,13 @@ int frontOf(const Laser& laser) {
 
 std::string ScipModel::refusal(const Laser& laser) {
     if (laser.sweep != SweepAxis::None) return "it sweeps, which SCIP cannot tell";
+    constexpr const char* kTooMany = "it has more steps than SCIP can number";
     const double turn = 360 / laser.step.degrees();
+    const double first = laser.first.degrees() / laser.step.degrees();
+    if (turn > kMostSteps) return kTooMany;
     if (!isWhole(turn)) return "a turn is no whole number of its steps, as SCIP wants it";
-    if (!isWhole(laser.first.degrees() / laser.step.degrees()))
-        return "no step of it looks straight ahead, as SCIP wants it";
-    if (frontOf(laser) + offsetOf(laser) + laser.beams - 1 > kMostSteps)
-        return "it has more steps than SCIP can number";
+    if (!isWhole(first)) return "no step of it looks straight ahead, as SCIP wants it";
+    if (frontOf(laser) + offsetOf(laser) + laser.beams - 1 > kMostSteps) return kTooMany;
     return "";
 }
 
@@ -93,7 +94,8 @@ ScipModel ScipModel::of(const Laser& laser) {
     out.product = "simulated laser";
     const double most = std::min(laser.max_range * kMillimetres, double{kFarthest});
     out.max_mm = std::max(1, static_cast<int>(std::ceil(most)));
-    out.min_mm = std::clamp(rounded(laser.min_range * kMillimetres), 1, out.max_mm);
+    const double least = std::min(laser.min_range * kMillimetres, double{kFarthest});
+    out.min_mm = std::clamp(rounded(least), 1, out.max_mm);
     out.has_intensity = true;
     return out;
 }

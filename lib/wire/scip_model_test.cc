@@ -66,6 +66,10 @@ TEST(ScipModel, LasersOfOthers) {
     EXPECT_NE(ScipModel::refusal(laser("step=0.7 fov=70")), "");
     EXPECT_NE(ScipModel::refusal(laser("first=0.5 step=1 beams=20")), "");
     EXPECT_NE(ScipModel::refusal(laser("step=0.01 fov=180")), "");
+    // Numbers that are none of an int any more.
+    for (const char* keys :
+         {"first=0 beams=3 step=1e-7", "first=0 beams=3 step=1e-9", "first=-360 beams=3 step=1e-9"})
+        EXPECT_EQ(ScipModel::refusal(laser(keys)), "it has more steps than SCIP can number");
     EXPECT_NE(ScipModel::refusal(laser("sweep=tilt sweep_span=10 sweep_step=1")), "");
 }
 

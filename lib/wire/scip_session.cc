@@ -68,6 +68,8 @@ bool ScipSession::follow() {
     sensor_ = *world.sensorNamed(id_);
     model_ = ScipModel::of(*world.sensors()[sensor_].model<Laser>());
     if (stream_.sweep.end > model_.last) rest();
+    // Periods count anew with another rate, and when a replay goes back.
+    stream_.next = std::min(stream_.next, world.period(sensor_) + 1 + stream_.sweep.interval);
     return true;
 }
 

@@ -228,6 +228,26 @@ TEST(ScipSession, IntervalsAndSlowReaders) {
     EXPECT_EQ(scansIn(40, 0), 5U);
 }
 
+TEST(ScipSession, GoesOnAtALowerRateAndAfterGoingBack) {
+    Room room;
+    ScipSession session(room, "l1");
+    const auto scansIn = [&](int steps) {
+        const std::string out = stepped(room, session, steps);
+        std::size_t count = 0;
+        for (auto at = out.find("\n99b\n"); at != std::string::npos;
+             at = out.find("\n99b\n", at + 1))
+            ++count;
+        return count;
+    };
+    answered(session, "MD0044072501000\n");
+    EXPECT_EQ(scansIn(200), 50U);
+    room.world().change(
+        testing::scene("ispace size=8,6\n", "laser id=l1 model=urg-04lx rate=5 at=0,0\n"));
+    EXPECT_EQ(scansIn(40), 5U);
+    room.world().rewind();
+    EXPECT_NEAR(static_cast<double>(scansIn(40)), 10, 1);
+}
+
 TEST(ScipSession, QtStopsTheStream) {
     Room room;
     ScipSession session(room, "l1");
