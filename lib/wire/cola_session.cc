@@ -44,8 +44,11 @@ std::string refusalOfCola(const World& world, std::string_view id) {
     std::string refusal = refusalOfSensor(world, "laser", id);
     if (!refusal.empty()) return refusal;
     const auto& sensor = world.sensors()[*world.sensorNamed(id)];
-    if (sensor.model<Laser>()->sweep == SweepAxis::None) return "";
-    return sensor.id + ": it sweeps, which CoLa cannot tell";
+    const Laser& laser = *sensor.model<Laser>();
+    if (laser.sweep != SweepAxis::None) return sensor.id + ": it sweeps, which CoLa cannot tell";
+    const double step = std::round(laser.step.degrees() * kAngleUnits);
+    if (step >= 1 && step <= kMost) return "";
+    return sensor.id + ": its step is not from 0.0001 to 6.5535 degrees, as CoLa wants it";
 }
 
 std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
@@ -105,6 +108,8 @@ bool ColaSession::follow() {
     }
     sensor_ = *world.sensorNamed(id_);
     figures_ = ColaFigures::of(laser());
+    // Periods count anew with another rate, and when a replay goes back.
+    next_ = std::min(next_, world.period(sensor_) + content_.every);
     return true;
 }
 

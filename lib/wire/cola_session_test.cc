@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <vector>
@@ -199,6 +200,33 @@ TEST(ColaSession, InBytes) {
     EXPECT_EQ(content.size(), 16U + 61 + 2 * 541 + 2 + 5 * 2);
     // The middle beam looks at the wall at 4 m.
     EXPECT_EQ(content.substr(16 + 61 + 2 * 270, 2), "\x0F\xA0");
+}
+
+TEST(ColaSession, GoesOnAtALowerRateAndAfterGoingBack) {
+    Room room;
+    ColaSession session(room, "l1");
+    const auto scansIn = [&](int steps) {
+        const std::string out = stepped(room, session, steps);
+        return static_cast<double>(std::count(out.begin(), out.end(), '\2'));
+    };
+    askText(session, "sEN LMDscandata 1");
+    EXPECT_NEAR(scansIn(500), 250, 1);
+    room.world().change(
+        testing::scene("ispace size=8,6\n", "laser id=l1 model=lms111 rate=5 at=0,0\n"));
+    EXPECT_NEAR(scansIn(100), 5, 1);
+    room.world().rewind();
+    EXPECT_NEAR(scansIn(100), 50, 1);
+}
+
+TEST(ColaSession, StepsThatItCannotTell) {
+    for (const char* step : {"7", "0.00001"}) {
+        Room room;
+        room.world().change(
+            testing::scene("ispace size=8,6\n",
+                           "laser id=l1 at=0,0 first=0 beams=3 step=" + std::string(step) + "\n"));
+        EXPECT_EQ(kCola.refusal(room.world(), "l1"),
+                  "l1: its step is not from 0.0001 to 6.5535 degrees, as CoLa wants it");
+    }
 }
 
 TEST(ColaSession, EndsWithItsLaser) {
