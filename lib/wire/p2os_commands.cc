@@ -210,6 +210,7 @@ void P2osSession::place() {
     if (change == WireHost::Change::Later) return;
     new_place_.reset();
     if (change == WireHost::Change::Refused || isLost()) return;
+    changes_ = host_->world().changes();
     pose();
     drive_.renew();
 }

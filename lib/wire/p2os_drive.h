@@ -49,6 +49,10 @@ class P2osDrive {
     [[nodiscard]] bool isStopping() const { return stopping_; }
     [[nodiscard]] bool isStalled() const { return stalled_; }
     [[nodiscard]] bool isHushed() const { return hushed_; }
+    /// True if it is to go a distance.
+    [[nodiscard]] bool hasDistance() const {
+        return drive_.kind == AxisGoal::Kind::Distance && drive_.value != 0;
+    }
 
     /// Gives the wheels what is new.
     void apply(World& world, std::size_t robot, Angle now);

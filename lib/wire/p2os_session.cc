@@ -45,6 +45,8 @@ P2osSession::P2osSession(WireHost& host, std::string robot, WallClock wall_clock
       wall_clock_(std::move(wall_clock)),
       hold_(host.hold(id_)),
       start_(host.world().robots()[this->robot()].pose),
+      changes_(host.world().changes()),
+      seen_(host.world().status(this->robot()).pose),
       drive_(type_, model()),
       odometer_(host.world().odometry(this->robot()).pose) {
     if (!hold_) close();
@@ -70,6 +72,21 @@ Pose2 P2osSession::pose() {
     return odometer_.pose();
 }
 
+/// Changes by others may put the robot elsewhere at rest, and a replay goes back.
+void P2osSession::follow() {
+    const World& world = host_->world();
+    if (changes_ == world.changes()) return;
+    changes_ = world.changes();
+    next_ = std::min<SimTime>(next_, world.time() + kCycle);
+    fed_ = std::min(fed_, world.time());
+    const RobotStatus status = world.status(robot());
+    if (status.speed != 0 || status.rotspeed != Angle()) return;
+    const bool is_elsewhere =
+        status.pose.position != seen_.position || status.pose.heading != seen_.heading;
+    // A robot that stays goes on, and may have been told of a distance just now.
+    if (is_elsewhere || !drive_.hasDistance()) drive_.renew();
+}
+
 void P2osSession::feed() {
     fed_ = host_->world().time();
     fed_wall_ = wall_clock_();
@@ -83,6 +100,7 @@ void P2osSession::watch() {
 
 void P2osSession::receive(std::string_view bytes) {
     if (isLost()) return close();
+    follow();
     parser_.append(bytes);
     while (const auto packet = parser_.take()) {
         feed();
@@ -90,15 +108,19 @@ void P2osSession::receive(std::string_view bytes) {
         if (closing()) return;
     }
     if (!host_->isReplay()) drive_.apply(host_->world(), robot(), pose().heading);
+    seen_ = host_->world().status(robot()).pose;
 }
 
 void P2osSession::stepped(std::size_t unsent) {
     if (isLost()) return close();
     World& world = host_->world();
+    follow();
     if (new_place_) place();
     watch();
     drive_.stepped(world, robot());
-    if (!host_->isReplay()) drive_.apply(world, robot(), pose().heading);
+    const Angle heading = pose().heading;
+    if (!host_->isReplay()) drive_.apply(world, robot(), heading);
+    seen_ = world.status(robot()).pose;
     if (!opened_ || world.time() < next_) return;
     while (next_ <= world.time()) next_ += kCycle;
     // What nobody reads now is old news when it is read.

@@ -63,6 +63,7 @@ class P2osSession : public WireSession {
     [[nodiscard]] std::string name() const;
     /// Odometry as of now.
     Pose2 pose();
+    void follow();
     void feed();
     void watch();
 
@@ -95,6 +96,8 @@ class P2osSession : public WireSession {
     WallClock wall_clock_;
     std::optional<std::int64_t> hold_;
     Pose2 start_;
+    std::int64_t changes_ = 0;        // of the world, that are known
+    Pose2 seen_;                      // where the robot stood by then
     std::optional<Pose2> new_place_;  // where it is to be put
     P2osParser parser_;
     P2osDrive drive_;

@@ -186,6 +186,53 @@ TEST(P2osSession, IsPutElsewhere) {
     EXPECT_EQ(robot.heading(), 0);
 }
 
+TEST(P2osSession, TellsItsStateAfterGoingBack) {
+    TestHost host(kRobot);
+    host.is_replay = true;
+    Pioneer robot(host);
+    robot.connect().run(5);
+    robot.packets.clear();
+    host.world().rewind();
+    robot.run(1);
+    EXPECT_NEAR(static_cast<double>(robot.packets.size()), 10, 1);
+}
+
+TEST(P2osSession, CountsReplaysOfShortSteps) {
+    TestHost host(kRobot, "ispace size=8,6\n", std::chrono::milliseconds(1));
+    host.is_replay = true;
+    Pioneer robot(host);
+    robot.connect();
+    host.world().command(0, {Verb::Speed, 0.7});
+    robot.run(4);
+    EXPECT_NEAR(robot.x(), 1000 * (host.world().status(0).pose.position.x + 2), 1);
+}
+
+TEST(P2osSession, GoesOnWhereOthersPutIt) {
+    TestHost host(kRobot);
+    Pioneer robot(host);
+    robot.drive().command(11, 200);
+    robot.run(2);
+    const std::vector<std::string> elsewhere = {"r1.at=-3,1"};
+    ASSERT_EQ(host.change(elsewhere), WireHost::Change::Done);
+    robot.command(11, 200);
+    robot.run(2);
+    EXPECT_EQ(robot.left(), 200);
+    host.world().restart(testing::scene("ispace size=8,6\n", kRobot));
+    for (int i = 0; i < 4; ++i) {
+        robot.command(11, 200);
+        robot.run(0.5);
+    }
+    EXPECT_EQ(robot.left(), 200);
+    // A change that leaves it alone leaves its distance.
+    robot.command(11, 0);
+    robot.run(2);
+    const int before = robot.x();
+    robot.command(8, 500);
+    ASSERT_EQ(host.change(std::vector<std::string>{"r1.speed=1"}), WireHost::Change::Done);
+    robot.run(4);
+    EXPECT_NEAR(robot.x() - before, 500, 1);
+}
+
 TEST(P2osSession, TellsOfTheSimulation) {
     TestHost host(kRobot);
     Pioneer robot(host);

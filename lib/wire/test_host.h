@@ -17,17 +17,18 @@
 
 namespace ispace::testing {
 
-/// A world with steps of 10 ms.
+/// A world with steps of 10 ms, or others.
 class TestHost : public WireHost {
   public:
-    explicit TestHost(const std::string& layout, const std::string& room = "ispace size=8,6\n")
+    explicit TestHost(const std::string& layout, const std::string& room = "ispace size=8,6\n",
+                      SimTime step = std::chrono::milliseconds(10))
         : scene_(scene(room, layout)),
-          world_(scene_, std::chrono::milliseconds(10)),
+          world_(scene_, step),
           simulation_(world_, {}, {Clock::Kind::Step, 1}, {}),
           editor_(simulation_, std::make_shared<TextSource>()) {}
 
     World& world() override { return world_; }
-    [[nodiscard]] bool isReplay() const override { return false; }
+    [[nodiscard]] bool isReplay() const override { return is_replay; }
     [[nodiscard]] bool isPaused() const override { return true; }
     Change change(std::span<const std::string> assignments) override {
         if (changes_later-- > 0) return Change::Later;
@@ -64,6 +65,7 @@ class TestHost : public WireHost {
         }
     }
 
+    bool is_replay = false;
     int changes_later = 0;  ///< so often a change has to wait
 
   private:
