@@ -176,7 +176,12 @@ def main():
     drive = None
     if args.drive:
         robot, _, metres = args.drive.partition(",")
-        drive = robot, float(metres)
+        try:
+            drive = robot, float(metres)
+        except ValueError:
+            parser.error(f"--drive {args.drive}: not ROBOT,METRES, such as r1,6")
+    if args.scans < 1:
+        parser.error(f"--scans {args.scans}: at least 1")
     if args.output:
         args.output.write("t,side,x,y,height\n")
     try:

@@ -71,6 +71,7 @@ def run(lab):
             digits=4, bound=(0.122, 0.128),
             note="The thesis' figure follows from its formula: the mean of a Rayleigh distribution.")
     heard = [error for fixes in received.values() for error in fixes]
+    lab.row("Receivers: share of fixes that came", None, 100 * len(heard) / (frames * len(received)), "%", bound=(99, 100))
     lost = sum(1 for fixes in received.values() if not fixes)
     lab.row("Receivers: mean error", None, 1000 * sum(heard) / len(heard), "mm", digits=1, bound=(1, 50))
     lab.row("Receivers: 95th percentile", 50, 1000 * percentile(heard, 0.95), "mm", digits=1, bound=(1, 50),

@@ -39,6 +39,11 @@ done
 simrun "$scenes/ispace.env" "$scenes/ispace.3dm" --clock fast --until 20 --script - --expect 'no collision' \
     <<<'0 r1 FORWARD 4' >out 2>err && fail "the barrier is in nobody's way"
 
+expect_status 0 "$avoid" --help
+grep -q '^usage: avoid' out || fail "no help on standard output"
 expect_status 2 "$avoid" map.yaml
+expect_status 2 "$avoid" map.yaml 0.5,2,-90junk 0.5,-2 -rrtp 1
+expect_status 1 "$avoid" map.yaml 0.5,2,-90 0.5,-2 -rrtp 1 -o none/way.csv
+grep -q '^avoid: cannot write none/way.csv' err || fail "$(cat err)"
 expect_status 1 "$avoid" none.yaml 0.5,2,-90 0.5,-2 -rrtp 1
 expect_status 1 "$avoid" map.yaml 0.5,2,-90 0.5,-2 -rrtp 1

@@ -46,3 +46,8 @@ expect_same first out "other kerbs the second time"
 status=0
 python3 "$source_dir/share/examples/road_side.py" 1 front --height 0.5 --tilt -30 >out 2>err || status=$?
 [ "$status" -eq 1 ] || fail "status $status without a server: $(cat err)"
+for bad in "--drive r1" "--scans 0"; do
+    # shellcheck disable=SC2086
+    expect_status 2 python3 "$source_dir/share/examples/road_side.py" 1 front --height 0.5 --tilt -30 $bad
+    grep -q "error: ${bad% *}" err || fail "$bad: $(cat err)"
+done

@@ -51,6 +51,40 @@ follow walkers.3dm --clock real:10
 read -r error followed _ <<<"$(judged joint)"
 awk "BEGIN { exit !($error < 0.3 && $followed > 60) }" || fail "in real time: $(cat verdicts)"
 
+# A simrun that ends too soon.
+rm -f port
+simrun "$scenes/tracking.env" walkers.3dm --clock step --until 2 --port-file port >announced 2>warnings &
+server=$!
+trap 'kill "$server" 2>/dev/null || true; cleanup' EXIT
+for ((i = 0; i < 3000; ++i)); do [ -s port ] && break; sleep 0.02; done
+expect_status 3 timeout 60 "$tracker" "$(cat port)" walkers.3dm --until 40 -o short.csv
+one_error tracker "simrun ends before --until"
+kill "$server" 2>/dev/null || true
+wait "$server" || true
+
+# Who has no track is not followed.
+cat >truth.py <<'END'
+import sys
+sys.path.insert(0, sys.argv[1])
+import judge_tracks
+truth = {at: {"a": (0, 0)} for at in (0, 100, 200, 300)}
+sources = {"none": {0: {"1": (0, 0.1)}}, "all": {at: {"1": (0, 0)} for at in truth}}
+verdict = judge_tracks.judge(truth, sources, "none")
+assert verdict.present == 4 and verdict.followed == 0.25, verdict
+assert judge_tracks.judge(truth, sources, "all").followed == 1
+END
+python3 -B truth.py "$source_dir/share/examples/tracker" || fail "times without tracks do not count"
+
+judge=$source_dir/share/examples/tracker/judge_tracks.py
+for args in "tracks.csv none" "run/people.csv run"; do
+    # shellcheck disable=SC2086
+    expect_status 1 python3 "$judge" $args
+    one_error judge_tracks.py "$args"
+done
+
+expect_status 0 "$tracker" --help
+grep -q '^usage: tracker' out || fail "no help on standard output"
 expect_status 2 "$tracker"
+expect_status 2 "$tracker" 1 walkers.3dm --until 4x
 expect_status 1 "$tracker" 1 walkers.3dm
 expect_status 1 "$tracker" 1 none.3dm

@@ -17,8 +17,14 @@
 // time. Exit status: 0 at the goal, 1 no map, way or robot, 2 usage, 3 not at the goal in time.
 #include "Aria.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -41,24 +47,40 @@ struct Task {
     bool filter = true;
 };
 
+constexpr char kUsage[] =
+    "usage: avoid MAP.yaml X,Y,HEADING X,Y [--odometry] [-o FILE] [-rrtp PORT] [-rh HOST]\n"
+    "Drives from the first place to the second (m, degrees).\n"
+    "  --odometry  trust the wheels alone\n"
+    "  -o FILE     write where it believed to be, as CSV\n"
+    "  -rrtp PORT, -rh HOST  where the robot is\n";
+
+bool asksHelp(int argc, char** argv) {
+    return std::any_of(argv, argv + argc, [](const char* word) {
+        return std::strcmp(word, "--help") == 0 || std::strcmp(word, "-h") == 0;
+    });
+}
+
+/// Numbers with commas between, and nothing else.
+bool readNumbers(const std::string& word, const std::vector<double*>& numbers) {
+    const char* at = word.c_str();
+    for (double* const number : numbers) {
+        if (number != numbers.front() && *at++ != ',') return false;
+        char* end = nullptr;
+        *number = std::strtod(at, &end);
+        if (end == at || !std::isfinite(*number)) return false;
+        at = end;
+    }
+    return *at == '\0';
+}
+
 bool parse(ArArgumentParser& parser, Task& task) {
     task.filter = !parser.checkArgument("-odometry");
     if (const char* file = parser.checkParameterArgument("-o")) task.trajectory = file;
     const std::vector<std::string> words(parser.getArgv() + 1, parser.getArgv() + parser.getArgc());
     double heading = 0;
-    if (words.size() != 3 ||
-        std::sscanf(words[1].c_str(), "%lf,%lf,%lf", &task.start[0], &task.start[1], &heading) !=
-            3 ||
-        std::sscanf(words[2].c_str(), "%lf,%lf", &task.goal[0], &task.goal[1]) != 2) {
-        std::fprintf(
-            stderr,
-            "usage: avoid MAP.yaml X,Y,HEADING X,Y [--odometry] [-o FILE] [-rrtp PORT] [-rh HOST]\n"
-            "Drives from the first place to the second (m, degrees).\n"
-            "  --odometry  trust the wheels alone\n"
-            "  -o FILE     write where it believed to be, as CSV\n"
-            "  -rrtp PORT, -rh HOST  where the robot is\n");
+    if (words.size() != 3 || !readNumbers(words[1], {&task.start[0], &task.start[1], &heading}) ||
+        !readNumbers(words[2], {&task.goal[0], &task.goal[1]}))
         return false;
-    }
     task.map = words[0];
     task.start[2] = ArMath::degToRad(heading);
     return true;
@@ -72,26 +94,30 @@ ArPose millimetres(const avoid::Pose& pose) {
     return ArPose(1000 * pose.x(), 1000 * pose.y(), ArMath::radToDeg(pose.z()));
 }
 
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// \return none if no file is wanted
+File create(const std::string& path) {
+    File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), &std::fclose);
+    if (!path.empty() && !file) throw std::runtime_error("cannot write " + path);
+    return file;
+}
+
 /// What the robot knows of itself.
 class Navigator {
   public:
-    Navigator(ArRobot& robot, const avoid::GridMap& map, const Task& task)
+    Navigator(ArRobot& robot, const avoid::GridMap& map, const Task& task, std::FILE* trajectory)
         : robot_(robot),
           task_(task),
           limits_(limitsOf(robot)),
           plan_(map, task.goal, limits_.radius),
           window_(map, plan_, limits_),
           filter_(map, task.start),
-          odometry_(task.start) {
-        if (!task.trajectory.empty()) file_ = std::fopen(task.trajectory.c_str(), "w");
+          odometry_(task.start),
+          file_(trajectory) {
         if (file_)
             std::fprintf(file_, "t,odometry_x,odometry_y,odometry_heading_deg,x,y,heading_deg\n");
     }
-    ~Navigator() {
-        if (file_) std::fclose(file_);
-    }
-    Navigator(const Navigator&) = delete;
-    Navigator& operator=(const Navigator&) = delete;
 
     bool hasWay() const { return !plan_.way(task_.start.head<2>()).empty(); }
     double left() const { return (pose().head<2>() - task_.goal).norm(); }
@@ -105,6 +131,8 @@ class Navigator {
         odometry_ = odometry;
         driven_ += step.head<2>().norm();
         filter_.predict(step);
+        // All ranges in each cycle, be they new or not. Where sonars take turns, as on a real
+        // Pioneer, an old range counts again and makes the filter surer than it may be.
         for (int i = 0; task_.filter && i < robot_.getNumSonar(); ++i) {
             const double range = robot_.getSonarRange(i) / 1000.0;
             if (range < kFarthest) filter_.correct(mountOf(i), range);
@@ -171,9 +199,9 @@ class Navigator {
     avoid::DynamicWindow window_;
     avoid::PoseFilter filter_;
     avoid::Pose odometry_;
+    std::FILE* file_;  // or none
     double driven_ = 0;
     int backing_ = 0;  // cycles
-    std::FILE* file_ = nullptr;
 };
 
 /// Brakes and waits until the robot stands.
@@ -191,10 +219,10 @@ void rest(ArRobot& robot) {
 }
 
 /// \return the exit status
-int drive(ArRobot& robot, const avoid::GridMap& map, const Task& task) {
+int drive(ArRobot& robot, const avoid::GridMap& map, const Task& task, std::FILE* trajectory) {
     robot.lock();
     robot.moveTo(millimetres(task.start));
-    Navigator navigator(robot, map, task);
+    Navigator navigator(robot, map, task, trajectory);
     robot.unlock();
     if (!navigator.hasWay()) {
         std::fprintf(stderr, "avoid: the map has no way there\n");
@@ -223,12 +251,20 @@ int drive(ArRobot& robot, const avoid::GridMap& map, const Task& task) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+    if (asksHelp(argc, argv)) {
+        std::fputs(kUsage, stdout);
+        return 0;
+    }
     Aria::init();
     ArArgumentParser parser(&argc, argv);
     ArSimpleConnector connector(&parser);
     connector.parseArgs();
     Task task;
-    if (!parse(parser, task)) return 2;
+    if (!parse(parser, task)) {
+        std::fputs(kUsage, stderr);
+        return 2;
+    }
+    const File trajectory = create(task.trajectory);
     const avoid::GridMap map = avoid::GridMap::read(task.map);
 
     ArRobot robot;
@@ -242,7 +278,7 @@ int main(int argc, char** argv) try {
     robot.comInt(ArCommands::SONAR, 1);
     robot.runAsync(true);
     ArUtil::sleep(2 * kCycle);  // until the first packet is there
-    const int status = drive(robot, map, task);
+    const int status = drive(robot, map, task, trajectory.get());
     robot.stopRunning();
     robot.disconnect();
     Aria::shutdown();

@@ -12,6 +12,7 @@ import csv
 import dataclasses
 import math
 import os
+import sys
 
 NEAR = 0.5  # m: what is farther away is not followed
 
@@ -107,14 +108,22 @@ def main():
     parser.add_argument("--near", type=float, default=NEAR, help="farther away nobody is followed (m)")
     parser.add_argument("--begin", type=float, default=3, help="seconds that do not count")
     args = parser.parse_args()
-    truth = read_truth(args.record)
-    sources = read_tracks(args.tracks)
+    try:
+        truth, sources = read_truth(args.record), read_tracks(args.tracks)
+    except OSError as error:
+        print(f"judge_tracks.py: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 1
+    except (KeyError, TypeError, ValueError) as error:  # a column is not there, or no number
+        print(f"judge_tracks.py: {args.tracks} or {args.record} is not what tracker or simrun writes: {error}",
+              file=sys.stderr)
+        return 1
     for source in sorted(sources):
         verdict = judge(truth, sources, source, args.near, args.begin)
         print(f"{source}: error {verdict.mean:.3f} m in the mean, {verdict.percentile95:.3f} m at 95 %; followed "
               f"{100 * verdict.followed:.1f} %; {verdict.switches} identity switches, tracks went over {verdict.handovers} times, "
               f"{verdict.false} false places")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

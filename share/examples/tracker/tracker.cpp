@@ -14,8 +14,11 @@
 // The layout tells where the lasers stand. tracks.csv has a row for each track and scan:
 // t,source,track,kind,x,y, where the source is the laser's id or `joint`. With `--clock step` the
 // tracker advances the world, and each run is the same; with `--clock real` it follows the lasers'
-// streams.
+// streams, of which it takes one scan each in turn: lasers of different rates drift apart. Exit
+// status: 0, 1 no server or layout, 2 usage, 3 if simrun ends before the time of --until.
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -34,7 +37,19 @@ namespace {
 struct Task {
     std::string server, layout, output;
     double until = std::numeric_limits<double>::infinity();  // s of the world
+    bool help = false;
 };
+
+constexpr char kUsage[] =
+    "usage: tracker [HOST:]PORT LAYOUT.3dm [--until SECONDS] [-o FILE]\n"
+    "Tracks people and robots by the lasers of the layout, in a running simrun.\n";
+
+/// \return whether it is a number alone
+bool readNumber(const char* word, double& number) {
+    char* end = nullptr;
+    number = std::strtod(word, &end);
+    return end != word && *end == '\0';
+}
 
 bool parse(int argc, char** argv, Task& task) {
     std::vector<std::string> words;
@@ -43,18 +58,15 @@ bool parse(int argc, char** argv, Task& task) {
         if (word == "-o" && i + 1 < argc) {
             task.output = argv[++i];
         } else if (word == "--until" && i + 1 < argc) {
-            task.until = std::atof(argv[++i]);
+            if (!readNumber(argv[++i], task.until)) return false;
+        } else if (word == "--help" || word == "-h") {
+            task.help = true;
         } else {
             words.push_back(word);
         }
     }
-    if (words.size() != 2 || !(task.until > 0)) {
-        std::fprintf(
-            stderr,
-            "usage: tracker [HOST:]PORT LAYOUT.3dm [--until SECONDS] [-o FILE]\n"
-            "Tracks people and robots by the lasers of the layout, in a running simrun.\n");
-        return false;
-    }
+    if (task.help) return true;
+    if (words.size() != 2 || !(task.until > 0)) return false;
     task.server = words[0].find(':') == std::string::npos ? "127.0.0.1:" + words[0] : words[0];
     task.layout = words[1];
     return true;
@@ -88,13 +100,19 @@ class Program {
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    void run() {
+    /// \return whether it has come to the time that was asked for, if one was
+    bool run() {
         try {
             while (cycle()) {
             }
         } catch (const ispace::client::ConnectionError&) {
             // The run is over.
         }
+        if (std::isinf(task_.until) || time_ >= task_.until) return true;
+        std::fprintf(stderr,
+                     "tracker: simrun has ended before --until %g: the last scan is of %.3f s\n",
+                     task_.until, time_);
+        return false;
     }
 
   private:
@@ -105,18 +123,17 @@ class Program {
             const long steps = std::lround(1 / (eyes_.front()->laser.rate() * world_.dt()));
             if (world_.step(steps) < steps) return false;
         }
-        double time = 0;
         std::vector<std::vector<tracker::Cluster>> seen;
         for (const auto& eye : eyes_) {
             const ispace::client::Scan scan = by_steps_ ? eye->laser.scan() : eye->laser.next();
-            time = scan.time;
+            time_ = scan.time;
             seen.push_back(eye->finder.find(scan));
-            eye->alone.update(time, seen.back());
-            write(time, eye->laser.id(), eye->alone.tracks());
+            eye->alone.update(time_, seen.back());
+            write(time_, eye->laser.id(), eye->alone.tracks());
         }
-        joint_.update(time, seen);
-        write(time, "joint", joint_.tracks());
-        return time < task_.until;
+        joint_.update(time_, seen);
+        write(time_, "joint", joint_.tracks());
+        return time_ < task_.until;
     }
 
     void write(double time, const std::string& source, const tracker::Tracks& tracks) {
@@ -132,6 +149,7 @@ class Program {
     std::vector<std::unique_ptr<Eye>> eyes_;
     tracker::JointTracker joint_;
     bool by_steps_ = false;
+    double time_ = 0;  // s, of the last scan
     std::FILE* file_ = nullptr;
 };
 
@@ -139,9 +157,15 @@ class Program {
 
 int main(int argc, char** argv) try {
     Task task;
-    if (!parse(argc, argv, task)) return 2;
-    Program(task).run();
-    return 0;
+    if (!parse(argc, argv, task)) {
+        std::fputs(kUsage, stderr);
+        return 2;
+    }
+    if (task.help) {
+        std::fputs(kUsage, stdout);
+        return 0;
+    }
+    return Program(task).run() ? 0 : 3;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "tracker: %s\n", error.what());
     return 1;
