@@ -80,7 +80,8 @@ def _head(labs, quick):
         "<p><code>make experiments</code> writes this page anew, with the same bytes. Commands run in "
         "the folder of their experiment, <code>build/experiments/NAME</code>, with <code>build/bin</code> "
         "and <code>build/examples</code> in <code>PATH</code> and the folder of the source in "
-        "<code>ISPACE</code>. How long they took is in <a href=\"timings.csv\">timings.csv</a>. "
+        "<code>ISPACE</code>, and for Python <code>$ISPACE/lib/client/python</code> in "
+        "<code>PYTHONPATH</code>. How long they took is in <a href=\"timings.csv\">timings.csv</a>. "
         "The thesis draws its floor as x and z and turns clockwise; here are x and y, and headings "
         "counter-clockwise from x. A picture is enlarged by a click.</p>")
 
