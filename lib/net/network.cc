@@ -47,9 +47,11 @@ Network parseNetwork(const std::string& text) {
     network.address = address->to_bytes();
     if (slash == std::string::npos) return network;
     const bool is_v4 = address->is_v4_mapped();
-    const auto bits = parseInteger(text.substr(slash + 1));
+    const std::string count = text.substr(slash + 1);
+    const bool is_plain = count.find_first_not_of("0123456789") == std::string::npos;
+    const auto bits = parseInteger(count);
     const int most = is_v4 ? kBits4 : kBits;
-    if (!bits || *bits < 0 || *bits > most)
+    if (!bits || !is_plain || *bits > most)
         throw UsageError(excerpt(text) + ": wanted a number of bits from 0 to " +
                          std::to_string(most) + " behind the slash");
     network.bits = static_cast<int>(*bits) + kBits - most;

@@ -43,7 +43,7 @@ TEST(Network, ThisMachineIsAlwaysAllowed) {
 
 TEST(Network, RefusesWhatIsNone) {
     for (const char* text : {"", "a", "192.168.1", "192.168.1.0/33", "192.168.1.0/", "fd00::/129",
-                             "192.168.1.0/-1", "192.168.1.0/2x", "localhost"})
+                             "192.168.1.0/-1", "192.168.1.0/+8", "192.168.1.0/2x", "localhost"})
         EXPECT_THROW(static_cast<void>(parseNetwork(text)), UsageError) << text;
     try {
         static_cast<void>(parseNetwork("192.168.1.7/24"));
