@@ -98,15 +98,32 @@ void P2osSession::watch() {
     if (wall_clock_() - fed_wall_ >= kWatchdog) drive_.hush(true);
 }
 
+/// Takes the packets that are there. A damaged head asks for bytes that never come.
+void P2osSession::listen() {
+    if (parser_.pending() == 0) return;
+    const auto now = wall_clock_();
+    while (!closing()) {
+        const auto packet = parser_.take();
+        const bool is_late = !packet && parser_.pending() > 0 && now - begun_ >= kPacketTime;
+        if (packet || is_late) begun_ = now;
+        if (packet) {
+            feed();
+            greeted_ ? obey(*packet) : greet(*packet);
+        } else if (is_late) {
+            parser_.skip();
+        } else {
+            return;
+        }
+    }
+}
+
 void P2osSession::receive(std::string_view bytes) {
     if (isLost()) return close();
     follow();
+    if (parser_.pending() == 0) begun_ = wall_clock_();
     parser_.append(bytes);
-    while (const auto packet = parser_.take()) {
-        feed();
-        greeted_ ? obey(*packet) : greet(*packet);
-        if (closing()) return;
-    }
+    listen();
+    if (closing()) return;
     if (!host_->isReplay()) drive_.apply(host_->world(), robot(), pose().heading);
     seen_ = host_->world().status(robot()).pose;
 }
@@ -115,6 +132,8 @@ void P2osSession::stepped(std::size_t unsent) {
     if (isLost()) return close();
     World& world = host_->world();
     follow();
+    listen();
+    if (closing()) return;
     if (new_place_) place();
     watch();
     drive_.stepped(world, robot());

@@ -40,6 +40,8 @@ class P2osOdometer {
 class P2osSession : public WireSession {
   public:
     static constexpr std::chrono::milliseconds kWatchdog{2000}, kCycle{100};
+    /// Of wall time: a packet that is not whole by then is none.
+    static constexpr std::chrono::milliseconds kPacketTime{500};
     using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
     /// \pre the robot exists
@@ -64,6 +66,7 @@ class P2osSession : public WireSession {
     /// Odometry as of now.
     Pose2 pose();
     void follow();
+    void listen();
     void feed();
     void watch();
 
@@ -110,6 +113,7 @@ class P2osSession : public WireSession {
     SimTime next_{};  // status
     SimTime fed_{};   // the watchdog, in simulated time
     std::chrono::steady_clock::time_point fed_wall_;
+    std::chrono::steady_clock::time_point begun_;  // the packet that is not whole yet
 };
 
 /// The row of `--p2os`.

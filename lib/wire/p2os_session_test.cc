@@ -41,6 +41,21 @@ TEST(P2osSession, Introduces) {
     EXPECT_TRUE(robot.session().closing());
 }
 
+TEST(P2osSession, HearsAgainAfterADamagedHead) {
+    TestHost host(kRobot);
+    Pioneer robot(host);
+    for (int round = 0; round < 2; ++round) {
+        robot.send("\xFA\xFB\xC8");
+        robot.command(0);
+        EXPECT_TRUE(robot.packets.empty()) << "the rest may come";
+        robot.wait(P2osSession::kPacketTime);
+        round == 0 ? robot.command(0) : robot.run(0.01);
+        EXPECT_EQ(robot.packets.size(), round == 0 ? 2U : 1U);
+        robot.packets.clear();
+    }
+    robot.connect();
+}
+
 TEST(P2osSession, HoldsTheRobotAlone) {
     TestHost host(kRobot);
     {
