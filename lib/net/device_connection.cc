@@ -94,7 +94,7 @@ void DeviceConnection::flush() {
 }
 
 void DeviceConnection::listen() {
-    if (reading_ || unsent() > kPending) return;
+    if (reading_ || ended_ || unsent() > kPending) return;
     reading_ = true;
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
         self->reading_ = false;
@@ -113,8 +113,10 @@ void DeviceConnection::receive() {
         heard_ = true;
         session_->receive({block.data(), size});
     }
-    collect();
-    if (error == asio::error::eof) session_.reset();
+    if (error == asio::error::eof) {
+        ended_ = true;
+        session_->ended();
+    }
     pump();
 }
 

@@ -33,6 +33,8 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     [[nodiscard]] bool serving() const { return session_ != nullptr; }
     /// True if its client has said nothing since that time, and nothing before it.
     [[nodiscard]] bool isMute(WallTime since) const { return !heard_ && began_ <= since; }
+    /// True once its client sends no more, though it may read.
+    [[nodiscard]] bool ended() const { return ended_; }
 
   private:
     [[nodiscard]] std::size_t unsent() const { return out_.size() - sent_; }
@@ -50,7 +52,7 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     std::string out_;
     std::size_t sent_ = 0;  // of out_
     WallTime began_, stuck_{};
-    bool heard_ = false;
+    bool heard_ = false, ended_ = false;
     bool reading_ = false, writing_ = false;  // handlers on their way
     bool lingering_ = false;
 };

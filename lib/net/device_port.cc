@@ -97,12 +97,17 @@ void DevicePort::welcome(tcp::socket socket) {
 }
 
 bool DevicePort::makeRoom() {
-    const auto mute = std::find_if(connections_.begin(), connections_.end(),
-                                   [since = steady_clock::now() - kMute](const auto& connection) {
-                                       return connection->isMute(since);
-                                   });
-    if (mute == connections_.end()) return false;
-    (*mute)->close();
+    // Of those that send no more some have left, unnoticed as long as nothing is sent to them.
+    auto idle = std::find_if(connections_.begin(), connections_.end(), [](const auto& connection) {
+        return connection->serving() && connection->ended();
+    });
+    if (idle == connections_.end() && !protocol_->listens_only)
+        idle = std::find_if(connections_.begin(), connections_.end(),
+                            [since = steady_clock::now() - kMute](const auto& connection) {
+                                return connection->isMute(since);
+                            });
+    if (idle == connections_.end()) return false;
+    (*idle)->close();
     sweep();
     return true;
 }

@@ -36,6 +36,9 @@ class EchoSession : public WireSession {
             }
         }
     }
+    void ended() override {
+        if (!streams_) close();
+    }
     void stepped(std::size_t unsent) override {
         ++number_;
         if (!streams_ || unsent > kRoom) return;
@@ -69,14 +72,16 @@ std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
 }
 
 const WireProtocol kEcho{"echo", "ROBOT", "for tests", 7, 2, refusalOfRobot, open};
+const WireProtocol kListened{"listened", "ROBOT", "for tests", 7, 2, refusalOfRobot, open, true};
 
 /// A server with such a port, in a thread.
 class EchoServer {
   public:
-    explicit EchoServer(Clock clock = {Clock::Kind::Real, 100}, const ServerLimits& limits = {})
+    explicit EchoServer(Clock clock = {Clock::Kind::Real, 100}, const ServerLimits& limits = {},
+                        const WireProtocol& protocol = kEcho)
         : room_(clock),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
-          address_(server_.serveDevice(kEcho, "r1", parseEndpoint("127.0.0.1:0"))),
+          address_(server_.serveDevice(protocol, "r1", parseEndpoint("127.0.0.1:0"))),
           thread_([this] { server_.run(); }) {}
     ~EchoServer() {
         server_.stop();
@@ -159,6 +164,31 @@ TEST(DevicePort, WhoSaysNothingMakesRoom) {
     }));
     EXPECT_EQ(mute.rest(), "");
     EXPECT_EQ(other.ask("still"), "still");
+}
+
+TEST(DevicePort, WhoOnlyListensStays) {
+    EchoServer run({Clock::Kind::Real, 100}, {}, kListened);
+    Client a(run.echoPort()), b(run.echoPort());
+    a.connect();
+    b.connect();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // none of others would now
+    Client third(run.echoPort());
+    third.connect();
+    EXPECT_EQ(third.rest(), "");
+    EXPECT_EQ(a.ask("a"), "a");
+    EXPECT_EQ(b.ask("b"), "b");
+}
+
+TEST(DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
+    EchoServer run;
+    Client reader(run.echoPort()), other(run.echoPort());
+    reader.connect().send("stream\n");
+    reader.finishSending();
+    EXPECT_EQ(reader.line(), "stream");
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(reader.line().size(), kPacket - 1);
+    EXPECT_EQ(other.connect().ask("b"), "b");
+    Client next(run.echoPort());
+    EXPECT_EQ(next.connect().ask("c"), "c");
 }
 
 TEST(DevicePort, WhoHasLeftIsNoHindrance) {

@@ -60,6 +60,16 @@ std::string_view lineOf(std::string_view& text) {
     return line;
 }
 
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+/// True where programs disagree about the name: blanks before it, which once went on with the line
+/// before, or behind it.
+bool isDoubtful(std::string_view line) {
+    const std::size_t colon = line.find(':');
+    if (line.empty() || colon == 0) return false;
+    return isBlank(line.front()) || (colon != std::string_view::npos && isBlank(line[colon - 1]));
+}
+
 bool isHeader(std::string_view line, std::string_view name) {
     return line.size() > name.size() && line[name.size()] == ':' &&
            std::equal(name.begin(), name.end(), line.begin(), [](char a, char b) {
@@ -68,14 +78,14 @@ bool isHeader(std::string_view line, std::string_view name) {
 }
 
 /// A page of a stranger reaches this machine by a name that its DNS server suddenly gives to
-/// 127.0.0.1: such names have a dot, and do not end in a number as addresses do.
+/// 127.0.0.1: such names have a dot, and more than numbers as addresses do.
 bool isStranger(std::string_view host) {
-    while (!host.empty() && host.front() == ' ') host.remove_prefix(1);
+    while (!host.empty() && isBlank(host.front())) host.remove_prefix(1);
+    while (!host.empty() && isBlank(host.back())) host.remove_suffix(1);
     if (host.starts_with('[')) return false;
     host = host.substr(0, host.find(':'));
-    const std::size_t dot = host.rfind('.');
-    if (dot == std::string_view::npos) return false;
-    return dot + 1 == host.size() || host[dot + 1] < '0' || host[dot + 1] > '9';
+    if (host.find('.') == std::string_view::npos) return false;
+    return host.find_first_not_of("0123456789.") != std::string_view::npos;
 }
 
 }  // namespace
@@ -103,6 +113,7 @@ PictureRequest parsePictureRequest(std::string_view head) {
     if (method != "GET" && method != "HEAD") request.refusal = kNoMethod;
     while (!head.empty()) {
         const std::string_view line = lineOf(head);
+        if (isDoubtful(line)) request.refusal = kBad;
         constexpr std::string_view kHost = "host";
         if (isHeader(line, kHost) && isStranger(line.substr(kHost.size() + 1)))
             request.refusal = kForbidden;
@@ -116,6 +127,8 @@ MjpegSession::MjpegSession(WireHost& host, std::string sensor)
 void MjpegSession::receive(std::string_view bytes) {
     if (request_) return;
     head_ += bytes;
+    // Empty lines before a request are no part of it.
+    head_.erase(0, std::min(head_.find_first_not_of("\r\n"), head_.size()));
     const std::size_t end = std::min(head_.find("\r\n\r\n"), head_.find("\n\n"));
     if (std::min(end, head_.size()) > kMaxHead) return refuse(kTooLong, "the request is too long");
     if (end == std::string::npos) return;
@@ -154,6 +167,10 @@ void MjpegSession::answer(const PictureRequest& request) {
     show();
 }
 
+void MjpegSession::ended() {
+    if (!request_) close();
+}
+
 void MjpegSession::stepped(std::size_t unsent) {
     if (!request_) return;
     // Pictures are large: the one before has to be gone.
@@ -173,8 +190,8 @@ void MjpegSession::show() {
     } catch (const FormatError& missing) {
         return streams ? close() : refuse(kNoEncoder, missing.what());
     }
-    if (!file || sent_ == file->seq) return;
-    sent_ = file->seq;
+    if (!file || file == sent_) return;
+    sent_ = file;
     if (streams) {
         send("--" + std::string(kBoundary) + "\r\nContent-Type: " + std::string(file->type) +
              "\r\n" + headerOf(*file));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +33,8 @@ class MjpegSession : public WireSession {
 
     void receive(std::string_view bytes) override;
     void stepped(std::size_t unsent) override;
+    /// Pictures go on to who has asked.
+    void ended() override;
 
   private:
     void answer(const PictureRequest& request);
@@ -44,7 +46,7 @@ class MjpegSession : public WireSession {
     std::string id_;
     std::string head_;
     std::optional<PictureRequest> request_;
-    std::optional<std::int64_t> sent_;  // the newest picture
+    std::shared_ptr<const PictureFile> sent_;  // the newest picture
 };
 
 /// The row of `--mjpeg`.

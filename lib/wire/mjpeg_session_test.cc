@@ -42,10 +42,13 @@ TEST(PictureRequest, NamesAStreamOrAPicture) {
 
 TEST(PictureRequest, RefusesNamesOfStrangers) {
     for (const char* host : {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "simulator",
-                             " 192.168.1.7", "10.0.0.1"})
+                             " 192.168.1.7", "10.0.0.1", "\t10.0.0.1 "})
         EXPECT_EQ(parsed("GET /", "Accept: */*\r\nHost:" + std::string(host)).refusal, 0) << host;
-    for (const char* host : {"evil.example", "evil.example:8080", " 127.0.0.1.evil.example", "a."})
+    for (const char* host : {"evil.example", "evil.example:8080", " 127.0.0.1.evil.example", "a.",
+                             "evil.example.1x", "\tevil.example.1"})
         EXPECT_EQ(parsed("GET /", "HOST:" + std::string(host)).refusal, 403) << host;
+    for (const char* line : {"Host : evil.example", "Host\t: evil.example", " Host: evil.example"})
+        EXPECT_EQ(parsed("GET /", line).refusal, 400) << line;
 }
 
 /// A PNG of 16 by 12 pixels of 16 bits of grey.
@@ -105,6 +108,43 @@ TEST(MjpegSession, SendsEachPictureOnce) {
     }
     EXPECT_EQ(session.take(), "");
     EXPECT_FALSE(session.closing());
+}
+
+TEST(MjpegSession, ShowsChangesWhileTimeStands) {
+    TestHost host(kEyes);
+    MjpegSession session(host, "d1");
+    session.receive("GET / HTTP/1.0\n\n");
+    std::string stream = session.take();
+    stream.erase(0, stream.find("\r\n\r\n") + 4);
+    const std::string before = takePart(stream, "image/png");
+    ASSERT_EQ(host.change(std::vector<std::string>{"d1.heading=90"}), WireHost::Change::Done);
+    session.stepped(0);
+    stream = session.take();
+    EXPECT_NE(takePart(stream, "image/png"), before);
+    session.stepped(0);
+    EXPECT_EQ(session.take(), "");
+}
+
+TEST(MjpegSession, EmptyLinesBeforeARequest) {
+    TestHost host(kEyes);
+    MjpegSession session(host, "d1");
+    session.receive("\r\n\r\n");
+    session.receive("\nGET / HTTP/1.1\r\n\r\n");
+    EXPECT_TRUE(session.take().starts_with("HTTP/1.1 200 OK\r\n"));
+}
+
+TEST(MjpegSession, GoesOnForWhoSendsNoMore) {
+    TestHost host(kEyes);
+    MjpegSession half(host, "d1"), whole(host, "d1");
+    half.receive("GET / HTTP/1.1\r\n");
+    half.ended();
+    EXPECT_TRUE(half.closing());
+    whole.receive("GET / HTTP/1.1\r\n\r\n");
+    whole.ended();
+    whole.take();
+    host.run(whole, 0.1);
+    EXPECT_FALSE(whole.take().empty());
+    EXPECT_FALSE(whole.closing());
 }
 
 TEST(MjpegSession, GivesASinglePicture) {

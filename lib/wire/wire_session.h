@@ -77,6 +77,8 @@ class WireSession {
     /// slow reader: a session that has something newer to say leaves it out as a whole if they are
     /// many.
     virtual void stepped(std::size_t unsent) = 0;
+    /// The client sends no more; it may still read.
+    virtual void ended() { close(); }
     /// True once nothing more is read: the connection ends when all is sent.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Takes what is to be sent, in order.
@@ -104,6 +106,7 @@ struct WireProtocol {
     std::string (*refusal)(const World& world, std::string_view id) = nullptr;
     /// \pre the host outlives the session, and there is no refusal
     std::unique_ptr<WireSession> (*open)(WireHost& host, const std::string& id) = nullptr;
+    bool listens_only = false;  ///< its clients have nothing to say
 };
 
 /// All of them, in the order of the options.

@@ -21,6 +21,8 @@ class ZpsSession : public WireSession {
 
     void receive(std::string_view /*bytes*/) override {}
     void stepped(std::size_t unsent) override;
+    /// Lines go on.
+    void ended() override {}
 
   private:
     struct Followed {

@@ -57,6 +57,17 @@ TEST(ZpsSession, LeavesOutWhatNobodyReads) {
     EXPECT_EQ(session.take(), "0.600,t1,0.000,0.000,0.500,4,0.000\n");
 }
 
+TEST(ZpsSession, NeedsNothingSaid) {
+    EXPECT_TRUE(kZps.listens_only);
+    TestHost host(kSystem);
+    ZpsSession session(host, "t1");
+    session.take();
+    session.ended();
+    host.run(session, 0.1);
+    EXPECT_EQ(session.take(), "0.100,t1,0.000,0.000,0.500,4,0.000\n");
+    EXPECT_FALSE(session.closing());
+}
+
 TEST(ZpsSession, FollowsChanges) {
     TestHost host(kSystem);
     ZpsSession session(host, "t1");
