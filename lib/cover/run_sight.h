@@ -66,7 +66,7 @@ struct RunSight {
 /// \throws FormatError as the reader does, for a record without a moment, and for who was there at
 ///         its beginning and is not in the scene
 /// \param changes of the world in the run, which are made again; null: none
-RunSight measureRun(const Scene& scene, RunReader& reader, const WatchOptions& options,
+RunSight measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
                     RunChanges* changes = nullptr);
 
 /// Metrics for people, aligned lines.

@@ -33,7 +33,7 @@ using MoverPlaces = std::function<std::optional<Pose2>(const std::string& id)>;
 /// The records of a scene after these edits. Robots and people whose place or heading is set are
 /// where they are now but for that. \throws FormatError as edited()
 std::vector<Record> editedRecords(const Scene& scene, const std::vector<Edit>& edits,
-                                  const MoverPlaces& places);
+                                  const MoverPlaces& where);
 
 /// Ids of those whom these edits put somewhere, where they may stand already.
 std::vector<std::string> placedBy(const std::vector<Edit>& edits, const Scene& scene);

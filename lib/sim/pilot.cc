@@ -147,8 +147,9 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
     }
     blocked_since_ = kNever;
     const double speed = pace * std::min(1.0, free.time / std::min(1.0, needed(pace)));
-    const bool rests = free.direction == direct && stops && pace == speed_;
-    go(motion, free.direction, speed, rests ? left : kForever);
+    double way = kForever;
+    if (free.direction == direct && stops && pace == speed_) way = left;
+    go(motion, free.direction, speed, way);
 }
 
 Steering Pilot::lookAbout(const Helm& helm, double speed) const {
