@@ -147,9 +147,9 @@ void Pilot::walk(const Helm& helm, Motion& motion) {
     }
     blocked_since_ = kNever;
     const double speed = pace * std::min(1.0, free.time / std::min(1.0, needed(pace)));
-    double way = kForever;
-    if (free.direction == direct && stops && pace == speed_) way = left;
-    go(motion, free.direction, speed, way);
+    double stop = kForever;
+    if (free.direction == direct && stops && pace == speed_) stop = left;
+    go(motion, free.direction, speed, stop);
 }
 
 Steering Pilot::lookAbout(const Helm& helm, double speed) const {
