@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "env/test_scene.h"
 #include "geom/predicates.h"
 #include "record/yaml.h"
@@ -18,7 +19,7 @@ using testing::environment;
 using testing::schemas;
 
 std::string sceneFile(const std::string& name) {
-    return std::string(ISPACE_SOURCE_DIR) + "/share/scenes/" + name;
+    return testing::sourcePath("share/scenes/") + name;
 }
 
 Environment scene(const std::string& name) {

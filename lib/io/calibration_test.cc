@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "io/input.h"
 #include "io/test_import.h"
 
@@ -120,7 +121,7 @@ TEST(Calibration, DamagedFilesDoNoHarm) {
 
 TEST(Calibration, IsFoundBesideTheFileThatNamesIt) {
     const std::filesystem::path folder =
-        std::filesystem::path(ISPACE_BINARY_DIR) / "calibration_test";
+        std::filesystem::path(testing::buildPath("calibration_test"));
     std::filesystem::create_directories(folder / "eyes");
     const std::string ost = (folder / "eyes" / "ost.yaml").string();
     writeAll(ost, kOst);

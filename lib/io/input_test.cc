@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "io/test_dxf.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -132,7 +133,7 @@ TEST(Input, RecordsWithoutMagicLine) {
 
 TEST(Input, FilesThatAreNotThere) {
     EXPECT_THROW(readDocument("/nonexistent/room.env", {}, sceneSchemas()), std::system_error);
-    EXPECT_THROW(readDocument(ISPACE_BINARY_DIR, {}, sceneSchemas()), std::system_error);
+    EXPECT_THROW(readDocument(testing::buildPath(""), {}, sceneSchemas()), std::system_error);
 }
 
 TEST(Input, RandomBytesAreErrors) {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "io/input.h"
 #include "io/mesh_parts.h"
 #include "io/test_import.h"
@@ -19,11 +20,11 @@ namespace {
 using Vertex = std::array<float, 3>;
 
 /// A folder of the running test's own.
-class MeshFile : public testing::Test {
+class MeshFile : public ::testing::Test {
   protected:
     MeshFile()
-        : folder_(std::filesystem::path(ISPACE_BINARY_DIR) / "mesh_file_test" /
-                  testing::UnitTest::GetInstance()->current_test_info()->name()) {
+        : folder_(std::filesystem::path(testing::buildPath("mesh_file_test")) /
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
         std::filesystem::create_directories(folder_);
     }
     ~MeshFile() override { std::filesystem::remove_all(folder_); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/test_paths.h"
 #include "io/importers.h"
 
 #include <utility>
@@ -10,7 +11,7 @@
 namespace ispace {
 namespace {
 
-constexpr const char* kFlat = ISPACE_SOURCE_DIR "/tests/data/meshes/flat.ifc";
+const std::string kFlat = testing::sourcePath("tests/data/meshes/flat.ifc");
 
 /// A file of boxes as OBJ.
 class Boxes {
@@ -35,7 +36,7 @@ class Boxes {
         return *this;
     }
     [[nodiscard]] std::string write(const std::string& name) const {
-        std::string path = testing::TempDir() + name;
+        std::string path = ::testing::TempDir() + name;
         writeAll(path, text_);
         return path;
     }
@@ -128,14 +129,14 @@ TEST(Ifc, LayersAndHeight) {
     EXPECT_NEAR(areaOf(readFlat(options)), 5.72 * 0.24, 1e-4);
     options.slice_walls = 30;
     EXPECT_EQ(errorsOf([&] { readFlat(options); }),
-              std::string(kFlat) +
+              kFlat +
                   ": error: nothing stands at 30.00 m: the building reaches from "
                   "0.50 m to 6.30 m; say another height with --slice-walls\n");
 }
 
 TEST(Ifc, RefusesWhatIsDamaged) {
     const std::string whole = readAll(kFlat);
-    const std::string path = testing::TempDir() + "damaged.ifc";
+    const std::string path = ::testing::TempDir() + "damaged.ifc";
     const auto error_of = [&](const std::string& bytes) {
         writeAll(path, bytes);
         return errorsOf([&] { readIfc(bytes, path, {}, sceneSchemas()); });

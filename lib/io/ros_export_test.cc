@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/test_paths.h"
 #include "io/exporters.h"
 
 #include <gtest/gtest.h>
@@ -145,7 +146,7 @@ TEST(RosExport, QuotesNamesThatYamlWouldTakeForElse) {
 class RosRoundTrip : public ::testing::Test {
   protected:
     RosRoundTrip()
-        : folder_(std::filesystem::path(ISPACE_BINARY_DIR) / "ros_export_test" /
+        : folder_(std::filesystem::path(testing::buildPath("ros_export_test")) /
                   ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
         std::filesystem::create_directories(folder_);
     }

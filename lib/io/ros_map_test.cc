@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/test_paths.h"
 #include "io/importers.h"
 
 #include <gtest/gtest.h>
@@ -22,11 +23,11 @@ namespace ispace {
 namespace {
 
 /// A folder of the running test's own.
-class RosMap : public testing::Test {
+class RosMap : public ::testing::Test {
   protected:
     RosMap()
-        : folder_(std::filesystem::path(ISPACE_BINARY_DIR) / "ros_map_test" /
-                  testing::UnitTest::GetInstance()->current_test_info()->name()) {
+        : folder_(std::filesystem::path(testing::buildPath("ros_map_test")) /
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
         std::filesystem::create_directories(folder_);
     }
     ~RosMap() override { std::filesystem::remove_all(folder_); }
@@ -240,7 +241,7 @@ TEST_F(RosMap, RoomsOfNoiseKeepTheirFloor) {
 }
 
 /// The real maps, if the machine has them.
-class RealMaps : public testing::Test {
+class RealMaps : public ::testing::Test {
   protected:
     void SetUp() override {
         if (std::getenv("ISPACE_TEST_DATA") == nullptr)

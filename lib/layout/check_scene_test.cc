@@ -8,6 +8,7 @@
 #include <random>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "env/test_mesh.h"
 #include "geom/boolean.h"
 #include "layout/test_check.h"
@@ -51,7 +52,7 @@ TEST(CheckScene, NothingToFind) {
 
 TEST(CheckScene, ScenesOfTheProjectAreInOrder) {
     for (const char* name : {"ispace.env", "facilities.env", "crowded.env", "tracking.env"}) {
-        const std::string file = std::string(ISPACE_SOURCE_DIR) + "/share/scenes/" + name;
+        const std::string file = testing::sourcePath("share/scenes/") + name;
         const Document document = readRecordText(readAll(file), name, sceneSchemas());
         EXPECT_EQ(check(makeScene(document, nullptr, devices())), "") << name;
     }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/test_paths.h"
 #include "layout/schemas.h"
 #include "record/text.h"
 
@@ -11,7 +12,7 @@ namespace ispace {
 namespace {
 
 SensorSpec read(const std::string& text) {
-    static const DeviceCatalogue kDevices = loadDevices(ISPACE_SOURCE_DIR "/share/devices");
+    static const DeviceCatalogue kDevices = loadDevices(testing::sourcePath("share/devices"));
     constexpr std::string_view kKinds[] = {"laser"};
     return readSensorSpec(text, kKinds, sceneSchemas(), kDevices);
 }

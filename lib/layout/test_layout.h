@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/test_paths.h"
 #include "layout/scene.h"
 #include "layout/schemas.h"
 #include "record/text.h"
@@ -13,7 +14,7 @@ namespace ispace::testing {
 
 /// The devices that come with the project.
 inline const DeviceCatalogue& devices() {
-    static const DeviceCatalogue catalogue = loadDevices(ISPACE_SOURCE_DIR "/share/devices");
+    static const DeviceCatalogue catalogue = loadDevices(sourcePath("share/devices"));
     return catalogue;
 }
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "place/test_arrange.h"
 #include "trace/worlds.h"
 
@@ -76,7 +77,7 @@ TEST(BeamCells, SearchesSeeWhatTheBeamsOfTheirStepSay) {
 }
 
 TEST(Judge, WithoutItTheBestPlaceOfTheLRoomLiesOutside) {
-    const Scene scene = roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
+    const Scene scene = roomScene(readAll(testing::sourcePath("share/scenes/l-room.env")));
     const auto groups = groupsOf(scene, {"laser,range=4,fov=180"});
     ArrangeOptions options;
     options.strategy = Strategy::Grid;

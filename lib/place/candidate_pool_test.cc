@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "place/candidate_views.h"
 #include "place/test_arrange.h"
 #include "solve/test_problems.h"
@@ -291,7 +292,7 @@ TEST(CandidatePool, MeshesAreLeftInBetween) {
 
 // Fig. 4.8: without the Insider Judge the sensor would stand outside, facing the walls.
 TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
-    const Scene scene = roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
+    const Scene scene = roomScene(readAll(testing::sourcePath("share/scenes/l-room.env")));
     const Environment& room = scene.environment;
     std::vector<Site> everywhere;
     for (const Point2 place : gridPlaces(room.limits(), {9, 9}))

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/test_paths.h"
 #include "place/sites.h"
 #include "place/test_arrange.h"
 #include "place/wall_curves.h"
@@ -115,7 +116,7 @@ TEST(WallSites, OfOneOrTwoPlacesEachAreAtAnEnd) {
 }
 
 TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
-    const Environment room = environmentOf(readAll(ISPACE_SOURCE_DIR "/share/scenes/l-room.env"));
+    const Environment room = environmentOf(readAll(testing::sourcePath("share/scenes/l-room.env")));
     const auto sites = wallSites(room, kScanHeight, 0.1, 2);
     ASSERT_EQ(sites.size(), 12U);
     // The wall from (7, 1) to (1, 1) ends where the room goes on to the north.

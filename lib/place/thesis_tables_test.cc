@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "place/test_arrange.h"
 
 namespace ispace {
 namespace {
 
 Scene sceneOf(const std::string& file) {
-    return roomScene(readAll(ISPACE_SOURCE_DIR "/share/scenes/" + file));
+    return roomScene(readAll(testing::sourcePath("share/scenes/") + file));
 }
 
 ArrangeOptions asInTheThesis(Strategy strategy) {

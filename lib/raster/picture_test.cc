@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/test_damage.h"
+#include "base/test_paths.h"
 #include "raster/picture.h"
 #include "raster/test_cells.h"
 
@@ -16,7 +17,7 @@ namespace ispace {
 namespace {
 
 std::string fileOf(const std::string& suffix) {
-    return readAll(ISPACE_SOURCE_DIR "/tests/data/pictures/room." + suffix);
+    return readAll(testing::sourcePath("tests/data/pictures/room.") + suffix);
 }
 
 std::string errorOf(const std::string& bytes) {

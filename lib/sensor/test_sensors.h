@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "record/text.h"
 #include "sensor/kind.h"
 
@@ -34,8 +35,7 @@ inline const Record* deviceFor(const Record& record) {
     static const Schemas schemas(sensorDeviceSchemas());
     static const std::vector<Record> devices = [] {
         std::vector<Record> all;
-        for (const auto& file :
-             std::filesystem::directory_iterator(ISPACE_SOURCE_DIR "/share/devices")) {
+        for (const auto& file : std::filesystem::directory_iterator(sourcePath("share/devices"))) {
             const std::string text = withoutRobots(readAll(file.path().string()));
             Document document = readRecordText(text, file.path().string(), schemas);
             for (Record& device : document.records) all.push_back(std::move(device));

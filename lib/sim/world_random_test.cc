@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/test_paths.h"
 #include "geom/predicates.h"
 #include "layout/test_layout.h"
 #include "sim/collision.h"
@@ -31,7 +32,7 @@ std::vector<Point2> peopleIn(const Obstacles& obstacles) {
 /// The furnished room with people, and robots of different sizes at random free places, some with a
 /// laser.
 Scene crowdedRoom(std::size_t count, unsigned seed) {
-    const std::string text = readAll(ISPACE_SOURCE_DIR "/share/scenes/crowded.env");
+    const std::string text = readAll(testing::sourcePath("share/scenes/crowded.env"));
     const Document document = readRecordText(text, "crowded.env", sceneSchemas());
     const Scene empty = makeScene(document, nullptr, testing::devices());
     const Obstacles obstacles(empty.environment.band(0, 0.5));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/test_paths.h"
 #include "geom/point.h"
 #include "layout/test_layout.h"
 #include "trace/test_scans.h"
@@ -109,7 +110,7 @@ Lines linesOf(const Slice& slice) {
 }
 
 Lines shippedScene(const std::string& name) {
-    const std::string file = ISPACE_SOURCE_DIR "/share/scenes/" + name;
+    const std::string file = testing::sourcePath("share/scenes/") + name;
     const Document document = readRecordText(readAll(file), file, sceneSchemas());
     return linesOf(makeScene(document, nullptr, testing::devices()).environment.slice(0.15));
 }

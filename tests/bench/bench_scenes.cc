@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_scenes.h"
+#include "base/test_paths.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -58,10 +59,10 @@ std::string roomWithDoor(double x, double y, int number, Building& out) {
 
 }  // namespace
 
-DeviceCatalogue devices() { return loadDevices(std::string(ISPACE_SOURCE_DIR) + "/share/devices"); }
+DeviceCatalogue devices() { return loadDevices(testing::sourcePath("share/devices")); }
 
 std::string sceneFile(const std::string& name) {
-    return std::string(ISPACE_SOURCE_DIR) + "/share/scenes/" + name;
+    return testing::sourcePath("share/scenes/") + name;
 }
 
 Scene loadScene(const std::string& file) {

@@ -6,16 +6,19 @@
 #include <cmath>
 #include <string>
 
+#include "base/test_paths.h"
 #include "test_server.h"
 
 namespace ispace {
 namespace client {
 namespace {
 
-std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+std::string data(const std::string& file) {
+    return ispace::testing::sourcePath("tests/data/") + file;
+}
 
 /// square.env, 4 m by 4 m, with session.3dm, which waits for steps of 5 ms.
-class Roles : public testing::Test {
+class Roles : public ::testing::Test {
   protected:
     TestServer server{{data("square.env"), data("session.3dm"), "--clock", "step", "-q"}};
     World world{server.address()};

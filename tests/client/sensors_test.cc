@@ -7,16 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "base/test_paths.h"
 #include "test_server.h"
 
 namespace ispace {
 namespace client {
 namespace {
 
-std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+std::string data(const std::string& file) {
+    return ispace::testing::sourcePath("tests/data/") + file;
+}
 
 /// square.env with sensing.3dm: r1 drives past the sensors, h1 stands.
-class Sensors : public testing::Test {
+class Sensors : public ::testing::Test {
   protected:
     TestServer server{{data("square.env"), data("sensing.3dm"), "--clock", "step", "-q"}};
     World world{server.address()};

@@ -10,13 +10,16 @@
 #include <string>
 #include <thread>
 
+#include "base/test_paths.h"
 #include "test_server.h"
 
 namespace {
 
-std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+std::string data(const std::string& file) {
+    return ispace::testing::sourcePath("tests/data/") + file;
+}
 
-class SimAria : public testing::Test {
+class SimAria : public ::testing::Test {
   protected:
     void serve(const std::string& clock) {
         server.reset(

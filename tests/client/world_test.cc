@@ -11,16 +11,19 @@
 #include <string>
 #include <vector>
 
+#include "base/test_paths.h"
 #include "test_server.h"
 
 namespace ispace {
 namespace client {
 namespace {
 
-std::string data(const std::string& file) { return ISPACE_SOURCE_DIR "/tests/data/" + file; }
+std::string data(const std::string& file) {
+    return ispace::testing::sourcePath("tests/data/") + file;
+}
 
 /// square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5).
-class LivingWorld : public testing::Test {
+class LivingWorld : public ::testing::Test {
   protected:
     TestServer server{{data("square.env"), data("sensing.3dm"), "--clock", "step", "-q"}};
     World world{server.address()};
@@ -156,7 +159,7 @@ TEST_F(LivingWorld, EventsAreToldAsTheyHappen) {
 }
 
 TEST(LivingWorldToken, ChangesNeedItWhereItIsAskedFor) {
-    const std::string file = testing::TempDir() + "/ispace_token." + std::to_string(getpid());
+    const std::string file = ::testing::TempDir() + "/ispace_token." + std::to_string(getpid());
     std::ofstream(file) << "a-secret-of-this-test\n";
     ::chmod(file.c_str(), 0600);
     TestServer server(

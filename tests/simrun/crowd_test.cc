@@ -3,6 +3,7 @@
 // wall or another. Judged by brute force over buckets, which shares nothing with what it tests.
 // ISPACE_CROWD=10000 in the environment takes so many, for ten simulated minutes.
 #include "crowd.h"
+#include "base/test_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -167,7 +168,7 @@ TEST(Crowd, RobotsAndPeopleNeverOverlap) {
 }
 
 TEST(Crowd, NeverOverlapsInAFurnishedRoom) {
-    driveIn(ISPACE_SOURCE_DIR "/share/scenes/crowded.env", 0.06);
+    driveIn(testing::sourcePath("share/scenes/crowded.env"), 0.06);
 }
 
 TEST(Crowd, NeverOverlapsOnARobotsMap) {
