@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/run_changes.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>

@@ -31,12 +31,7 @@ class JointTracker {
     }
 
     /// Those that are sure enough to be told of.
-    Tracks tracks() const {
-        Tracks sure;
-        for (const Track& track : tracks_)
-            if (track.hits() >= kSure) sure.push_back(track);
-        return sure;
-    }
+    Tracks tracks() const { return withHits(tracks_, kSure); }
 
   private:
     static constexpr int kLegs = 2;

@@ -42,12 +42,7 @@ class SeparateTracker {
     }
 
     /// Those that are sure enough to be told of.
-    Tracks tracks() const {
-        Tracks sure;
-        for (const Track& track : tracks_)
-            if (track.hits() >= kSure) sure.push_back(track);
-        return sure;
-    }
+    Tracks tracks() const { return withHits(tracks_, kSure); }
 
   private:
     static constexpr double kGate = 1;       // m

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <vector>
 
@@ -84,6 +85,14 @@ class Track {
 
 /// Tracks hold fixed-size vectors of Eigen.
 using Tracks = std::vector<Track, Eigen::aligned_allocator<Track>>;
+
+/// Those that were seen in so many scans.
+inline Tracks withHits(const Tracks& tracks, int hits) {
+    Tracks out;
+    std::copy_if(tracks.begin(), tracks.end(), std::back_inserter(out),
+                 [hits](const Track& track) { return track.hits() >= hits; });
+    return out;
+}
 
 /// Gives up one of each two tracks that are nearer to each other than `same`, in m: they are of one
 /// person. The one to go is not sure yet, that is has less than `sure` hits, or is longer unseen,
