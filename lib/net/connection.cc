@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "net/socket_input.h"
+
 namespace ispace {
 
 namespace {
@@ -83,11 +85,6 @@ constexpr int kRequestsInTurn = 64;
 constexpr auto kTurn = std::chrono::microseconds(200);
 /// How long a connection may take to close after its last message; what it sends is not read.
 constexpr auto kLinger = std::chrono::seconds(1);
-
-bool wouldBlock(const error_code& error) {
-    return error == asio::error::would_block || error == asio::error::try_again ||
-           error == asio::error::interrupted;
-}
 
 }  // namespace
 
@@ -260,15 +257,7 @@ void ClientConnection::closeAfter(std::chrono::nanoseconds time) {
 }
 
 void ClientConnection::discard() {
-    constexpr int kBlocksInTurn = 16;
-    std::array<char, kBlock> block;
-    for (int i = 0; i < kBlocksInTurn; ++i) {
-        error_code error;
-        socket_.read_some(asio::buffer(block), error);
-        if (wouldBlock(error)) break;
-        if (error) return close();
-    }
-    if (last_) return close();
+    if (!discardInput(socket_) || last_) return close();
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {
         if (!failed && !self->closed()) self->discard();
     });

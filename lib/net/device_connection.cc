@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "net/socket_input.h"
+
 namespace ispace {
 
 namespace {
@@ -28,11 +30,6 @@ constexpr std::size_t kKept = std::size_t{1} << 16;
 constexpr auto kPatience = std::chrono::seconds(10);
 /// How long a connection may take to close after its last packet; what it sends is not read.
 constexpr auto kLinger = std::chrono::seconds(1);
-
-bool wouldBlock(const error_code& error) {
-    return error == asio::error::would_block || error == asio::error::try_again ||
-           error == asio::error::interrupted;
-}
 
 }  // namespace
 
@@ -64,6 +61,12 @@ void DeviceConnection::collect() {
 void DeviceConnection::stepped() {
     if (!session_ || closed()) return;
     session_->stepped(unsent());
+    pump();
+}
+
+void DeviceConnection::proceed() {
+    if (!waitsToChange()) return;
+    session_->proceed();
     pump();
 }
 
@@ -109,10 +112,7 @@ void DeviceConnection::receive() {
     error_code error;
     const std::size_t size = socket_.read_some(asio::buffer(block), error);
     if (error && !wouldBlock(error) && error != asio::error::eof) return close();
-    if (size > 0) {
-        heard_ = true;
-        session_->receive({block.data(), size});
-    }
+    if (size > 0) session_->receive({block.data(), size});
     if (error == asio::error::eof) {
         ended_ = true;
         session_->ended();
@@ -134,14 +134,7 @@ void DeviceConnection::linger() {
 }
 
 void DeviceConnection::discard() {
-    constexpr int kBlocksInTurn = 16;
-    std::array<char, kBlock> block;
-    for (int i = 0; i < kBlocksInTurn; ++i) {
-        error_code error;
-        socket_.read_some(asio::buffer(block), error);
-        if (wouldBlock(error)) break;
-        if (error) return close();
-    }
+    if (!discardInput(socket_)) return close();
     if (reading_) return;
     reading_ = true;
     socket_.async_wait(tcp::socket::wait_read, [self = shared_from_this()](auto failed) {

@@ -23,6 +23,10 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     void serve() { pump(); }
     /// The world took a step, or was changed.
     void stepped();
+    /// True if what its client asked for changes the world and has to wait for that.
+    [[nodiscard]] bool waitsToChange() const { return session_ && session_->waitsToChange(); }
+    /// Tries again what has to wait.
+    void proceed();
     /// Closes it if its client takes nothing any more.
     void checkPatience(WallTime now);
     /// Ends the session, sends what is pending and closes.
@@ -31,8 +35,11 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     [[nodiscard]] bool closed() const { return !socket_.is_open(); }
     /// False once its session has ended: only what is pending is still sent.
     [[nodiscard]] bool serving() const { return session_ != nullptr; }
-    /// True if its client has said nothing since that time, and nothing before it.
-    [[nodiscard]] bool isMute(WallTime since) const { return !heard_ && began_ <= since; }
+    /// True if it has stood since that time, and its client has not said a word of the device's
+    /// language yet.
+    [[nodiscard]] bool isMute(WallTime since) const {
+        return session_ && !session_->understood() && began_ <= since;
+    }
     /// True once its client sends no more, though it may read.
     [[nodiscard]] bool ended() const { return ended_; }
 
@@ -52,7 +59,7 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     std::string out_;
     std::size_t sent_ = 0;  // of out_
     WallTime began_, stuck_{};
-    bool heard_ = false, ended_ = false;
+    bool ended_ = false;
     bool reading_ = false, writing_ = false;  // handlers on their way
     bool lingering_ = false;
 };

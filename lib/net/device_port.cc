@@ -16,7 +16,7 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 using std::chrono::steady_clock;
 
-/// A client that has said nothing for so long makes room for another.
+/// A client that has not spoken the device's language by then makes room for another.
 constexpr auto kMute = std::chrono::seconds(1);
 /// Connections of a port that only have to close.
 constexpr std::size_t kMaxLeaving = 8;
@@ -116,8 +116,16 @@ void DevicePort::stepped() {
     for (const auto& connection : connections_) connection->stepped();
 }
 
+bool DevicePort::waitsToChange() const {
+    return std::any_of(connections_.begin(), connections_.end(),
+                       [](const auto& connection) { return connection->waitsToChange(); });
+}
+
 void DevicePort::serve(WallTime now) {
-    for (const auto& connection : connections_) connection->checkPatience(now);
+    for (const auto& connection : connections_) {
+        connection->proceed();
+        connection->checkPatience(now);
+    }
     sweep();
 }
 

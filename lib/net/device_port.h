@@ -45,6 +45,8 @@ class DevicePort {
     [[nodiscard]] std::string address() const { return acceptor_.address(); }
     /// The world took a step, or was changed.
     void stepped();
+    /// True if a client waits for its turn to change the world.
+    [[nodiscard]] bool waitsToChange() const;
     /// Between steps.
     void serve(WallTime now);
     void end();

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kPacket = 20000, kRoom = 50000;
 
 /// Echoes lines; `hold` takes the robot, `stream` sends a numbered packet after each step, `many` a
-/// long answer, `clock` the time, `quit` ends.
+/// long answer, `clock` the time, `wait` an answer once it has had its turn three times, `quit`
+/// ends.
 class EchoSession : public WireSession {
   public:
     EchoSession(WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {}
@@ -39,6 +40,10 @@ class EchoSession : public WireSession {
     void ended() override {
         if (!streams_) close();
     }
+    [[nodiscard]] bool waitsToChange() const override { return turns_ > 0; }
+    void proceed() override {
+        if (--turns_ == 0) send("done\n");
+    }
     void stepped(std::size_t unsent) override {
         ++number_;
         if (!streams_ || unsent > kRoom) return;
@@ -49,7 +54,9 @@ class EchoSession : public WireSession {
 
   private:
     void answer(const std::string& line) {
+        setUnderstood();
         if (line == "quit") close();
+        if (line == "wait") turns_ = 3;
         if (line == "clock") return send(std::to_string(host_->clock().count()) + "\n");
         if (line == "hold") {
             hold_ = host_->hold(id_);
@@ -65,6 +72,7 @@ class EchoSession : public WireSession {
     std::optional<std::int64_t> hold_;
     bool streams_ = false;
     std::int64_t number_ = 0;
+    int turns_ = 0;
 };
 
 std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
@@ -152,10 +160,10 @@ TEST(DevicePort, ServesSoManyAndNoMore) {
     }));
 }
 
-TEST(DevicePort, WhoSaysNothingMakesRoom) {
+TEST(DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     EchoServer run;
     Client mute(run.echoPort()), other(run.echoPort());
-    mute.connect();
+    mute.connect().send("stray bytes");
     EXPECT_EQ(other.connect().ask("b"), "b");
     EXPECT_TRUE(soon([&] {
         Client next(run.echoPort());
@@ -164,6 +172,13 @@ TEST(DevicePort, WhoSaysNothingMakesRoom) {
     }));
     EXPECT_EQ(mute.rest(), "");
     EXPECT_EQ(other.ask("still"), "still");
+}
+
+TEST(DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {
+    EchoServer run({Clock::Kind::Step, 1});
+    Client client(run.echoPort());
+    EXPECT_EQ(client.connect().ask("wait"), "wait");
+    EXPECT_EQ(client.line(), "done");
 }
 
 TEST(DevicePort, WhoOnlyListensStays) {

@@ -143,6 +143,8 @@ WallTime Server::Data::nextTurn() const {
         if (limits.watchdog.count() > 0 && connection->watched())
             next = std::min(next, connection->heard() + limits.watchdog);
     }
+    for (const DevicePort& device : devices)
+        if (device.waitsToChange()) next = std::min(next, state.changes().next());
     return next;
 }
 

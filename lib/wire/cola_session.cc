@@ -118,6 +118,7 @@ void ColaSession::receive(std::string_view bytes) {
     while (!closing()) {
         const auto telegram = telegrams_.next();
         if (!telegram || !follow()) return;
+        setUnderstood();
         answer(*telegram);
     }
 }

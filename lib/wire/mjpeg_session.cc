@@ -134,6 +134,7 @@ void MjpegSession::receive(std::string_view bytes) {
     if (end == std::string::npos) return;
     request_ = parsePictureRequest(std::string_view(head_).substr(0, end));
     std::string().swap(head_);
+    setUnderstood();
     answer(*request_);
 }
 

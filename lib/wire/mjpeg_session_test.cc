@@ -129,7 +129,9 @@ TEST(MjpegSession, EmptyLinesBeforeARequest) {
     TestHost host(kEyes);
     MjpegSession session(host, "d1");
     session.receive("\r\n\r\n");
+    EXPECT_FALSE(session.understood());
     session.receive("\nGET / HTTP/1.1\r\n\r\n");
+    EXPECT_TRUE(session.understood());
     EXPECT_TRUE(session.take().starts_with("HTTP/1.1 200 OK\r\n"));
 }
 

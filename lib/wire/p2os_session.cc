@@ -107,6 +107,7 @@ void P2osSession::listen() {
         const bool is_late = !packet && parser_.pending() > 0 && now - begun_ >= kPacketTime;
         if (packet || is_late) begun_ = now;
         if (packet) {
+            setUnderstood();
             feed();
             greeted_ ? obey(*packet) : greet(*packet);
         } else if (is_late) {
@@ -134,7 +135,7 @@ void P2osSession::stepped(std::size_t unsent) {
     follow();
     listen();
     if (closing()) return;
-    if (new_place_) place();
+    if (waitsToChange()) place();
     watch();
     drive_.stepped(world, robot());
     const Angle heading = pose().heading;
@@ -148,6 +149,12 @@ void P2osSession::stepped(std::size_t unsent) {
     if (tells_sim_) sendSim();
     sendStatus();
     sendScan();
+}
+
+void P2osSession::proceed() {
+    if (isLost()) return close();
+    follow();
+    place();
 }
 
 void P2osSession::greet(const P2osPacket& packet) {

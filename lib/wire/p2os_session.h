@@ -53,6 +53,8 @@ class P2osSession : public WireSession {
 
     void receive(std::string_view bytes) override;
     void stepped(std::size_t unsent) override;
+    [[nodiscard]] bool waitsToChange() const override { return new_place_.has_value(); }
+    void proceed() override;
 
   private:
     struct Handler;

@@ -201,6 +201,25 @@ TEST(P2osSession, IsPutElsewhere) {
     EXPECT_EQ(robot.heading(), 0);
 }
 
+TEST(P2osSession, ChangesTheWorldBetweenItsStepsToo) {
+    TestHost host(kRobot);
+    Pioneer robot(host);
+    robot.drive();
+    robot.command(8, 400);
+    robot.run(4);
+    host.changes_later = 2;
+    robot.command(225);  // SIM_RESET
+    const SimTime time = host.world().time();
+    EXPECT_TRUE(robot.session().waitsToChange());
+    robot.session().proceed();
+    EXPECT_TRUE(robot.session().waitsToChange());
+    EXPECT_NE(host.world().status(0).pose.position, (Point2{-2, 0}));
+    robot.session().proceed();
+    EXPECT_FALSE(robot.session().waitsToChange());
+    EXPECT_EQ(host.world().status(0).pose.position, (Point2{-2, 0}));
+    EXPECT_EQ(host.world().time(), time);
+}
+
 TEST(P2osSession, TellsItsStateAfterGoingBack) {
     TestHost host(kRobot);
     host.is_replay = true;

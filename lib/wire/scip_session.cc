@@ -14,6 +14,7 @@ constexpr std::size_t kRoom = std::size_t{1} << 16;
 constexpr std::uint32_t kTimeMask = 0xFFFFFF;
 constexpr int kIntensity = 1000;
 constexpr int kMostOfTwo = 4095;
+constexpr std::string_view kUnknown = "0E";  // status: no such command
 
 std::uint32_t milliseconds(std::chrono::nanoseconds time) {
     const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
@@ -102,10 +103,15 @@ void ScipSession::answer(const std::string& line) {
     if (!request.fault.empty()) return reply(line, request.fault);
     if (isSweep(request)) return takeSweep(request, line);
     const bool is_bare = request.parameters.empty();
-    if (is_bare && request.command == "VV") return reply(line, "00", product());
-    if (is_bare && request.command == "PP") return reply(line, "00", parameters());
-    if (is_bare && request.command == "II") return reply(line, "00", state());
+    const auto tell = [&](const std::string& data) {
+        setUnderstood();
+        reply(line, "00", data);
+    };
+    if (is_bare && request.command == "VV") return tell(product());
+    if (is_bare && request.command == "PP") return tell(parameters());
+    if (is_bare && request.command == "II") return tell(state());
     const std::string_view status = statusOf(request);
+    if (status != kUnknown) setUnderstood();
     const bool tells_time = request.command == "TM" && request.parameters == "1" && status == "00";
     reply(line, status, tells_time ? timeLine(host_->clock()) : "");
     if (request.command == "RB" && status == "00") close();
@@ -113,7 +119,6 @@ void ScipSession::answer(const std::string& line) {
 
 /// Carries out what has no data.
 std::string_view ScipSession::statusOf(const ScipRequest& request) {
-    constexpr std::string_view kUnknown = "0E";
     const std::string_view command = request.command;
     if (command == "TM") return timeMode(request);
     if (command == "CR") return motor(request.parameters);
@@ -196,6 +201,7 @@ void ScipSession::takeSweep(const ScipRequest& request, std::string_view line) {
     std::string status;
     const ScipSweep sweep = parseScipSweep(request.parameters, streams, model_.last, status);
     if (status != "00") return reply(line, status);
+    setUnderstood();
     if (!streams) {
         if (!laser_on_) return reply(line, "10");
         return reply(line, status, scan(request.command, sweep));

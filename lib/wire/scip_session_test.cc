@@ -284,6 +284,17 @@ TEST(ScipSession, EndsWithItsLaser) {
     EXPECT_TRUE(session.closing());
 }
 
+TEST(ScipSession, KnowsWhoSpeaksItsLanguage) {
+    Room room;
+    ScipSession session(room, "l1");
+    for (const char* other : {"x", "\n", "GET / HTTP/1.1\r\n\r\n", "HELLO\n"}) {
+        answered(session, other);
+        EXPECT_FALSE(session.understood()) << other;
+    }
+    answered(session, "VV\n");
+    EXPECT_TRUE(session.understood());
+}
+
 /// What programs send to begin with, as logs of them have it.
 const std::vector<std::string> kConversations{
     // urg_library, get_distance

@@ -79,6 +79,13 @@ class WireSession {
     virtual void stepped(std::size_t unsent) = 0;
     /// The client sends no more; it may still read.
     virtual void ended() { close(); }
+    /// True while a change of the world that the client asked for waits for its turn.
+    [[nodiscard]] virtual bool waitsToChange() const { return false; }
+    /// Asks for it again. \pre waitsToChange()
+    virtual void proceed() {}
+    /// True once the client has said something in the device's language. Until then it has no claim
+    /// to a port that others want.
+    [[nodiscard]] bool understood() const { return understood_; }
     /// True once nothing more is read: the connection ends when all is sent.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Takes what is to be sent, in order.
@@ -87,10 +94,11 @@ class WireSession {
   protected:
     void send(std::string_view bytes) { out_ += bytes; }
     void close() { closing_ = true; }
+    void setUnderstood() { understood_ = true; }
 
   private:
     std::string out_;
-    bool closing_ = false;
+    bool closing_ = false, understood_ = false;
 };
 
 /// One language: what simrun needs to know of it. Who adds one writes its session and such a row,
