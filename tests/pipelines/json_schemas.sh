@@ -5,6 +5,7 @@
 . "$(dirname "$0")/common.sh"
 
 python3 -c 'from jsonschema import Draft202012Validator' 2>/dev/null || skip "no python3-jsonschema"
+/usr/bin/python3 -c 'import yaml' 2>/dev/null || skip "no python3-yaml"
 validate="$source_dir/tests/schemas/validate.py"
 schemas=$source_dir/share/schemas
 python3 "$validate" --self-test "$schemas" || fail "the schemas themselves"
@@ -39,6 +40,12 @@ for _ in $(seq 1000); do [ -s web_begin.json ] || sleep 0.02; done
 python3 "$source_dir/tests/web/web_client.py" "$(sed 's/.*"web":"\([^"]*\)".*/\1/' web_begin.json)" >web.jsonl
 kill "$server"
 wait "$server"
+printf '%s\n' 'run: [ "coverage {room} {layout} -q --report {out}.json", "scan {room} {layout} -q -o {out}.jsonl" ]' \
+    'axes: {room: [hall.env], layout: [hall.3dm]}' >sweep.yaml
+cp "$scenes"/hall.* .
+ispace-sweep commands sweep.yaml --json >jobs.jsonl
+ispace-sweep commands sweep.yaml | sh
+ispace-sweep join sweep.yaml -o table.jsonl
 exec 2>&3
 
 python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \

@@ -7,7 +7,7 @@
 DESTDIR=$scratch/stage cmake --install "$binary_dir" --prefix /opt/ispace >log
 mv stage/opt/ispace moved # an installed tree may be moved: nothing is compiled in
 [ "$(ls stage/opt)" = "" ] || fail "installed elsewhere: $(find stage)"
-for tool in $tools; do
+for tool in $tools ispace-sweep; do
     [ -x "moved/bin/$tool" ] || fail "no bin/$tool"
     [ -s "moved/share/man/man1/$tool.1" ] || fail "no man page of $tool"
 done
@@ -20,12 +20,12 @@ for schema in "$source_dir"/share/schemas/*.json; do
     cmp "$schema" "moved/share/ispace/schemas/${schema##*/}" || fail "not installed: $schema"
 done
 if command -v man >/dev/null; then
-    for page in $tools ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire; do
+    for page in $tools ispace-sweep ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire; do
         man -M moved/share/man -w "$page" >page && grep -q moved "page" ||
             fail "man does not find $page: $(cat page)"
     done
 fi
-[ "$(ls moved/bin | wc -l)" -eq 5 ] || fail "more than the tools in bin: $(ls moved/bin)"
+[ "$(ls moved/bin | wc -l)" -eq 6 ] || fail "more than the tools in bin: $(ls moved/bin)"
 if find moved -type l | grep .; then fail "links installed"; fi
 
 mkdir elsewhere
@@ -44,6 +44,15 @@ envc "$data/pictures/room.jpg" --resolution 0.05 --info | grep -q 'indoor area' 
 envc "$data/meshes/flat.ifc" --info | grep -q 'indoor area' || fail "no IFC is read"
 # A scene with a mesh beside it.
 envc "$share/scenes/catalogue.env" -o catalogue.glb
+# ispace-sweep finds its modules, and the drawings of the experiments.
+if /usr/bin/python3 -c 'import yaml, matplotlib' 2>/dev/null; then
+    cp -r "$share/examples/batch" batch
+    cp "$share/scenes/crowded.env" "$share/scenes/l-room.env" batch
+    (cd batch && ispace-sweep commands sweep.yaml --shard 1/50 | sh &&
+        ispace-sweep plot sweep.yaml --partial -q --x seed -o curves.svg) || fail "no sweep"
+    [ -s batch/curves.svg ] || fail "no curves"
+fi
+if find "$share" -name '*.pyc' | grep .; then fail "compiled files are installed or left"; fi
 
 # Without its share/ a tool says what is missing.
 rm -rf "$share/devices"

@@ -1,0 +1,13 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# slurm-array.sh TASKS: one task of an array of TASKS, started by slurm.sh. It does its part of the sweep's
+# jobs, less what is done already: after a node failed and Slurm requeued the task, or if the array is
+# submitted again. The tools take their number of threads from --cpus-per-task.
+#SBATCH --job-name=ispace-sweep
+#SBATCH --cpus-per-task=1
+#SBATCH --requeue
+#SBATCH --output=/dev/null
+#SBATCH --error=slurm-%A_%a.txt
+#SBATCH --open-mode=append
+set -euo pipefail
+ispace-sweep commands sweep.yaml --shard "$SLURM_ARRAY_TASK_ID/$1" --missing | sh

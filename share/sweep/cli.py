@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line of ispace-sweep."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import re
+import signal
+import sys
+import tempfile
+from typing import Iterable, Iterator, NoReturn, Sequence
+
+from .errors import DataError, UsageError, did_you_mean
+from .model import CommandWriter, Job, Sweep
+
+TOOL = "ispace-sweep"
+# What each action does, and the options it has besides the common ones.
+ACTIONS = {
+    "commands": ("a line of the shell for each job", {"only", "shard", "missing", "threads", "json"}),
+    "names": ("the files that the jobs make", {"only", "shard", "missing", "suffix"}),
+    "makefile": ("rules for GNU make", {"only", "threads"}),
+    "join": ("the results of all jobs as one table", {"only", "partial", "to"}),
+    "plot": ("one picture of the results", {"only", "partial", "to", "x", "y", "by", "over"}),
+}
+DEFAULTS: dict[str, object] = {
+    "only": [], "shard": None, "missing": False, "threads": None, "json": False, "suffix": None,
+    "partial": False, "to": None, "x": None, "y": None, "by": None, "over": None}
+
+
+def main(version: str, arguments: Sequence[str] | None = None) -> int:
+    """Runs the program; the exit status is that of the other tools: 1 bad data or failed I/O, 2 usage."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _stop)
+    try:
+        _run(_parse(arguments, version), version)
+        return 0
+    except UsageError as error:
+        _say([str(error)])
+        return 2
+    except DataError as error:
+        _say(error.findings)
+        return 1
+    except OSError as error:
+        name = f"{os.fsdecode(error.filename)}: " if error.filename else ""
+        _say([f"{name}error: {os.strerror(error.errno or 0)}"])
+        return 1
+    except _Stopped as stopped:
+        signal.signal(stopped.number, signal.SIG_DFL)
+        os.kill(os.getpid(), stopped.number)
+        return 128 + stopped.number
+
+
+class _Stopped(BaseException):
+    """By a signal: what is half written is removed on the way out."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        super().__init__(number)
+
+
+def _stop(number: int, _frame: object) -> NoReturn:
+    raise _Stopped(number)
+
+
+def _say(messages: Iterable[str]) -> None:
+    """Messages, a line each, whatever they quote."""
+    for message in messages:
+        line = "".join(letter if letter.isprintable() else "?" for letter in message)
+        print(f"{TOOL}: {line}".encode(errors="backslashreplace").decode(), file=sys.stderr)
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message} (--help shows how)")
+
+
+def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
+    what = "\n".join(f"  {name:10}{text}" for name, (text, _) in ACTIONS.items())
+    parser = _Parser(
+        prog=TOOL, usage=f"{TOOL} ACTION SWEEP [OPTION]...", allow_abbrev=False, add_help=False,
+        formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=28, width=100),
+        description=f"Lists the jobs of a sweep, and joins their results.\n\nactions:\n{what}")
+    parser.add_argument("action", metavar="ACTION", nargs="?", help=argparse.SUPPRESS)
+    parser.add_argument("sweep", metavar="SWEEP", nargs="?", help=argparse.SUPPRESS)
+    add = parser.add_argument
+    add("-o", "--output", metavar="FILE", default="-", help="write to FILE, whole or not at all (default: -)")
+    add("--only", metavar="AXIS=VALUE", action="append", help="jobs with this choice alone; may be repeated")
+    add("--shard", metavar="I/N", help="the I-th of N nearly equal parts of the jobs, 1-based")
+    add("--missing", action="store_true", default=None, help="only what is not done yet")
+    add("--json", action="store_true", default=None, help="JSON lines that describe the jobs")
+    add("-j", "--threads", metavar="N", help="give the tools this number of threads")
+    add("--suffix", metavar="SUFFIX", help="only the files with this suffix")
+    add("--partial", action="store_true", default=None, help="do without the jobs that are not done")
+    add("--to", metavar="FORMAT", help="csv, jsonl or npz; svg, png or pdf (default: the suffix of FILE)")
+    add("--x", metavar="AXIS", help="what lies along the picture")
+    add("--y", metavar="COLUMN", help="what is drawn (default: the coverage)")
+    add("--by", metavar="AXIS", help="a curve for each choice of AXIS")
+    add("--over", metavar="AXIS", help="a heat map with the choices of AXIS up its side")
+    add("-q", "--quiet", action="store_true", help="print nothing but errors")
+    add("-h", "--help", action="store_true", help="show this help and exit")
+    add("-V", "--version", action="store_true", help="show version and licence and exit")
+    options = parser.parse_intermixed_args(arguments)
+    if options.help:
+        parser.print_help()
+        sys.exit(0)
+    if options.version:
+        print(f"{TOOL} (ispace) {version}\nLicence GPL-3.0-or-later; there is no warranty.")
+        sys.exit(0)
+    _check(options)
+    return options
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Missing operands, options of other actions, values out of range."""
+    if options.action is None:
+        raise UsageError(f"an action is needed: {', '.join(ACTIONS)} (--help shows how)")
+    if options.action not in ACTIONS:
+        raise UsageError(f"unknown action `{options.action}`{did_you_mean(options.action, ACTIONS)}")
+    if options.sweep is None:
+        raise UsageError("the sweep's file is needed (--help shows how)")
+    if options.sweep == "-" and sys.stdin.isatty():
+        raise UsageError("the sweep would be read from a terminal")
+    for name, default in DEFAULTS.items():
+        if getattr(options, name) is None:
+            setattr(options, name, default)
+        elif name not in ACTIONS[options.action][1]:
+            raise UsageError(f"--{name} is not for `{options.action}`")
+    if options.threads is not None and not re.fullmatch(r"[0-9]{1,4}", options.threads):
+        raise UsageError(f"-j {options.threads}: not a number of threads")
+    if options.action == "plot":
+        if options.x is None:
+            raise UsageError("--x AXIS is needed")
+        if options.by and options.over:
+            raise UsageError("--by and --over: one of them")
+        if len({options.x, options.by, options.over}) < 2 + bool(options.by or options.over):
+            raise UsageError(f"`{options.x}` can lie one way alone")
+
+
+def _run(options: argparse.Namespace, version: str) -> None:
+    from .reader import read_sweep  # what takes time to load is loaded when it is needed
+
+    if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
+        raise UsageError(f"{options.output} is the sweep itself")
+    sweep = read_sweep(options.sweep)
+    jobs = _chosen(sweep, options)
+    if options.action in ("commands", "names", "makefile"):
+        with _output(options.output) as write:
+            for line in _lines(sweep, jobs, options, version):
+                write(line.encode("utf-8", "surrogateescape") + b"\n")
+        return
+    _report(sweep, jobs, options, version)
+
+
+def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, version: str) -> Iterator[str]:
+    from . import listing
+
+    if options.action == "names":
+        if options.suffix is not None and options.suffix not in sweep.suffixes:
+            raise UsageError(f"--suffix {options.suffix}: the jobs make {', '.join(sweep.suffixes)}")
+        return listing.names(sweep, jobs, options.missing, options.suffix)
+    writer = CommandWriter(sweep, None if options.threads is None else int(options.threads))
+    if options.action == "makefile":
+        return listing.makefile(sweep, jobs, writer)
+    if options.json:
+        return listing.json_lines(sweep, jobs, writer, options.missing, version)
+    return listing.commands(sweep, jobs, writer, options.missing)
+
+
+def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version: str) -> None:
+    from . import tables
+    from .results import join
+
+    if options.action == "join":
+        form = _format(options, tables.FORMATS, "csv")
+    else:
+        from . import picture
+
+        form = _format(options, picture.FORMATS, "svg")
+    if form in ("npz", "png", "pdf") and options.output == "-" and sys.stdout.isatty():
+        raise UsageError(f"{form} is not for a terminal: name a file with -o")
+    rows = join(sweep, jobs, options.partial)
+    if not rows:
+        raise DataError(["error: no job is done yet"])
+    if len(rows) < len(jobs) and not options.quiet:
+        _say([f"warning: {len(jobs) - len(rows)} of {len(jobs)} jobs are not done"])
+    if options.action == "join":
+        data = tables.WRITERS[form](sweep, rows, version)
+    else:
+        data = picture.draw(sweep, rows, tables.columns(sweep, rows), options.x, options.y, options.by,
+                            options.over, form)
+    with _output(options.output) as write:
+        write(data)
+
+
+def _format(options: argparse.Namespace, known: Sequence[str], usual: str) -> str:
+    """That of --to, else of the suffix, else the usual one."""
+    suffix = os.path.splitext(options.output)[1][1:]
+    form: str = options.to or (suffix if options.output != "-" else "") or usual
+    if form not in known:
+        what = f"--to {form}" if options.to else f"{options.output}: unknown suffix"
+        raise UsageError(f"{what}; {options.action} writes {', '.join(known)}")
+    return form
+
+
+def _chosen(sweep: Sweep, options: argparse.Namespace) -> list[Job]:
+    """The jobs of --only and --shard; a shard is a part of all jobs, done or not."""
+    jobs = list(sweep.jobs())
+    for rule in options.only:
+        name, _, value = rule.partition("=")
+        names = [axis.name for axis in sweep.axes]
+        if name not in names:
+            raise UsageError(f"--only {rule}: no such axis{did_you_mean(name, names)}; there are "
+                             f"{', '.join(names)}")
+        place = names.index(name)
+        known = [choice.text for choice in sweep.axes[place].choices]
+        if value not in known:
+            raise UsageError(f"--only {rule}: no such choice{did_you_mean(value, known)}")
+        jobs = [job for job in jobs if job.choices[place].text == value]
+    if options.shard is not None:
+        part = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", options.shard)
+        index, count = (int(part[1]), int(part[2])) if part else (0, 0)
+        if not 1 <= index <= count:
+            raise UsageError(f"--shard {options.shard}: I/N with I from 1 to N")
+        size, more = divmod(len(jobs), count)
+        begin = (index - 1) * size + min(index - 1, more)
+        jobs = jobs[begin:begin + size + (index <= more)]
+    return jobs
+
+
+def _same_file(one: str, other: str) -> bool:
+    try:
+        return os.path.samefile(one, other)
+    except OSError:
+        return False
+
+
+class _Write:
+    """Collects small pieces, so that 10 000 lines are few writes."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._file = os.fdopen(descriptor, "wb", 1 << 16)
+
+    def __call__(self, data: bytes) -> None:
+        self._file.write(data)
+
+    def close(self) -> None:
+        self._file.close()
+
+
+@contextlib.contextmanager
+def _output(path: str) -> Iterator[_Write]:
+    """Standard output, or a file beside its target that gets its name at the end."""
+    if path == "-":
+        write = _Write(os.dup(1))
+        yield write
+        write.close()
+        return
+    if os.path.exists(path) and not os.path.isfile(path):  # /dev/null and its like
+        write = _Write(os.open(path, os.O_WRONLY))
+        yield write
+        write.close()
+        return
+    target = os.path.realpath(path)
+    descriptor, beside = tempfile.mkstemp(prefix=".ispace.tmp.", dir=os.path.dirname(target))
+    try:
+        write = _Write(descriptor)
+        yield write
+        mask = os.umask(0)
+        os.umask(mask)
+        os.fchmod(descriptor, 0o666 & ~mask)
+        write.close()
+        os.replace(beside, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            write.close()
+        with contextlib.suppress(OSError):
+            os.unlink(beside)
+        raise

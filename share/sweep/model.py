@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sweep: axes with their choices, the steps of each job, and the jobs these make."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+import shlex
+from dataclasses import dataclass
+from typing import Iterator, Mapping, Sequence
+
+TOOLS = ("envc", "arrange", "scan", "coverage", "simrun")
+OUT = "out"  # the placeholder of a job's own files
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One value of an axis: its part in the names of files, what the table says, and the words of the
+    command line that it stands for."""
+
+    part: str
+    text: str
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What varies, and over which choices; those of files are inputs of the jobs."""
+
+    name: str
+    choices: tuple[Choice, ...]
+    files: bool
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word of a command: texts and names of placeholders in turn, beginning with a text."""
+
+    parts: tuple[str, ...]
+
+    @property
+    def placeholders(self) -> tuple[str, ...]:
+        return self.parts[1::2]
+
+    @property
+    def suffix(self) -> str | None:
+        """What follows {out} at the end of the word; None if it names no file of the job."""
+        if len(self.parts) >= 3 and self.parts[-2] == OUT:
+            return self.parts[-1]
+        return None
+
+
+@dataclass(frozen=True)
+class Step:
+    """A program and its arguments. `makes` and `reads` are suffixes of the job's files; standard output
+    is kept in that with `redirect`, else discarded."""
+
+    words: tuple[Word, ...]
+    makes: tuple[str, ...]
+    reads: tuple[str, ...]
+    redirect: str | None
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """What tells that the step is done: outputs without a suffix are folders, which say nothing."""
+        return tuple(suffix for suffix in self.makes if suffix)
+
+
+@dataclass(frozen=True)
+class Job:
+    """One combination of choices, numbered from 1; `stem` is its files' path without suffix."""
+
+    number: int
+    name: str
+    stem: str
+    choices: tuple[Choice, ...]
+
+    def path(self, suffix: str) -> str:
+        return self.stem + suffix
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What a sweep's file says. `excluded` are combinations to leave out: names of axes to the texts of
+    choices; `accept` are exit statuses of a step that count as success, besides 0."""
+
+    file: str
+    digest: str
+    steps: tuple[Step, ...]
+    axes: tuple[Axis, ...]
+    folder: str
+    excluded: tuple[Mapping[str, frozenset[str]], ...] = ()
+    accept: tuple[int, ...] = ()
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Of the files that every job makes, in the order of its steps."""
+        return tuple(suffix for step in self.steps for suffix in step.files)
+
+    def jobs(self) -> Iterator[Job]:
+        """All jobs; the last axis varies fastest. Depends on the sweep's file alone (and, with patterns,
+        on the names of files that match), not on what has been done."""
+        names = [axis.name for axis in self.axes]
+        number = 0
+        for choices in itertools.product(*(axis.choices for axis in self.axes)):
+            if self.excluded and self._excludes(names, choices):
+                continue
+            number += 1
+            name = "_".join(choice.part for choice in choices) or "job"
+            yield Job(number, name, os.path.join(self.folder, name), choices)
+
+    def _excludes(self, names: Sequence[str], choices: Sequence[Choice]) -> bool:
+        texts = {name: choice.text for name, choice in zip(names, choices)}
+        return any(all(texts[name] in some for name, some in rule.items()) for rule in self.excluded)
+
+    def inputs(self, job: Job) -> list[str]:
+        """Files that the job reads and no job makes."""
+        return [choice.text for axis, choice in zip(self.axes, job.choices) if axis.files]
+
+    def done(self, job: Job, step: Step) -> bool:
+        """Whether all files of a step are there. Tools write theirs whole or not at all."""
+        return all(_is_there(job.path(suffix)) for suffix in step.files)
+
+    def left(self, job: Job) -> list[Step]:
+        """The steps from the first that is not done."""
+        for index, step in enumerate(self.steps):
+            if not self.done(job, step):
+                return list(self.steps[index:])
+        return []
+
+
+def _is_there(path: str) -> bool:
+    try:
+        return os.stat(path).st_size > 0
+    except OSError:
+        return False
+
+
+class CommandWriter:
+    """Commands of the shell for the jobs of a sweep."""
+
+    def __init__(self, sweep: Sweep, threads: int | None) -> None:
+        self._sweep = sweep
+        self._threads = threads
+        self._places = {axis.name: index for index, axis in enumerate(sweep.axes)}
+
+    def words(self, job: Job, step: Step) -> list[str]:
+        """The words of a step, as the program gets them."""
+        words: list[str] = []
+        for word in step.words:
+            parts = word.parts
+            if len(parts) == 1:
+                words.append(parts[0])
+            elif len(parts) == 3 and parts[0] == parts[2] == "" and parts[1] != OUT:
+                words += job.choices[self._places[parts[1]]].words
+            else:
+                words.append("".join(
+                    part if index % 2 == 0 else job.stem if part == OUT
+                    else job.choices[self._places[part]].words[0]
+                    for index, part in enumerate(parts)))
+        if self._threads is not None and _runs_tool(words):
+            words += ["-j", str(self._threads)]
+        return words
+
+    def step(self, job: Job, step: Step) -> str:
+        """One step for sh: what it prints goes nowhere or, by way of a name of its own, into its file."""
+        line = " ".join(map(shlex.quote, self.words(job, step)))
+        accepted = "".join(f" || [ $? -eq {status} ]" for status in self._sweep.accept)
+        if step.redirect is None:
+            return f"{line} >/dev/null{accepted}"
+        target = shlex.quote(job.path(step.redirect))
+        part = shlex.quote(job.path(step.redirect) + ".part")
+        return f"{line} >{part}{accepted} && mv -f {part} {target}"
+
+    def line(self, job: Job, steps: Sequence[Step]) -> str:
+        """The steps as one line, which ends the shell with the status of the first that fails: under `sh -e`
+        a failure inside a list of && would go unnoticed."""
+        commands = [self.step(job, step) for step in steps]
+        if self._sweep.folder != ".":
+            commands.insert(0, f"mkdir -p {shlex.quote(self._sweep.folder)}")
+        return " && ".join(commands) + " || exit"
+
+
+def _runs_tool(words: Sequence[str]) -> bool:
+    """`arrange …`, `/opt/bin/arrange …` or `ispace arrange …`."""
+    program = os.path.basename(words[0])
+    return program in TOOLS or (program == "ispace" and len(words) > 1 and words[1] in TOOLS)
+
+
+def part_of(text: str, axis: str) -> str:
+    """What a value contributes to the names of files: letters, digits, `.`, `+` and `-`. Of a path it is the
+    base name without suffix; numbers get the name of their axis: count3."""
+    if re.fullmatch(r"[+-]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][+-]?[0-9]+)?", text):
+        return _clean(axis) + text
+    return _clean(re.sub(r"(?<=.)[.]([A-Za-z][A-Za-z0-9]*|3dm)$", "", os.path.basename(text.rstrip("/"))))
+
+
+def _clean(text: str) -> str:
+    return re.sub(r"-{2,}", "-", re.sub(r"[^A-Za-z0-9.+-]", "-", text)).strip("-.")

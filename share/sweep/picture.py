@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One picture of a table: curves over an axis, or cells in colours over two."""
+
+from __future__ import annotations
+
+import io
+from typing import Any, Callable, Sequence
+
+from .errors import DataError, UsageError, did_you_mean
+from .model import Axis, Sweep
+from .results import Row, Value
+
+FORMATS = ("svg", "png", "pdf")
+USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # what is drawn if nobody says
+
+
+def draw(sweep: Sweep, rows: Sequence[Row], table: dict[str, list[Value]], x: str, y: str | None,
+         by: str | None, over: str | None, form: str) -> bytes:
+    """The means of column `y` over axis `x`, with least and greatest where several jobs share a place: a
+    curve for each choice of `by`, or with `over` a cell for each two choices."""
+    axes = {axis.name: axis for axis in sweep.axes}
+    for option, name in (("--x", x), ("--by", by), ("--over", over)):
+        if name is not None and name not in axes:
+            raise UsageError(f"{option} {name}: no such axis{did_you_mean(name, axes)}; there are "
+                             f"{', '.join(axes)}")
+    column = _column(table, y)
+    figures = {row.job.number: value for row, value in zip(rows, table[column])}
+    cells = _Cells(sweep, rows, figures)
+    if over is not None:
+        plot = _heat(cells, axes[x], axes[over], column)
+    else:
+        plot = _curves(cells, axes[x], axes[by] if by else None, column)
+    out = io.BytesIO()
+    nothing = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+    plot.figure.savefig(out, format=form, bbox_inches="tight", dpi=144, metadata=nothing[form])
+    return out.getvalue()
+
+
+def _column(table: dict[str, list[Value]], y: str | None) -> str:
+    numeric = [name for name, values in table.items()
+               if name != "job" and any(_is_number(value) for value in values)]
+    if y is None:
+        usual = [name for name in USUAL if name in numeric]
+        if not usual:
+            raise UsageError(f"--y COLUMN is needed; there are {', '.join(numeric)}")
+        return usual[0]
+    if y not in numeric:
+        raise UsageError(f"--y {y}: no column with numbers{did_you_mean(y, numeric)}; there are "
+                         f"{', '.join(numeric)}")
+    return y
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+class _Cells:
+    """Figures by what was chosen on some axes."""
+
+    def __init__(self, sweep: Sweep, rows: Sequence[Row], figures: dict[int, Value]) -> None:
+        self.names = [axis.name for axis in sweep.axes]
+        self.rows = [row for row in rows if _is_number(figures[row.job.number])]
+        self.figures = figures
+        if not self.rows:
+            raise DataError(["error: no job has a figure to draw"])
+
+    def at(self, *choices: tuple[Axis, Any]) -> list[float]:
+        places = [(self.names.index(axis.name), choice) for axis, choice in choices]
+        found = [self.figures[row.job.number] for row in self.rows
+                 if all(row.job.choices[place] is choice for place, choice in places)]
+        return [float(value) for value in found if value is not None]
+
+    def spread(self, *shown: Axis | None) -> str:
+        """What the mean is taken over."""
+        names = {axis.name for axis in shown if axis}
+        others = [name for index, name in enumerate(self.names) if name not in names
+                  and len({row.job.choices[index].text for row in self.rows}) > 1]
+        return f"mean over {', '.join(others)}" if others else ""
+
+
+def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
+    place, labels = _places(x)
+    curves = []
+    for choice in by.choices if by else (None,):
+        points = []
+        for option in x.choices:
+            fixed = [(x, option), *([(by, choice)] if by else [])]
+            found = cells.at(*fixed)
+            if found:
+                points.append((place[option.text], sum(found) / len(found), min(found), max(found)))
+        if points:
+            curves.append((choice.text if choice else "", sorted(points)))
+    low = min(point[2] for _, points in curves for point in points)
+    high = max(point[3] for _, points in curves for point in points)
+    note = cells.spread(x, by)
+    look = _look()
+    plot = look.Plot(_widened(min(place.values()), max(place.values())), _widened(low, high),
+                     column + (f", {note}" if note else ""), x.name, column)
+    for index, (name, points) in enumerate(curves):
+        color = look.SERIES[index % len(look.SERIES)]
+        dash = "" if index < len(look.SERIES) else "6 3"
+        if any(point[2] < point[3] for point in points):
+            plot.axes.fill_between([p[0] for p in points], [p[2] for p in points], [p[3] for p in points],
+                                   color=color, alpha=0.15, linewidth=0)
+        plot.line([p[:2] for p in points], color, 2.0, dash, name)
+        plot.dots([p[:2] for p in points], color, 3.0)
+    _ticks(plot.axes.set_xticks, place, labels)
+    _legend(plot, by)
+    return plot
+
+
+def _heat(cells: _Cells, x: Axis, over: Axis, column: str) -> Any:
+    look = _look()
+    means = {}
+    for column_index, option in enumerate(x.choices):
+        for row_index, choice in enumerate(over.choices):
+            found = cells.at((x, option), (over, choice))
+            if found:
+                means[column_index, row_index] = sum(found) / len(found)
+    low, high = min(means.values()), max(means.values())
+    note = cells.spread(x, over)
+    plot = look.Plot((-0.5, len(x.choices) - 0.5), (-0.5, len(over.choices) - 0.5),
+                     column + (f", {note}" if note else ""), x.name, over.name,
+                     height=max(160, min(720, 36 * len(over.choices))))
+    plot.axes.grid(False)
+    for (at_x, at_y), mean in means.items():
+        share = (mean - low) / (high - low) if high > low else 0.5
+        plot.box((at_x - 0.5, at_y - 0.5), (at_x + 0.5, at_y + 0.5), look.viridis(share))
+        if len(x.choices) <= 12:
+            plot.words(at_x, at_y, f"{mean:.4g}", anchor="middle", dy=4)
+    plot.scale(low, high if high > low else low + 1e-9, column)
+    _ticks(plot.axes.set_xticks, {c.text: i for i, c in enumerate(x.choices)}, [c.text for c in x.choices])
+    _ticks(plot.axes.set_yticks, {c.text: i for i, c in enumerate(over.choices)}, [c.text for c in over.choices])
+    return plot
+
+
+def _places(axis: Axis) -> tuple[dict[str, float], list[str]]:
+    """Where choices stand on the axis of a drawing: numbers in their places, words one beside the other."""
+    try:
+        return {choice.text: float(choice.text) for choice in axis.choices}, []
+    except ValueError:
+        return ({choice.text: float(index) for index, choice in enumerate(axis.choices)},
+                [choice.text for choice in axis.choices])
+
+
+def _ticks(setter: Callable[..., Any], place: dict[str, Any], labels: list[str]) -> None:
+    """All places have their words, at most twenty of them; numbers of few places have their own."""
+    if labels:
+        every = -(-len(labels) // 20)
+        setter(list(place.values())[::every], [label[:28] for label in labels][::every])
+    elif len(place) <= 12:
+        setter(sorted(place.values()))
+
+
+def _legend(plot: Any, by: Axis | None) -> None:
+    if by:
+        plot.axes.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2, frameon=False,
+                         borderaxespad=0, title=by.name, alignment="left")
+
+
+def _widened(low: float, high: float) -> tuple[float, float]:
+    gap = 0.05 * (high - low) or 0.5 * abs(high) or 0.5
+    return low - gap, high + gap
+
+
+def _look() -> Any:
+    """The drawings of share/experiments, on matplotlib."""
+    try:
+        from experiments import plot
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("matplotlib", "numpy"):
+            raise
+        raise DataError([f"error: no {error.name} here: pictures need Debian's python3-matplotlib"]) from None
+    return plot
