@@ -11,8 +11,11 @@ namespace ispace {
 
 std::string programPrefix() {
     std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-    return program.parent_path().parent_path().string();
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    auto prefix = folder.parent_path();
+    // Where a package keeps the tools apart from other programs of the same names.
+    if (folder.string().ends_with("/lib/ispace/bin")) prefix = prefix.parent_path().parent_path();
+    return prefix.string();
 }
 
 std::string_view version() { return ISPACE_VERSION; }

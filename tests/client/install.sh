@@ -8,9 +8,29 @@ cmake --install "$binary_dir" --prefix "$scratch/prefix" >log
 cp "$source_dir"/tests/client/consumer/* .
 cmake -S . -B build -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 || fail "not found: $(cat cmake.log)"
 cmake --build build >build.log 2>&1 || fail "$(cat build.log)"
-sed -i 's/ispace_client 0.1/ispace_client 0.2/' CMakeLists.txt
+version=$(sed -n 's/^project(ispace VERSION \([0-9]*\.[0-9]*\).*/\1/p' "$source_dir/CMakeLists.txt")
+sed -i "s/find_package(ispace [^ ]* /find_package(ispace $version.99 /" CMakeLists.txt
 if cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1; then
-    fail "version 0.1 is taken for 0.2"
+    fail "version $version.0 is taken for $version.99"
+fi
+# By the package's name of 0.1, and by parts of it.
+for found in ispace_client "ispace $version COMPONENTS client aria"; do
+    sed -i "s/find_package(.*/find_package($found REQUIRED)/" CMakeLists.txt
+    rm -rf other
+    cmake -S . -B other -DCMAKE_PREFIX_PATH="$scratch/prefix" >cmake.log 2>&1 || fail "no $found: $(cat cmake.log)"
+done
+# By pkg-config, from a tree that was moved.
+if command -v pkg-config >/dev/null; then
+    cp -r prefix moved
+    export PKG_CONFIG_PATH=$scratch/moved/share/pkgconfig
+    pkg-config --atleast-version="$version" ispace-client || fail "pkg-config does not know this version"
+    rm -rf moved/share/cmake
+    # shellcheck disable=SC2046
+    "${CXX:-c++}" -std=c++11 $(pkg-config --cflags ispace-client) consumer.cpp -o by_pkg_config $(pkg-config --libs ispace-client) ||
+        fail "consumer.cpp is not compiled by pkg-config"
+    # shellcheck disable=SC2046
+    "${CXX:-c++}" -std=c++11 $(pkg-config --cflags ispace-aria) "$source_dir/share/examples/aria/wander.cpp" \
+        -o by_pkg_config $(pkg-config --libs ispace-aria) || fail "wander.cpp is not compiled by pkg-config"
 fi
 
 # The examples are copied from there and built with what is installed.

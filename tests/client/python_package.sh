@@ -32,6 +32,9 @@ folder=$(find prefix -type d -name ispace -path '*dist-packages*')
 [ -n "$folder" ] || fail "not installed"
 check "$scratch/${folder%/ispace}"
 if find prefix -name '*.pyc' | grep .; then fail "compiled files are installed"; fi
+# For /usr it goes into the folder of Debian's own packages, whatever prefix was configured.
+DESTDIR=$scratch/usr cmake --install "$binary_dir" --prefix /usr >log
+[ -e usr/usr/lib/python3/dist-packages/ispace/__init__.py ] || fail "elsewhere: $(find usr -name __init__.py)"
 
 if command -v mypy >/dev/null; then
     cp -r "$source_dir/lib/client/python" typed

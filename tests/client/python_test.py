@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import ispace
@@ -433,6 +434,18 @@ class Filters(unittest.TestCase):
             del os.environ["ISPACE_BIN"]
             if saved is not None:
                 os.environ["ISPACE_BIN"] = saved
+
+    def test_tools_kept_apart_are_preferred(self):
+        with tempfile.TemporaryDirectory() as prefix:
+            for name in ["bin/ispace", "bin/scan", "lib/ispace/bin/scan"]:
+                file = Path(prefix, name)
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.touch(0o755)
+            with unittest.mock.patch.dict(os.environ, {"PATH": prefix + "/bin"}):
+                os.environ.pop("ISPACE_BIN", None)
+                self.assertTrue(os.path.samefile(filters.tool("scan"), Path(prefix, "lib/ispace/bin/scan")))
+                Path(prefix, "lib/ispace/bin/scan").unlink()
+                self.assertTrue(os.path.samefile(filters.tool("scan"), Path(prefix, "bin/scan")))
 
 
 class Package(unittest.TestCase):

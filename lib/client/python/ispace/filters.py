@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The filters envc, arrange, scan and coverage as functions.
 
-They run the tools: those of the folder in the variable ISPACE_BIN, else those in PATH. Rooms and layouts
+They run the tools: those of the folder in the variable ISPACE_BIN, else those of the command ``ispace`` where a
+package keeps them apart from other programs of the same names, else those in PATH. Rooms and layouts
 are names of files, or a Layout; options are those of the tool's manual, with ``_`` for ``-``::
 
     coverage("room.env", layout, require=["40%", "free:50%"], density="identify")
@@ -115,7 +116,12 @@ def scan(room: Room, layout: Placed = None, **options: Option) -> List[Object]:
 def tool(name: str) -> str:
     """Where a tool is."""
     folder = os.environ.get("ISPACE_BIN")
-    found = shutil.which(name, path=folder)
+    places: str = folder or os.environ.get("PATH") or os.defpath
+    command = None if folder else shutil.which("ispace")
+    if command is not None:
+        own = os.path.join(os.path.dirname(os.path.realpath(command)), "..", "lib", "ispace", "bin")
+        places = own + os.pathsep + places
+    found = shutil.which(name, path=places)
     if found is None:
         where = folder or "PATH"
         raise ToolError(f"{name} is not in {where} (the variable ISPACE_BIN names a folder)", 127)

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# `ispace TOOL` is the tool of its own installation, with its streams and status; its help and its manual agree.
+. "$(dirname "$0")/common.sh"
+
+for tool in $tools; do
+    [ "$(ispace "$tool" --version)" = "$("$tool" --version)" ] || fail "ispace $tool is another tool"
+    # The summary is that of the manual page.
+    summary=$(sed -n "s/^$tool \\\\- //p" "$binary_dir/share/man/man1/$tool.1")
+    ispace --help | grep -qx "  $tool *$summary" || fail "ispace --help says otherwise of $tool than: $summary"
+done
+[ "$(ispace --help | sed -n '/^Tools:/,/^$/p' | grep -c '^  ')" -eq "$(wc -w <<<"$tools")" ] || fail "$(ispace --help)"
+ispace --version | grep -qx "ispace $(sed -n 's/^project(ispace VERSION \([^ ]*\).*/\1/p' "$source_dir/CMakeLists.txt")" ||
+    fail "$(ispace --version)"
+
+# Streams and status are the tool's.
+ispace envc "$data/room.env" --to env | ispace envc --info | grep -q 'indoor area' || fail "no pipe"
+expect_status 3 ispace coverage "$scenes/ispace.env" "$scenes/ispace.3dm" --require 100%
+expect_status 2 ispace scan --bogus
+one_error scan "ispace scan --bogus"
+expect_status 1 ispace envc /nonexistent/room.env
+one_error envc "ispace envc /nonexistent/room.env"
+
+# What is wrong is said with a hint.
+expect_error 2 ispace
+expect_error 2 ispace scna
+grep -q 'unknown tool `scna`, did you mean `scan`?' err || fail "$(cat err)"
+expect_error 2 ispace --bogus
+expect_error 2 ispace --help scan
+expect_error 2 ispace help scan coverage
+expect_error 2 ispace help ../man1/scan
+expect_error 2 ispace help ''
+expect_error 2 ispace ''
+expect_error 2 ispace $'sc\nan'
+expect_status 1 sh -c 'ispace --help >/dev/full'
+
+# The page is the one of this installation, by a man that is in PATH.
+mkdir bin
+printf '#!/bin/sh\necho "$@"\n' >bin/man
+chmod +x bin/man
+for page in ispace:man1/ispace.1 scan:man1/scan.1 env:man5/ispace-env.5 ispace-3dm:man5/ispace-3dm.5 wire:man7/ispace-wire.7; do
+    [ "$(PATH=$PWD/bin:$PATH ispace help "${page%:*}")" = "$binary_dir/share/man/${page#*:}" ] || fail "another page: $page"
+done
+[ "$(PATH=$PWD/bin:$PATH ispace help)" = "$binary_dir/share/man/man1/ispace.1" ] || fail "no page of ispace itself"
+mkdir empty
+status=0
+PATH=$PWD/empty "$binary_dir/bin/ispace" help scan 2>err || status=$?
+[ "$status" -eq 1 ] && grep -q 'man is not installed (Debian: man-db)' err || fail "status $status: $(cat err)"
+
+# Tools that a package keeps apart are run from there, and find what is theirs.
+mkdir -p usr/bin usr/lib/ispace/bin usr/share
+cp "$binary_dir/bin/ispace" usr/bin
+cp "$binary_dir/bin/scan" usr/lib/ispace/bin
+printf '#!/bin/sh\necho another scan\n' >usr/bin/scan
+chmod +x usr/bin/scan
+ln -s "$source_dir/share" usr/share/ispace
+usr/bin/ispace scan --list-models | grep -q urg-04lx || fail "another scan, or no devices"
+expect_status 1 usr/bin/ispace envc --version
+grep -q 'ispace: .*usr/bin/envc: error: No such file' err || fail "$(cat err)"
+
+# Help and page name the same options; the page's example runs.
+page=$binary_dir/share/man/man1/ispace.1
+for option in $(ispace --help | grep -oE -- '^  -.*  ' | tr -d ','); do
+    grep -qF -- "${option//-/\\-}" "$page" || fail "the page lacks $option"
+done
+cp "$scenes/crowded.env" .
+sed -n '/^\.EX/,/^\.EE/p' "$page" | sed -e '/^\./d' -e 's/\\-/-/g' >example.sh
+bash -euo pipefail example.sh >out 2>err || fail "an example fails: $(cat err)"
