@@ -34,6 +34,7 @@ landing_pads() {
 found=0
 for program in "$binary_dir"/bin/* "$binary_dir"/lib/ispace/*; do
     [ -f "$program" ] || continue
+    [ "$(head -c 2 "$program")" != '#!' ] || continue  # a script
     { headers "$program"; landing_pads "$program"; } >wrong
     # The small module has no buffers of its own to guard.
     case $program in *.so) ;; *) calls "$program" >>wrong ;; esac
