@@ -69,6 +69,30 @@ constexpr ExportFormat kFormats[] = {
                  const ExportOptions& /*options*/) -> ExportedFiles {
          return {writeStl(scene), ""};
      }},
+    {.name = "sdf",
+     .suffix = "sdf",
+     .help = "A world for Gazebo (SDF 1.9): a static model for each element, with boxes, cylinders "
+             "and polylines, a ground plane, and the sensors with their fields of view, samples, "
+             "ranges, rates and noise; robots and people are bodies that stand still. Walls "
+             "without thickness become 2 mm thick. Meshes stand in FILE.meshes.obj beside it. SDF "
+             "has no sweeps (the first scan is written), no ultrasound and no mirrors.",
+     .write =
+         [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
+             return writeSdf(scene, options.title, options.beside);
+         },
+     .beside_suffix = ".meshes.obj",
+     .beside_role = "meshes",
+     .beside_as_needed = true,
+     .naming_hint = "FILE.meshes.obj holds the meshes of an SDF world: name it FILE.sdf"},
+    {.name = "urdf",
+     .suffix = "urdf",
+     .help = "The placed sensors as links with fixed joints from the link world, or from the robot "
+             "or person that carries them; cameras and rangers with a lens have a second link, "
+             "ID_optical, with z forward, as ROS wants it.",
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& options) -> ExportedFiles {
+         return {writeUrdf(scene, options.title), ""};
+     }},
     {.name = "svg",
      .suffix = "svg",
      .help =

@@ -23,7 +23,7 @@ struct ExportOptions {
     std::string beside;  ///< how the product names the file beside it; "": there is none
 };
 
-/// A product, and the file that stands beside it.
+/// A product, and the file that stands beside it; "" where none is needed.
 struct ExportedFiles {
     std::string product, beside;
 };
@@ -43,6 +43,7 @@ struct ExportFormat {
     std::string_view beside_suffix = "";  ///< ".pgm"; "" for none
     std::string_view beside_role = "";    ///< for messages: "materials"
     bool needs_beside = false;            ///< so that a stream cannot hold the product
+    bool beside_as_needed = false;        ///< some products need none
     std::string_view naming_hint = "";    ///< what a name that does not fit is answered with
 };
 
@@ -83,6 +84,23 @@ ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
 /// Sheets (walls without thickness, panes, floors) are single surfaces. Triangles without area in
 /// floats are left out. Equal scenes give equal bytes. O(triangles).
 std::string writeStl(const Scene& scene);
+
+/// The scene as a world of SDF 1.9 (Gazebo): a static model for each element, in the frame of its
+/// record if that has a place, with boxes, cylinders and polylines; a ground plane; and static
+/// models of sensors, robots and people. Sensors work if SDF knows their kind, see addSdfSensor();
+/// those on a robot are in its link. Walls without thickness are kSheetThickness thick.
+///
+/// Meshes of files are parts of an OBJ beside the world. Mats, gates, zones and views are left
+/// out. Equal scenes give equal bytes.
+/// \param title names the world, up to its first dot \param mesh_name the OBJ, as the world names
+/// it \throws UsageError if there are meshes and that is empty
+ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
+
+/// The placed sensors as URDF: a link each, named by its id, with a fixed joint from `world` or
+/// from the link of the robot or person that carries it, whose own joint from `world` is floating.
+/// Frames have x forward and z up; cameras and rangers with a lens have a second one, ID_optical,
+/// with z forward and x right (REP 103).
+std::string writeUrdf(const Scene& scene, const std::string& title);
 
 /// Cells of a map along a side, and in all.
 constexpr int kMaxMapSide = 30'000;

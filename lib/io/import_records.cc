@@ -105,6 +105,27 @@ void failFile(const std::string& name, const std::string& message, int line) {
     throw FormatError(Diagnostic{displayName(name), line, line == 0 ? 0 : 1, message});
 }
 
+std::string_view xmlRootName(std::string_view bytes) {
+    bytes = bytes.substr(0, 1 << 16);
+    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos || bytes[begin] != '<') return {};
+    // The root is the first element that is no declaration and no comment.
+    for (std::size_t at = begin; at < bytes.size(); ++at) {
+        if (bytes[at] != '<' || at + 1 == bytes.size()) continue;
+        if (bytes.substr(at).starts_with("<!--")) {
+            at = bytes.find("-->", at);
+            if (at == std::string_view::npos) return {};
+        } else if (bytes[at + 1] != '?' && bytes[at + 1] != '!' && bytes[at + 1] != '/') {
+            std::string_view tag =
+                bytes.substr(at + 1, bytes.find_first_of(" \t\r\n/>", at + 1) - at - 1);
+            if (const std::size_t colon = tag.find(':'); colon != std::string_view::npos)
+                tag.remove_prefix(colon + 1);
+            return tag;
+        }
+    }
+    return {};
+}
+
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r\n";
     text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));

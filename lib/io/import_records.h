@@ -35,6 +35,8 @@ class ImportRecords {
     void cube(Point2 middle, double length, double width);
     /// Any other record; `line` is where it comes from.
     Record& add(const char* keyword, int line);
+    /// The record added last. \pre there is one
+    Record& last() { return document_.records.back(); }
     /// Sets a key of x,y.
     static void setPoint(Record& record, const char* key, Point2 point);
 
@@ -86,6 +88,10 @@ constexpr std::array<LengthUnit, 8> kLengthUnits{{{"m", 1, 6},
                                                   {"km", 1000, 7},
                                                   {"yard", 0.9144, 10},
                                                   {"dm", 0.1, 14}}};
+
+/// The name of the first element of XML, without its namespace, as far as the first 64 KiB tell; ""
+/// for other bytes.
+std::string_view xmlRootName(std::string_view bytes);
 
 /// The text without blanks and line breaks around.
 std::string_view trimmed(std::string_view text);

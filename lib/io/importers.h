@@ -107,6 +107,23 @@ bool isSvg(std::string_view bytes);
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
+/// True for XML whose root is `sdf`, as far as its beginning tells.
+bool isSdf(std::string_view bytes);
+
+/// Reads a world of SDF (Gazebo), or a model: the shapes of readSdfShapes().
+///
+/// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
+/// walls; their ends are moved onto the mid-lines of walls in whose thickness they end, and the
+/// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
+/// polylines on the floor closed fences.
+/// - Meshes become `mesh` records if their file lies in the world's folder or below; of `model://`
+/// and `package://` the name may be that of a folder there, or of the folder itself.
+/// - Planes and slabs of floor are left out; includes are not read, with a warning; so is what
+/// leans, and every other shape, with a note.
+/// \throws FormatError as readSdfShapes(), and if there is nothing in it
+Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                 const Schemas& schemas);
+
 /// True if the bytes are YAML with the top-level keys `image` and `resolution`.
 bool isRosMap(std::string_view bytes);
 

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kWanted =
     "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-    "MovingAI map, DXF, SVG, IFC or a mesh";
+    "MovingAI map, DXF, SVG, SDF, IFC or a mesh";
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// UTF-8 without control characters other than those of plain text.
@@ -170,6 +170,7 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isDxf>, importPlan<readDxf>},
     {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
     {true, holdsBytes<isSvg>, importPlan<readSvg>},
+    {true, holdsBytes<isSdf>, importPlan<readSdf>},
     {true, holdsBytes<isIfc>, importPlan<readIfc>},
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {false, holdsBytes<isMeshFile>, readMesh},

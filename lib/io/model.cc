@@ -169,6 +169,12 @@ void addMaterial(std::string& out, Material material) {
 
 }  // namespace
 
+std::string objOf(const std::vector<ModelNode>& nodes) {
+    ObjWriter writer("");
+    for (const ModelNode& node : nodes) writer.add(node);
+    return writer.take();
+}
+
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name) {
     ObjWriter writer(mtl_name);
     for (const ModelNode& node : modelOf(scene)) writer.add(node);

@@ -28,6 +28,9 @@ struct ModelNode {
 /// The nodes point into the scene. `with_views`: sensors with their fields of view.
 std::vector<ModelNode> modelOf(const Scene& scene, bool with_views = false);
 
+/// Nodes as Wavefront OBJ without materials, see writeObj().
+std::string objOf(const std::vector<ModelNode>& nodes);
+
 /// Frame of a node's meshes.
 inline Frame3 frameOf(const ModelNode& node) { return node.pose ? Frame3(*node.pose) : Frame3(); }
 inline Point3 inWorld(const Frame3& frame, Point3 p) {

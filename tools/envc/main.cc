@@ -56,7 +56,7 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
                       fs::path(beside).filename().string()};
     if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
     const ExportedFiles files = options.format->write(scene, document, how);
-    if (beside.empty())
+    if (beside.empty() || files.beside.empty())
         writeAll(options.common.output, files.product);
     else
         writeTogether(std::vector<NamedBytes>{{beside, files.beside},

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "io/importers.h"
+#include "io/test_import.h"
+#include "layout/schemas.h"
+#include "record/text.h"
+
+namespace ispace {
+namespace {
+
+std::string worldOf(const std::string& models) {
+    return "<sdf version='1.9'>\n<world name='w'>\n" + models + "\n</world>\n</sdf>\n";
+}
+
+/// A model with one box.
+std::string boxModel(const std::string& name, const std::string& pose, const std::string& size) {
+    return "<model name='" + name + "'><pose>" + pose +
+           "</pose><link name='l'><collision name='c'><geometry><box><size>" + size +
+           "</size></box></geometry></collision></link></model>";
+}
+
+std::string recordsOf(const std::string& sdf) {
+    Document document = readSdf(sdf, "test.sdf", {}, sceneSchemas());
+    document.history = {};
+    const std::string text = writeRecordText(document);
+    return text.substr(text.find('\n') + 1);
+}
+
+std::string errorOf(const std::string& sdf) {
+    try {
+        readSdf(sdf, "test.sdf", {}, sceneSchemas());
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(SdfImport, KnowsItsRoot) {
+    EXPECT_TRUE(isSdf("<?xml version='1.0'?>\n<!-- a world -->\n<sdf version='1.6'>"));
+    EXPECT_FALSE(isSdf("<svg xmlns='http://www.w3.org/2000/svg'/>"));
+    EXPECT_FALSE(isSdf("sdf"));
+    EXPECT_FALSE(isSdf(""));
+}
+
+TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
+    // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
+    EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"
+                                "<model name='b'><pose>0 0 0.2 0 0 1.57079632679</pose>"
+                                "<link name='l'><pose>1 0 0.3 0 0 0</pose>"
+                                "<collision name='c'><geometry><box><size>0.5 0.4 0.6</size></box>"
+                                "</geometry></collision></link></model></model>")),
+              "cube id=a at=4,5,0.2 heading=180 size=0.5,0.4,0.6\n");
+    // On its side: y is up.
+    EXPECT_EQ(recordsOf(worldOf(boxModel("c", "1 2 0.5 1.5708 0 0", "0.4 1 0.3"))),
+              "cube id=c at=1,2 size=0.4,0.3,1\n");
+}
+
+TEST(SdfImport, RelativePosesFollowFramesInAnyOrder) {
+    // The first link names the second, which names a frame attached to a nested model's link.
+    EXPECT_EQ(
+        recordsOf(worldOf(
+            "<model name='m'><pose>1 1 0 0 0 0</pose>"
+            "<link name='one'><pose relative_to='two'>0 0 0 0 0 0</pose><visual name='v'><geometry>"
+            "<cylinder><radius>0.2</radius><length>1</length></cylinder></geometry></visual></link>"
+            "<link name='two'><pose relative_to='f'>0 1 0 0 0 0</pose></link>"
+            "<frame name='f' attached_to='n::deep'><pose>0 0 0.5 0 0 0</pose></frame>"
+            "<model name='n'><pose>1 0 0 0 0 0</pose><link name='deep'/></model></model>")),
+        "cylinder id=m at=2,2 size=0.4,0.4,1\n");
+}
+
+TEST(SdfImport, ThinHighBoxesAreWallsThatMeetAtMidLines) {
+    const std::string records = recordsOf(worldOf(
+        boxModel("s", "2 0 1 0 0 0", "4.2 0.2 2") + boxModel("n", "2 3 1 0 0 0", "4.2 0.2 2") +
+        boxModel("w", "0 1.5 1 0 0 1.5708", "2.8 0.2 2") +
+        boxModel("e", "4 1.5 1 0 0 1.5708", "2.8 0.2 2") +
+        boxModel("shelf", "1 1 0.3 0 0 0", "0.9 0.4 0.6")));
+    EXPECT_NE(records.find("wall id=w from=0,0 to=0,3 height=2 thickness=0.2"), std::string::npos)
+        << records;
+    EXPECT_NE(records.find("cube id=shelf at=1,1 size=0.9,0.4,0.6"), std::string::npos) << records;
+    EXPECT_NE(records.find("inside at="), std::string::npos) << records;
+    Document document =
+        readSdf(worldOf(boxModel("s", "2 0 1 0 0 0", "4 0.2 2")), "test.sdf", {}, sceneSchemas());
+    EXPECT_EQ(document.records.front().keyword(), "wall");
+}
+
+TEST(SdfImport, ErrorsNameTheLine) {
+    EXPECT_EQ(errorOf("<sdf version='1.9'/>"),
+              "test.sdf:1:1: error: no `world` and no `model` in it");
+    EXPECT_EQ(errorOf(worldOf("")), "test.sdf: error: no box, cylinder, polyline or mesh in it");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "1 2", "1 1 1"))),
+              "test.sdf:3:1: error: `pose`: found `1 2`, wanted 6 numbers");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "0 0 0 0 0 nan", "1 1 1"))),
+              "test.sdf:3:1: error: `pose`: found `0 0 0 0 0 nan`, wanted 6 numbers");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "", "1 1 0"))),
+              "test.sdf:3:1: error: a box with a side of 0");
+    EXPECT_EQ(errorOf(worldOf(boxModel("m", "1e7 0 0 0 0 0", "1 1 1"))),
+              "test.sdf:3:1: error: lies more than 900 km from the origin");
+    EXPECT_EQ(errorOf(worldOf("<model name='m'><pose relative_to='x'/><link name='l'/></model>")),
+              "test.sdf:3:1: error: no frame called `x` beside it");
+    EXPECT_NE(errorOf("<sdf version='1.9'><world name='w'><model").find("bad XML"),
+              std::string::npos);
+}
+
+TEST(SdfImport, HostileWorldsAreRefused) {
+    const std::string loop =
+        "<model name='a'><pose relative_to='b'>1 0 0 0 0 0</pose><link name='l'/></model>\n"
+        "<model name='b'><pose relative_to='a'>1 0 0 0 0 0</pose><link name='l'/></model>";
+    EXPECT_NE(errorOf(worldOf(loop)).find("its pose is relative to itself"), std::string::npos);
+    std::string deep;
+    for (int i = 0; i < 1000; ++i) deep += "<model name='m'>";
+    for (int i = 0; i < 1000; ++i) deep += "</model>";
+    EXPECT_NE(errorOf(worldOf(deep)).find("nested more than 64 deep"), std::string::npos);
+    ImportOptions few;
+    few.max_points = 2;
+    const std::string box = boxModel("m", "", "1 1 1");
+    EXPECT_THROW(readSdf(worldOf(box + box + box), "test.sdf", few, sceneSchemas()), FormatError);
+    // Entities are not expanded.
+    EXPECT_NE(errorOf("<!DOCTYPE sdf [<!ENTITY a 'ha'><!ENTITY b '&a;&a;&a;'>]><sdf><world "
+                      "name='w'>&b;</world></sdf>")
+                  .find("no box"),
+              std::string::npos);
+}
+
+TEST(SdfImport, SurvivesDamage) {
+    surviveDamage(
+        worldOf("<model name='a' placement_frame='f'><pose degrees='true'>1 1 0 0 0 30</pose>\n"
+                "<frame name='f' attached_to='l'><pose relative_to='l'>0 0 0 0 0 0</pose></frame>\n"
+                "<link name='l'><collision name='c'>\n"
+                "<geometry><box><size>1 2 3</size></box></geometry></collision>\n"
+                "<collision name='d'><geometry><polyline><point>0 0</point><point>1 0</point>\n"
+                "<point>0 1</point><height>1</height></polyline></geometry></collision>\n"
+                "</link></model>"),
+        [](const std::string& bytes) { readSdf(bytes, "test.sdf", {}, sceneSchemas()); });
+}
+
+TEST(SdfImport, FilesOutsideOfItsFolderAreNotOpened) {
+    const Document document = readSdf(
+        worldOf(boxModel("m", "", "1 1 1") +
+                "<model name='x'><link name='l'><visual name='v'><geometry><mesh><uri>"
+                "file:///etc/../etc/mesh.stl</uri></mesh></geometry></visual></link></model>"),
+        "test.sdf", {}, sceneSchemas());
+    EXPECT_EQ(document.records.size(), 1U);
+    ASSERT_EQ(document.warnings.size(), 1U);
+    EXPECT_NE(document.warnings.front().message.find("/etc/../etc/mesh.stl (1)"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace
