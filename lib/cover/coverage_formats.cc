@@ -5,6 +5,7 @@
 
 #include "base/json_writer.h"
 #include "base/number.h"
+#include "cover/seen_regions.h"
 #include "draw/feature_writer.h"
 #include "env/level.h"
 #include "geom/boolean.h"
@@ -83,38 +84,6 @@ CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::s
 
 namespace {
 
-/// The most sensors that see one place.
-std::uint32_t maxMultiplicity(const Coverage& coverage,
-                              const std::vector<std::uint32_t>& cell_times) {
-    if (!coverage.overlay) return *std::max_element(cell_times.begin(), cell_times.end());
-    std::int32_t most = 0;
-    for (const Overlay::Edge& edge : coverage.overlay->edges())
-        most = std::max({most, edge.left.count, edge.right.count});
-    return static_cast<std::uint32_t>(most);
-}
-
-/// The view of one sensor as pieces.
-std::vector<Region> viewOf(const SensorView& view, const Grid& grid) {
-    if (!view.region) return cellRegions(grid, view.cells);
-    return Overlay(std::vector<Layer>{{.curves = *view.region}})
-        .regions([](const LayerLabel& label) { return label.count > 0; });
-}
-
-std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
-                           const std::vector<std::uint32_t>& cell_times) {
-    if (coverage.overlay)
-        return coverage.overlay->regions([times](const LayerLabel& label) {
-            return label.count == static_cast<std::int32_t>(times) &&
-                   (label.marks & kIndoorMark) != 0;
-        });
-    const Target& target = coverage.target;
-    CellSet cells(target.grid.size());
-    target.indoor.forEach([&](std::size_t cell) {
-        if (cell_times[cell] == times) cells.set(cell);
-    });
-    return cellRegions(target.grid, cells);
-}
-
 /// Indoor floor that cameras see with the pixels of a class, by its index.
 std::vector<Region> withPixelsOf(const Coverage& coverage, std::size_t density_class) {
     const std::uint64_t wanted = kIndoorMark | classMark(density_class);
@@ -156,7 +125,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
     out.begin("free", "free", "region");
     out.endAsArea(scene.environment.level(coverage.target.height)->freeFloor());
     const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const std::uint32_t most = maxMultiplicity(coverage, times);
+    const std::uint32_t most = mostSeen(coverage, times);
     for (std::uint32_t k = 1; k <= most; ++k) {
         const std::vector<Region> pieces = seenBy(coverage, k, times);
         if (pieces.empty()) continue;
@@ -172,7 +141,7 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage) {
         out.json().key("heading").value(roundSignificant(view.pose.heading.degrees()));
         out.endAsPoint(view.pose.position.onFloor());
         out.begin(view.id, "view", "region");
-        out.endAsArea(viewOf(view, coverage.target.grid));
+        out.endAsArea(viewRegions(view, coverage.target.grid));
     }
     for (std::size_t i = 0; i < coverage.report.unseen.size(); ++i) {
         const UnseenSpot& spot = coverage.report.unseen[i];
@@ -212,6 +181,10 @@ std::span<const CoverageFormat> coverageFormats() {
         {.name = "geojson",
          .write = [](const CoverageProduct& product) -> CoverageFiles {
              return {coverageGeoJson(product.scene, product.coverage), ""};
+         }},
+        {.name = "dxf",
+         .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageDxf(product.scene, product.coverage), ""};
          }},
         {.name = "ros",
          .square_cell = 0.05,

@@ -25,6 +25,12 @@ std::string coverageCsv(const Coverage& coverage);
 /// outlined instead.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
+/// The plan as DXF in metres: walls, doors, windows and objects, sensors, what each sees ("views",
+/// closed polylines with true arcs), and as solid fillings the indoor floor seen by exactly 1, 2,
+/// ... ("seen-1", ...) and by none ("unseen"), each on a layer of its own. Fillings have chords
+/// within kChordError for arcs.
+std::string coverageDxf(const Scene& scene, const Coverage& coverage);
+
 /// A product, and the file that stands beside it.
 struct CoverageFiles {
     std::string product, beside;

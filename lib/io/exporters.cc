@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/glb.h"
+#include "plan/dxf_plan.h"
 #include "plan/plan.h"
 #include "record/text.h"
 #include "record/yaml.h"
@@ -120,6 +121,17 @@ constexpr ExportFormat kFormats[] = {
      .write = [](const Scene& scene, const Document& /*document*/,
                  const ExportOptions& options) -> ExportedFiles {
          return {writeGeoJson(scene, options.slice), ""};
+     }},
+    {.name = "dxf",
+     .suffix = "dxf",
+     .help = "The plan in metres as ASCII DXF (AutoCAD 2000), on the layers walls, doors, windows, "
+             "objects, sensors, views, robots, zones, floors and names. Walls are the mid-lines "
+             "that enclose the room, drawn as wide as they are thick, so that envc reads the same "
+             "room back with --wall-layer walls --door-layer doors --window-layer windows.",
+     .takes_slice = true,
+     .write = [](const Scene& scene, const Document& /*document*/,
+                 const ExportOptions& options) -> ExportedFiles {
+         return {writeDxf(scene, options.slice), ""};
      }},
     {.name = "ros",
      .suffix = "yaml",

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plan/dxf_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "env/body.h"
+#include "env/level.h"
+#include "layout/bodies.h"
+#include "plan/drawing.h"
+#include "plan/elements.h"
+#include "sensor/kind.h"
+
+namespace ispace {
+
+namespace {
+
+using namespace palette;
+
+/// Of marks and names, metres.
+constexpr double kMark = 0.06, kArrow = 0.3, kText = 0.15;
+
+/// The last point of a closed chain repeats the first.
+void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, double width) {
+    const bool closed = chain.size() > 2 && chain.front() == chain.back();
+    if (closed) chain.pop_back();
+    out.path(layer, chain, closed, width);
+}
+
+/// The circle that a footprint is inscribed in, if one part of the body covers all of it and is
+/// round.
+const Ellipse* circleOf(const Body& body, const Region& footprint) {
+    for (const Prism& prism : body.prisms)
+        if (prism.curve && prism.curve->half_length == prism.curve->half_width &&
+            footprint.holes.empty() &&
+            std::abs(signedArea(prism.footprint) - footprint.area()) <= 1e-9 * footprint.area())
+            return &*prism.curve;
+    return nullptr;
+}
+
+void addFootprint(DxfWriter& out, const Body& body) {
+    const std::vector<Region> pieces = footprintOf(body);
+    for (const Region& piece : pieces) {
+        const Ellipse* circle = pieces.size() == 1 ? circleOf(body, piece) : nullptr;
+        if (circle != nullptr) {
+            out.circle("objects", circle->center, circle->half_length);
+            continue;
+        }
+        for (const Polygon& ring : curvesOf(piece)) out.path("objects", ring, true);
+    }
+}
+
+/// Where a name stands in an area: its middle.
+void addName(DxfWriter& out, const Polygon& outline, const std::string& id) {
+    out.text("names", bounds(outline).center(), id, kText);
+}
+
+/// A sector about a sensor, or a circle if it sees all around; no farther than the plan is wide.
+void addView(DxfWriter& out, const Scene& scene, const Placed& placed) {
+    const BearingSpan span = bearingsOf(scene, placed);
+    const std::optional<Angle> heading = headingOf(placed.pose);
+    const Box2& plan = scene.environment.limits();
+    const double radius = std::min(span.range, std::max(plan.width(), plan.depth()));
+    const Angle sweep = span.to - span.from;
+    if (!heading || radius <= 0 || sweep <= Angle()) return;
+    const Point2 center = placed.pose.position.onFloor();
+    if (sweep >= Angle::degrees(360)) {
+        out.circle("views", center, radius);
+        return;
+    }
+    const auto rim = [&](double share) {
+        return center + radius * unitVector(*heading + span.from + share * sweep);
+    };
+    // An edge of a curve is a half turn at most.
+    out.curve("views", {{center, rim(0)},
+                        {rim(0), rim(0.5), radius, center},
+                        {rim(0.5), rim(1), radius, center},
+                        {rim(1), center}});
+}
+
+void addRobot(DxfWriter& out, const Pose2& pose, const RobotModel& robot) {
+    const Point2 middle = pose * Point2{robot.center, 0};
+    if (robot.length > 0)
+        out.path("robots", rectangle(middle, robot.length, robot.width, pose.heading), true);
+    else
+        out.circle("robots", middle, robot.radius);
+}
+
+void addPlaced(DxfWriter& out, const Scene& scene, const Placed& placed) {
+    const Record& record = scene.records[placed.record];
+    const std::string& id = scene.ids[placed.record];
+    const Pose2 pose{placed.pose.position.onFloor(), placed.pose.heading};
+    if (sensorKind(record.keyword()) != nullptr) {
+        addView(out, scene, placed);
+        addSensorToDxf(out, id, placed.pose);
+        return;
+    }
+    const bool moves = record.keyword() == "robot" || record.keyword() == "human";
+    const char* layer = moves ? "robots" : "sensors";
+    if (record.keyword() == "robot")
+        addRobot(out, pose, scene.robots[placed.index].model);
+    else if (record.keyword() == "human")
+        out.circle(layer, pose.position, humanRadius(scene.people[placed.index].height));
+    else if (record.keyword() == "gate")
+        out.line(layer, {pose * Point2{0, record.number("width") / 2},
+                         pose * Point2{0, -record.number("width") / 2}});
+    else if (record.keyword() == "mat")
+        out.path(layer,
+                 rectangle(pose.position, record.tuple("size")[0], record.tuple("size")[1],
+                           pose.heading),
+                 true);
+    if (moves) out.line(layer, {pose.position, pose * Point2{kArrow, 0}});
+    out.text(layer, pose.position + Vec2{kMark, kMark}, id, kText);
+}
+
+void addAreas(DxfWriter& out, const Environment& environment) {
+    for (const Element& element : environment.elements()) {
+        const std::string& keyword = element.record.keyword();
+        if (keyword == "zone") {
+            const Polygon outline = zoneOutline(element.record);
+            out.path("zones", outline, true);
+            addName(out, outline, element.id);
+        } else if (keyword == "floor") {
+            out.path("floors", floorOutline(element.record), true);
+        }
+    }
+}
+
+std::string writeSlice(const Environment& environment, double height) {
+    DxfWriter out({{"free", kGrid}, {"obstacles", kInk}});
+    const auto level = environment.level(height);
+    for (const Region& piece : level->freeFloor()) out.area("free", piece);
+    const Slice& slice = level->slice();
+    for (const Segment2& sheet : slice.sheets) out.line("obstacles", sheet);
+    for (const Polygon& solid : inscribedSolids(slice)) out.path("obstacles", solid, true);
+    return out.finish();
+}
+
+}  // namespace
+
+std::vector<DxfLayer> dxfRoomLayers() {
+    return {{"walls", kInk},
+            {"doors", kDoor},
+            {"windows", kGlass},
+            {"objects", displayColor(Material::WoodDark)}};
+}
+
+std::vector<DxfLayer> dxfPlacedLayers() { return {{"sensors", kSensor}, {"robots", kRobot}}; }
+
+void addRoomToDxf(DxfWriter& out, const Environment& environment) {
+    const std::vector<Element>& elements = environment.elements();
+    const std::vector<ElementLines> lines = elementLinesOf(environment);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const std::string& keyword = elements[i].record.keyword();
+        const bool is_door = keyword == "door", is_window = keyword == "window";
+        for (const std::vector<Point2>& chain : lines[i].chains) {
+            if (is_door || is_window)
+                addChain(out, is_door ? "doors" : "windows", chain, 0);
+            else
+                addChain(out, "walls", chain, lines[i].thickness);
+        }
+        if (lines[i].chains.empty() && keyword != "floor") addFootprint(out, elements[i].body);
+    }
+}
+
+void addSensorToDxf(DxfWriter& out, const std::string& id, const Pose3& pose) {
+    const Point2 place = pose.position.onFloor();
+    out.circle("sensors", place, kMark);
+    if (const auto heading = headingOf(pose))
+        out.line("sensors", {place, place + kArrow * unitVector(*heading)});
+    out.text("sensors", place + Vec2{kMark, kMark}, id, kText);
+}
+
+std::string writeDxf(const Scene& scene, std::optional<double> slice_height) {
+    if (slice_height) return writeSlice(scene.environment, *slice_height);
+    std::vector<DxfLayer> layers = dxfRoomLayers();
+    for (DxfLayer& layer : dxfPlacedLayers()) layers.push_back(std::move(layer));
+    layers.insert(layers.end(),
+                  {{"views", kMat}, {"zones", kZone}, {"floors", kGrid}, {"names", kFaintInk}});
+    DxfWriter out(layers);
+    addAreas(out, scene.environment);
+    addRoomToDxf(out, scene.environment);
+    for (const Placed& placed : scene.placed) addPlaced(out, scene, placed);
+    return out.finish();
+}
+
+}  // namespace ispace

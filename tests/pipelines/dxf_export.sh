@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Drawings in DXF by envc and coverage, read by ezdxf, GDAL and envc.
+. "$(dirname "$0")/common.sh"
+
+cat >room.env <<'END'
+#env 1
+fence id=outer path=0,0;8,0;8,6;3,6;3,5;0,5 closed=yes thickness=0.2
+wall id=thin from=3,5 to=3,3.6
+inside id=known at=1,1
+zone id=corner at=6.5,1.2 size=2.4,2
+floor id=carpet at=2,3.2 size=2.5,2
+desk id=d1 at=1.2,4.4 heading=30
+table id=t1 at=4.2,4.6
+door id=in at=0,2 open=yes
+window id=view at=5,0
+END
+cat >room.3dm <<'END'
+#3dm 1
+laser id=l1 at=0.5,0.5 heading=45 range=4
+laser id=l2 at=7,5 heading=-120 range=5
+robot id=r1 at=4,2 heading=30 model=pioneer-3dx
+human id=h1 at=5,5
+mat id=m1 at=2,2
+gate id=g1 at=6,3
+END
+
+envc room.env room.3dm -o room.dxf
+envc room.env room.3dm --to dxf >stream.dxf
+expect_same room.dxf stream.dxf "a stream differs"
+coverage room.env room.3dm -o map.dxf --json >report.json
+envc room.env --slice 0.3 -o slice.dxf
+
+# Our own reader: the same room. Layers are named, everything else would be walls, too.
+layers="--wall-layer walls --door-layer doors --window-layer windows"
+figure() { sed -n "s/.*\"$1\":\\([0-9.e-]*\\)[,}].*/\\1/p"; }
+for drawing in room map; do
+    # shellcheck disable=SC2086
+    envc "$drawing.dxf" $layers --info --json >again.json
+    envc room.env --info --json >want.json
+    for key in indoor_area perimeter; do
+        echo "$(figure $key <want.json) $(figure $key <again.json)" |
+            awk '{ d = $1 - $2; if (NF != 2 || d > 1e-9 || d < -1e-9) exit 1 }' ||
+            fail "$drawing.dxf: another $key: $(figure $key <again.json), not $(figure $key <want.json)"
+    done
+    grep -q '"door":1,.*"window":1' again.json || fail "$drawing.dxf: no door or window: $(cat again.json)"
+done
+
+if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
+    facts() { /usr/bin/python3 "$source_dir/tests/pipelines/dxf_facts.py" "$1.dxf" >facts || fail "$1.dxf"; }
+    fact() { grep -qxF -e "$1" facts || fail "not there: $1 in $(cat facts)"; }
+    facts room
+    fact 'unit 6'
+    fact 'errors 0'
+    fact 'wall True 0.200 6'
+    fact 'wall False 0.000 2'
+    for line in 'doors LWPOLYLINE 1' 'windows LWPOLYLINE 1' 'zones LWPOLYLINE 1' 'floors LWPOLYLINE 1' \
+        'objects CIRCLE 1' 'objects LWPOLYLINE 1' 'views LWPOLYLINE 2' 'robots CIRCLE 1' \
+        'text sensors l1' 'text names corner' 'text robots h1'; do
+        fact "$line"
+    done
+    facts slice
+    fact 'errors 0'
+    fact 'obstacles LINE 1'
+    want=$(envc room.env --slice 0.3 --to geojson | grep -o '"keyword":"free"[^}]*"area":[0-9.]*' | sed 's/.*://' |
+        awk '{ sum += $1 } END { printf "%.6f", sum }')
+    fact "area free $want"
+    facts map
+    fact 'errors 0'
+    fact 'views LWPOLYLINE 2'
+    # The fillings have the areas of the report: shares of the indoor floor by how many see it. Their
+    # chords are within 0.1 mm of the arcs.
+    python3 - <<'END' || fail "other areas: $(grep area facts) $(cat report.json)"
+import json
+report = json.load(open("report.json"))
+areas = {line.split()[1]: float(line.split()[2]) for line in open("facts") if line.startswith("area")}
+shares = report["redundancy_exact"]
+assert len(shares) >= 2 and shares[1] > 0.1, shares
+for times, share in enumerate(shares):
+    layer = f"seen-{times}" if times else "unseen"
+    assert abs(areas.get(layer, 0) - share * report["indoor_area"]) < 2e-3, (layer, areas, shares)
+END
+else
+    echo "no ezdxf here"
+fi
+
+if command -v ogrinfo >/dev/null; then
+    ogrinfo -ro -al map.dxf >features 2>&1 || fail "GDAL refuses map.dxf: $(cat features)"
+    ! grep -qi 'warning\|error' features || fail "GDAL complains: $(grep -i 'warn\|err' features)"
+    for layer in walls doors windows objects sensors views seen-1 unseen; do
+        grep -q "Layer (String) = $layer\$" features || fail "GDAL sees no layer $layer"
+    done
+    grep -A20 'Layer (String) = seen-1$' features | grep -q '^  \(MULTI\)\?POLYGON' ||
+        fail "GDAL sees no area on seen-1"
+else
+    echo "no ogrinfo here"
+fi
