@@ -12,6 +12,7 @@
 #include "env/body.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"
+#include "geom/weld.h"
 
 namespace ispace {
 
@@ -153,7 +154,7 @@ Mesh floorMesh(const Regions& indoor) {
 namespace {
 
 using Index = std::uint32_t;
-using Corners = std::array<float, 3>;
+using Corners = FloatPlace;
 
 /// As far as `at` may be, and as much again.
 constexpr double kFarthest = 2e6;
@@ -185,23 +186,7 @@ struct Welded {
 };
 
 Welded weldPlaces(const std::vector<Corners>& vertices) {
-    struct Entry {
-        Corners place;
-        Index vertex;
-    };
-    std::vector<Entry> sorted;
-    sorted.reserve(vertices.size());
-    for (Index i = 0; i < vertices.size(); ++i)
-        if (isFinite(vertices[i])) sorted.push_back({vertices[i], i});
-    std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-        return a.place != b.place ? a.place < b.place : a.vertex < b.vertex;
-    });
-    // Each takes the number of the first vertex at its place, which then is counted through.
-    std::vector<Index> first(vertices.size());
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-        const bool same = i > 0 && sorted[i].place == sorted[i - 1].place;
-        first[sorted[i].vertex] = same ? first[sorted[i - 1].vertex] : sorted[i].vertex;
-    }
+    const std::vector<Index> first = firstAtPlace(vertices);
     Welded out;
     out.of.resize(vertices.size());
     for (Index i = 0; i < vertices.size(); ++i) {

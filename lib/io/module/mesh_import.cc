@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -25,6 +24,7 @@
 
 #include "base/message.h"
 #include "env/mesh.h"
+#include "geom/weld.h"
 #include "io/module/handed_files.h"
 
 // Debian builds assimp with its assertions, which abort the program on some damaged files. This
@@ -41,7 +41,7 @@ namespace ispace {
 
 namespace {
 
-using Vertex = std::array<float, 3>;
+using Vertex = FloatPlace;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kMaxWords = 1000;
@@ -190,25 +190,15 @@ class Gatherer {
     std::map<const aiNode*, double> heights_;
 };
 
-/// Vertices of the same place become one, in the order of their first use by a triangle; those
-/// that none uses are dropped.
-void joinVertices(TriangleMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.vertices.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t k) {
-        return mesh.vertices[i] == mesh.vertices[k] ? i < k : mesh.vertices[i] < mesh.vertices[k];
-    });
-    std::vector<std::uint32_t> standing(order.size());  // for each vertex
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool repeats = i > 0 && mesh.vertices[order[i]] == mesh.vertices[order[i - 1]];
-        standing[order[i]] = repeats ? standing[order[i - 1]] : order[i];
-    }
+/// Vertices come in the order of their first use by a triangle; those that none uses are dropped.
+/// \param standing for each vertex the one to use in its place, or nothing: itself
+void renumber(TriangleMesh& mesh, const std::vector<std::uint32_t>& standing = {}) {
     constexpr std::uint32_t kNone = UINT32_MAX;
-    std::vector<std::uint32_t> index(order.size(), kNone);
+    std::vector<std::uint32_t> index(mesh.vertices.size(), kNone);
     std::vector<Vertex> vertices;
     for (Triangle& triangle : mesh.triangles)
         for (std::uint32_t& corner : triangle) {
-            const std::uint32_t vertex = standing[corner];
+            const std::uint32_t vertex = standing.empty() ? corner : standing[corner];
             if (index[vertex] == kNone) {
                 index[vertex] = static_cast<std::uint32_t>(vertices.size());
                 vertices.push_back(mesh.vertices[vertex]);
@@ -235,9 +225,9 @@ bool hasArea(const TriangleMesh& mesh, const Triangle& triangle) {
 
 /// Equal vertices joined, triangles without area dropped.
 void clean(TriangleMesh& mesh) {
-    joinVertices(mesh);
+    renumber(mesh, firstAtPlace(mesh.vertices));
     std::erase_if(mesh.triangles, [&](const Triangle& t) { return !hasArea(mesh, t); });
-    joinVertices(mesh);  // without those that only dropped triangles used
+    renumber(mesh);  // without those that only dropped triangles used
 }
 
 /// One of the suffixes by which assimp knows its importer, without the dot.
