@@ -58,6 +58,25 @@ struct PixelRays {
     }
 };
 
+/// Directions of a laser's beams in its frame. What one thread computed last is kept, as most
+/// clouds are those of one laser, or of lasers alike; valid until the next call.
+const std::vector<Vec2>& beamsOf(const Laser& laser) {
+    struct Known {
+        Angle first, step;
+        std::vector<Vec2> beams;
+    };
+    thread_local Known known;
+    const auto count = static_cast<std::size_t>(laser.beams);
+    if (known.beams.size() == count && known.first == laser.first && known.step == laser.step)
+        return known.beams;
+    known.first = laser.first;
+    known.step = laser.step;
+    known.beams.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+        known.beams[k] = unitVector(laser.bearing(static_cast<int>(k)));
+    return known.beams;
+}
+
 }  // namespace
 
 PointCloud cloudOf(const Ranger& ranger, const DepthFrame& frame, Coordinates in) {
@@ -86,9 +105,7 @@ PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates 
     PointCloud cloud;
     Filler filler(cloud, static_cast<std::size_t>(laser.beams), scans.size());
     if (scans.empty()) return cloud;
-    std::vector<Vec2> beams;
-    beams.reserve(static_cast<std::size_t>(laser.beams));
-    for (int k = 0; k < laser.beams; ++k) beams.push_back(unitVector(laser.bearing(k)));
+    const std::vector<Vec2>& beams = beamsOf(laser);
     const Pose3& first = scans.front().pose;
     if (in == Coordinates::Sensor) cloud.viewpoint = first;
     const Frame3 target = in == Coordinates::Sensor ? Frame3(first) : Frame3();
