@@ -25,7 +25,8 @@ namespace {
 
 ISPACE_SIMD_CLONES void drawSome(const Philox& philox, std::uint32_t first, std::size_t count,
                                  const Targets& targets) {
-    random_loops::drawBlock(philox, first, count, targets);
+    static const random_loops::GroupFunction compute = random_loops::groupFunctions().front();
+    random_loops::drawBlock(philox, first, count, targets, compute);
 }
 
 std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }

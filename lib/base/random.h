@@ -85,46 +85,21 @@ struct Targets {
     float* uniform = nullptr;
 };
 
-/// Philox4x32-10 of elements first .. first + kGroup - 1.
-ISPACE_INLINE void computeGroup(const Philox& philox, std::uint32_t first, std::uint32_t* a,
-                                std::uint32_t* b, std::uint32_t* c) {
-    std::array<std::uint32_t, kGroup> x0, x1, x2, x3;  // NOLINT: set in the loop
-    for (std::uint32_t i = 0; i < kGroup; ++i) {
-        x0[i] = first + i;
-        x1[i] = philox.counter1;
-        x2[i] = philox.counter2;
-        x3[i] = philox.counter3;
-    }
-    std::uint32_t key0 = philox.key0;
-    std::uint32_t key1 = philox.key1;
-    for (int round = 0; round < 10; ++round) {
-        for (std::size_t i = 0; i < kGroup; ++i) {
-            const std::uint64_t p0 = std::uint64_t{0xD2511F53} * x0[i];
-            const std::uint64_t p1 = std::uint64_t{0xCD9E8D57} * x2[i];
-            x0[i] = static_cast<std::uint32_t>(p1 >> 32U) ^ x1[i] ^ key0;
-            x2[i] = static_cast<std::uint32_t>(p0 >> 32U) ^ x3[i] ^ key1;
-            x1[i] = static_cast<std::uint32_t>(p1);
-            x3[i] = static_cast<std::uint32_t>(p0);
-        }
-        key0 += 0x9E3779B9U;
-        key1 += 0xBB67AE85U;
-    }
-    for (std::size_t i = 0; i < kGroup; ++i) {
-        a[i] = x0[i];
-        b[i] = x1[i];
-        c[i] = x2[i];
-    }
-}
+/// Philox4x32-10 of elements first .. first + kGroup - 1: three words of each.
+using GroupFunction = void (*)(const Philox& philox, std::uint32_t first, std::uint32_t* a,
+                               std::uint32_t* b, std::uint32_t* c);
+/// Those that this processor can run, the quickest first, plain C++ last. All give the same words.
+std::span<const GroupFunction> groupFunctions();
 
-/// Draws elements first .. first + count - 1. \pre count <= kBlock
+/// Draws elements first .. first + count - 1, their words from `compute`. \pre count <= kBlock
 ///
 /// Normals are those of Box and Muller: the root of -2 ln u in the direction of a random angle.
 ISPACE_INLINE void drawBlock(const Philox& philox, std::uint32_t first, std::size_t count,
-                             const Targets& targets) {
+                             const Targets& targets, GroupFunction compute) {
     Words words;  // NOLINT: computed as far as it is read
     for (std::size_t k = 0; k < count; k += kGroup) {
-        computeGroup(philox, first + static_cast<std::uint32_t>(k), &words.a[k], &words.b[k],
-                     &words.c[k]);
+        compute(philox, first + static_cast<std::uint32_t>(k), &words.a[k], &words.b[k],
+                &words.c[k]);
     }
     if (float* __restrict uniform = targets.uniform; uniform != nullptr) {
         for (std::size_t k = 0; k < count; ++k) {
