@@ -16,6 +16,7 @@
 #include "draw/font.h"
 #include "draw/picture.h"
 #include "draw/raster.h"
+#include "raster/encode.h"
 
 namespace ispace {
 
@@ -229,9 +230,8 @@ double textWidth(std::string_view text, const TextStyle& style) {
 }
 
 std::string encodePng(const Image& image) {
-    std::string bytes;
-    check(cairo_surface_write_to_png_stream(surfaceOf(image).get(), append, &bytes));
-    return bytes;
+    return pngOfDrawing(image.width, image.height, image.pixels,
+                        static_cast<std::size_t>(image.width));
 }
 
 namespace {
@@ -266,9 +266,14 @@ Image rasterOf(const Picture& picture) {
 
 std::string writePng(const Picture& picture) {
     const Surface surface = painted(picture);
-    std::string bytes;
-    check(cairo_surface_write_to_png_stream(surface.get(), append, &bytes));
-    return bytes;
+    cairo_surface_flush(surface.get());
+    const int columns = cairo_image_surface_get_width(surface.get());
+    const int rows = cairo_image_surface_get_height(surface.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())) /
+                        sizeof(std::uint32_t);
+    const auto* const pixels =
+        reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface.get()));
+    return pngOfDrawing(columns, rows, {pixels, stride * static_cast<std::size_t>(rows)}, stride);
 }
 
 std::string writePdf(const Picture& picture) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -8,10 +9,21 @@
 namespace ispace {
 
 // Pictures as files, row by row from the top. The same samples give the same bytes, and nothing but
-// the picture is in them: no time, no program.
+// the picture is in them: no time, no program. Every PNG of ours is written here, by libpng, in a
+// way that suits what is on it: quick, and about as small as libpng's own choice of filters makes
+// it in several times the time.
 
-/// An 8-bit PNG of red, green and blue bytes. \pre 3 columns * rows samples
+/// An 8-bit PNG of what a camera sees: shades and noise, so that neighbours are alike and nothing
+/// repeats. Red, green and blue bytes. \pre 3 columns * rows samples
 std::string pngOfRgb(int columns, int rows, std::span<const std::uint8_t> samples);
+
+/// The same of pixels 0xRRGGBB; the highest byte does not count. \pre columns * rows pixels
+std::string pngOfShades(int columns, int rows, std::span<const std::uint32_t> pixels);
+
+/// An 8-bit PNG of a drawing: lines, text and areas of one colour, which repeat. Pixels 0xRRGGBB as
+/// above, each row `stride` pixels behind the one before. \pre stride * (rows - 1) + columns pixels
+std::string pngOfDrawing(int columns, int rows, std::span<const std::uint32_t> pixels,
+                         std::size_t stride);
 
 /// A 16-bit grey PNG. \pre columns * rows samples
 std::string pngOfGrey16(int columns, int rows, std::span<const std::uint16_t> samples);

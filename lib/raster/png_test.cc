@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "raster/encode.h"
 #include "raster/test_png.h"
 
 namespace ispace {
@@ -139,6 +140,44 @@ TEST(ColorPicture, HasTheColoursOfTheFile) {
     const ColorPicture ppm = parseColorPicture("P6\n1 1\n255\n\x01\x02\x03", "a.ppm");
     EXPECT_EQ(ppm.rgba, (std::vector<std::uint8_t>{1, 2, 3, 255}));
     EXPECT_THROW(parseColorPicture("no picture", "a.png"), FormatError);
+}
+
+/// Red, green and blue of each pixel of a PNG.
+std::vector<std::uint32_t> pixelsOf(const std::string& png) {
+    const std::vector<std::uint8_t> rgba = parseColorPicture(png, "a.png").rgba;
+    std::vector<std::uint32_t> pixels;
+    for (std::size_t i = 0; i < rgba.size(); i += 4)
+        pixels.push_back(std::uint32_t{rgba[i]} << 16U | std::uint32_t{rgba[i + 1]} << 8U |
+                         rgba[i + 2]);
+    return pixels;
+}
+
+TEST(EncodedPng, HasThePixels) {
+    std::mt19937 random(3);
+    for (const int columns : {1, 3, 200})
+        for (const int rows : {1, 2, 150})
+            for (const bool noisy : {false, true}) {
+                constexpr std::size_t kBehind = 5;  // pixels of each row that are not the picture's
+                const std::size_t stride = static_cast<std::size_t>(columns) + kBehind;
+                std::vector<std::uint32_t> memory, pixels;
+                for (int row = 0; row < rows; ++row)
+                    for (std::size_t column = 0; column < stride; ++column) {
+                        const bool is_dark = column / 20 % 2 == 0;
+                        const std::uint32_t pixel = noisy     ? static_cast<std::uint32_t>(random())
+                                                    : is_dark ? 0xff102030U
+                                                              : 0x00fffefdU;
+                        memory.push_back(pixel);
+                        if (column + kBehind < stride) pixels.push_back(pixel & 0xffffffU);
+                    }
+                memory.resize(memory.size() - kBehind);
+                EXPECT_EQ(pixelsOf(pngOfDrawing(columns, rows, memory, stride)), pixels);
+                EXPECT_EQ(pixelsOf(pngOfShades(columns, rows, pixels)), pixels);
+                std::vector<std::uint8_t> samples;
+                for (const std::uint32_t pixel : pixels)
+                    for (const unsigned shift : {16U, 8U, 0U})
+                        samples.push_back(static_cast<std::uint8_t>(pixel >> shift));
+                EXPECT_EQ(pixelsOf(pngOfRgb(columns, rows, samples)), pixels);
+            }
 }
 
 }  // namespace

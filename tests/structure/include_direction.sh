@@ -20,8 +20,8 @@ violations() {
     }
     function report(what) { print FILENAME ":" FNR ": " what }
     BEGIN {
-        layer("base", ""); layer("solve", "base"); layer("geom", "base"); layer("draw", "geom")
-        layer("raster", "geom"); layer("record", "geom"); layer("env", "draw raster record")
+        layer("base", ""); layer("solve", "base"); layer("geom", "base"); layer("raster", "geom")
+        layer("draw", "raster"); layer("record", "geom"); layer("env", "draw raster record")
         layer("sensor", "env"); layer("layout", "sensor"); layer("plan", "layout")
         layer("io", "plan"); layer("trace", "layout"); layer("render", "trace")
         layer("sense", "render")

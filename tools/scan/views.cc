@@ -112,7 +112,7 @@ class PictureFiles {
 
     void writeFile(const std::string& name, const Image& image) const {
         OutputFile file(name);
-        file.write(is_jpeg_ ? jpegOf(image) : encodePng(image));
+        file.write(is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels));
         file.commit();
     }
 
