@@ -110,21 +110,33 @@ Body roomBody(const Record& record) {
 struct Shape {
     std::string_view keyword;
     Body (*body)(const Record&);
+    bool stands = true;  ///< by itself
 };
 
 constexpr Shape kShapes[] = {
-    {"ispace", roomBody}, {"wall", wallBody},         {"fence", wallBody},
-    {"floor", floorBody}, {"pillar", pillarBody},     {"table", tableBody},
-    {"desk", deskBody},   {"chair", chairBody},       {"barrier", barrierBody},
-    {"cube", cubeBody},   {"cylinder", cylinderBody}, {"infra", infraBody},
-    {"boxes", boxesBody}, {"screen", screenBody},     {"mesh", meshBody}};
+    {"ispace", roomBody, false}, {"wall", wallBody, false}, {"fence", wallBody, false},
+    {"mesh", meshBody, false},   {"floor", floorBody},      {"pillar", pillarBody},
+    {"table", tableBody},        {"desk", deskBody},        {"chair", chairBody},
+    {"barrier", barrierBody},    {"cube", cubeBody},        {"cylinder", cylinderBody},
+    {"infra", infraBody},        {"boxes", boxesBody},      {"screen", screenBody}};
+
+/// Null for what has no body.
+const Shape* shapeOf(const Record& record) {
+    const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
+                                     [&](const Shape& s) { return s.keyword == record.keyword(); });
+    return shape == std::end(kShapes) ? nullptr : shape;
+}
 
 }  // namespace
 
 Body bodyOf(const Record& record) {
-    const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
-                                     [&](const Shape& s) { return s.keyword == record.keyword(); });
-    return shape == std::end(kShapes) ? Body{} : shape->body(record);
+    const Shape* const shape = shapeOf(record);
+    return shape == nullptr ? Body{} : shape->body(record);
+}
+
+bool standsByItself(const Record& record) {
+    const Shape* const shape = shapeOf(record);
+    return shape != nullptr && shape->stands;
 }
 
 double topOf(const Body& body) {

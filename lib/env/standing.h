@@ -24,6 +24,10 @@ struct Standing {
 /// else `height`, else the length.
 Standing standingOf(const Record& record);
 
+/// True for things whose body depends on `at` and `heading` only in where it is: furniture, pillars
+/// and floors, but no walls, and no meshes, which have their own frame.
+bool standsByItself(const Record& record);
+
 Body tableBody(const Record& record);
 Body deskBody(const Record& record);
 Body chairBody(const Record& record);

@@ -108,36 +108,84 @@ std::vector<Point3> worldVertices(const tinygltf::Model& model, const std::strin
                                                        node->rotation[2], node->rotation[3]};
     const double scale = node->scale.empty() ? 1 : node->scale[0];
     const Point3 moved{node->translation[0], node->translation[1], node->translation[2]};
-    const auto& primitive = model.meshes[static_cast<std::size_t>(node->mesh)].primitives[0];
-    const auto& accessor =
-        model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))];
-    const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-    const unsigned char* const data =
-        model.buffers[0].data.data() + view.byteOffset + accessor.byteOffset;
     std::vector<Point3> out;
-    for (std::size_t i = 0; i < accessor.count; ++i) {
-        std::array<float, 3> v{};
-        std::memcpy(v.data(), data + i * sizeof v, sizeof v);
-        // v + 2 a x (a x v + w v), about the place of the node.
-        const Vec3 p = scale * Vec3{v[0], v[1], v[2]}, axis{q[0], q[1], q[2]};
-        const Point3 bent = Point3() + cross(axis, p) + q[3] * p;
-        const Point3 turned = moved + p + 2 * cross(axis, bent - Point3());
-        out.push_back({turned.x, -turned.z, turned.y});
+    for (const auto& primitive : model.meshes[static_cast<std::size_t>(node->mesh)].primitives) {
+        const auto& accessor =
+            model.accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))];
+        const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+        const unsigned char* const data =
+            model.buffers[0].data.data() + view.byteOffset + accessor.byteOffset;
+        for (std::size_t i = 0; i < accessor.count; ++i) {
+            std::array<float, 3> v{};
+            std::memcpy(v.data(), data + i * sizeof v, sizeof v);
+            // v + 2 a x (a x v + w v), about the place of the node.
+            const Vec3 p = scale * Vec3{v[0], v[1], v[2]}, axis{q[0], q[1], q[2]};
+            const Point3 bent = Point3() + cross(axis, p) + q[3] * p;
+            const Point3 turned = moved + p + 2 * cross(axis, bent - Point3());
+            out.push_back({turned.x, -turned.z, turned.y});
+        }
     }
     return out;
+}
+
+tinygltf::Model modelIn(const std::string& glb) {
+    tinygltf::Model model;
+    std::string error, warning;
+    EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromMemory(
+        &model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()),
+        static_cast<unsigned>(glb.size())));
+    EXPECT_EQ(error + warning, "");
+    return model;
+}
+
+TEST(GlbMesh, FurnitureStandsWhereTheBodiesDoAndSharesMeshes) {
+    const std::string kinds[] = {"table size=1,1,0.7",
+                                 "desk",
+                                 "desk kind=closed",
+                                 "chair",
+                                 "barrier",
+                                 "cube",
+                                 "cylinder",
+                                 "pillar",
+                                 "pillar kind=round",
+                                 "boxes count=4",
+                                 "screen",
+                                 "infra height=2.2 rows=3 cols=2",
+                                 "floor kind=checker size=2,1"};
+    const auto has_no_height = [](const std::string& kind) {
+        return kind.starts_with("floor") || kind.starts_with("infra");
+    };
+    std::string text = "fence path=-50,-50;50,-50;50,50;-50,50 closed=yes\n";
+    for (const std::string& kind : kinds)
+        for (int k = 0; k < 3; ++k) {
+            const std::string place = std::to_string(7 * k - 3) + ".25," + std::to_string(-5 * k) +
+                                      (k < 2 || has_no_height(kind) ? "" : ",0.5");
+            text += kind + " at=" + place + " heading=" + std::to_string(75 * k - 30) + "\n";
+        }
+    const Document document = documentOf(text);
+    const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
+    const tinygltf::Model model = modelIn(writeGlb(scene, document));
+    // The fence, the floor within, and what stands higher is another mesh.
+    EXPECT_EQ(model.meshes.size(), 2 + 2 * std::size(kinds) - 2);
+    constexpr double kFloat = 1e-6;
+    std::size_t compared = 0;
+    for (const ModelNode& node : modelOf(scene)) {
+        if (node.keyword == "fence" || node.element == nullptr) continue;
+        const std::vector<Point3> drawn = worldVertices(model, node.id);
+        for (const Mesh& mesh : node.meshes)
+            for (const Point3& corner : mesh.vertices)
+                ASSERT_TRUE(std::any_of(drawn.begin(), drawn.end(), [&](const Point3& p) {
+                    return length(p - corner) < kFloat;
+                })) << node.id;
+        ++compared;
+    }
+    EXPECT_EQ(compared, 3 * std::size(kinds));
 }
 
 TEST(GlbMesh, NodesStandWhereTheBodiesDo) {
     const Document document = loaded(kThree, {tetrahedron(), tetrahedron(0.3F)});
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
-    tinygltf::Model model;
-    std::string error, warning;
-    const std::string glb = writeGlb(scene, document);
-    ASSERT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromMemory(
-        &model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()),
-        static_cast<unsigned>(glb.size())))
-        << error;
-    EXPECT_EQ(error + warning, "");
+    const tinygltf::Model model = modelIn(writeGlb(scene, document));
     std::size_t compared = 0;
     for (const ModelNode& node : modelOf(scene)) {
         if (node.keyword != "mesh") continue;

@@ -142,12 +142,15 @@ TEST(Glb, AxesAndBounds) {
     for (const Point3 p : verticesOf(glb, "floor")) {
         EXPECT_TRUE((p.x == -2 || p.x == 6) && (p.y == -2 || p.y == 4) && p.z == 0);
     }
+    // Furniture has its own frame.
     for (const Point3 p : verticesOf(glb, "d1")) {
-        EXPECT_NEAR(p.x, 2, 0.75);
-        EXPECT_NEAR(p.y, 3, 0.75);
+        EXPECT_LE(std::abs(p.x), 0.6F);
+        EXPECT_LE(std::abs(p.y), 0.4F);
         top = std::max(top, p.z);
     }
     EXPECT_NEAR(top, 0.7, 1e-6);
+    EXPECT_EQ(json["nodes"][1]["name"], "d1");
+    EXPECT_EQ(json["nodes"][1]["translation"], Json({2.0, 0.0, -3.0}));
     const Json laser = json["nodes"][6];
     EXPECT_EQ(laser["name"], "l1");
     EXPECT_EQ(laser["translation"], Json({1.0, 0.5, 0.0}));

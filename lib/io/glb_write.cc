@@ -4,8 +4,11 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <unordered_map>
 
+#include "env/body.h"
 #include "env/mesh.h"
+#include "env/standing.h"
 #include "io/glb.h"
 #include "io/glb_file.h"
 #include "io/model.h"
@@ -39,11 +42,16 @@ class GlbScene {
   public:
     GlbScene(GlbBuilder& builder, Point3 origin) : builder_(builder), origin_(origin) {}
 
+    void add(const Element& element) {
+        if (standsByItself(element.record))
+            addStanding(element);
+        else if (element.record.mesh() != nullptr)
+            addFile(element);
+        else
+            addFixed(nodeOf(element));
+    }
     void add(const ModelNode& node) {
-        const bool is_file = node.element != nullptr && node.element->record.mesh() != nullptr;
-        if (is_file)
-            addFile(node);
-        else if (node.pose)
+        if (node.pose)
             addPlaced(node);
         else
             addFixed(node);
@@ -84,21 +92,40 @@ class GlbScene {
         }
         const auto [place, is_new] = figures_.try_emplace(std::move(figure), -1);
         if (is_new) place->second = meshAbout(Point3(), node.keyword, node.meshes);
-        if (place->second < 0) return;
-        const GlbNode::Frame frame{gltfAxes(node.pose->position - origin_), rotationOf(*node.pose)};
-        builder_.addNode(
-            {node.id, node.keyword, place->second, std::make_unique<const GlbNode::Frame>(frame)});
+        addNode(node.id, node.keyword, place->second, *node.pose);
+    }
+
+    /// Furniture: things whose records differ only in id and place share a mesh.
+    void addStanding(const Element& element) {
+        Record shape = element.record;
+        const Tuple at = shape.tuple("at");
+        for (const char* key : {"id", "at", "heading"}) shape.erase(key);
+        if (at.size() > 2) shape.set("at", Tuple{0, 0, at[2]});
+        const auto [place, is_new] = shapes_.try_emplace(formatRecord(shape), -1);
+        if (is_new)
+            place->second =
+                meshAbout(Point3(), shape.keyword(), meshesOf(bodyOf(shape), Surfaces::Drawn));
+        addNode(element.id, shape.keyword(), place->second,
+                {{at[0], at[1], 0}, element.record.angle("heading"), {}, {}});
+    }
+
+    /// With a mesh in the frame of a pose, if it shows something.
+    void addNode(const std::string& id, const std::string& keyword, int mesh, const Pose3& pose) {
+        if (mesh < 0) return;
+        const GlbNode::Frame frame{gltfAxes(pose.position - origin_), rotationOf(pose)};
+        builder_.addNode({id, keyword, mesh, std::make_unique<const GlbNode::Frame>(frame)});
     }
 
     /// A mesh of a file: its own numbers, in a frame that makes them the body. Nobody knows which
     /// side of its triangles is outside, so both are drawn.
-    void addFile(const ModelNode& node) {
-        const Record& record = node.element->record;
+    void addFile(const Element& element) {
+        if (element.body.meshes.empty()) return;
+        const Record& record = element.record;
         const TriangleMesh& file = *record.mesh();
-        const Material material = node.meshes.front().material;
         const auto [place, is_new] = files_.try_emplace(file.digest, -1);
         if (is_new) {
-            const Primitives primitives{builder_.add(file, builder_.material(material, true))};
+            const Primitives primitives{
+                builder_.add(file, builder_.material(Material::Mesh, true))};
             place->second = builder_.addMesh(record.text("file"), primitives);
         }
         const Tuple& at = record.tuple("at");
@@ -107,13 +134,14 @@ class GlbScene {
             gltfAxes(position - origin_),
             turnAbout(1, record.angle("heading")) * gltfFromFile(record.text("up")),
             meshScale(record)};
-        builder_.addNode(
-            {node.id, node.keyword, place->second, std::make_unique<const GlbNode::Frame>(frame)});
+        builder_.addNode({element.id, record.keyword(), place->second,
+                          std::make_unique<const GlbNode::Frame>(frame)});
     }
 
     GlbBuilder& builder_;
     Point3 origin_;
     std::map<Figure, int> figures_;
+    std::unordered_map<std::string, int> shapes_;  // by their records without id and place
     std::map<std::string, int> files_;
 };
 
@@ -134,8 +162,8 @@ std::string writeGlb(const Scene& scene, const Document& document) {
     const Point3 origin = meshOrigin(scene.environment.limits());
     GlbBuilder builder;
     GlbScene nodes(builder, origin);
-    const std::vector<ModelNode> model = modelOf(scene, true);
-    for (const ModelNode& node : model) nodes.add(node);
+    for (const Element& element : scene.environment.elements()) nodes.add(element);
+    for (const ModelNode& node : placedNodes(scene, true)) nodes.add(node);
     return builder.finish(recordsText(document), gltfAxes(origin - Point3()));
 }
 

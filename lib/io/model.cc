@@ -30,16 +30,7 @@ void addNode(std::vector<ModelNode>& nodes, ModelNode node) {
     if (!node.meshes.empty()) nodes.push_back(std::move(node));
 }
 
-}  // namespace
-
-std::vector<ModelNode> modelOf(const Scene& scene, bool with_views) {
-    std::vector<ModelNode> nodes;
-    for (const Element& element : scene.environment.elements())
-        addNode(nodes, {element.id,
-                        element.record.keyword(),
-                        {},
-                        meshesOf(element.body, Surfaces::Drawn),
-                        &element});
+void addPlaced(std::vector<ModelNode>& nodes, const Scene& scene, bool with_views) {
     addNode(nodes, {"floor", "", {}, {floorMesh(scene.environment.indoor())}});
     for (const Placed& placed : scene.placed) {
         std::vector<Mesh> meshes = bodyOf(scene, placed);
@@ -48,6 +39,28 @@ std::vector<ModelNode> modelOf(const Scene& scene, bool with_views) {
         addNode(nodes, {scene.ids[placed.record], scene.records[placed.record].keyword(),
                         placed.pose, std::move(meshes)});
     }
+}
+
+}  // namespace
+
+ModelNode nodeOf(const Element& element) {
+    return {element.id,
+            element.record.keyword(),
+            {},
+            meshesOf(element.body, Surfaces::Drawn),
+            &element};
+}
+
+std::vector<ModelNode> modelOf(const Scene& scene) {
+    std::vector<ModelNode> nodes;
+    for (const Element& element : scene.environment.elements()) addNode(nodes, nodeOf(element));
+    addPlaced(nodes, scene, false);
+    return nodes;
+}
+
+std::vector<ModelNode> placedNodes(const Scene& scene, bool with_views) {
+    std::vector<ModelNode> nodes;
+    addPlaced(nodes, scene, with_views);
     return nodes;
 }
 

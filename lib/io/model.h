@@ -25,8 +25,13 @@ struct ModelNode {
 
 /// Elements in the order of their records, the floor behind them, then what is placed: sensors,
 /// robots, people. Elements without a body (zones, inside points) are left out.
-/// The nodes point into the scene. `with_views`: sensors with their fields of view.
-std::vector<ModelNode> modelOf(const Scene& scene, bool with_views = false);
+/// The nodes point into the scene.
+std::vector<ModelNode> modelOf(const Scene& scene);
+/// The nodes of modelOf() that come of no element: the floor, and what is placed. `with_views`:
+/// sensors with their fields of view.
+std::vector<ModelNode> placedNodes(const Scene& scene, bool with_views = false);
+/// The node of an element; its meshes are empty if there is nothing to show.
+ModelNode nodeOf(const Element& element);
 
 /// Nodes as Wavefront OBJ without materials, see writeObj().
 std::string objOf(const std::vector<ModelNode>& nodes);
