@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How long a tool waits for a compiled environment until it can cast rays, beside what nobody can
-// avoid: a plain read of the file, and Embree's build of the same triangles.
+// avoid, a plain read of the file and Embree's build of the same triangles, and beside the records
+// as text.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ using namespace ispace;
 
 struct Compiled {
     std::string name;
-    std::string file;
+    std::string file, text;
 };
 
 Document reading(const std::string& file) {
@@ -54,9 +55,10 @@ void unavoidable(const std::string& file, const bench::RawTriangles& triangles) 
 }
 
 Compiled compile(const std::string& name, const std::string& folder, const Document& document) {
-    Compiled compiled{name, folder + '/' + name + ".glb"};
+    Compiled compiled{name, folder + '/' + name + ".glb", folder + '/' + name + ".env"};
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     writeAll(compiled.file, writeGlb(scene, document));
+    writeAll(compiled.text, writeRecordText(document));
     // What is loaded is what was compiled.
     const Scene again = makeScene(reading(compiled.file), nullptr, DeviceCatalogue());
     if (again.ids == scene.ids && again.digest == scene.digest &&
@@ -79,9 +81,12 @@ void loadBeside(benchmark::State& state, const Compiled& compiled, bool level) {
     const bench::RawTriangles triangles =
         level ? bench::RawTriangles(scene.environment.slice(kScanHeight))
               : bench::RawTriangles(scene.environment);
-    double quickest = std::numeric_limits<double>::infinity(), beside = quickest;
+    double quickest = std::numeric_limits<double>::infinity(), beside = quickest, text = quickest;
+    // Text names files of meshes, and others read those.
+    const bool has_text = !compiled.name.starts_with("mesh");
     for (auto _ : state) {
         beside = std::min(beside, secondsOf([&] { unavoidable(compiled.file, triangles); }));
+        if (has_text) text = std::min(text, secondsOf([&] { load(compiled.text, level); }));
         const double seconds = secondsOf([&] { load(compiled.file, level); });
         quickest = std::min(quickest, seconds);
         state.SetIterationTime(seconds);
@@ -89,7 +94,18 @@ void loadBeside(benchmark::State& state, const Compiled& compiled, bool level) {
     state.counters["triangles"] = static_cast<double>(triangles.size());
     state.counters["quickest_ms"] = 1000 * quickest;
     state.counters["beside_ms"] = 1000 * beside;
-    state.SetLabel("ratio " + formatFixed(quickest / beside, 2));
+    const auto kilobytes = [](const std::string& file) {
+        return static_cast<double>(std::filesystem::file_size(file)) / 1000;
+    };
+    state.counters["kB"] = kilobytes(compiled.file);
+    std::string label = "ratio " + formatFixed(quickest / beside, 2);
+    if (has_text) {
+        state.counters["text_ms"] = 1000 * text;
+        state.counters["text_kB"] = kilobytes(compiled.text);
+        label += ", to text " + formatFixed(quickest / text, 2) + ", its size " +
+                 formatFixed(kilobytes(compiled.file) / kilobytes(compiled.text), 1);
+    }
+    state.SetLabel(label);
 }
 
 std::vector<Compiled> scenes(const std::string& folder) {
@@ -101,6 +117,8 @@ std::vector<Compiled> scenes(const std::string& folder) {
         out.push_back(compile("walls-" + std::to_string(walls), folder,
                               readRecordText(plan.text, "plan", sceneSchemas())));
     }
+    out.push_back(compile("furnished-480", folder,
+                          readRecordText(bench::officeText(24, 20), "plan", sceneSchemas())));
     Document room =
         readRecordText("#env 1\nispace size=8,6\nmesh file=globe.stl\n", "room", sceneSchemas());
     room.records[1].setMesh(bench::bumpyGlobe(501, 1000));
