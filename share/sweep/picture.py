@@ -64,11 +64,15 @@ class _Cells:
         if not self.rows:
             raise DataError(["error: no job has a figure to draw"])
 
-    def at(self, *choices: tuple[Axis, Any]) -> list[float]:
-        places = [(self.names.index(axis.name), choice) for axis, choice in choices]
-        found = [self.figures[row.job.number] for row in self.rows
-                 if all(row.job.choices[place] is choice for place, choice in places)]
-        return [float(value) for value in found if value is not None]
+    def by(self, *axes: Axis) -> dict[tuple[str, ...], list[float]]:
+        """The figures of each combination of choices on these axes, by their texts."""
+        places = [self.names.index(axis.name) for axis in axes]
+        found: dict[tuple[str, ...], list[float]] = {}
+        for row in self.rows:
+            figure = self.figures[row.job.number]
+            if figure is not None:  # as the rows here are chosen
+                found.setdefault(tuple(row.job.choices[place].text for place in places), []).append(float(figure))
+        return found
 
     def spread(self, *shown: Axis | None) -> str:
         """What the mean is taken over."""
@@ -80,12 +84,12 @@ class _Cells:
 
 def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
     place, labels = _places(x)
+    cells_by = cells.by(x, by) if by else cells.by(x)
     curves = []
     for choice in by.choices if by else (None,):
         points = []
         for option in x.choices:
-            fixed = [(x, option), *([(by, choice)] if by else [])]
-            found = cells.at(*fixed)
+            found = cells_by.get((option.text, choice.text) if choice else (option.text,))
             if found:
                 points.append((place[option.text], sum(found) / len(found), min(found), max(found)))
         if points:
@@ -112,9 +116,10 @@ def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
 def _heat(cells: _Cells, x: Axis, over: Axis, column: str) -> Any:
     look = _look()
     means = {}
+    cells_by = cells.by(x, over)
     for column_index, option in enumerate(x.choices):
         for row_index, choice in enumerate(over.choices):
-            found = cells.at((x, option), (over, choice))
+            found = cells_by.get((option.text, choice.text))
             if found:
                 means[column_index, row_index] = sum(found) / len(found)
     low, high = min(means.values()), max(means.values())
