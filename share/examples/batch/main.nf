@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nextflow run main.nf: the sweep's jobs, its table and its picture. Jobs work in the folder where Nextflow
-// was started, which the nodes share; --missing takes the place of -resume.
-nextflow.enable.dsl = 2
+// was started, which the nodes share; --missing does what -resume does elsewhere. Written for DSL 2 in the
+// strict syntax of Nextflow 26.04; it has never been run.
 
-process job {
-    tag "$name"
+process list_jobs {
+    output:
+    stdout
+
+    script:
+    """
+    cd '${launchDir}'
+    ispace-sweep commands sweep.yaml --missing -j 1
+    """
+}
+
+process run_job {
     cpus 1
     errorStrategy 'retry'
     maxRetries 2
 
     input:
-    tuple val(name), val(command)
+    val command
 
     output:
-    val name
+    val true
 
     script:
     """
@@ -22,9 +32,9 @@ process job {
     """
 }
 
-process table {
+process join_results {
     input:
-    val names
+    val done
 
     output:
     stdout
@@ -38,10 +48,7 @@ process table {
 }
 
 workflow {
-    listing = ['ispace-sweep', 'commands', 'sweep.yaml', '-j', '1', '--missing', '--json'].execute(null, launchDir.toFile())
-    lines = listing.inputStream.text.readLines()
-    if (listing.waitFor() != 0) error listing.errorStream.text
-    jobs = lines.drop(1).collect { new groovy.json.JsonSlurper().parseText(it) }
-    job(Channel.fromList(jobs.collect { tuple(it.name, it.command) }))
-    table(job.out.collect().ifEmpty([]))
+    list_jobs()
+    run_job(list_jobs.out.splitText())
+    join_results(run_job.out.collect().ifEmpty([]))
 }
