@@ -12,7 +12,7 @@ configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo experiments check races bench fuzz format lint install clean
+.PHONY: all help deps demo experiments check races bench fuzz format lint install package package-check clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -29,6 +29,9 @@ help:
 	@echo "make format      reformat the sources"
 	@echo "make lint        clang-tidy on what changed (all of it with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
+	@echo "make package     deps, build, Debian packages in $(BUILD)/package, judged by lintian"
+	@echo "make package-check"
+	@echo "                 the same, and install and use them on a bare Debian (root rights, debootstrap)"
 	@echo "make clean       remove $(BUILD), $(SANITIZED), $(RACES) and build-fuzz"
 
 deps:
@@ -47,7 +50,7 @@ experiments:
 	@share/experiments/run.py --build $(BUILD) -o $(BUILD)/experiments
 
 check:
-	@.ci/deps build experiments check
+	@.ci/deps build experiments package check
 	@.ci/format --check
 	@$(MAKE) --no-print-directory all $(SANITIZED)/configured
 	@.ci/validator $(BUILD)/npm
@@ -83,6 +86,16 @@ lint:
 
 install: all
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
+
+package:
+	@.ci/deps build package
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools manual completions
+	@.ci/package $(BUILD)
+
+package-check: package
+	@.ci/deps check
+	@.ci/package-test $(BUILD) || [ $$? -eq 77 ]
 
 clean:
 	rm -rf $(BUILD) $(SANITIZED) $(RACES) build-fuzz

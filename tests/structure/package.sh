@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The Debian packages of what is built: lintian finds nothing, a second run gives the same bytes, no package
+# takes a name that others have, and what is unpacked works. `make package-check` installs them for real.
+. "$(dirname "$0")/../pipelines/common.sh"
+
+for program in dpkg-buildpackage dh dh_python3 lintian; do
+    command -v "$program" >/dev/null || skip "no $program here (Debian: debhelper dh-python lintian)"
+done
+[ -d "$binary_dir/share/completions" ] || skip "a build with sanitizers is not packed"
+
+export DPKG_DEB_COMPRESSOR_TYPE=gzip DPKG_DEB_COMPRESSOR_LEVEL=1
+for run in one two; do
+    "$source_dir/.ci/package" "$binary_dir" "$run" >"$run.log" 2>&1 || fail "$(cat "$run.log")"
+done
+[ "$(ls one/*.deb | wc -l)" -eq 5 ] || fail "other packages than expected: $(ls one)"
+for package in one/*.deb; do
+    cmp "$package" "two/${package#*/}" || fail "the second $package has other bytes"
+done
+
+mkdir root short
+for package in one/*.deb; do
+    case $package in
+        */ispace-short-names_*) dpkg-deb -x "$package" short ;;
+        *) dpkg-deb -x "$package" root ;;
+    esac
+done
+[ "$(ls root/usr/bin | tr '\n' ' ')" = "ispace ispace-sweep " ] || fail "in /usr/bin: $(ls root/usr/bin)"
+[ "$(cd short/usr/bin && ls)" = "$(tr ' ' '\n' <<<"$tools" | sort)" ] || fail "short names: $(ls short/usr/bin)"
+for tool in $tools; do
+    [ -x "root/usr/lib/ispace/bin/$tool" ] || fail "no $tool"
+    [ "$(readlink "short/usr/bin/$tool")" = "../lib/ispace/bin/$tool" ] || fail "$tool: not a link to the tool"
+    [ -s "root/usr/share/man/man1/$tool.1ispace.gz" ] || fail "no manual page of $tool"
+done
+for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.5 man5/ispace-yaml.5 \
+    man7/ispace-protocol.7 man7/ispace-wire.7; do
+    [ -s "root/usr/share/man/$page.gz" ] || fail "no page $page"
+done
+if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
+dpkg-deb -f one/ispace_*.deb Recommends | grep -q 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
+if dpkg-deb -f one/ispace_*.deb Depends | grep imgcodecs; then fail "OpenCV's pictures are needed"; fi
+
+export PATH=$scratch/root/usr/bin:/usr/bin:/bin
+ispace envc root/usr/share/ispace/scenes/crowded.env -o room.glb
+ispace arrange -q room.glb --sensor urg-04lx:2 --strategy grid -X 3 -Y 3 -o best.3dm
+ispace coverage -q room.glb best.3dm --json | grep -q ispace-coverage/1 || fail "no report"
+if command -v man >/dev/null; then
+    ispace help scan | head -n 1 | grep -q '^SCAN(1ispace)' || fail "another page: $(ispace help scan | head -n 1)"
+fi
