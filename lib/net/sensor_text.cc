@@ -93,6 +93,7 @@ std::string laserFigures(const Laser& laser) {
     add(out, "range_min", laser.min_range);
     add(out, "range_max", laser.max_range);
     add(out, "rate", laser.rate);
+    if (laser.spin != 0) add(out, "spin", laser.spin);
     return out;
 }
 

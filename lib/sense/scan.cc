@@ -80,6 +80,11 @@ LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const
       beams_(sensor.as<Laser>(), turns) {}
 
 void LaserCaster::cast(Scan& scan) {
+    const BeamsAmong all{0, static_cast<std::size_t>(sensor_->as<Laser>().beams), bodies_};
+    cast(scan, std::span(&all, 1));
+}
+
+void LaserCaster::cast(Scan& scan, std::span<const BeamsAmong> parts) {
     const Laser& laser = sensor_->as<Laser>();
     const auto count = static_cast<std::size_t>(laser.beams);
     scan.ranges.resize(count);
@@ -93,23 +98,50 @@ void LaserCaster::cast(Scan& scan) {
     errors_.resize(noisy && laser.noise.angle_sigma > Angle() ? count : 0);
     if (!errors_.empty()) bearingErrors(laser.noise, key, errors_);
     if (errors_.empty() && scan.beam_poses.empty())
-        castFrom(scan.pose, scan.ranges);
+        castFrom(scan.pose, scan.ranges, parts);
     else
-        castApart(scan);
+        castApart(scan, parts);
     // Surfaces in the blind zone give no return, and hide what lies behind them all the same.
     addNoise(noisy ? laser.noise : RangeNoise(), laser.min_range, laser.max_range, key, cosines_,
              scan.ranges);
 }
 
-void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges) {
+namespace {
+
+/// Of some beams; of none if there are no cosines.
+std::span<float> valuesOf(std::span<float> values, const BeamsAmong& part) {
+    return values.empty() ? values : values.subspan(part.begin, part.end - part.begin);
+}
+
+}  // namespace
+
+const Directions& LaserCaster::partOf(const Directions& all, const BeamsAmong& part) {
+    if (part.begin == 0 && part.end == all.size()) return all;
+    const auto copy = [&part](const std::vector<double>& from, std::vector<double>& to) {
+        to.assign(from.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                  from.begin() + static_cast<std::ptrdiff_t>(part.end));
+    };
+    copy(all.x, part_.x);
+    copy(all.y, part_.y);
+    copy(all.z, part_.z);
+    part_.arc = all.arc;
+    if (part_.arc)
+        part_.arc->first = part_.arc->first + static_cast<double>(part.begin) * part_.arc->step;
+    return part_;
+}
+
+void LaserCaster::castFrom(const Pose3& pose, std::span<float> ranges,
+                           std::span<const BeamsAmong> parts) {
     const Directions& directions = beams_.at(pose);
     const double far = sensor_->as<Laser>().max_range;
     worlds_->at(pose).cast(pose.position, directions, far, ranges, cosines_);
-    bodies_->shorten(pose.position, directions, far, own_, ranges, cosines_);
+    for (const BeamsAmong& part : parts)
+        part.bodies->shorten(pose.position, partOf(directions, part), far, own_,
+                             valuesOf(ranges, part), valuesOf(cosines_, part));
 }
 
 /// Each beam by itself: it has a place or an error of its own.
-void LaserCaster::castApart(Scan& scan) {
+void LaserCaster::castApart(Scan& scan, std::span<const BeamsAmong> parts) {
     const Laser& laser = sensor_->as<Laser>();
     const std::size_t count = scan.ranges.size();
     apart_.resize(count);
@@ -130,7 +162,11 @@ void LaserCaster::castApart(Scan& scan) {
     }
     const RayWorld& world = level ? worlds_->at(scan.pose) : worlds_->mesh();
     world.cast(origins_, apart_, laser.max_range, scan.ranges, cosines_);
-    bodies_->shorten(origins_, apart_, laser.max_range, own_, scan.ranges, cosines_);
+    for (const BeamsAmong& part : parts)
+        part.bodies->shorten(
+            std::span<const Point3>(origins_).subspan(part.begin, part.end - part.begin),
+            partOf(apart_, part), laser.max_range, own_, valuesOf(scan.ranges, part),
+            valuesOf(cosines_, part));
 }
 
 double sliceArea(const Laser& laser, std::span<const float> ranges) {

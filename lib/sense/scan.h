@@ -59,6 +59,12 @@ struct ReadingOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
 };
 
+/// Beams from `begin` to before `end`, and the bodies that stand in their way.
+struct BeamsAmong {
+    std::size_t begin = 0, end = 0;
+    const MovingBodies* bodies = nullptr;
+};
+
 /// Takes scans of one laser, keeping its memory and what can be computed once. Not thread-safe: use
 /// one per thread or per sensor. Results do not depend on earlier scans.
 class LaserCaster {
@@ -70,10 +76,13 @@ class LaserCaster {
     /// zone and, if wanted, noise. \pre the worlds are prepared for the pose, and their mesh if
     /// beam_poses are not all level and at its height
     void cast(Scan& scan);
+    /// The same while bodies move. \pre `parts` hold each beam once
+    void cast(Scan& scan, std::span<const BeamsAmong> parts);
 
   private:
-    void castFrom(const Pose3& pose, std::span<float> ranges);
-    void castApart(Scan& scan);
+    void castFrom(const Pose3& pose, std::span<float> ranges, std::span<const BeamsAmong> parts);
+    void castApart(Scan& scan, std::span<const BeamsAmong> parts);
+    const Directions& partOf(const Directions& all, const BeamsAmong& part);
 
     const Worlds* worlds_;
     const MovingBodies* bodies_;
@@ -82,7 +91,7 @@ class LaserCaster {
     std::uint64_t id_hash_;
     std::uint32_t own_;
     Beams beams_;
-    Directions apart_;
+    Directions apart_, part_;
     std::vector<Point3> origins_;
     std::vector<float> cosines_, errors_;
 };

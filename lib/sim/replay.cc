@@ -178,10 +178,14 @@ void Replay::rewind(World& world) {
 
 void Replay::seek(World& world, SimTime time) {
     if (time < world.time()) rewind(world);
-    // Every sensor is read once in its turn before that time.
-    double period = 0;
-    for (const RunSensor& sensor : world.sensors()) period = std::max(period, 1 / sensor.rate());
-    const double settle = period + 2 * seconds(step_);
+    // Every sensor is read once in its turn before that time; of a laser that spins the first scan
+    // from then on may miss its beginning, and the next one is late.
+    double settle = 0;
+    for (const RunSensor& sensor : world.sensors()) {
+        const auto* laser = sensor.model<Laser>();
+        const int periods = laser != nullptr && laser->duration() > 0 ? 4 : 1;
+        settle = std::max(settle, periods * (1 / sensor.rate() + 2 * seconds(step_)));
+    }
     while (world.time() + step_ <= time)
         if (!step(world, seconds(time - world.time()) <= settle)) break;
 }

@@ -269,6 +269,34 @@ TEST_F(ReplayTest, SeeksBackAndForth) {
     EXPECT_EQ(world.status(0).pose, states[2].pose);
 }
 
+TEST_F(ReplayTest, SeeksIntoTheMidstOfScans) {
+    scene_ = scene(kRoom,
+                   "robot id=r1 at=0,0\nhuman id=h1 at=1,2\nlaser id=l1 on=r1 fov=270 spin=10\n"
+                   "laser id=l2 at=0,-2 heading=90 model=rplidar-a1\n");
+    world_ = std::make_unique<World>(scene_, kStep);
+    record();
+    std::vector<SimTime> times;
+    std::vector<std::vector<float>> ranges;
+    {
+        Replay replay(folder_);
+        World world(scene_, kStep);
+        do {
+            times.push_back(world.reading(1).time);
+            ranges.push_back(rangesOf(world, "l1"));
+            ranges.push_back(rangesOf(world, "l2"));
+        } while (replay.step(world));
+    }
+    Replay replay(folder_);
+    World world(scene_, kStep);
+    for (const int step : {150, 3, 20, 21, 187, 0, 200}) {
+        const auto i = static_cast<std::size_t>(step);
+        replay.seek(world, step * kStep);
+        EXPECT_EQ(world.reading(1).time, times[i]) << step;
+        EXPECT_EQ(rangesOf(world, "l1"), ranges[2 * i]) << step;
+        EXPECT_EQ(rangesOf(world, "l2"), ranges[2 * i + 1]) << step;
+    }
+}
+
 TEST_F(ReplayTest, BeginsWithNobody) {
     writeAll(path("robots.csv"), "t,id,x,y,heading_deg\n0.06,r1,1,0,0\n0.08,r1,1.01,0,0\n");
     writeAll(path("info.csv"), "dt,control_interval,steps\n0.02,0.1,4\n");

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -48,13 +49,16 @@ SensorReader::SensorReader(const Scene& scene, const Options& options)
     : scene_(&scene),
       options_{.noise_seed = noiseSeedOf(options)},
       sound_{.noise_seed = noiseSeedOf(options)},
+      step_(options.step),
       floor_(scene),
       worlds_(scene.environment) {
     addSensors();
     const std::size_t count = sensors_.size();
     due_.resize(count);
     readings_.resize(count);
+    durations_.resize(count);
     casters_.resize(count);
+    parts_.resize(count);
     latest_.reserve(count);
     bool has_cameras = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -71,10 +75,12 @@ SensorReader::SensorReader(const Scene& scene, const Options& options)
         if (sensor->is<Camera>()) readings_[i].value = Photo();
         const auto* laser = sensors_[i].model<Laser>();
         if (laser == nullptr) continue;
+        durations_[i] = durationOf(*laser, step_);
         worlds_.prepare(sensor->pose);
         if (laser->sweep != SweepAxis::None) worlds_.prepareMesh();
         casters_[i].emplace(worlds_, bodies_, *sensor, sensor->mount.has_value(), options_);
     }
+    if (count > 0) trail_ = Trail(*std::max_element(durations_.begin(), durations_.end()));
     if (has_cameras) photographer_ = std::make_unique<Photographer>(scene, photoOptionsOf(options));
     for (const Placed& placed : scene.placed)
         if (scene.records[placed.record].keyword() == "human")
@@ -96,7 +102,9 @@ void SensorReader::addSensors() {
 }
 
 void SensorReader::follow(const SensorReader& before,
-                          const std::unordered_set<std::string_view>& stayers) {
+                          const std::unordered_set<std::string_view>& stayers,
+                          const Movers& movers) {
+    followTrail(before, stayers, movers);
     std::unordered_map<std::string_view, std::size_t> old;
     for (std::size_t i = 0; i < before.sensors_.size(); ++i) old.emplace(before.sensors_[i].id, i);
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -123,6 +131,10 @@ void SensorReader::jumped() {
 
 void SensorReader::read(SimTime time, const Movers& movers) {
     floor_.follow(movers);
+    if (trail_.isKept()) {
+        updateBodies(movers);
+        trail_.add(time, movers, std::exchange(trail_moved_, false), bodies_);
+    }
     latest_.clear();
     for (std::size_t i = 0; i < due_.size(); ++i) {
         if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
@@ -146,13 +158,15 @@ void SensorReader::readLatest(SimTime time, const Movers& movers) {
                       [&](std::size_t k) { measure(latest_[k], time); });
 }
 
+Pose3 SensorReader::poseOn(const Sensor& sensor, const Pose2& carrier) const {
+    if (sensor.mount) return mountedPose(carrier, sensor.mount->robot_from_sensor);
+    const Pose2& start = people_starts_[sensor.person.value()];
+    return carrier == start ? sensor.pose : mountedPose(carrier, localPose(start, sensor.pose));
+}
+
 Pose3 SensorReader::poseOf(const Sensor& sensor, const Movers& movers) const {
-    if (sensor.mount)
-        return mountedPose(movers.robots[sensor.mount->robot].pose,
-                           sensor.mount->robot_from_sensor);
-    if (!sensor.person) return sensor.pose;
-    const Pose2 &start = people_starts_[*sensor.person], &pose = movers.people[*sensor.person].pose;
-    return pose == start ? sensor.pose : mountedPose(pose, localPose(start, sensor.pose));
+    if (sensor.mount) return poseOn(sensor, movers.robots[sensor.mount->robot].pose);
+    return sensor.person ? poseOn(sensor, movers.people[*sensor.person].pose) : sensor.pose;
 }
 
 /// All that does not depend on rays: times, poses, bodies.
@@ -160,15 +174,21 @@ void SensorReader::update(SimTime time, const Movers& movers) {
     bool hears = false, pictures = false;
     for (const std::size_t i : latest_) {
         SensorReading& reading = readings_[i];
-        reading.time = time;
-        reading.seq = periods_[i].newest(time);
-        due_[i] = periods_[i].begin(reading.seq + 1);
+        reading.time = beginOf(i, time);
+        reading.seq = periods_[i].newest(reading.time);
+        const SimTime next = periods_[i].begin(reading.seq + 1);
+        due_[i] = std::min(next, SimTime::max() - durations_[i]) + durations_[i];
         const Sensor* const sensor = sensors_[i].sensor();
         if (sensor == nullptr) continue;
-        if (sensor->mount || sensor->person) reading.pose = poseOf(*sensor, movers);
-        if (const auto* laser = std::get_if<Laser>(&sensor->model)) {
-            if (laser->sweep != SweepAxis::None)
-                reading.pose = sweptPose(*laser, poseOf(*sensor, movers),
+        const auto* laser = std::get_if<Laser>(&sensor->model);
+        const bool sweeps = laser != nullptr && laser->sweep != SweepAxis::None;
+        if (sensor->mount || sensor->person || sweeps)
+            reading.pose = durations_[i] > SimTime(0)
+                               ? poseOf(*sensor, Trail::Walk(trail_, reading.time))
+                               : poseOf(*sensor, movers);
+        if (laser != nullptr) {
+            if (sweeps)
+                reading.pose = sweptPose(*laser, reading.pose,
                                          static_cast<double>(reading.seq % laser->scans()));
         } else if (sensor->is<Ranger>()) {
             worlds_.prepareMesh();
@@ -192,18 +212,22 @@ void SensorReader::update(SimTime time, const Movers& movers) {
 
 void SensorReader::updateBodies(const Movers& movers) {
     if (!std::exchange(moved_, false)) return;
-    pictures_moved_ = true;
-    places_.clear();
-    for (std::size_t i = 0; i < movers.robots.size(); ++i)
-        places_.push_back(robotBody(scene_->robots[i].model, movers.robots[i].pose,
-                                    static_cast<std::uint32_t>(i)));
-    for (std::size_t i = 0; i < movers.people.size(); ++i) {
+    pictures_moved_ = trail_moved_ = true;
+    setBodies(Places(movers), bodies_);
+}
+
+void SensorReader::setBodies(const Places& places, MovingBodies& bodies) {
+    body_list_.clear();
+    for (std::size_t i = 0; i < places.robots.size(); ++i)
+        body_list_.push_back(
+            robotBody(scene_->robots[i].model, places.robots[i], static_cast<std::uint32_t>(i)));
+    for (std::size_t i = 0; i < places.people.size(); ++i) {
         const auto parts =
-            humanBodies(scene_->people[i].height, movers.people[i].pose,
-                        kFirstPerson + static_cast<std::uint32_t>(i), movers.swings[i]);
-        places_.insert(places_.end(), parts.begin(), parts.end());
+            humanBodies(scene_->people[i].height, places.people[i],
+                        kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i]);
+        body_list_.insert(body_list_.end(), parts.begin(), parts.end());
     }
-    bodies_.rebuild(places_);
+    bodies.rebuild(body_list_);
 }
 
 void SensorReader::movePictures(const Movers& movers) {
@@ -240,15 +264,17 @@ void SensorReader::measure(std::size_t sensor, SimTime time) {
         readings_[sensor].value = floor_.mat(matOf(sensor));
 }
 
-void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime time) {
+void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {
     SensorReading& reading = readings_[sensor];
     Scan& scan = std::get<Scan>(reading.value);
     const std::int64_t scans = laser.scans();
     scan.number = static_cast<int>(reading.seq % scans);
     scan.frame = frameOf(reading.seq / scans);
     scan.pose = reading.pose;
-    scan.time = seconds(time);
-    casters_[sensor]->cast(scan);
+    scan.time = seconds(reading.time);
+    if (durations_[sensor] == SimTime(0)) return casters_[sensor]->cast(scan);
+    sweep(laser, sensor);
+    casters_[sensor]->cast(scan, parts_[sensor]);
 }
 
 void SensorReader::measure(const Ranger& /*ranger*/, std::size_t sensor, SimTime time) {

@@ -13,21 +13,26 @@
 
 #include "layout/scene.h"
 #include "sense/photo.h"
+#include "sense/scan.h"
 #include "sim/motion.h"
 #include "sim/periods.h"
 #include "sim/sensor_reading.h"
+#include "sim/trail.h"
 #include "trace/moving_bodies.h"
 #include "trace/worlds.h"
 
 namespace ispace {
 
 /// Reads the sensors of a world when they are due: in the first step at or after the beginning of
-/// a period, all at the moment of that step.
+/// a period, all at the moment of that step. The beams of a laser that spins follow one another
+/// from that moment on: each is of its own time, and the scan is read with the last one. Its first
+/// scan is of one moment.
 class SensorReader {
   public:
     struct Options {
         std::uint64_t seed = 0;  ///< of noise, and of the light of pictures
         bool noise = false;
+        SimTime step = SimTime(1);  ///< of the world
     };
     /// The scene must outlive it. \throws FormatError for a texture that cannot be read, if there
     /// are cameras
@@ -40,10 +45,12 @@ class SensorReader {
     void pass(const Movers& movers) {
         latest_.clear();
         floor_.follow(movers);
+        trail_.clear();
     }
     /// Before the first reading in another scene: those that stay as they are keep their last
-    /// reading, and gates their counts.
-    void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers);
+    /// reading, and gates their counts; scans that have begun go on. \param movers of this scene
+    void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
+                const Movers& movers);
     /// Says that robots or people have moved.
     void moved() { moved_ = true; }
     /// They were put elsewhere, so nobody passed a gate on the way.
@@ -84,7 +91,15 @@ class SensorReader {
     void update(SimTime time, const Movers& movers);
     void updateBodies(const Movers& movers);
     void movePictures(const Movers& movers);
+    void setBodies(const Places& places, MovingBodies& bodies);
+    void followTrail(const SensorReader& before,
+                     const std::unordered_set<std::string_view>& stayers, const Movers& movers);
+    static SimTime durationOf(const Laser& laser, SimTime step);
+    [[nodiscard]] SimTime beginOf(std::size_t sensor, SimTime time) const;
     [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Movers& movers) const;
+    [[nodiscard]] Pose3 poseOf(const Sensor& sensor, const Trail::Walk& walk) const;
+    [[nodiscard]] Pose3 poseOn(const Sensor& sensor, const Pose2& carrier) const;
+    void sweep(const Laser& laser, std::size_t sensor);
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
     void measure(const Ranger& ranger, std::size_t sensor, SimTime time);
@@ -95,11 +110,13 @@ class SensorReader {
     const Scene* scene_;
     ReadingOptions options_;
     UltrasoundOptions sound_;
+    SimTime step_;
     FloorSensors floor_;
     std::vector<RunSensor> sensors_;  // as they start
     Worlds worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
+    std::vector<SimTime> durations_;  // of scans, in whole steps
     std::vector<char> is_heavy_;
     std::vector<SensorReading> readings_;
     std::vector<std::optional<LaserCaster>> casters_;  // of lasers
@@ -110,8 +127,11 @@ class SensorReader {
     std::unique_ptr<Photographer> photographer_;  // if there are cameras
     bool moved_ = true;                           // since the bodies were made
     bool pictures_moved_ = true;                  // since those of pictures were
-    std::vector<MovingBody> places_;
+    bool trail_moved_ = true;                     // since the trail's last moment
+    std::vector<MovingBody> body_list_;
     MovingBodies bodies_;
+    Trail trail_;                                 // for scans that take a while
+    std::vector<std::vector<BeamsAmong>> parts_;  // of each laser's last scan; kept for the memory
 };
 
 }  // namespace ispace

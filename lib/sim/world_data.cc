@@ -43,7 +43,7 @@ World::Data::Data(std::shared_ptr<const Scene> room, SimTime length, const RunOp
       pilots(movers.size()),
       moves(movers.size()),
       traffic(movers, order, seconds(length)),
-      sensors(*scene, {run.seed, run.sensor_noise}),
+      sensors(*scene, {run.seed, run.sensor_noise, length}),
       sensor_index(indexById(sensors.sensors())) {
     checkStart(scene->environment, movers, obstacles);
     if (options.noise) kept_starts = strayStarts(movers, obstacles, options.seed);
@@ -252,7 +252,7 @@ std::unique_ptr<World::Data> World::Data::next(
             after->end(i, Outcome::Stopped);
         }
     }
-    after->sensors.follow(sensors, stayers);
+    after->sensors.follow(sensors, stayers, after->where());
     after->sensors.read(time, after->where());
     return after;
 }

@@ -125,14 +125,20 @@ void MovingBodies::shorten(std::span<const Point3> origins, const Directions& di
     if (ranges.empty() || grid_.empty()) return;
     const double far = max_range * (1 + kFarSlack);
     Box2 box;
-    for (const Point3& origin : origins) {
-        box.add(origin.onFloor() - Vec2{far, far});
-        box.add(origin.onFloor() + Vec2{far, far});
+    std::vector<Vec2> flat(ranges.size());
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+        const Point2 origin = origins[k].onFloor();
+        flat[k] = {directions.x[k], directions.y[k]};
+        box.add(origin);
+        box.add(origin + far * flat[k]);
     }
     ShortenedRanges shortened(max_range, ranges, cosines);
     grid_.forEachNear(box, [&](std::size_t i) {
         if (bodies_[i].owner == own) return;
+        // Most rays pass by the circle about it: flat directions are at most 1 long.
+        const double near = extents_[i].reach + kFarSlack * (extents_[i].reach + far);
         for (std::size_t k = 0; k < ranges.size(); ++k) {
+            if (std::fabs(cross(places_[i] - origins[k].onFloor(), flat[k])) > near) continue;
             const BodyFrom from(bodies_[i], extents_[i].axes, origins[k]);
             shortened.shorten(k, from.meet(directions[k]), 1);
         }

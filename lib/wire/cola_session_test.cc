@@ -182,7 +182,7 @@ TEST(ColaSession, InBytes) {
               std::string(
                   "sRA LMPscancfg \0\0\x13\x88\0\1\0\0\x13\x88\xFF\xF9\x22\x30\0\x22\x55\x10", 33));
     EXPECT_EQ(ask("sEN LMDscandata \1"), "sEA LMDscandata \1");
-    const std::string packet = stepped(room, session, 2);
+    const std::string packet = stepped(room, session, 4);
     ColaTelegrams telegrams;
     // The longest telegram that is read is shorter than this one: look at its bytes.
     const std::string begin("\2\2\2\2\0\0", 6);

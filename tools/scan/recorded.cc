@@ -2,6 +2,7 @@
 #include "scan/recorded.h"
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <memory>
 
@@ -19,36 +20,56 @@ namespace ispace {
 
 namespace {
 
-/// Where robots believed to be, at times that grow.
+/// Where robots believed to be, at times that grow but for scans that took a while: these come in
+/// the order of their last beams.
 class RecordedOdometry {
   public:
-    RecordedOdometry(const std::string& folder, const Scene& scene) : run_(folder) {
+    RecordedOdometry(const std::string& folder, const Scene& scene, const Sensors& lasers)
+        : run_(folder) {
         for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
         has_next_ = run_.next();
+        // A scan is there in the step after its last beam.
+        constexpr double kLongestStep = 1;
+        for (const Sensor& laser : lasers.read)
+            if (const double duration = laser.as<Laser>().duration(); duration > 0)
+                kept_ = std::max(kept_, duration + kLongestStep);
     }
     /// Its pose by its odometry, or its true one if that was not recorded: nothing before the
     /// record begins.
     std::optional<Pose2> poseOf(std::size_t robot, double time) {
         constexpr double kRounding = 1e-9;
         while (has_next_ && run_.time() <= time + kRounding) {
-            latest_.clear();
+            Moment& moment = latest_.emplace_back();
+            moment.time = run_.time();
             for (const RunState& state : run_.states()) {
                 const std::string& id = run_.who()[state.who].id;
-                latest_.emplace_back(id, state.odometry.value_or(state.pose));
+                moment.poses.emplace_back(id, state.odometry.value_or(state.pose));
             }
+            while (latest_.size() > 1 && latest_[1].time <= moment.time - kept_)
+                latest_.pop_front();
             has_next_ = run_.next();
         }
-        const auto found = std::find_if(latest_.begin(), latest_.end(), [&](const auto& known) {
-            return known.first == robots_[robot];
+        const auto moment = std::find_if(latest_.rbegin(), latest_.rend(), [&](const Moment& each) {
+            return each.time <= time + kRounding;
         });
-        if (found == latest_.end()) return std::nullopt;
+        if (moment == latest_.rend()) return std::nullopt;
+        const auto found =
+            std::find_if(moment->poses.begin(), moment->poses.end(),
+                         [&](const auto& known) { return known.first == robots_[robot]; });
+        if (found == moment->poses.end()) return std::nullopt;
         return found->second;
     }
 
   private:
+    struct Moment {
+        double time = 0;
+        std::vector<std::pair<std::string, Pose2>> poses;
+    };
+
     RunReader run_;
     std::vector<std::string> robots_;
-    std::vector<std::pair<std::string, Pose2>> latest_;
+    std::deque<Moment> latest_;
+    double kept_ = 0;  // seconds before the newest
     bool has_next_ = false;
 };
 
@@ -83,7 +104,7 @@ void writeRecorded(const ScanCommand& command) {
     const std::string name = options.view.run + "/scans.jsonl";
     const auto file = std::make_shared<InputFile>(name);
     RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
-    RecordedOdometry odometry(options.view.run, input.scene);
+    RecordedOdometry odometry(options.view.run, input.scene, lasers);
     const bool wants_odometry = options.format == "carmen";
     OutputFile output(options.common.output);
     output.write(format->header());
