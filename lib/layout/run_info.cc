@@ -20,6 +20,7 @@ RecordedFiles::RecordedFiles(const std::string& folder) {
     };
     robots = in_folder("robots.csv");
     odometry = in_folder("odometry.csv");
+    bumpers = in_folder("bumpers.csv");
     people = in_folder("people.csv");
     events = in_folder("events.csv");
     info = in_folder("info.csv");

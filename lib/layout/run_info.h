@@ -10,7 +10,7 @@ namespace ispace {
 /// Names of the files in a folder that `simrun --record` has written.
 struct RecordedFiles {
     explicit RecordedFiles(const std::string& folder);
-    std::string robots, odometry, people, events, info, scene;
+    std::string robots, odometry, bumpers, people, events, info, scene;
 };
 
 /// What info.csv says of a run.

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "layout/bumper_file.h"
 #include "layout/table_lines.h"
 
 namespace ispace {
@@ -251,6 +252,8 @@ struct RunReader::Data {
     std::vector<RunState> beliefs;
     std::vector<RunState> states;
     std::vector<RunCollision> collisions;
+    std::optional<BumperFile> bumper_file;
+    std::vector<RunBumpers> bumpers;
     double time = 0;
     /// Of a changed world, the last moment that all files have.
     std::optional<double> end;
@@ -282,6 +285,8 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
         data_->add(files.people, LineSource(InputFile(files.people), ""), true);
     if (exists(files.odometry))
         data_->addOdometry(files.odometry, LineSource(InputFile(files.odometry), ""));
+    if (exists(files.bumpers))
+        data_->bumper_file.emplace(files.bumpers, LineSource(InputFile(files.bumpers), ""));
     if (!exists(files.events)) return;
     data_->events.emplace(files.events, LineSource(InputFile(files.events), ""));
     if (!recordedChange(folder)) return;
@@ -291,12 +296,14 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
 }
 
 RunReader::RunReader(std::string robots, std::string people, std::string events,
-                     std::string odometry)
+                     std::string odometry, std::string bumpers)
     : data_(std::make_unique<Data>()) {
     data_->name = "robots.csv";
     data_->add("robots.csv", LineSource({}, std::move(robots)), false);
     if (!people.empty()) data_->add("people.csv", LineSource({}, std::move(people)), true);
     if (!odometry.empty()) data_->addOdometry("odometry.csv", LineSource({}, std::move(odometry)));
+    if (!bumpers.empty())
+        data_->bumper_file.emplace("bumpers.csv", LineSource({}, std::move(bumpers)));
     if (events.find(",change,") != std::string::npos)
         data_->letGo(std::numeric_limits<double>::infinity());
     if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
@@ -353,6 +360,8 @@ bool RunReader::next() {
     }
     data.collisions.clear();
     if (data.events) data.events->read(time, data.collisions);
+    data.bumpers.clear();
+    if (data.bumper_file) data.bumper_file->read(time, data.bumpers);
     return true;
 }
 
@@ -362,6 +371,7 @@ std::optional<std::span<const RunCollision>> RunReader::collisions() const {
     return data_->events ? std::optional<std::span<const RunCollision>>(data_->collisions)
                          : std::nullopt;
 }
+std::span<const RunBumpers> RunReader::bumpers() const { return data_->bumpers; }
 const std::vector<RunMember>& RunReader::who() const { return data_->who; }
 bool RunReader::isCut() const { return data_->is_cut; }
 bool RunReader::hasOdometry() const { return data_->odometry.has_value(); }

@@ -31,6 +31,12 @@ struct RunCollision {
     std::string id, other;  ///< other: a robot, a person or an element
 };
 
+/// Which bumpers of a robot touched something from a moment on.
+struct RunBumpers {
+    std::string id;
+    std::vector<bool> hit;
+};
+
 /// Somebody in a record.
 struct RunMember {
     std::string id;
@@ -38,7 +44,7 @@ struct RunMember {
 };
 
 /// Reads the poses of a recorded run, one moment after another, whatever its size: robots.csv, and
-/// people.csv, odometry.csv and the collisions of events.csv if there are any.
+/// people.csv, odometry.csv, bumpers.csv and the collisions of events.csv if there are any.
 ///
 /// The record may still be growing, or its run may have been killed: a last line without its end,
 /// and a last moment at which some are missing, are left out.
@@ -48,7 +54,7 @@ class RunReader {
     explicit RunReader(const std::string& folder);
     /// The content of the files in their place; all but the first may be empty. For tests.
     RunReader(std::string robots, std::string people, std::string events = "",
-              std::string odometry = "");
+              std::string odometry = "", std::string bumpers = "");
     ~RunReader();
     RunReader(RunReader&&) noexcept;
     RunReader& operator=(RunReader&&) noexcept;
@@ -64,6 +70,8 @@ class RunReader {
     /// Who ran into something in the step to it; nothing without events.csv, as from runs before
     /// there was one.
     [[nodiscard]] std::optional<std::span<const RunCollision>> collisions() const;
+    /// Whose bumpers felt something else from it on, or from one since the moment before.
+    [[nodiscard]] std::span<const RunBumpers> bumpers() const;
     /// Everybody so far; indices stay.
     [[nodiscard]] const std::vector<RunMember>& who() const;
     /// True if an incomplete last moment was left out; known at the end.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/test_damage.h"
+#include "sensor/test_sensors.h"
 
 namespace ispace {
 namespace {
@@ -32,6 +33,36 @@ int readAllOf(RunReader& reader) {
 int momentsOf(const std::string& robots, const std::string& people = "") {
     RunReader reader(robots, people);
     return readAllOf(reader);
+}
+
+TEST(RunReader, ReadsBumpersWhereTheyChange) {
+    RunReader reader(kRobots, "", "", "", "t,id,hit\n0,r1,0;0;1\n0,r2,0\n0.004,r1,1;0;0\n1,r2,1");
+    ASSERT_TRUE(reader.next());
+    ASSERT_EQ(reader.bumpers().size(), 2U);
+    EXPECT_EQ(reader.bumpers()[0].id, "r1");
+    EXPECT_EQ(reader.bumpers()[0].hit, (std::vector<bool>{false, false, true}));
+    EXPECT_EQ(reader.bumpers()[1].hit, std::vector<bool>{false});
+    ASSERT_TRUE(reader.next());
+    ASSERT_EQ(reader.bumpers().size(), 1U);
+    EXPECT_EQ(reader.bumpers()[0].hit, (std::vector<bool>{true, false, false}));
+    EXPECT_FALSE(reader.next());
+}
+
+TEST(RunReader, RefusesBumpersThatAreNone) {
+    const auto error_of = [](const std::string& bumpers) {
+        return testing::findings([&] {
+            RunReader reader(kRobots, "", "", "", bumpers);
+            return readAllOf(reader);
+        });
+    };
+    EXPECT_EQ(error_of("t,id\n"),
+              "bumpers.csv:1: error: no bumpers of a run: wanted the columns t,id,hit\n");
+    EXPECT_EQ(error_of("t,id,hit\n0,r1,0;2\n"),
+              "bumpers.csv:2: error: hit is `0;2`, wanted 0 or 1 of each bumper, like 0;1\n");
+    EXPECT_EQ(error_of("t,id,hit\n0.004,r1,0\n0.002,r1,1\n"),
+              "bumpers.csv:3: error: wanted t,id,hit in order of time: `0.002,r1,1`\n");
+    EXPECT_EQ(error_of("t,id,hit\n0,r1\n"),
+              "bumpers.csv:2: error: wanted t,id,hit in order of time: `0,r1`\n");
 }
 
 TEST(RunReader, ReadsMomentsOfRobotsAndPeople) {

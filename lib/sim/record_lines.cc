@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <span>
+#include <utility>
 
 #include "base/json_writer.h"
 #include "base/number.h"
@@ -56,6 +57,38 @@ void appendPeopleRows(std::string& out, const World& world) {
                   {status.pose.position.x, status.pose.position.y, status.pose.heading.degrees(),
                    status.speed, status.rotspeed.degrees(), status.phase, status.sidespeed});
         out += status.stall ? ",1\n" : ",0\n";
+    }
+}
+
+void appendSonarRows(std::string& out, World& world) {
+    const std::string t = formatSimTime(world.time());
+    const auto all = world.sonars();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].empty()) continue;
+        out.append(t).append(",").append(world.robots()[i].id);
+        char before = ',';
+        for (const float range : all[i]) {
+            out += std::exchange(before, ';');
+            appendFloat(out, range);
+        }
+        out += '\n';
+    }
+}
+
+void appendBumperRows(std::string& out, const World& world, std::vector<std::vector<bool>>& felt) {
+    felt.resize(world.robots().size());
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+        if (world.robots()[i].model.bumpers.empty()) continue;
+        std::vector<bool> now = world.bumper(i);
+        if (now == felt[i]) continue;
+        out.append(formatSimTime(world.time())).append(",").append(world.robots()[i].id);
+        char before = ',';
+        for (const bool is_hit : now) {
+            out += std::exchange(before, ';');
+            out += is_hit ? '1' : '0';
+        }
+        out += '\n';
+        felt[i] = std::move(now);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/sensor_reading.h"
 #include "sim/world.h"
@@ -19,6 +20,15 @@ void appendOdometryRows(std::string& out, const World& world);
 constexpr std::string_view kPeopleHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";
 void appendPeopleRows(std::string& out, const World& world);
+
+/// What the sonars of robots measure, in the order of the model, "inf" without an echo; robots
+/// without any have no row.
+constexpr std::string_view kSonarsHead = "t,id,ranges\n";
+void appendSonarRows(std::string& out, World& world);
+constexpr std::string_view kBumpersHead = "t,id,hit\n";
+/// Rows of the robots whose bumpers feel something else than at the last call with `felt`, which
+/// has what each of them felt, empty before.
+void appendBumperRows(std::string& out, const World& world, std::vector<std::vector<bool>>& felt);
 
 /// A reading as a line of JSON, as `scan` writes it. A frame that has a file of its own says "file"
 /// in place of its pixels.

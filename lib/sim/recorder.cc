@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "sense/reading_text.h"
+#include "sim/periods.h"
 #include "sim/record_files.h"
 #include "sim/record_lines.h"
 
@@ -26,10 +27,22 @@ constexpr auto kFlushEvery = std::chrono::milliseconds(100);
 constexpr std::size_t kMaxPending = std::size_t{1} << 20;  // bytes of a file
 
 /// Files that grow, in the order of Recorder::growingFilesIn, and the others behind them.
-enum File { kRobots, kOdometry, kPeople, kScans, kEvents, kTiming, kInfo, kScene, kFiles };
-constexpr std::array<const char*, kFiles> kNames = {"robots.csv",  "odometry.csv", "people.csv",
-                                                    "scans.jsonl", "events.csv",   "timing.csv",
-                                                    "info.csv",    "scene.env"};
+enum File {
+    kRobots,
+    kOdometry,
+    kPeople,
+    kScans,
+    kSonars,
+    kBumpers,
+    kEvents,
+    kTiming,
+    kInfo,
+    kScene,
+    kFiles
+};
+constexpr std::array<const char*, kFiles> kNames = {
+    "robots.csv",  "odometry.csv", "people.csv", "scans.jsonl", "sonars.csv",
+    "bumpers.csv", "events.csv",   "timing.csv", "info.csv",    "scene.env"};
 constexpr const char *kPictures = "pictures", *kDepths = "depths", *kScenes = "scenes";
 
 std::string pathIn(const std::string& folder, const char* name) {
@@ -54,19 +67,23 @@ struct Recorder::Data {
           odometry(pathIn(folder, kNames[kOdometry])),
           people(pathIn(folder, kNames[kPeople])),
           scans(pathIn(folder, kNames[kScans])),
+          sonars(pathIn(folder, kNames[kSonars])),
+          bumpers(pathIn(folder, kNames[kBumpers])),
           events(pathIn(folder, kNames[kEvents])),
           timing(pathIn(folder, kNames[kTiming])),
           info(pathIn(folder, kNames[kInfo])),
           scene(pathIn(folder, kNames[kScene])),
           pictures(pathIn(folder, kPictures)),
           depths(pathIn(folder, kDepths)),
-          scenes(pathIn(folder, kScenes), ".env") {}
+          scenes(pathIn(folder, kScenes), ".env") {
+        if (options.sonar_rate > 0) sonar_periods.emplace(options.sonar_rate);
+    }
 
     RecordOptions options;
     EventLog* events_log;
     std::string folder;
     FolderLock lock;
-    LineFile robots, odometry, people, scans, events, timing, info, scene;
+    LineFile robots, odometry, people, scans, sonars, bumpers, events, timing, info, scene;
     FrameFiles pictures, depths, scenes;
     std::int64_t scene_count = 0;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
@@ -81,19 +98,24 @@ struct Recorder::Data {
     std::vector<Sensor> receivers;
     std::vector<std::int64_t> strides;  // of frames; 0: none
     std::vector<std::int64_t> periods;  // recorded last
+    bool has_sonars = false;
+    std::vector<std::vector<bool>> felt;  // by the bumpers of each robot
+    std::optional<Periods> sonar_periods;
+    SimTime sonars_due{};
 
     /// True if something happened since the last record.
     [[nodiscard]] bool hasNewEvents() const {
         return events_log != nullptr && next_event < events_log->next();
     }
-    [[nodiscard]] std::array<LineFile*, 5> stepFiles() {
-        return {&robots, &odometry, &people, &scans, &events};
+    [[nodiscard]] std::array<LineFile*, 7> stepFiles() {
+        return {&robots, &odometry, &people, &scans, &sonars, &bumpers, &events};
     }
     void begin();
     void remember(const World& world);
     void lookAtSensors(const World& world);
     void takeFrames(World& world);
     void appendScans(World& world);
+    void appendFeelings(World& world);
     void appendFrame(const RunSensor& sensor, const SensorReading& reading);
     void appendEvents();
     void append(World& world);
@@ -108,6 +130,8 @@ void Recorder::Data::begin() {
     robots.pending = kRobotsHead;
     odometry.pending = kOdometryHead;
     people.pending = kPeopleHead;
+    sonars.pending = kSonarsHead;
+    bumpers.pending = kBumpersHead;
     scans.pending = scanHeaderLine(options.history, options.seed);
     events.pending = eventTableHead();
     if (!events.pending.ends_with('\n')) events.pending += '\n';
@@ -134,6 +158,11 @@ void Recorder::Data::lookAtSensors(const World& world) {
         strides.push_back(sensor.isHeavy() ? strideOf(sensor.rate(), options.frame_rate) : 0);
     }
     periods.assign(strides.size(), -1);
+    has_sonars = false;
+    for (const PlacedRobot& robot : world.robots())
+        has_sonars = has_sonars || !robot.model.sonar.places.empty();
+    // Indices may be others.
+    felt.clear();
 }
 
 /// Frames are recorded in the step in which their period begins, whoever else takes some.
@@ -169,6 +198,18 @@ void Recorder::Data::appendScans(World& world) {
     scans.endStep(world.steps());
 }
 
+/// What robots feel by themselves.
+void Recorder::Data::appendFeelings(World& world) {
+    lookAtSensors(world);
+    if (has_sonars && sonar_periods && world.time() >= sonars_due) {
+        sonars_due = sonar_periods->begin(sonar_periods->newest(world.time()) + 1);
+        appendSonarRows(sonars.pending, world);
+    }
+    sonars.endStep(steps);
+    appendBumperRows(bumpers.pending, world, felt);
+    bumpers.endStep(steps);
+}
+
 void Recorder::Data::appendEvents() {
     if (events_log != nullptr) {
         next_event = std::max(next_event, events_log->first());
@@ -187,6 +228,7 @@ void Recorder::Data::append(World& world) {
     people.endStep(steps);
     appendEvents();
     appendScans(world);
+    appendFeelings(world);
 }
 
 void Recorder::Data::writeInfo() {
@@ -199,8 +241,8 @@ void Recorder::Data::writeInfo() {
 }
 
 std::uint64_t Recorder::Data::size() const {
-    return robots.size() + odometry.size() + people.size() + scans.size() + events.size() +
-           pictures.size() + depths.size();
+    return robots.size() + odometry.size() + people.size() + scans.size() + sonars.size() +
+           bumpers.size() + events.size() + pictures.size() + depths.size();
 }
 
 void Recorder::Data::writeLines() {

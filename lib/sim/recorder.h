@@ -27,6 +27,8 @@ struct RecordOptions {
     /// Pictures and depth frames of each camera and ranger in a simulated second, at most; of those
     /// with a higher rate every second, third, … is recorded. 0: none.
     double frame_rate = 1;
+    /// What sonars measure so many times a simulated second, at most. 0: not at all.
+    double sonar_rate = 10;
     /// Limits the record to about this many bytes: the write that exceeds them throws FormatError;
     /// what is written stays.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -39,6 +41,8 @@ struct RecordOptions {
 /// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall; likewise
 /// - odometry.csv: t,id,x,y,heading_deg; where each robot believes to be, from 0,0 and heading 0 at
 ///   its start; likewise, if wanted
+/// - sonars.csv: t,id,ranges; what the sonars of each robot measure
+/// - bumpers.csv: t,id,hit; what the bumpers of each robot feel, at the start and when it changes
 /// - scans.jsonl: every reading, as `scan` writes it
 /// - pictures/ID-NNNNNN.png and depths/ID-NNNNNN.png: frames of cameras and rangers by the number
 /// of

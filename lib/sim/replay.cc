@@ -157,6 +157,8 @@ bool Replay::step(World& world, bool reads) {
         states_[*mover] = statusOf(state);
         if (*mover < odometries_.size()) odometries_[*mover] = state.odometry;
     }
+    for (const auto& [id, hit] : reader_.bumpers())
+        if (const auto robot = world.robotNamed(id)) world.feel(*robot, hit);
     if (reads) {
         collide(world);
         world.stepTo(states_, collisions_, odometries_);

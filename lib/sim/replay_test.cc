@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/error.h"
@@ -295,6 +296,62 @@ TEST_F(ReplayTest, SeeksIntoTheMidstOfScans) {
         EXPECT_EQ(rangesOf(world, "l1"), ranges[2 * i]) << step;
         EXPECT_EQ(rangesOf(world, "l2"), ranges[2 * i + 1]) << step;
     }
+}
+
+TEST_F(ReplayTest, ServesSonarsAndBumpersAgain) {
+    // r1 meets the post with its front, backs off, and turns.
+    scene_ = scene(kRoom,
+                   "robot id=r1 model=create3 at=1.5,0.05\nrobot id=r2 model=pioneer-2dx at=0,2\n");
+    world_ = std::make_unique<World>(scene_, kStep);
+    std::vector<std::vector<bool>> felt;
+    std::vector<std::vector<float>> heard;
+    const auto look = [&](World& world) {
+        felt.push_back(world.bumper(0));
+        heard.push_back(world.sonar(1));
+    };
+    {
+        Recorder recorder(folder_, *world_, {.sonar_rate = 5});
+        world_->command(0, {Verb::Forward, 1});
+        world_->command(1, {Verb::Speed, 0.5});
+        for (int i = 0; i < 200; ++i) {
+            look(*world_);
+            if (i == 150) world_->command(0, {Verb::Backward, 0.1});
+            world_->step();
+            recorder.record(*world_);
+        }
+        look(*world_);
+    }
+    const std::string bumpers = readAll(path("bumpers.csv")), sonars = readAll(path("sonars.csv"));
+    EXPECT_TRUE(bumpers.starts_with("t,id,hit\n0,r1,0;0;0;0;0\n")) << bumpers;
+    EXPECT_EQ(std::count(bumpers.begin(), bumpers.end(), '\n'), 5) << bumpers;
+    EXPECT_NE(bumpers.find('1', bumpers.find("\n0,")), std::string::npos);
+    EXPECT_EQ(std::count(sonars.begin(), sonars.end(), '\n'), 1 + 21) << "0 to 4 s, five a second";
+    EXPECT_TRUE(std::any_of(felt.begin(), felt.end(), [](const std::vector<bool>& hit) {
+        return std::find(hit.begin(), hit.end(), true) != hit.end();
+    }));
+
+    Replay replay(folder_);
+    World world(scene_, kStep);
+    const std::string again = path("again");
+    {
+        Recorder recorder(again, world, {.sonar_rate = 5});
+        std::size_t i = 0;
+        do {
+            ASSERT_EQ(world.bumper(0), felt[i]) << i;
+            ASSERT_EQ(world.sonar(1), heard[i]) << i;
+            if (i > 0) recorder.record(world);
+            ++i;
+        } while (replay.step(world));
+        EXPECT_EQ(i, felt.size());
+    }
+    EXPECT_EQ(readAll(again + "/bumpers.csv"), bumpers);
+    EXPECT_EQ(readAll(again + "/sonars.csv"), sonars);
+    const auto hit = static_cast<int>(
+        std::find_if(felt.begin(), felt.end(),
+                     [](const auto& each) { return each != std::vector<bool>(5); }) -
+        felt.begin());
+    replay.seek(world, (hit + 20) * kStep);
+    EXPECT_EQ(world.bumper(0), felt[static_cast<std::size_t>(hit)]) << "after steps passed over";
 }
 
 TEST_F(ReplayTest, BeginsWithNobody) {

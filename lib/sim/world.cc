@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/world.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -110,11 +112,29 @@ std::vector<float> World::sonar(std::size_t robot) {
                        static_cast<std::uint32_t>(robot));
 }
 
+std::vector<std::vector<float>> World::sonars() {
+    Data& data = *data_;
+    std::vector<std::vector<float>> all(data.scene->robots.size());
+    const MovingBodies& bodies = data.sensors.bodies(data.where());
+    const RayWorld& mesh = data.sensors.mesh(Surfaces::Solid);
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        all[i] = sonarRanges(data.movers[i].model, data.motions[i].pose, mesh, bodies,
+                             static_cast<std::uint32_t>(i));
+    });
+    return all;
+}
+
+void World::feel(std::size_t robot, std::vector<bool> bumpers) {
+    data_->states[robot].recorded_bumpers = std::move(bumpers);
+}
+
 std::vector<bool> World::bumper(std::size_t robot) const {
     const Data& data = *data_;
     const MoverState& state = data.states[robot];
     const RobotModel& model = data.movers[robot].model;
     if (!state.stall) return pressedBumpers(model, data.motions[robot].pose, {}, {});
+    if (!state.recorded_bumpers.empty() && state.recorded_bumpers.size() == model.bumpers.size())
+        return state.recorded_bumpers;
     // Of thousands only those that touch it matter.
     const Point2 middle = data.motions[robot].pose.position;
     const double touch = 1.1 * model.radius + length(state.bump) + 0.01;

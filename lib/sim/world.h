@@ -137,6 +137,8 @@ class World {
     /// What the sonars of a robot measure now, in the order of its model: metres, +infinity without
     /// an echo. See robot_sensors.h.
     [[nodiscard]] std::vector<float> sonar(std::size_t robot);
+    /// Those of all robots, on all cores.
+    [[nodiscard]] std::vector<std::vector<float>> sonars();
     /// Which bumpers of a robot touch what it ran into; none unless it has stalled.
     [[nodiscard]] std::vector<bool> bumper(std::size_t robot) const;
     /// Mats and gates as they are after the last step, whatever their rates.
@@ -164,6 +166,8 @@ class World {
     /// The same, but sensors that are due are read after a later step: for steps that nobody looks
     /// at. Mats and gates go on.
     void passTo(std::span<const RobotStatus> states);
+    /// What the bumpers of a robot feel while it is stalled in such steps, until told anew.
+    void feel(std::size_t robot, std::vector<bool> bumpers);
     /// Back to time 0 and the scene of then, as it was made. Counts as a change.
     void rewind();
 

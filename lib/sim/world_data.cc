@@ -243,6 +243,7 @@ std::unique_ptr<World::Data> World::Data::next(
         if (stayers.contains(id)) {
             state.stall = states[*old].stall;
             state.bump = states[*old].bump;
+            state.recorded_bumpers = states[*old].recorded_bumpers;
             state.own_limits = states[*old].own_limits;
             after->motions[i] = motions[*old];
             if (after->movers[i].course == movers[*old].course) after->pilots[i] = pilots[*old];

@@ -34,6 +34,7 @@ struct MoverState {
     SimTime told_first{}, told_last{};
     bool stall = false;
     Vec2 bump;  // the way of the step that was cancelled when the stall began
+    std::vector<bool> recorded_bumpers;  // of a replay
     std::optional<std::size_t> blocked;  // by an element of the environment
 };
 

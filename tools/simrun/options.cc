@@ -16,6 +16,18 @@ SimTime timeOption(const std::string& text, SimTime least, SimTime most) {
     return *time;
 }
 
+namespace {
+
+double recordedRate(const std::string& text, const std::string& what) {
+    constexpr double kMost = 1e5;
+    const auto rate = parseDouble(text);
+    if (!rate || *rate < 0 || *rate > kMost)
+        throw UsageError(excerpt(text) + " is no number of " + what + " a second from 0 to 100000");
+    return *rate;
+}
+
+}  // namespace
+
 SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     : ToolCommand(
           "simrun", "[ENV] [LAYOUT]",
@@ -41,7 +53,6 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
 
 void SimrunCommand::declareRun() {
     SimrunOptions& o = options_;
-    constexpr double kMaxFrames = 1e5;
     line_.parsed(
         "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
         "real[:RATE], fast, or step: simulated time follows wall time (RATE times as fast), runs "
@@ -70,15 +81,15 @@ void SimrunCommand::declareRun() {
                Enters::Nothing);
     line_.parsed(
         "--record-frames", "RATE",
-        [&o](const std::string& text) {
-            const auto rate = parseDouble(text);
-            if (!rate || *rate < 0 || *rate > kMaxFrames)
-                throw UsageError(excerpt(text) +
-                                 " is no number of frames a second from 0 to 100000");
-            o.recorded_frames = *rate;
-        },
+        [&o](const std::string& text) { o.recorded_frames = recordedRate(text, "frames"); },
         "pictures and depth frames recorded of each sensor in a simulated second, at most (default "
         "1; 0: none)",
+        Enters::Nothing);
+    line_.parsed(
+        "--record-sonars", "RATE",
+        [&o](const std::string& text) { o.recorded_sonars = recordedRate(text, "readings"); },
+        "readings recorded of each robot's sonars in a simulated second, at most (default 10; 0: "
+        "none)",
         Enters::Nothing);
     line_.parsed(
         "--record-limit", "SIZE",

@@ -39,7 +39,8 @@ struct SimrunOptions {
     std::vector<Expectation> expected;
     std::string junit;           ///< file; "" without
     double recorded_frames = 1;  ///< a simulated second, at most
-    std::string port_file;       ///< "" without
+    double recorded_sonars = 10;
+    std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web;
     std::optional<bool> shutdown, changes;

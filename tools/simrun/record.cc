@@ -54,6 +54,7 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
         return sceneText(loaded, history, folder);
     };
     record.frame_rate = options.recorded_frames;
+    record.sonar_rate = options.recorded_sonars;
     record.max_bytes = options.max_recorded;
     auto running = std::make_unique<RunningRecord>(options, simulation, record);
     simulation.recordWith(running->recorder);
