@@ -91,6 +91,7 @@ struct CommandLine::Data {
     std::vector<std::string> unused_operands;
     std::vector<std::string>* operands = &unused_operands;
     std::size_t max_operands = 0;
+    const bool* many = nullptr;                  // where it is set there may be more
     std::map<std::string, std::string> renamed;  // options that there are not: hints
     std::function<void()> check = [] {};  // of options against each other, once all are known
 
@@ -115,6 +116,10 @@ struct CommandLine::Data {
                 if (entry.option == option && entry.take)
                     visit(entry, option->results().at(used[option]++));
     }
+    /// Calls visit(name, value or null, entry) for what enters the history, in the man page's
+    /// order.
+    template <typename Visit>
+    void forEachResult(Visit visit) const;
 };
 
 CommandLine::CommandLine(std::string tool, std::string synopsis, std::string summary)
@@ -273,6 +278,12 @@ void CommandLine::duration(const std::string& names, std::optional<double>& vari
     parsed(names, "TIME", takeQuantity(variable, Unit::Time, lowest, highest), help, enters);
 }
 
+void CommandLine::duration(const std::string& names, double& variable, double lowest,
+                           double highest, const std::string& help, Enters enters) {
+    parsed(names, "TIME", takeQuantity(variable, Unit::Time, lowest, highest),
+           help + " (default " + formatDouble(variable) + " s)", enters);
+}
+
 void CommandLine::choice(const std::string& names, std::string& variable,
                          std::vector<std::string> words, const std::string& help, Enters enters) {
     std::string list;
@@ -293,6 +304,8 @@ void CommandLine::operands(std::vector<std::string>& variable, std::size_t most)
     data_->operands = &variable;
     data_->max_operands = most;
 }
+
+void CommandLine::manyOperandsWith(const bool& flag) { data_->many = &flag; }
 
 std::string CommandLine::Data::hintFor(const std::string& unknown) const {
     if (const auto hint = renamed.find(unknown); hint != renamed.end()) return ": " + hint->second;
@@ -326,7 +339,8 @@ void CommandLine::Data::sortOut(const std::vector<std::string>& words) {
             operands->push_back(word);
         }
     }
-    if (operands->size() > max_operands)
+    const bool takes_many = many != nullptr && *many;
+    if (operands->size() > max_operands && !takes_many)
         usage("too many operands: " + shellQuote((*operands)[max_operands]));
 }
 
@@ -360,33 +374,51 @@ void CommandLine::parse(int argc, const char* const* argv) {
 
 bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
 
-std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
-    std::string line = data_->tool;
-    for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
+template <typename Visit>
+void CommandLine::Data::forEachResult(Visit visit) const {
     bool ordered_done = false;
-    for (const Data::Entry& entry : data_->entries) {
+    for (const Entry& entry : entries) {
         const CLI::Option& option = *entry.option;
         if (entry.enters == Enters::Nothing || option.count() == 0) continue;
         if (entry.take) {
             // Where the first of them stands in the man page they all follow, as they came.
             if (!std::exchange(ordered_done, true))
-                data_->forEachOrdered([&](const Data::Entry& one, const std::string& text) {
-                    line += ' ' + nameOf(*one.option);
-                    line += ' ' + shellQuote(text);
+                forEachOrdered([&](const Entry& one, const std::string& text) {
+                    visit(nameOf(*one.option), &text, one);
                 });
-            continue;
-        }
-        const std::string name = nameOf(option);
-        if (entry.value.empty()) {
-            line += ' ' + name;
-            continue;
-        }
-        for (const std::string& value : option.results()) {
-            line += ' ' + name + ' ';
-            line += entry.enters == Enters::BaseName ? fileInHistory(value) : shellQuote(value);
+        } else if (entry.value.empty()) {
+            visit(nameOf(option), nullptr, entry);
+        } else {
+            for (const std::string& value : option.results()) visit(nameOf(option), &value, entry);
         }
     }
+}
+
+std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
+    std::string line = data_->tool;
+    for (const std::string& operand : operands) line += ' ' + fileInHistory(operand);
+    data_->forEachResult(
+        [&line](const std::string& name, const std::string* value, const Data::Entry& entry) {
+            line += ' ' + name;
+            if (value == nullptr) return;
+            line += ' ';
+            line += entry.enters == Enters::BaseName ? fileInHistory(*value) : shellQuote(*value);
+        });
     return line;
+}
+
+std::vector<std::string> CommandLine::resultWords() const {
+    std::vector<std::string> words = {data_->tool};
+    data_->forEachResult(
+        [&words](const std::string& name, const std::string* value, const Data::Entry&) {
+            // A value may begin with a minus.
+            const bool is_long = value != nullptr && name.starts_with("--");
+            words.push_back(is_long ? name + '=' + *value : name);
+            if (value != nullptr && !is_long) words.push_back(*value);
+        });
+    words.emplace_back("--");
+    words.insert(words.end(), data_->operands->begin(), data_->operands->end());
+    return words;
 }
 
 std::string CommandLine::helpText() const {

@@ -76,6 +76,8 @@ class CommandLine {
     /// A time in seconds (suffixes s, ms, us, ns, min, h), within [lowest, highest].
     void duration(const std::string& names, std::optional<double>& variable, double lowest,
                   double highest, const std::string& help, Enters enters);
+    void duration(const std::string& names, double& variable, double lowest, double highest,
+                  const std::string& help, Enters enters);
     /// One of a fixed set of words.
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
                 const std::string& help, Enters enters);
@@ -83,6 +85,8 @@ class CommandLine {
     void renamed(const std::string& name, const std::string& hint);
     /// The operands in order; at most `most`.
     void operands(std::vector<std::string>& variable, std::size_t most);
+    /// Any number of operands where this flag is given.
+    void manyOperandsWith(const bool& flag);
 
     /// \throws UsageError with a hint, TextRequested for -h and -V
     void parse(int argc, const char* const* argv);
@@ -91,6 +95,9 @@ class CommandLine {
     [[nodiscard]] bool given(const std::string& name) const;
     /// "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
+    /// The words of a command line with the same result: the tool, the options that enter its
+    /// history as they were given, and the operands.
+    [[nodiscard]] std::vector<std::string> resultWords() const;
     [[nodiscard]] std::string helpText() const;
 
   private:
@@ -110,6 +117,7 @@ class ToolCommand {
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const {
         return line_.historyLine(operands);
     }
+    [[nodiscard]] std::vector<std::string> resultWords() const { return line_.resultWords(); }
 
   protected:
     ToolCommand(std::string tool, std::string synopsis, std::string summary)

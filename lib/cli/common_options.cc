@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cpu_quota.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
@@ -28,9 +29,11 @@ namespace {
 
 constexpr int kMaxThreads = 4096;
 
-/// Cores this process may use: the affinity mask, or less if a batch system says so.
+/// Cores this process may use: the affinity mask, or less if the control group or a batch system
+/// says so.
 int availableThreads() {
     int threads = tbb::info::default_concurrency();
+    if (const auto quota = cpuQuota()) threads = std::min(threads, *quota);
     const char* const granted = std::getenv("SLURM_CPUS_PER_TASK");
     const auto limit = granted != nullptr ? parseInteger(granted) : std::nullopt;
     if (limit && *limit >= 1 && *limit < threads) threads = static_cast<int>(*limit);

@@ -51,9 +51,9 @@ auto ofOption(const std::string& name, const Read& read) {
     }
 }
 
-/// Keeps the number of worker threads of the process down to `threads` from now on (0: cores of the
-/// affinity mask, or SLURM_CPUS_PER_TASK if that is less), and to what the system grants. 1 starts
-/// no thread.
+/// Keeps the number of worker threads of the process down to `threads` from now on (0: the least of
+/// the cores of the affinity mask, cpuQuota() and SLURM_CPUS_PER_TASK), and to what the system
+/// grants. 1 starts no thread.
 void limitThreads(int threads);
 
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.

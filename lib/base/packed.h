@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "base/error.h"
+
+namespace ispace {
+
+static_assert(std::endian::native == std::endian::little, "packed numbers are little-endian");
+
+/// Numbers and lists of numbers as bytes, for what one process leaves to another.
+class Packer {
+  public:
+    void add(std::uint64_t number) { append(&number, sizeof number); }
+    template <typename T>
+    void addAll(const std::vector<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T> &&
+                      std::has_unique_object_representations_v<T>);
+        add(values.size());
+        append(values.data(), values.size() * sizeof(T));
+    }
+    /// What another packer has packed.
+    void addBytes(std::string_view bytes) { append(bytes.data(), bytes.size()); }
+    [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+  private:
+    void append(const void* from, std::size_t size) {
+        if (size == 0) return;
+        const std::size_t at = bytes_.size();
+        bytes_.resize(at + size);
+        std::memcpy(bytes_.data() + at, from, size);
+    }
+    std::string bytes_;
+};
+
+/// Reads what a Packer packed. \throws FormatError where there are too few bytes
+class Unpacker {
+  public:
+    /// `bytes` outlive it.
+    explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
+
+    std::uint64_t number() {
+        std::uint64_t number = 0;
+        take(&number, 1, sizeof number);
+        return number;
+    }
+    template <typename T>
+    std::vector<T> all() {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::uint64_t count = number();
+        if (count > rest_.size() / sizeof(T)) refuse();
+        std::vector<T> values(count);
+        take(values.data(), count, sizeof(T));
+        return values;
+    }
+    [[nodiscard]] bool atEnd() const { return rest_.empty(); }
+    [[noreturn]] static void refuse() {
+        throw FormatError({"", 0, 0, "what an earlier run or another shard left is not whole"});
+    }
+
+  private:
+    void take(void* to, std::size_t count, std::size_t size) {
+        if (count * size > rest_.size()) refuse();
+        if (count > 0) std::memcpy(to, rest_.data(), count * size);
+        rest_.remove_prefix(count * size);
+    }
+    std::string_view rest_;
+};
+
+}  // namespace ispace

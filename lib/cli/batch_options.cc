@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/batch_options.h"
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "cli/outputs.h"
+
+namespace ispace {
+
+void addBatchOptions(CommandLine& line, BatchOptions& options, const std::string& shares) {
+    line.parsed(
+        "--shard", "I/N", [&options](const std::string& text) { options.shard = parseShard(text); },
+        "do the I-th of N shares of the job (" + shares + ") and write a part for --merge",
+        Enters::Nothing);
+    line.flag("--merge", options.merge,
+              "operands are the parts of all shards, which know their job: join them to what one "
+              "run would have written",
+              Enters::Nothing);
+    line.flag("--resume", options.resume,
+              "keep what is done in FILE.resume beside the output, and go on with what a killed "
+              "run with the same command left there",
+              Enters::Nothing);
+    line.manyOperandsWith(options.merge);
+}
+
+void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
+                       const CommonOptions& common, const std::vector<std::string>& operands) {
+    if (options.merge) {
+        if (options.shard) throw UsageError("--merge joins what shards made: leave out --shard");
+        if (options.resume) throw UsageError("--merge takes moments: leave out --resume");
+        if (operands.empty()) throw UsageError("--merge: name the parts of all shards");
+        // What changes the result is in the parts.
+        const std::string words = line.historyLine({});
+        if (const std::size_t blank = words.find(' '); blank != std::string::npos) {
+            const std::string rest = words.substr(blank + 1);
+            throw UsageError("--merge: the parts know their options; leave out " +
+                             rest.substr(0, rest.find(' ')));
+        }
+    }
+    const std::string suffix = suffixOf(common.output);
+    if (options.shard && !suffix.empty() && suffix != "part" && !OutputSet::of(common.output))
+        throw UsageError("--shard writes a part, which --merge makes a whole: name it " +
+                         withoutSuffix(common.output) +
+                         ".part, and the format by --to if it is "
+                         "not the default");
+    if (options.resume && isStream(common.output))
+        throw UsageError("--resume needs a file (-o): what went into a stream is gone");
+}
+
+std::string checkpointOf(const std::string& output) {
+    std::error_code ignored;
+    if (output.ends_with('/') || std::filesystem::is_directory(output, ignored))
+        return (std::filesystem::path(output) / ".resume").string();
+    return output + ".resume";
+}
+
+bool isDoneAlready(const std::string& file, const PartHead& head) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return false;
+    try {
+        PartFile part(file);
+        if (!part.isFinished() || !part.head().job.differenceFrom(head.job).empty() ||
+            part.head().shard != head.shard)
+            return false;
+        for (std::size_t i = 0; i < part.records(); ++i) (void)part.bytes(i);
+        return true;
+    } catch (const FormatError&) {
+        return false;
+    }
+}
+
+}  // namespace ispace
