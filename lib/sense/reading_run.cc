@@ -24,6 +24,36 @@ constexpr int kLastFrame = std::numeric_limits<int>::max();
 
 }  // namespace
 
+std::int64_t ReadingSource::skip(std::int64_t most) {
+    constexpr std::int64_t kAtOnce = 1024;
+    std::vector<ReadingJob> batch;
+    std::int64_t done = 0;
+    while (done < most) {
+        next(static_cast<std::size_t>(std::min(kAtOnce, most - done)), batch);
+        if (batch.empty()) break;
+        done += static_cast<std::int64_t>(batch.size());
+    }
+    return done;
+}
+
+void LimitedSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    if (left_ <= 0) return;
+    source_->next(static_cast<std::size_t>(std::min(left_, static_cast<std::int64_t>(most))),
+                  batch);
+    left_ -= static_cast<std::int64_t>(batch.size());
+}
+
+std::int64_t StillSource::skip(std::int64_t most) {
+    const auto a_frame = static_cast<std::int64_t>(sensors_->read.size());
+    const std::int64_t at = frame_ * a_frame + static_cast<std::int64_t>(sensor_);
+    const std::int64_t skipped = std::min(most, count() - at);
+    if (a_frame == 0) return 0;
+    frame_ = static_cast<int>((at + skipped) / a_frame);
+    sensor_ = static_cast<std::size_t>((at + skipped) % a_frame);
+    return skipped;
+}
+
 std::int64_t StillSource::count() const {
     return static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(sensors_->read.size());
 }

@@ -22,6 +22,8 @@ class ReadingSource {
     /// Puts the next jobs into `batch`, some `most` at most, as soon as there are any; none at the
     /// end. Memory stays bounded. If it throws, `batch` holds the jobs before the error.
     virtual void next(std::size_t most, std::vector<ReadingJob>& batch) = 0;
+    /// Leaves out the next jobs, `most` at most; returns how many there were. O(jobs)
+    virtual std::int64_t skip(std::int64_t most);
 };
 
 /// Placed sensors, each at its rate from time 0 on: frame by frame, the sensors in order.
@@ -29,6 +31,8 @@ class StillSource final : public ReadingSource {
   public:
     StillSource(const Sensors& sensors, int frames) : sensors_(&sensors), frames_(frames) {}
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+    /// O(1)
+    std::int64_t skip(std::int64_t most) override;
     /// All jobs.
     [[nodiscard]] std::int64_t count() const;
 
@@ -37,6 +41,17 @@ class StillSource final : public ReadingSource {
     int frames_;
     int frame_ = 0;
     std::size_t sensor_ = 0;
+};
+
+/// The next jobs of a source, so many at most.
+class LimitedSource final : public ReadingSource {
+  public:
+    LimitedSource(ReadingSource& source, std::int64_t most) : source_(&source), left_(most) {}
+    void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+
+  private:
+    ReadingSource* source_;
+    std::int64_t left_;
 };
 
 /// Reads more bytes to the end of a buffer; false at the end of the file.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "cli/progress.h"
 #include "cli/run_tool.h"
 #include "layout/scene.h"
+#include "scan/batch.h"
 #include "scan/options.h"
 #include "scan/readings.h"
 #include "scan/recorded.h"
@@ -59,14 +61,34 @@ class BuriedPoses {
     ReadingJob first_;
 };
 
-std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors) {
-    if (options.poses.empty())
-        return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
+/// The text of --poses, held for a batch, which needs it more than once.
+std::string posesText(const ScanToolOptions& options) {
+    if (options.poses.empty() || !isBatch(options)) return "";
+    return options.poses == "-" ? readStdin() : readAll(options.poses);
+}
+
+ByteReader readerOfPoses(const ScanToolOptions& options, const std::string& text) {
+    if (isBatch(options))
+        return [&text, at = std::size_t{0}](std::string& bytes) mutable {
+            constexpr std::size_t kChunk = 1 << 16;
+            const std::string_view piece = std::string_view(text).substr(at, kChunk);
+            bytes += piece;
+            at += piece.size();
+            return !piece.empty();
+        };
     if (options.poses == "-" && isTerminalInput())
         throw UsageError("stdin is a terminal: give a file of poses, or send them through a pipe");
-    const auto file = std::make_shared<InputFile>(options.poses);
-    PoseLines poses([file](std::string& bytes) { return file->read(bytes); },
-                    displayName(options.poses));
+    return [file = std::make_shared<InputFile>(options.poses)](std::string& bytes) {
+        return file->read(bytes);
+    };
+}
+
+/// \param poses_text outlives it
+std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors,
+                                         const std::string& poses_text) {
+    if (options.poses.empty())
+        return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
+    PoseLines poses(readerOfPoses(options, poses_text), displayName(options.poses));
     if (!options.motion) return std::make_unique<PoseSource>(std::move(poses));
     const SensorModel& model = sensors.read.front().model;
     return std::make_unique<MotionSource>(std::move(poses), readingRate(model), readingTime(model),
@@ -93,6 +115,7 @@ void scan(const ScanCommand& command) {
     claimOutputs(options.common);
     const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
     if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
+    if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
     if (!options.view.views.empty()) return takeViews(command);
     if (!options.view.run.empty()) return writeRecorded(command);
@@ -108,6 +131,23 @@ void scan(const ScanCommand& command) {
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     warn(options.common, "scan", format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
+    const std::string poses_text = posesText(options);
+    const auto source = sourceFor(options, sensors, poses_text);
+    std::int64_t count = moves ? -1 : static_cast<const StillSource&>(*source).count();
+    std::unique_ptr<Delivery> delivery;
+    if (isBatch(options)) {
+        constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+        if (moves) count = sourceFor(options, sensors, poses_text)->skip(kAll);
+        OwnReadings own = ownReadings(
+            options, readingsJob(command, input, *format, poses_text, count), sensors, *format);
+        if (!own.delivery)
+            return talk(options.common, "scan", options.common.output + " is done already");
+        delivery = std::move(own.delivery);
+        source->skip(own.block.first);
+        count = own.block.end - own.block.first;
+    } else {
+        delivery = makeDelivery(options, sensors, *format, count);
+    }
 
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
@@ -118,14 +158,12 @@ void scan(const ScanCommand& command) {
                     [](const Sensor& one) { return one.is<Camera>(); }))
         taking.photographer = &photographer.emplace(scene, options.photo);
     ReadingTaker taker(sensors, worlds, bodies, taking);
-    const auto source = sourceFor(options, sensors);
-    const std::int64_t count = moves ? -1 : static_cast<const StillSource&>(*source).count();
-    const auto delivery = makeDelivery(options, sensors, *format, count);
+    LimitedSource own_part(*source, count < 0 ? std::numeric_limits<std::int64_t>::max() : count);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     progress->begin("readings", std::max<std::int64_t>(count, 0));
     BuriedPoses buried(scene.environment);
     std::int64_t done = 0;
-    runReadings(*source, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
+    runReadings(own_part, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
                 [&](Readings& readings) {
                     if (moves) buried.count(readings.jobs);
                     done += static_cast<std::int64_t>(readings.jobs.size());

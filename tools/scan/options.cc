@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "cli/outputs.h"
 #include "sense/reading_format.h"
 
 namespace ispace {
@@ -44,9 +45,13 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     declare();
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
+    checkBatchOptions(line_, o.batch, o.common, o.operands);
     checkViewOptions(line_, o.view);
+    // The suffix of a part says nothing about what is in it.
+    const bool is_part = o.batch.shard && suffixOf(o.common.output) == "part";
+    const std::string output = is_part ? "-" : o.common.output;
     o.format = o.view.views.empty()
-                   ? outputFormat(to_, o.common.output, readingFormats(),
+                   ? outputFormat(to_, output, readingFormats(),
                                   {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}})
                    : outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
     if (!o.view.views.empty() && !line_.given("--samples")) o.photo.samples = ViewOptions().samples;
@@ -118,6 +123,7 @@ void ScanCommand::declare() {
         "air temperature for ultrasound, Celsius (default 20)", Enters::History);
     declarePictures();
     addViewOptions(line_, o.view);
+    addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",
                Enters::Nothing);
     addAnyEnvironmentOption(line_, o.any_environment);
@@ -165,6 +171,7 @@ void ScanCommand::declarePictures() {
 
 void ScanCommand::check() {
     ScanToolOptions& o = options_;
+    checkBatch();
     if (!o.view.views.empty()) return checkViews();
     if (!o.view.run.empty())
         for (const char* name : {"--frames", "--poses", "--model", "--motion", "--noise"})
@@ -193,6 +200,21 @@ void ScanCommand::check() {
         if (!o.model.empty() && !o.select.empty())
             throw UsageError("--select and --model both say which sensor takes the poses");
     }
+}
+
+void ScanCommand::checkBatch() const {
+    const ScanToolOptions& o = options_;
+    const std::string option = o.batch.shard ? "--shard" : o.batch.resume ? "--resume" : "--merge";
+    if (!o.batch.shard && !o.batch.resume && !o.batch.merge) return;
+    if (!o.view.views.empty() || !o.view.run.empty() || o.list_models)
+        throw UsageError(option + " is for readings that are taken: leave out " +
+                         (!o.view.views.empty() ? "--view"
+                          : !o.view.run.empty() ? "--run"
+                                                : "--list-models"));
+    if (o.batch.merge && OutputSet::of(o.common.output))
+        throw UsageError(
+            "--merge: files of one reading each need no merging, their shards write "
+            "them");
 }
 
 void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/batch_options.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "scan/views.h"
@@ -34,6 +35,7 @@ struct ScanToolOptions {
     ViewToolOptions view;
     double celsius = 20;
     PhotoOptions photo;
+    BatchOptions batch;
     bool list_models = false;
     bool any_environment = false;
 };
@@ -51,6 +53,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     void declarePictures();
     void check();
     void checkViews() const;
+    void checkBatch() const;
 
     std::optional<bool> noise_, color_, sensor_bodies_;
     std::string to_, encoding_, coordinates_, light_;

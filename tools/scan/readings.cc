@@ -182,16 +182,6 @@ class OneCloud final : public Delivery {
 
   private:
     const ScanToolOptions& options_;
-    static void checkPoints(std::size_t points) {
-        constexpr std::size_t kMax = 100'000'000;
-        if (points > kMax)
-            throw FormatError({"", 0, 0,
-                               "a cloud of " + std::to_string(points) + " points, wanted at most " +
-                                   std::to_string(kMax) +
-                                   " in one file; name a folder (-o DIR/) for a file each reading, "
-                                   "or take fewer"});
-    }
-
     OutputFile file_;
     CloudPile clouds_;
     std::size_t a_frame_, readings_ = 0, points_ = 0;
@@ -199,6 +189,21 @@ class OneCloud final : public Delivery {
 };
 
 }  // namespace
+
+bool isOneCloud(const ScanToolOptions& options) {
+    const bool is_cloud = options.format == "pcd" || options.format == "ply";
+    return is_cloud && options.coordinates == Coordinates::World;
+}
+
+void checkPoints(std::size_t points) {
+    constexpr std::size_t kMax = 100'000'000;
+    if (points > kMax)
+        throw FormatError({"", 0, 0,
+                           "a cloud of " + std::to_string(points) + " points, wanted at most " +
+                               std::to_string(kMax) +
+                               " in one file; name a folder (-o DIR/) for a file each reading, "
+                               "or take fewer"});
+}
 
 FormatOptions formatOptions(const ScanCommand& command, const SceneInput& input) {
     const ScanToolOptions& options = command.options();
@@ -232,9 +237,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     format.checkStream();
     if (format.isStream()) return std::make_unique<Stream>(output, format);
     if (count == 1) return std::make_unique<OneFile>(output, format.endings());
-    const bool is_cloud = options.format == "pcd" || options.format == "ply";
-    if (is_cloud && options.coordinates == Coordinates::World)
-        return std::make_unique<OneCloud>(options, sensors.read.size(), count);
+    if (isOneCloud(options)) return std::make_unique<OneCloud>(options, sensors.read.size(), count);
     const std::string many = count < 0 ? "poses" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +

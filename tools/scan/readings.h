@@ -39,4 +39,10 @@ class Delivery {
 std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sensors& sensors,
                                        const ReadingFormat& format, std::int64_t count);
 
+/// Where several readings become one cloud: pcd and ply in the world frame.
+bool isOneCloud(const ScanToolOptions& options);
+
+/// \throws FormatError for more points than one file may have
+void checkPoints(std::size_t points);
+
 }  // namespace ispace
