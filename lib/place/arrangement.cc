@@ -213,7 +213,13 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     if (mps != nullptr) writeModel(model, *mps);
 
     Arrangement result;
+    result.is_complete = model.isComplete();
+    const SearchShare& share = options.search.share;
+    if (share.own && !model.isComplete())
+        throw UnmetError("stopped before all candidates were made: there is nothing to share");
+    if (share.isOwn(Shared::Candidates)) return result;
     SearchResult found = find(model, result, progress);
+    if (share.own) return result;
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
     if (found.best.value > 0) {

@@ -197,7 +197,7 @@ struct CandidatePool::Data {
                                            by_beams);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 if (!addCandidates(set, views, level.sites, options.max_bytes - bytes, progress,
-                                   share))
+                                   share, options.search.share))
                     is_complete = false;
             }
         return is_complete;

@@ -9,11 +9,13 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/packed.h"
 #include "cover/plane_cells.h"
 #include "cover/sector_cells.h"
 #include "place/beam_cells.h"
@@ -158,11 +160,12 @@ namespace {
 class Scanner {
   public:
     Scanner(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-            std::size_t least, Progress& progress)
+            std::size_t least, Progress& progress, const SearchShare& share)
         : set_(set),
           data_(views.data()),
           sites_(sites),
           progress_(progress),
+          share_(share),
           least_(std::min(least, sites.size())),
           at_once_(data_.looks_in_slice ? 512 : 32),
           ahead_(sites, std::max(least_, sites.size() / kStretch)),
@@ -241,6 +244,9 @@ class Scanner {
         if (parts_.size() < count) parts_.resize(count);
         is_done_.assign(count, 1);
         if (data_.looks_in_slice) findSectors(count);
+        const int step = share_.ledger != nullptr ? share_.ledger->numberOf("views/") : 0;
+        const std::string name = "views/" + std::to_string(step);
+        if (recall(name) || leaveToOthers(step)) return;
         std::atomic<std::int64_t> looks = 0;
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             if (isShelved(i)) {
@@ -257,6 +263,50 @@ class Scanner {
             }
         });
         progress_.advance(looks);
+        if (share_.ledger != nullptr && looks > 0 && !progress_.stopped()) keep(name);
+    }
+
+    /// Takes what an earlier run or another shard saw in this step.
+    bool recall(const std::string& name) {
+        const auto bytes = share_.ledger != nullptr ? share_.ledger->find(name) : std::nullopt;
+        if (!bytes) return false;
+        Unpacker from(*bytes);
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            if (isShelved(i)) {
+                shelf_.copy(turns_[i].slot, parts_[i]);
+                continue;
+            }
+            parts_[i].runs = from.all<CellRun>();
+            parts_[i].first = from.all<std::uint32_t>();
+            if (!isWhole(parts_[i], set_.cells()) || parts_[i].size() != directedOf(i) + 1)
+                Unpacker::refuse();
+            progress_.advance(1);
+        }
+        return true;
+    }
+    void keep(const std::string& name) {
+        Packer to;
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            if (isShelved(i)) continue;
+            to.addAll(parts_[i].runs);
+            to.addAll(parts_[i].first);
+        }
+        share_.ledger->keep(name, to.bytes());
+    }
+    /// A step of another shard: nothing is seen.
+    bool leaveToOthers(int step) {
+        if (!share_.isOwn(Shared::Candidates) ||
+            (step - 1) % share_.own->count == share_.own->index - 1)
+            return false;
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            parts_[i].runs.clear();
+            parts_[i].first.assign(directedOf(i) + 2, 0);
+        }
+        return true;
+    }
+    /// Directed parts of what is seen from a site.
+    [[nodiscard]] std::size_t directedOf(std::size_t i) const {
+        return data_.looks_in_slice ? sectors_[sectors_of_[i]].limits.size() : headingsOf(i).size();
     }
 
     [[nodiscard]] bool isShelved(std::size_t i) const {
@@ -312,6 +362,7 @@ class Scanner {
     const CandidateViews::Data& data_;
     std::span<const Site> sites_;
     Progress& progress_;
+    const SearchShare& share_;
     std::size_t least_, at_once_;
     Spread ahead_;
     Shelf shelf_;  // in the order of ahead_.at()
@@ -327,10 +378,11 @@ class Scanner {
 }  // namespace
 
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t max_bytes, Progress& progress, std::size_t least) {
+                   std::size_t max_bytes, Progress& progress, std::size_t least,
+                   const SearchShare& share) {
     assert(set.cells() == views.data().grid.size());
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
-    const bool is_complete = Scanner(set, views, sites, least, progress).run(max_bytes);
+    const bool is_complete = Scanner(set, views, sites, least, progress, share).run(max_bytes);
     progress.end();
     return is_complete;
 }

@@ -13,6 +13,7 @@
 #include "place/sites.h"
 #include "raster/grid.h"
 #include "solve/candidate_set.h"
+#include "solve/search_share.h"
 #include "trace/worlds.h"
 
 namespace ispace {
@@ -90,7 +91,11 @@ constexpr std::size_t kMinPlaces = 64;
 /// number of threads. A sample spread over the list comes first. False if progress said stop: then
 /// the set has the sites done so far, in order, at least `least` of them (or all), spread over the
 /// list. \throws UsageError once set.bytes() is more than max_bytes
+///
+/// With a ledger views that it has are taken from there, and others kept. A shard of the candidates
+/// looks from its own sites alone: its candidates elsewhere see nothing.
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
-                   std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces);
+                   std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
+                   const SearchShare& share = SearchShare());
 
 }  // namespace ispace

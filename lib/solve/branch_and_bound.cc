@@ -9,8 +9,10 @@
 #include <iterator>
 #include <numeric>
 
+#include "base/random.h"
 #include "solve/branch_node.h"
 #include "solve/lagrange.h"
+#include "solve/packed_search.h"
 #include "solve/search.h"
 
 namespace ispace {
@@ -49,11 +51,15 @@ void OpenNodes::release(const void* shared) {
 }
 
 void OpenNodes::add(BranchNode node) {
+    const Key key(~node.bound, next_++);
+    insert(key, std::move(node));
+}
+
+void OpenNodes::insert(const Key& key, BranchNode node) {
     bytes_ += ownBytes(node);
     hold(node.problem.get(), node.problem->bytes());
     hold(node.multipliers.get(), bytesOf(*node.multipliers));
     for (const BranchGroup& group : node.groups) hold(group.list.get(), bytesOf(*group.list));
-    const Key key(~node.bound, next_++);
     by_age_.emplace(key.second, key.first);
     nodes_.emplace(key, std::move(node));
 }
@@ -73,6 +79,7 @@ BranchNode OpenNodes::remove(const Key& key) {
 std::vector<BranchNode> OpenNodes::take(std::size_t most) {
     std::vector<BranchNode> batch;
     batch.reserve(most);
+    taken_.clear();
     std::size_t bytes = 0;
     const bool is_full = bytes_ > max_bytes_;
     while (batch.size() < most && !nodes_.empty()) {
@@ -81,8 +88,14 @@ std::vector<BranchNode> OpenNodes::take(std::size_t most) {
         bytes += nodes_.at(key).problem->bytes();
         if (!batch.empty() && bytes > max_bytes_ / kBatchPart) break;
         batch.push_back(remove(key));
+        taken_.push_back(key);
     }
     return batch;
+}
+
+void OpenNodes::putBack(std::vector<BranchNode> batch) {
+    for (std::size_t i = 0; i < batch.size(); ++i) insert(taken_[i], std::move(batch[i]));
+    taken_.clear();
 }
 
 std::uint64_t OpenNodes::dropUpTo(std::uint64_t cut) {
@@ -90,6 +103,23 @@ std::uint64_t OpenNodes::dropUpTo(std::uint64_t cut) {
     while (!nodes_.empty() && ~std::prev(nodes_.end())->first.first <= cut)
         highest = remove(Key(std::prev(nodes_.end())->first)).bound;
     return highest;
+}
+
+std::vector<const BranchNode*> OpenNodes::byAge() const {
+    std::vector<const BranchNode*> nodes;
+    nodes.reserve(nodes_.size());
+    for (const auto& [age, bound] : by_age_) nodes.push_back(&nodes_.at({bound, age}));
+    return nodes;
+}
+
+void OpenNodes::keepOnly(const Shard& shard) {
+    std::vector<Key> others;
+    const auto own = static_cast<std::size_t>(shard.index - 1),
+               count = static_cast<std::size_t>(shard.count);
+    std::size_t i = 0;
+    for (const auto& [key, node] : nodes_)
+        if (i++ % count != own) others.push_back(key);
+    for (const Key& key : others) remove(key);
 }
 
 namespace {
@@ -163,14 +193,20 @@ std::vector<std::uint64_t> gainsOf(const Root& root, std::size_t kind) {
 class Tree {
   public:
     Tree(const Problem& problem, const Bound& bound, SearchResult known, double gap,
-         std::uint64_t enough, std::size_t max_bytes)
+         std::uint64_t enough, std::size_t max_bytes, const SearchShare& share)
         : problem_(problem),
           relaxed_(problem),
           result_(std::move(known)),
           gap_(gap),
           enough_(enough),
-          open_(max_bytes) {
+          open_(max_bytes),
+          share_(share) {
         result_.bound = std::min(result_.bound, bound.value);
+        if (share_.ledger != nullptr) {
+            name_ = share_.ledger->nameFor("tree");
+            mark_ = markOf(bound);
+            if (recall()) return;
+        }
         if (relaxed_.most(result_.bound) > cut())
             addRoots(rootOf(problem, bound, goodBound(result_.best.value, gap_)));
         else
@@ -185,23 +221,75 @@ class Tree {
                 result_.is_complete = false;
                 break;
             }
+            deal();
+            if (share_.ledger != nullptr && share_.ledger->isDue()) keep();
+            if (open_.empty()) break;
             std::vector<BranchNode> batch = open_.take(kBatch);
+            // Whoever goes on with this tree takes the same steps, so none is left half done.
+            std::vector<BranchNode> before;
+            if (share_.ledger != nullptr) before = batch;
             std::vector<BranchResult> results(batch.size());
             const std::uint64_t cut = this->cut();
             tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
                 results[i] = branch(problem_, batch[i], cut, progress);
                 batch[i] = BranchNode();
             });
+            if (share_.ledger != nullptr && progress.stopped()) {
+                open_.putBack(std::move(before));
+                continue;
+            }
             for (BranchResult& result : results) add(result);
             progress.advance(static_cast<std::int64_t>(batch.size()));
             lowerBound();
             noteProgress(problem_, result_, progress);
         }
         progress.end();
+        if (share_.ledger != nullptr) keep();
         return std::move(result_);
     }
 
   private:
+    /// Once there is enough to deal out, a shard goes on with its own.
+    void deal() {
+        constexpr std::size_t kNodesPerShard = 8;
+        if (is_dealt_ || !share_.isOwn(Shared::Tree)) return;
+        if (open_.size() < kNodesPerShard * static_cast<std::size_t>(share_.own->count)) return;
+        open_.keepOnly(*share_.own);
+        is_dealt_ = true;
+        lowerBound();
+    }
+
+    /// Tells searches apart of which a run has several.
+    [[nodiscard]] std::uint64_t markOf(const Bound& bound) const {
+        std::uint64_t mark = mixedBits(fingerprintOf(problem_) ^ mixedBits(enough_));
+        for (const std::uint64_t number : {result_.best.value, result_.bound, bound.cut})
+            mark = mixedBits(mark ^ number);
+        for (const std::uint32_t multiplier : bound.multipliers)
+            mark = mixedBits(mark ^ multiplier);
+        return mark;
+    }
+    void keep() {
+        Packer to;
+        to.add(mark_);
+        pack(to, result_);
+        to.add(closed_);
+        to.add(is_dealt_ ? 1 : 0);
+        pack(to, open_.byAge());
+        share_.ledger->keep(name_, to.bytes());
+    }
+    bool recall() {
+        const auto bytes = share_.ledger->find(name_);
+        if (!bytes) return false;
+        Unpacker from(*bytes);
+        if (from.number() != mark_) return false;
+        result_ = unpackResult(from, problem_);
+        result_.is_complete = true;
+        closed_ = from.number();
+        is_dealt_ = from.number() != 0;
+        for (BranchNode& node : unpackNodes(from, problem_)) open_.add(std::move(node));
+        return true;
+    }
+
     /// Only solutions above this matter, fine.
     [[nodiscard]] std::uint64_t cut() const {
         return relaxed_.most(goodBound(result_.best.value, gap_));
@@ -230,6 +318,10 @@ class Tree {
     std::uint64_t enough_;
     std::uint64_t closed_ = 0;  // upper bound of what is neither open nor known, fine
     OpenNodes open_;
+    const SearchShare& share_;
+    bool is_dealt_ = false;
+    std::string name_;        // of the tree in the ledger
+    std::uint64_t mark_ = 0;  // of the search that it is of
 };
 
 void Tree::addRoots(const Root& root) {
@@ -271,13 +363,13 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress, std::uint64_t enough,
-                            std::size_t max_bytes) {
+                            std::size_t max_bytes, const SearchShare& share) {
     if (progress.stopped()) {
         known.is_complete = false;
         return known;
     }
     if (!CountChoice(problem).isListed()) return known;
-    return Tree(problem, bound, std::move(known), gap, enough, max_bytes).search(progress);
+    return Tree(problem, bound, std::move(known), gap, enough, max_bytes, share).search(progress);
 }
 
 }  // namespace ispace

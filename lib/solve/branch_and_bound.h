@@ -29,8 +29,16 @@ class OpenNodes {
     void add(BranchNode node);
     /// The next nodes to process: at most `most`, fewer where they are large, at least one.
     std::vector<BranchNode> take(std::size_t most);
+    /// Undoes the last take(), of which these are the nodes.
+    void putBack(std::vector<BranchNode> batch);
     /// Drops nodes with a bound of at most `cut`; returns the highest of these bounds, else 0.
     std::uint64_t dropUpTo(std::uint64_t cut);
+
+    [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+    /// All of them, by age.
+    [[nodiscard]] std::vector<const BranchNode*> byAge() const;
+    /// Drops all but those of one shard, dealt out in turn, the highest bound first.
+    void keepOnly(const Shard& shard);
 
   private:
     using Key = std::pair<std::uint64_t, std::uint64_t>;  ///< complement of the bound, age
@@ -39,12 +47,14 @@ class OpenNodes {
     };
 
     BranchNode remove(const Key& key);
+    void insert(const Key& key, BranchNode node);
     void hold(const void* shared, std::size_t bytes);
     void release(const void* shared);
 
     std::size_t max_bytes_, bytes_ = 0;
     std::uint64_t next_ = 0;
     std::map<Key, BranchNode> nodes_;
+    std::vector<Key> taken_;                         // by the last take()
     std::map<std::uint64_t, std::uint64_t> by_age_;  // to the first of the key
     std::unordered_map<const void*, Shared> shared_;
 };
@@ -62,9 +72,12 @@ std::vector<std::vector<std::uint32_t>> survivors(const Problem& problem, const 
 ///
 /// If a budget can be split in more ways than CountChoice lists (20'000) there is no tree: `known`
 /// is returned unchanged. known.best need not be a solution: only better values are searched.
+///
+/// With a ledger it goes on from a tree kept there, and keeps its own now and then and at its end.
 SearchResult branchAndBound(const Problem& problem, const Bound& bound, SearchResult known,
                             double gap, Progress& progress,
                             std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),
-                            std::size_t max_bytes = kMaxTreeBytes);
+                            std::size_t max_bytes = kMaxTreeBytes,
+                            const SearchShare& share = SearchShare());
 
 }  // namespace ispace

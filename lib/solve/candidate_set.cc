@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 
@@ -37,6 +38,15 @@ void WeightSums::assign(std::span<const std::uint32_t> weights) {
         sum += weights[i];
     }
     sums_[weights.size()] = sum;
+}
+
+bool isWhole(const CellParts& parts, std::size_t cells) {
+    const std::vector<std::uint32_t>& first = parts.first;
+    return parts.size() > 0 && first.front() == 0 && first.back() == parts.runs.size() &&
+           std::is_sorted(first.begin(), first.end()) &&
+           std::all_of(parts.runs.begin(), parts.runs.end(), [cells](const CellRun& run) {
+               return run.first < run.end && run.end <= cells;
+           });
 }
 
 CandidateSet::CandidateSet(std::size_t cells)

@@ -30,6 +30,9 @@ class WeightSums {
     std::vector<std::uint32_t> sums_;
 };
 
+/// True if parts follow each other, and all their runs lie within so many cells.
+bool isWhole(const CellParts& parts, std::size_t cells);
+
 /// Candidates of one kind, each with the cells it sees.
 ///
 /// Candidates of one site share storage: the cells visible from the site are split into parts by

@@ -207,6 +207,7 @@ Solution MinimumCostSearch::reach(const Problem& cheaper, const Solution& best, 
     SwapOptions swap = options_.swap;
     swap.starts = std::min(swap.starts, starts);
     swap.enough = wanted_;
+    swap.share = &options_.share;
     return improveBySwaps(cheaper, solution, swap, progress_);
 }
 
@@ -225,7 +226,8 @@ Solution MinimumCostSearch::reachExactly(const Problem& cheaper, const Solution&
     SearchResult known;
     known.best = {{}, wanted_ - 1};
     known.bound = bound.value;
-    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_, options_.max_bytes);
+    known = branchAndBound(cheaper, bound, known, 0, progress_, wanted_, options_.max_bytes,
+                           options_.share);
     is_proven = known.bound < wanted_;
     return known.best.value >= wanted_ ? known.best : Solution();
 }

@@ -7,6 +7,7 @@
 
 #include "solve/branch_and_bound.h"
 #include "solve/lagrange.h"
+#include "solve/packed_search.h"
 
 namespace ispace {
 
@@ -61,39 +62,136 @@ Solution placeFeasibly(const Problem& problem, Progress& progress) {
     return solution;
 }
 
-SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
-    SearchResult result;
-    result.bound = problem.totalWeight();
-    result.best = placeFeasibly(problem, progress);
-    noteProgress(problem, result, progress);
-    if (options.optimizer != Optimizer::Greedy && !progress.stopped()) {
+namespace {
+
+/// What the ledger has under a name for this very problem, or what `compute` returns, which is kept
+/// unless it was cut short.
+template <typename T, typename Compute>
+T recalled(const SearchShare& share, const Problem& problem, const std::string& step,
+           T (*unpack)(Unpacker&, const Problem&), const Progress& progress, Compute compute) {
+    if (share.ledger == nullptr) return compute();
+    const std::string name = share.ledger->nameFor(step);
+    const std::uint64_t mark = fingerprintOf(problem);
+    if (const auto bytes = share.ledger->find(name)) {
+        Unpacker from(*bytes);
+        if (from.number() == mark) return unpack(from, problem);
+    }
+    T made = compute();
+    if (progress.stopped()) return made;
+    Packer to;
+    to.add(mark);
+    pack(to, made);
+    share.ledger->keep(name, to.bytes());
+    return made;
+}
+
+std::string proofName(int shard) { return "proof/" + std::to_string(shard); }
+
+/// The best of the subtrees of all shards, and the highest of their bounds. \pre all are there
+SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
+    SearchResult all;
+    for (int i = 1; i <= share.joined; ++i) {
+        const auto bytes = share.ledger->find(proofName(i));
+        if (!bytes) Unpacker::refuse();
+        Unpacker from(*bytes);
+        if (from.number() != fingerprintOf(problem)) Unpacker::refuse();
+        SearchResult own = unpackResult(from, problem);
+        if (own.best.value != valueOf(problem, own.best.chosen) ||
+            !isFeasible(problem, own.best.chosen) || own.bound < own.best.value)
+            Unpacker::refuse();
+        if (i == 1 || own.best.value > all.best.value) all.best = std::move(own.best);
+        all.bound = std::max(all.bound, own.bound);
+        all.is_complete = all.is_complete && own.is_complete;
+    }
+    if (all.best.value >= all.bound) all.is_complete = true;
+    return all;
+}
+
+/// One search, step by step.
+class Search {
+  public:
+    Search(const Problem& problem, const SearchOptions& options, Progress& progress)
+        : problem_(problem), options_(options), share_(options.share), progress_(progress) {}
+
+    SearchResult run() {
+        result_.bound = problem_.totalWeight();
+        result_.best = placeFeasibly(problem_, progress_);
+        noteProgress(problem_, result_, progress_);
+        if (options_.optimizer != Optimizer::Greedy && !progress_.stopped()) swap();
+        if (share_.isOwn(Shared::Starts)) return std::move(result_);
+        if (!progress_.stopped()) prove();
+        if (result_.bound == problem_.totalWeight() && progress_.stopped()) {
+            SilentProgress silent;  // there shall be some bound
+            const LagrangeLimits soon = {.cut = result_.best.value, .gap = kQuick.gap, .rounds = 2};
+            result_.bound = lagrangianBound(problem_, result_.best.chosen, soon, silent).value;
+        }
+        if (progress_.stopped() && result_.best.value < result_.bound) result_.is_complete = false;
+        return std::move(result_);
+    }
+
+  private:
+    void swap() {
         // Swaps may take long: if there is no time for more, this is the bound.
         LagrangeLimits quick = kQuick;
-        quick.cut = result.best.value;
-        quick.gap = std::min(quick.gap, limitsOf(options).gap);
-        result.bound = lagrangianBound(problem, result.best.chosen, quick, progress).value;
-        noteProgress(problem, result, progress);
-        SwapOptions swap = options.swap;
-        swap.enough = std::min(swap.enough, enoughOf(problem, result.bound, options.gap));
-        result.best = improveBySwaps(problem, result.best, swap, progress);
+        quick.cut = result_.best.value;
+        quick.gap = std::min(quick.gap, limitsOf(options_).gap);
+        result_.bound = lagrangianBound(problem_, result_.best.chosen, quick, progress_).value;
+        noteProgress(problem_, result_, progress_);
+        result_ = recalled(share_, problem_, "swapped", unpackResult, progress_, [&] {
+            SearchResult better = result_;
+            SwapOptions swap = options_.swap;
+            swap.enough = std::min(swap.enough, enoughOf(problem_, result_.bound, options_.gap));
+            swap.share = &share_;
+            better.best = improveBySwaps(problem_, result_.best, swap, progress_);
+            return better;
+        });
     }
-    if (!progress.stopped()) {
-        LagrangeLimits limits = limitsOf(options);
-        limits.cut = result.best.value;
-        const Bound bound = lagrangianBound(problem, result.best.chosen, limits, progress);
-        result.bound = std::min(result.bound, bound.value);
-        noteProgress(problem, result, progress);
-        if (options.optimizer == Optimizer::Exact && !progress.stopped() &&
-            result.best.value < result.bound)
-            result = branchAndBound(problem, bound, std::move(result), options.gap, progress,
-                                    std::numeric_limits<std::uint64_t>::max(), options.max_bytes);
+    void prove() {
+        LagrangeLimits limits = limitsOf(options_);
+        limits.cut = result_.best.value;
+        const Bound bound = recalled(share_, problem_, "bound", unpackBound, progress_, [&] {
+            return lagrangianBound(problem_, result_.best.chosen, limits, progress_);
+        });
+        result_.bound = std::min(result_.bound, bound.value);
+        noteProgress(problem_, result_, progress_);
+        if (options_.optimizer == Optimizer::Exact && !progress_.stopped() &&
+            result_.best.value < result_.bound)
+            result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
+                                     std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
+                                     share_);
     }
-    if (result.bound == problem.totalWeight() && progress.stopped()) {
-        SilentProgress silent;  // there shall be some bound
-        const LagrangeLimits soon = {.cut = result.best.value, .gap = kQuick.gap, .rounds = 2};
-        result.bound = lagrangianBound(problem, result.best.chosen, soon, silent).value;
+
+    const Problem& problem_;
+    const SearchOptions& options_;
+    const SearchShare& share_;
+    Progress& progress_;
+    SearchResult result_;
+};
+
+}  // namespace
+
+std::string_view nameOf(Shared shared) {
+    switch (shared) {
+        case Shared::Candidates:
+            return "candidates";
+        case Shared::Starts:
+            return "starts";
+        case Shared::Tree:
+            break;
     }
-    if (progress.stopped() && result.best.value < result.bound) result.is_complete = false;
+    return "tree";
+}
+
+SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress) {
+    const SearchShare& share = options.share;
+    if (share.joined > 0 && share.what == Shared::Tree) return joinedProof(problem, share);
+    SearchResult result = Search(problem, options, progress).run();
+    if (share.isOwn(Shared::Tree)) {
+        Packer to;
+        to.add(fingerprintOf(problem));
+        pack(to, result);
+        share.ledger->keep(proofName(share.own->index), to.bytes());
+    }
     return result;
 }
 

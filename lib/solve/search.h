@@ -9,6 +9,7 @@
 
 #include "base/progress.h"
 #include "solve/problem.h"
+#include "solve/search_share.h"
 
 namespace ispace {
 
@@ -34,6 +35,8 @@ struct SwapOptions {
     std::uint64_t seed = 0;
     /// The search ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
+    /// Null: all of the search. Of a share that is not all, `start` comes back.
+    const SearchShare* share = nullptr;
 };
 
 /// Local search: moves one sensor at a time to its best candidate given the others, while that
@@ -65,6 +68,7 @@ struct SearchOptions {
     double gap = 0;  ///< relative gap (bound - value) / bound at which the search ends
     SwapOptions swap = SwapOptions();
     std::size_t max_bytes = kMaxTreeBytes;
+    SearchShare share = SearchShare();
 };
 
 /// Greedy search; then, as the optimizer asks, swap search and branch and bound. Each comes with a
@@ -73,7 +77,8 @@ struct SearchOptions {
 /// costs, merges cells that the same remaining candidates see, and branches until value and bound
 /// are within the gap. If a budget can be split among the kinds in more than 20'000 ways there is
 /// no tree, and a gap may remain. Ends early, with is_complete = false, if progress says stop. The
-/// same for any number of threads unless it is stopped.
+/// same for any number of threads unless it is stopped. A shard of starts ends after the swaps, one
+/// of the tree with what is known of its subtrees, see SearchShare.
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
 
 /// A cheapest solution that reaches a given value.

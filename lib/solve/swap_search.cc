@@ -7,13 +7,16 @@
 #include <cstdio>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "base/random.h"
 #include "solve/local_search.h"
+#include "solve/packed_search.h"
 #include "solve/problem.h"
 #include "solve/search.h"
 
@@ -112,6 +115,41 @@ class StartProgress final : public Progress {
     std::size_t start_;
 };
 
+/// Where starts have come to before, or in other shards.
+class KeptEnds {
+  public:
+    KeptEnds(const SearchShare* share, const Problem& problem, std::uint64_t enough,
+             const std::vector<Choice>& given)
+        : ledger_(share != nullptr ? share->ledger : nullptr), problem_(problem) {
+        if (ledger_ == nullptr) return;
+        name_ = ledger_->nameFor("start") + '/';
+        mark_ = mixedBits(fingerprintOf(problem) ^ mixedBits(enough));
+        for (const Choice& choice : given)
+            mark_ = mixedBits(mark_ ^ mixedBits(choice.kind) ^ choice.candidate);
+    }
+    [[nodiscard]] std::optional<std::vector<Choice>> find(std::size_t start) const {
+        const auto bytes =
+            ledger_ == nullptr ? std::nullopt : ledger_->find(name_ + std::to_string(start));
+        if (!bytes) return std::nullopt;
+        Unpacker from(*bytes);
+        if (from.number() != mark_) return std::nullopt;
+        return unpackChoices(from, problem_);
+    }
+    void keep(std::size_t start, const std::vector<Choice>& chosen) {
+        if (ledger_ == nullptr) return;
+        Packer to;
+        to.add(mark_);
+        pack(to, chosen);
+        ledger_->keep(name_ + std::to_string(start), to.bytes());
+    }
+
+  private:
+    Ledger* ledger_;
+    const Problem& problem_;
+    std::string name_;
+    std::uint64_t mark_ = 0;
+};
+
 /// The searches from all starts.
 class SwapSearch {
   public:
@@ -120,6 +158,7 @@ class SwapSearch {
           places_(basis_),
           seed_(options.seed),
           enough_(options.enough),
+          share_(options.share),
           progress_(progress),
           reporter_(problem, progress) {}
 
@@ -128,13 +167,22 @@ class SwapSearch {
     /// value are the same for any number of threads; those after it are empty.
     std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
         std::vector<End> ends(starts);
+        const auto [begin, end] = ownOf(starts);
+        KeptEnds kept(share_, basis_.problem, enough_, given);
         // Starts in ascending order, whichever thread takes them.
-        std::atomic<std::size_t> next = 0, first = starts;
-        tbb::parallel_for(std::size_t{0}, starts, [&](std::size_t) {
+        std::atomic<std::size_t> next = begin, first = starts;
+        tbb::parallel_for(begin, end, [&](std::size_t) {
             const std::size_t i = next++;
             if (i == 0 || (i < first && !progress_.stopped())) {
                 StartProgress progress(progress_, first, i);
-                ends[i] = searchFrom(i, given, progress);
+                if (const auto known = kept.find(i)) {
+                    End known_end;
+                    known_end.chosen = *known;
+                    ends[i] = End(i, stateOf(known_end));
+                } else {
+                    ends[i] = searchFrom(i, given, progress);
+                    if (!progress.stopped()) kept.keep(i, ends[i].chosen);
+                }
                 std::size_t before = first;
                 while (ends[i].value >= enough_ && i < before &&
                        !first.compare_exchange_weak(before, i)) {
@@ -183,7 +231,18 @@ class SwapSearch {
         return end.value >= enough_ || progress_.stopped();
     }
 
+    /// True if others search from the rest of the starts.
+    [[nodiscard]] bool isShard() const {
+        return share_ != nullptr && share_->isOwn(Shared::Starts);
+    }
+
   private:
+    /// The starts of this shard.
+    [[nodiscard]] std::pair<std::size_t, std::size_t> ownOf(std::size_t starts) const {
+        if (!isShard()) return {0, starts};
+        const Shard::Block block = share_->own->blockOf(static_cast<std::int64_t>(starts));
+        return {static_cast<std::size_t>(block.first), static_cast<std::size_t>(block.end)};
+    }
     End searchFrom(std::size_t start, const std::vector<Choice>& given, Progress& progress) {
         CoverageState state = basis_.emptyState();
         LocalSearch search(basis_, cache_, enough_, progress);
@@ -246,6 +305,7 @@ class SwapSearch {
     SearchBasis basis_;
     RandomCandidates places_;
     std::uint64_t seed_, enough_;
+    const SearchShare* share_;
     Progress& progress_;
     BestReporter reporter_;
     ResponseCache cache_;
@@ -294,6 +354,10 @@ Solution improveBySwaps(const Problem& problem, const Solution& start, const Swa
     progress.begin("improving", static_cast<std::int64_t>(1 + starts + buyers + kicked));
     SwapSearch search(problem, options, progress);
     std::vector<End> ends = search.searchFromAll(starts + 1, start.chosen);
+    if (search.isShard()) {
+        progress.end();
+        return start;
+    }
     End best = bestOf(ends, 1).front();
     // From the best so far on.
     const auto go_on = [&](std::size_t count, End (SwapSearch::*how)(const End&)) {

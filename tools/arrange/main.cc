@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "arrange/batch.h"
 #include "arrange/options.h"
 #include "arrange/report.h"
 #include "base/error.h"
@@ -31,7 +32,14 @@ struct Work {
     std::vector<SensorGroup> groups;
     ArrangeOptions how;
     std::vector<std::string> files;  ///< for -MD
+    std::string places;              ///< the text of --places
 };
+
+/// True if what a signal leaves of the run is of no use, or is kept elsewhere.
+bool endsWithoutProduct(const ArrangeToolOptions& options) {
+    return options.batch.resume ||
+           (options.batch.shard && options.how.search.share.what != Shared::Tree);
+}
 
 NamedZone zoneOf(const ArrangeToolOptions& options, const std::string& text,
                  const Environment& environment) {
@@ -70,7 +78,8 @@ Work read(const ArrangeToolOptions& options) {
     for (const std::string& spec : options.sensors)
         added.push_back(ofOption(
             "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
-    Work work{readScene({options.operands, options.any_environment, false}), {}, options.how, {}};
+    Work work{
+        readScene({options.operands, options.any_environment, false}), {}, options.how, {}, {}};
     SceneInput& input = work.input;
     warn(options.common, "arrange", input.environment.warnings);
     if (!options.fixed.empty()) {
@@ -85,9 +94,9 @@ Work read(const ArrangeToolOptions& options) {
     readZones(options, input.scene.environment, work.how);
     work.files = filesOf(input);
     if (!options.places_file.empty()) {
+        work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);
         work.how.list =
-            readSites(options.places_file == "-" ? readStdin() : readAll(options.places_file),
-                      options.places_file,
+            readSites(work.places, options.places_file,
                       headingsAround(work.how.headings.value_or(work.how.density.headings)));
         work.files.push_back(options.places_file);
     }
@@ -199,20 +208,78 @@ void warnOfNothing(const ArrangeToolOptions& options, const Work& work,
     if (!text.empty()) warn(options.common, "arrange", text);
 }
 
-void arrangeSensors(const ArrangeCommand& command) {
+/// Words on the layout, and what is not as it was asked for.
+void report(const ArrangeToolOptions& options, const Work& work, const Arrangement& arrangement) {
+    if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
+    talk(options.common, "arrange",
+         "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
+             formatDouble(arrangement.cost));
+}
+
+void checkGoals(const ArrangeToolOptions& options, const Work& work,
+                const Arrangement& arrangement) {
+    warnOfNothing(options, work, arrangement);
+    if (const std::string text = doubledText(arrangement); !text.empty())
+        warn(options.common, "arrange", text);
+    if (!arrangement.is_reached) {
+        std::string text = shortfallText(work.how, arrangement);
+        if (arrangement.candidate_bound <= 0)
+            if (const std::string reason = reasonOfDensity(work); !reason.empty())
+                text += "; " + reason;
+        throw UnmetError(text);
+    }
+    if (arrangement.unplaced > 0)
+        throw UnmetError(std::to_string(arrangement.unplaced) +
+                         " of the sensors are not placed: there are " +
+                         (work.how.is_connected
+                              ? "no candidates left from which views hang together (--connected)"
+                              : "fewer candidates than sensors"));
+}
+
+/// The ledger of a job that is shared out or may be gone on with; null for others, and for a part
+/// that is done already. \param parts those of a merge
+std::unique_ptr<JobLedger> ledgerOf(const ArrangeCommand& command, const Work& work,
+                                    const std::vector<PartFile>& parts, bool& is_done) {
+    const ArrangeToolOptions& options = command.options();
+    const BatchOptions& batch = options.batch;
+    JobId job = arrangeJob(command, work.input, work.places);
+    if (!parts.empty()) {
+        const JobId& made = parts.front().head().job;
+        job.form = made.form;
+        if (const std::string difference = job.differenceFrom(made); !difference.empty())
+            throw FormatError({parts.front().file(), 0, 0,
+                               "not of what is read now: " + difference + " differs"});
+        return std::make_unique<JobLedger>(parts);
+    }
+    if (!batch.shard && !batch.resume) return nullptr;
+    if (batch.shard)
+        for (const std::string* file :
+             {&work.input.environment_operand, &work.input.layout_operand, &options.places_file})
+            if (!file->empty() && isStream(*file))
+                throw UsageError("--shard: the merge reads its input again; give it as a file");
+    const PartHead head{job, batch.shard.value_or(Shard())};
+    is_done = batch.shard && batch.resume && isDoneAlready(options.common.output, head);
+    return is_done ? nullptr : std::make_unique<JobLedger>(command, head);
+}
+
+void runCommand(const ArrangeCommand& command, const std::vector<PartFile>& parts) {
     const ArrangeToolOptions& options = command.options();
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.trace_file, "--trace");
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
-    const Work work = read(options);
+    Work work = read(options);
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file})
         mustBeWritable(*file);
     warnOfHeights(options, work);
+    bool is_done = false;
+    const auto ledger = ledgerOf(command, work, parts, is_done);
+    if (is_done) return talk(options.common, "arrange", options.common.output + " is done already");
+    work.how.search.share.ledger = ledger.get();
     int signal = 0;
     Arrangement arrangement;
     {
@@ -230,30 +297,38 @@ void arrangeSensors(const ArrangeCommand& command) {
             endBySignal(watch.signal());
         }
         if (mps) mps->commit();
-        writeLayout(command, work, arrangement);
+        signal = watch.signal();
+        if (signal != 0 && endsWithoutProduct(options)) {
+            if (!options.common.quiet)
+                std::cerr << "arrange: stopped: nothing is written"
+                          << (options.batch.resume ? ", the same command goes on\n" : "\n");
+            endBySignal(signal);
+        }
+        if (options.batch.shard)
+            ledger->writePart();
+        else
+            writeLayout(command, work, arrangement);
+        if (ledger && (options.batch.shard || arrangement.is_complete)) ledger->removeCheckpoint();
         signal = watch.signal();
     }
-    if (!options.common.quiet) std::cerr << reportText(work.how, arrangement);
-    talk(options.common, "arrange",
-         "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
-             formatDouble(arrangement.cost));
-    if (signal != 0) endBySignal(signal);
-    warnOfNothing(options, work, arrangement);
-    if (const std::string text = doubledText(arrangement); !text.empty())
-        warn(options.common, "arrange", text);
-    if (!arrangement.is_reached) {
-        std::string text = shortfallText(work.how, arrangement);
-        if (arrangement.candidate_bound <= 0)
-            if (const std::string reason = reasonOfDensity(work); !reason.empty())
-                text += "; " + reason;
-        throw UnmetError(text);
+    if (ledger && !ledger->trouble().empty())
+        warn(options.common, "arrange", "what was done could not be kept: " + ledger->trouble());
+    if (options.batch.shard) {
+        writeDependencies(options.common, work.files);
+        if (signal != 0) endBySignal(signal);
+        return talk(options.common, "arrange",
+                    "shard " + options.batch.shard->text() + " is written");
     }
-    if (arrangement.unplaced > 0)
-        throw UnmetError(std::to_string(arrangement.unplaced) +
-                         " of the sensors are not placed: there are " +
-                         (work.how.is_connected
-                              ? "no candidates left from which views hang together (--connected)"
-                              : "fewer candidates than sensors"));
+    report(options, work, arrangement);
+    if (signal != 0) endBySignal(signal);
+    checkGoals(options, work, arrangement);
+}
+
+void arrangeSensors(const ArrangeCommand& command) {
+    const ArrangeToolOptions& options = command.options();
+    if (!options.batch.merge) return runCommand(command, {});
+    const std::vector<PartFile> parts = openParts(options.operands, "arrange");
+    runCommand(*commandOf(parts, options), parts);
 }
 
 }  // namespace

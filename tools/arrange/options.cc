@@ -122,6 +122,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addGoalOptions();
     addSearchOptions();
     addFileOptions();
+    addShareOptions();
     addAnyEnvironmentOption(line_, options_.any_environment);
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
@@ -289,7 +290,9 @@ void ArrangeCommand::addFileOptions() {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
+    checkBatchOptions(line_, options_.batch, options_.common, options_.operands);
+    if (!options_.batch.shard)
+        (void)outputFormat({}, options_.common.output, {"3dm"});  // refuses another suffix
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);
     settleStrategy();
     how.cells = words_.cells.choice();
@@ -320,6 +323,7 @@ void ArrangeCommand::settle() {
     how.seed = options_.common.seed;
     how.search.swap.seed = options_.common.seed;
     settleFiles();
+    settleBatch();
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/batch_options.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "place/arrange_options.h"
@@ -28,6 +29,8 @@ struct ArrangeToolOptions {
     std::string places_file;
     std::string trace_file, curve_file, mps_file;
     std::optional<double> time_limit;  ///< seconds
+    BatchOptions batch;
+    double checkpoint_interval = 5;  ///< seconds, of --resume
     bool any_environment = false;
 };
 
@@ -36,6 +39,10 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     /// Opens no file. \throws UsageError, TextRequested
     ArrangeCommand(int argc, const char* const* argv);
 
+    /// Makes the command of a shard that of the merge of so many, which may have other outputs,
+    /// threads and talk.
+    void becomeMerge(const ArrangeToolOptions& merge, Shared what, int shards);
+
   private:
     void addPlaceOptions();
     void addStrategyOption(const StrategyRow& row, const StrategyOption& option);
@@ -43,14 +50,16 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void addGoalOptions();
     void addSearchOptions();
     void addFileOptions();
+    void addShareOptions();
     void settle();
     void settleStrategy();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
+    void settleBatch();
 
     /// Words of options that become something else once all are known.
     struct Words {
-        std::string effort, strategy, optimize, mount, judge;
+        std::string effort, strategy, optimize, mount, judge, share;
         CellWords cells;
     };
     Words words_;

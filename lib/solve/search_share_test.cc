@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/search_share.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <mutex>
+
+#include "base/packed.h"
+#include "solve/packed_search.h"
+#include "solve/search.h"
+#include "solve/test_problems.h"
+
+namespace ispace {
+namespace {
+
+/// Keeps all in memory.
+class MemoryLedger final : public Ledger {
+  public:
+    [[nodiscard]] std::optional<std::string> find(const std::string& name) const override {
+        const std::lock_guard lock(mutex_);
+        const auto at = kept_.find(name);
+        return at == kept_.end() ? std::nullopt : std::optional(at->second);
+    }
+    void keep(const std::string& name, std::string_view bytes) override {
+        const std::lock_guard lock(mutex_);
+        kept_[name] = bytes;
+        ++times_;
+    }
+    [[nodiscard]] bool isDue() override { return is_due; }
+    /// What another process would find.
+    void takeFrom(const MemoryLedger& other, const std::string& prefix = "") {
+        for (const auto& [name, bytes] : other.kept_)
+            if (name.starts_with(prefix)) kept_[name] = bytes;
+    }
+    [[nodiscard]] std::size_t size() const { return kept_.size(); }
+    [[nodiscard]] int times() const { return times_; }
+
+    bool is_due = false;
+
+  private:
+    mutable std::mutex mutex_;
+    std::map<std::string, std::string> kept_;
+    int times_ = 0;
+};
+
+/// Large enough for a tree of some hundred nodes.
+RandomProblem hardProblem(std::uint64_t seed) {
+    RandomProblemOptions options;
+    options.columns = 40;
+    options.rows = 30;
+    options.sites = 100;
+    options.headings = 6;
+    options.most = 6;
+    options.max_range = 8;
+    options.max_weight = 9;
+    return randomProblem(seed, options);
+}
+
+SearchOptions searchOptions(Optimizer optimizer) {
+    SearchOptions options;
+    options.optimizer = optimizer;
+    options.swap.starts = 7;
+    options.swap.seed = 5;
+    return options;
+}
+
+/// The merge of so many shards.
+SearchResult inShards(const Problem& problem, const SearchOptions& options, Shared what,
+                      int count) {
+    MemoryLedger all;
+    for (int i = 1; i <= count; ++i) {
+        SilentProgress silent;
+        MemoryLedger own;
+        SearchOptions sharing = options;
+        sharing.share = {.what = what, .own = Shard{i, count}, .joined = 0, .ledger = &own};
+        (void)search(problem, sharing, silent);
+        all.takeFrom(own, what == Shared::Tree ? "proof/" : "start");
+    }
+    SilentProgress silent;
+    SearchOptions merging = options;
+    merging.share = {.what = what, .own = {}, .joined = count, .ledger = &all};
+    return search(problem, merging, silent);
+}
+
+TEST(SearchShare, StartsJoinToTheSameSolution) {
+    for (std::uint64_t round = 0; round < 12; ++round) {
+        const RandomProblem random = round < 10 ? variedProblem(round) : hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Swap);
+        SilentProgress silent;
+        const SearchResult single = search(random.problem, options, silent);
+        for (const int count : {1, 2, 3, 8, 11}) {
+            const SearchResult merged = inShards(random.problem, options, Shared::Starts, count);
+            EXPECT_EQ(merged.best.chosen, single.best.chosen) << round << ' ' << count;
+            EXPECT_EQ(merged.best.value, single.best.value);
+            EXPECT_EQ(merged.bound, single.bound);
+        }
+    }
+}
+
+TEST(SearchShare, ProofsOfShardsCloseTheSameGap) {
+    for (std::uint64_t round = 0; round < 40; ++round) {
+        const RandomProblem random = round < 36 ? variedProblem(round) : hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Exact);
+        SilentProgress silent;
+        const SearchResult single = search(random.problem, options, silent);
+        for (const int count : {1, 2, 8}) {
+            const SearchResult merged = inShards(random.problem, options, Shared::Tree, count);
+            EXPECT_EQ(merged.best.value, single.best.value) << round << ' ' << count;
+            EXPECT_EQ(merged.bound, single.bound) << round << ' ' << count;
+            EXPECT_EQ(merged.best.value, valueOf(random.problem, merged.best.chosen));
+            EXPECT_TRUE(merged.is_complete);
+        }
+    }
+}
+
+TEST(SearchShare, BoundsOfShardsThatAreCutShortHold) {
+    int open = 0;
+    for (std::uint64_t round = 36; round < 40; ++round) {
+        const RandomProblem random = hardProblem(round);
+        const SearchOptions options = searchOptions(Optimizer::Exact);
+        SilentProgress silent;
+        const SearchResult best = search(random.problem, options, silent);
+        for (const int asking : {300, 1000, 3000, 10000}) {
+            MemoryLedger all;
+            for (int i = 1; i <= 3; ++i) {
+                SearchOptions sharing = options;
+                MemoryLedger own;
+                sharing.share = {
+                    .what = Shared::Tree, .own = Shard{i, 3}, .joined = 0, .ledger = &own};
+                StopWhen stopping(afterAsking(asking * i));
+                (void)search(random.problem, sharing, stopping);
+                all.takeFrom(own, "proof/");
+            }
+            SearchOptions merging = options;
+            merging.share = {.what = Shared::Tree, .own = {}, .joined = 3, .ledger = &all};
+            const SearchResult merged = search(random.problem, merging, silent);
+            EXPECT_LE(merged.best.value, best.best.value);
+            EXPECT_GE(merged.bound, best.best.value) << round << ' ' << asking;
+            EXPECT_EQ(merged.is_complete, merged.best.value == merged.bound);
+            open += merged.is_complete ? 0 : 1;
+        }
+    }
+    EXPECT_GT(open, 0) << "nothing was cut short";
+}
+
+/// Runs that are stopped, each a little later, until one is complete.
+TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
+    for (const Optimizer optimizer : {Optimizer::Swap, Optimizer::Exact})
+        for (std::uint64_t round = 36; round < 39; ++round) {
+            const RandomProblem random = hardProblem(round);
+            const SearchOptions options = searchOptions(optimizer);
+            SilentProgress silent;
+            const SearchResult single = search(random.problem, options, silent);
+            MemoryLedger kept;
+            SearchResult result;
+            int runs = 0;
+            for (int asking = 2;; asking += 1 + asking / 4) {
+                SearchOptions resuming = options;
+                // A new process counts anew, and finds what is kept.
+                MemoryLedger own;
+                own.takeFrom(kept);
+                own.is_due = runs++ % 2 == 0;
+                resuming.share.ledger = &own;
+                StopWhen stopping(afterAsking(asking));
+                result = search(random.problem, resuming, stopping);
+                kept.takeFrom(own);
+                if (!stopping.stopped()) break;
+                ASSERT_LT(runs, 100);
+            }
+            EXPECT_GT(runs, 3);
+            EXPECT_EQ(result.best.chosen, single.best.chosen) << round;
+            EXPECT_EQ(result.bound, single.bound) << round;
+            EXPECT_TRUE(result.is_complete);
+        }
+}
+
+/// What was kept is of another problem: it is not used.
+TEST(SearchShare, StepsOfAnotherProblemAreNotTaken) {
+    const RandomProblem one = hardProblem(36), other = hardProblem(37);
+    const SearchOptions options = searchOptions(Optimizer::Exact);
+    SilentProgress silent;
+    const SearchResult single = search(other.problem, options, silent);
+    MemoryLedger kept, again;
+    SearchOptions keeping = options;
+    keeping.share.ledger = &kept;
+    (void)search(one.problem, keeping, silent);
+    EXPECT_GT(kept.size(), 5U);
+    again.takeFrom(kept);
+    keeping.share.ledger = &again;
+    const SearchResult result = search(other.problem, keeping, silent);
+    EXPECT_EQ(result.best.chosen, single.best.chosen);
+    EXPECT_EQ(result.bound, single.bound);
+}
+
+TEST(PackedSearch, DamageIsRefused) {
+    const RandomProblem random = hardProblem(36);
+    SearchResult result{{{{0, 3}, {0, 7}}, 12}, 20, true};
+    Packer to;
+    pack(to, result);
+    Unpacker from(to.bytes());
+    EXPECT_EQ(unpackResult(from, random.problem).best.chosen, result.best.chosen);
+    EXPECT_TRUE(from.atEnd());
+    for (std::size_t size = 0; size < to.bytes().size(); ++size) {
+        Unpacker cut(std::string_view(to.bytes()).substr(0, size));
+        EXPECT_THROW((void)unpackResult(cut, random.problem), FormatError) << size;
+    }
+    result.best.chosen = {{0, 1'000'000}};
+    Packer bad;
+    pack(bad, result);
+    Unpacker unknown(bad.bytes());
+    EXPECT_THROW((void)unpackResult(unknown, random.problem), FormatError);
+}
+
+}  // namespace
+}  // namespace ispace
