@@ -62,16 +62,18 @@ class BuriedPoses {
 };
 
 /// The text of --poses, held for a batch, which needs it more than once.
-std::string posesText(const ScanToolOptions& options) {
-    if (options.poses.empty() || !isBatch(options)) return "";
-    return options.poses == "-" ? readStdin() : readAll(options.poses);
+std::shared_ptr<const std::string> posesText(const ScanToolOptions& options) {
+    if (options.poses.empty() || !isBatch(options)) return std::make_shared<std::string>();
+    return std::make_shared<std::string>(options.poses == "-" ? readStdin()
+                                                              : readAll(options.poses));
 }
 
-ByteReader readerOfPoses(const ScanToolOptions& options, const std::string& text) {
+ByteReader readerOfPoses(const ScanToolOptions& options,
+                         const std::shared_ptr<const std::string>& text) {
     if (isBatch(options))
-        return [&text, at = std::size_t{0}](std::string& bytes) mutable {
+        return [text, at = std::size_t{0}](std::string& bytes) mutable {
             constexpr std::size_t kChunk = 1 << 16;
-            const std::string_view piece = std::string_view(text).substr(at, kChunk);
+            const std::string_view piece = std::string_view(*text).substr(at, kChunk);
             bytes += piece;
             at += piece.size();
             return !piece.empty();
@@ -83,9 +85,8 @@ ByteReader readerOfPoses(const ScanToolOptions& options, const std::string& text
     };
 }
 
-/// \param poses_text outlives it
 std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors,
-                                         const std::string& poses_text) {
+                                         const std::shared_ptr<const std::string>& poses_text) {
     if (options.poses.empty())
         return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
     PoseLines poses(readerOfPoses(options, poses_text), displayName(options.poses));
@@ -93,6 +94,35 @@ std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const S
     const SensorModel& model = sensors.read.front().model;
     return std::make_unique<MotionSource>(std::move(poses), readingRate(model), readingTime(model),
                                           options.frames);
+}
+
+/// What a run has to take, and where it goes.
+struct ReadingWork {
+    std::unique_ptr<ReadingSource> source;
+    std::unique_ptr<Delivery> delivery;  ///< null: all is done
+    std::int64_t count = -1;             ///< of readings; -1 if nobody knows
+};
+
+ReadingWork workOf(const ScanCommand& command, const SceneInput& input, const Sensors& sensors,
+                   const ReadingFormat& format) {
+    const ScanToolOptions& options = command.options();
+    const bool moves = !options.poses.empty();
+    const auto poses = posesText(options);
+    ReadingWork work;
+    work.source = sourceFor(options, sensors, poses);
+    if (!moves) work.count = static_cast<const StillSource&>(*work.source).count();
+    if (!isBatch(options)) {
+        work.delivery = makeDelivery(options, sensors, format, work.count);
+        return work;
+    }
+    constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+    if (moves) work.count = sourceFor(options, sensors, poses)->skip(kAll);
+    OwnReadings own = ownReadings(options, readingsJob(command, input, format, *poses, work.count),
+                                  sensors, format);
+    work.delivery = std::move(own.delivery);
+    work.source->skip(own.block.first);
+    work.count = own.block.end - own.block.first;
+    return work;
 }
 
 SceneRequest requestOf(const ScanToolOptions& options) {
@@ -131,23 +161,6 @@ void scan(const ScanCommand& command) {
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
     warn(options.common, "scan", format->warnings());
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
-    const std::string poses_text = posesText(options);
-    const auto source = sourceFor(options, sensors, poses_text);
-    std::int64_t count = moves ? -1 : static_cast<const StillSource&>(*source).count();
-    std::unique_ptr<Delivery> delivery;
-    if (isBatch(options)) {
-        constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
-        if (moves) count = sourceFor(options, sensors, poses_text)->skip(kAll);
-        OwnReadings own = ownReadings(
-            options, readingsJob(command, input, *format, poses_text, count), sensors, *format);
-        if (!own.delivery)
-            return talk(options.common, "scan", options.common.output + " is done already");
-        delivery = std::move(own.delivery);
-        source->skip(own.block.first);
-        count = own.block.end - own.block.first;
-    } else {
-        delivery = makeDelivery(options, sensors, *format, count);
-    }
 
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
@@ -158,18 +171,23 @@ void scan(const ScanCommand& command) {
                     [](const Sensor& one) { return one.is<Camera>(); }))
         taking.photographer = &photographer.emplace(scene, options.photo);
     ReadingTaker taker(sensors, worlds, bodies, taking);
-    LimitedSource own_part(*source, count < 0 ? std::numeric_limits<std::int64_t>::max() : count);
+    const ReadingWork work = workOf(command, input, sensors, *format);
+    if (!work.delivery)
+        return talk(options.common, "scan", options.common.output + " is done already");
+    const std::int64_t count = work.count;
+    constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+    LimitedSource own_part(*work.source, count < 0 ? kAll : count);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     progress->begin("readings", std::max<std::int64_t>(count, 0));
     BuriedPoses buried(scene.environment);
     std::int64_t done = 0;
-    runReadings(own_part, taker, sensors, *format, delivery->how(), options.coordinates, *progress,
-                [&](Readings& readings) {
+    runReadings(own_part, taker, sensors, *format, work.delivery->how(), options.coordinates,
+                *progress, [&](Readings& readings) {
                     if (moves) buried.count(readings.jobs);
                     done += static_cast<std::int64_t>(readings.jobs.size());
-                    delivery->write(readings);
+                    work.delivery->write(readings);
                 });
-    delivery->commit();
+    work.delivery->commit();
     progress->end();
     warn(options.common, "scan", buried.phrases());
     if (moves) files.push_back(options.poses);
