@@ -186,6 +186,10 @@ std::span<const CoverageFormat> coverageFormats() {
          .write = [](const CoverageProduct& product) -> CoverageFiles {
              return {coverageDxf(product.scene, product.coverage), ""};
          }},
+        {.name = "glb",
+         .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageGlb(product.scene, product.coverage, product.document), ""};
+         }},
         {.name = "ros",
          .square_cell = 0.05,
          .suffix = "yaml",

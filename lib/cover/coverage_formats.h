@@ -8,6 +8,7 @@
 
 #include "cover/coverage.h"
 #include "cover/map.h"
+#include "record/record.h"
 
 namespace ispace {
 
@@ -31,6 +32,11 @@ std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 /// within kChordError for arcs.
 std::string coverageDxf(const Scene& scene, const Coverage& coverage);
 
+/// The compiled room, see writeGlb(), whose floor has a picture of the cells on it: unseen floor,
+/// and the colours of the map by how many sensors see it, a pixel a cell (at most 4096 a side).
+/// \param document its records, those of the scene
+std::string coverageGlb(const Scene& scene, const Coverage& coverage, const Document& document);
+
 /// A product, and the file that stands beside it.
 struct CoverageFiles {
     std::string product, beside;
@@ -49,6 +55,7 @@ struct CoverageProduct {
     MapOptions map = {};
     double cell = 0;               ///< edge of square cells where the format wants them
     std::string beside_name = {};  ///< by which the product names the file beside it
+    Document document = {};        ///< the scene's records, with their history, for models
 };
 
 /// One format of products: a row that `coverage --to`, the choice by suffix, and the checks of

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "layout/scene.h"
 #include "record/record.h"
@@ -76,6 +77,10 @@ std::string writeGeoJson(const Scene& scene, std::optional<double> slice_height)
 /// bytes. O(triangles). \param mtl_name the file of materials, as the model names it; "": no
 /// materials
 ExportedFiles writeObj(const Scene& scene, const std::string& mtl_name);
+
+struct ModelNode;
+/// Nodes as Wavefront OBJ without materials.
+std::string objOf(const std::vector<ModelNode>& nodes);
 
 /// The scene as binary STL: metres, z up, all elements, placed sensors, robots, people and the
 /// floor in one surface; 80 bytes of header, a count, then per triangle its unit normal, three

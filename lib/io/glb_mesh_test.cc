@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "io/glb_file.h"
-#include "io/model.h"
+#include "model/glb_file.h"
+#include "model/model.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
 #include "record/text.h"

@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "io/glb_file.h"
+#include "model/glb_file.h"
 #include "io/input.h"
 #include "record/text.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "io/exporters.h"
-#include "io/model.h"
+#include "model/model.h"
 #include "io/robot_xml.h"
 #include "io/sdf_parts.h"
 #include "io/sdf_sensors.h"

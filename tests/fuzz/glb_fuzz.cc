@@ -5,7 +5,7 @@
 
 #include "fuzz.h"
 #include "io/glb.h"
-#include "io/glb_file.h"
+#include "model/glb_file.h"
 #include "layout/schemas.h"
 
 namespace {

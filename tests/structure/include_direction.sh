@@ -23,9 +23,9 @@ violations() {
         layer("base", ""); layer("solve", "base"); layer("geom", "base"); layer("raster", "geom")
         layer("draw", "raster"); layer("record", "geom"); layer("env", "draw raster record")
         layer("sensor", "env"); layer("layout", "sensor"); layer("plan", "layout")
-        layer("io", "plan"); layer("trace", "layout"); layer("render", "trace")
+        layer("model", "layout"); layer("io", "plan model"); layer("trace", "layout"); layer("render", "trace")
         layer("sense", "render")
-        layer("cover", "sense plan"); layer("view", "cover")
+        layer("cover", "sense plan model"); layer("view", "cover")
         layer("place", "cover solve"); layer("sim", "sense"); layer("wire", "sim")
         layer("net", "wire plan"); layer("client", "")
         layer("cli", "place view net io")
@@ -97,6 +97,8 @@ expect lib/geom/a.h '#include "env/slice.h"' yes
 expect lib/io/a.cc '#include "trace/ray_world.h"' yes
 expect lib/cover/a.cc '#include "io/glb.h"' yes
 expect lib/cover/a.cc '#include "plan/plan.h"' no
+expect lib/cover/a.cc '#include "model/model.h"' no
+expect lib/model/a.cc '#include "plan/plan.h"' yes
 expect lib/sense/a.cc '#include "plan/plan.h"' yes
 expect lib/draw/a_test.cc '#include "record/schema.h"' yes
 expect lib/base/a.cc '#include <geom/pose.h>' yes

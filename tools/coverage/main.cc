@@ -80,12 +80,27 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
     return readTrace(bytes, displayName(options.trace)).poses;
 }
 
-void writeProduct(const CoverageToolOptions& options, const Scene& scene,
+/// What a model holds: the records of the scene, under what made both inputs and this command.
+Document documentOf(const CoverageToolOptions& options, const SceneInput& input) {
+    Document document;
+    document.history = input.environment.history;
+    if (input.layout)
+        document.history.insert(document.history.end(), input.layout->history.begin(),
+                                input.layout->history.end());
+    document.history.push_back(options.history_line);
+    document.records = input.scene.records;
+    rebaseFiles(document.records, "",
+                std::filesystem::path(options.common.output).parent_path().string());
+    return document;
+}
+
+void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
                   const Measured& measured) {
     const std::string& output = options.common.output;
     const CoverageFormat& format = *options.format;
-    CoverageProduct product{scene, measured.coverage, measured.other ? &*measured.other : nullptr,
-                            options.map};
+    CoverageProduct product{input.scene, measured.coverage,
+                            measured.other ? &*measured.other : nullptr, options.map};
+    product.document = documentOf(options, input);
     if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
         product.cell = cells->edge;
     if (format.beside_suffix == nullptr) {
@@ -174,7 +189,7 @@ void coverage(CoverageToolOptions options) {
     if (options.format != nullptr) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
-        writeProduct(options, input.scene, measured);
+        writeProduct(options, input, measured);
         writeDependencies(options.common, files);
     }
     if (!options.report.empty()) writeAll(options.report, coverageJson(report, options.map.run));

@@ -136,6 +136,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 
+    o.history_line = line.historyLine(o.operands);
     if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
     if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
     if (words.color == "sensor") o.map.color = MapColor::Sensor;

@@ -24,6 +24,7 @@ struct CoverageToolOptions {
     std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
     MapOptions map;
     bool any_environment = false;
+    std::string history_line;
 };
 
 /// Opens no file. \throws UsageError, TextRequested

@@ -10,9 +10,9 @@
 
 #include "base/number.h"
 #include "io/exporters.h"
-#include "io/model.h"
 #include "layout/schemas.h"
 #include "layout/test_layout.h"
+#include "model/model.h"
 #include "record/text.h"
 
 namespace ispace {

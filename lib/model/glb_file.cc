@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/glb_file.h"
+#include "model/glb_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,6 @@
 #include <span>
 
 #include "base/error.h"
-#include "io/input.h"
 
 namespace ispace {
 
@@ -35,6 +34,10 @@ void appendWord(std::string& out, std::size_t value) {
         out += static_cast<char>(value & 255U);
         value >>= 8U;
     }
+}
+
+[[noreturn]] void failFile(const std::string& name, const std::string& message) {
+    throw FormatError(Diagnostic{displayName(name), 0, 0, message});
 }
 
 std::size_t padded(std::size_t size) { return (size + 3) / 4 * 4; }
@@ -101,6 +104,8 @@ static_assert(std::endian::native == std::endian::little, "glTF data are copied 
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kVertices = 34962, kElements = 34963;
 constexpr int kTriangles = 4;
+constexpr int kNearest = 9728, kLinear = 9729, kClampToEdge = 33071;  // how pictures are sampled
+constexpr const char *kScalar = "SCALAR", *kVec2 = "VEC2", *kVec3 = "VEC3";
 
 using Vector = GlbSurface::Vector;
 
@@ -175,27 +180,44 @@ GlbSurface surfaceOf(const Mesh& mesh, Point3 origin) {
 }
 
 int GlbBuilder::material(Material material, bool double_sided) {
-    const int next = static_cast<int>(materials_.size());
-    const auto [place, is_new] = materials_.try_emplace({material, double_sided}, next);
+    const auto [place, is_new] = materials_.try_emplace({material, double_sided}, material_count_);
     if (!is_new) return place->second;
     const Look& look = lookOf(material);
-    JsonWriter& json = item(materials_json_, next).beginObject();
-    json.key("name").value(look.name);
+    JsonWriter& json = beginMaterial(look.name);
     if (look.opacity < 1) json.key("alphaMode").value("BLEND");
     if (double_sided) json.key("doubleSided").value(true);
     json.key("pbrMetallicRoughness").beginObject().key("baseColorFactor");
     writeList(json, std::array{look.color[0], look.color[1], look.color[2], look.opacity});
     json.key("metallicFactor").value(look.metallic);
     json.key("roughnessFactor").value(look.roughness).endObject().endObject();
-    return next;
+    return place->second;
 }
 
-int GlbBuilder::addAccessor(int view, std::size_t offset, std::size_t count, bool is_index) {
+JsonWriter& GlbBuilder::beginMaterial(std::string_view name) {
+    JsonWriter& json = item(materials_json_, material_count_++).beginObject();
+    return json.key("name").value(name);
+}
+
+int GlbBuilder::pictureMaterial(std::string_view name, std::string_view png) {
+    picture_view_ = addView({png});
+    JsonWriter& json = beginMaterial(name);
+    json.key("doubleSided").value(true).key("pbrMetallicRoughness").beginObject();
+    json.key("baseColorTexture").beginObject().key("index").value(0).endObject();
+    json.key("metallicFactor").value(0).key("roughnessFactor").value(1).endObject().endObject();
+    return material_count_ - 1;
+}
+
+int GlbBuilder::addView(const ViewSpec& view) {
+    file_views_.push_back(view);
+    return kFiles + static_cast<int>(file_views_.size()) - 1;
+}
+
+int GlbBuilder::addAccessor(int view, std::size_t offset, std::size_t count, const char* type) {
     JsonWriter& json = item(accessors_json_, accessors_).beginObject();
     json.key("bufferView").value(view);
     if (offset > 0) json.key("byteOffset").value(offset);
-    json.key("componentType").value(is_index ? kUnsignedInt : kFloat).key("count").value(count);
-    json.key("type").value(is_index ? "SCALAR" : "VEC3");
+    json.key("componentType").value(type == kScalar ? kUnsignedInt : kFloat);
+    json.key("count").value(count).key("type").value(type);
     // What else positions have follows: the object stays open.
     return accessors_++;
 }
@@ -208,7 +230,7 @@ int GlbBuilder::addPositions(int view, std::size_t offset, const std::vector<Vec
             low[i] = std::min(low[i], point[i]);
             high[i] = std::max(high[i], point[i]);
         }
-    const int index = addAccessor(view, offset, points.size(), false);
+    const int index = addAccessor(view, offset, points.size(), kVec3);
     writeList(accessors_json_.key("min"), low);
     writeList(accessors_json_.key("max"), high);
     accessors_json_.endObject();
@@ -220,10 +242,15 @@ GlbBuilder::Primitive GlbBuilder::add(const GlbSurface& surface, int material) {
     primitive.material = material;
     primitive.positions = addPositions(kPositions, bytesOf(positions_).size(), surface.positions);
     primitive.normals =
-        addAccessor(kNormals, bytesOf(normals_).size(), surface.normals.size(), false);
+        addAccessor(kNormals, bytesOf(normals_).size(), surface.normals.size(), kVec3);
     accessors_json_.endObject();
+    if (!surface.places.empty()) {
+        const int view = addView({bytesOf(surface.places), 0, kVertices});
+        primitive.places = addAccessor(view, 0, surface.places.size(), kVec2);
+        accessors_json_.endObject();
+    }
     primitive.indices =
-        addAccessor(kIndices, bytesOf(indices_).size(), surface.indices.size(), true);
+        addAccessor(kIndices, bytesOf(indices_).size(), surface.indices.size(), kScalar);
     accessors_json_.endObject();
     positions_.insert(positions_.end(), surface.positions.begin(), surface.positions.end());
     normals_.insert(normals_.end(), surface.normals.begin(), surface.normals.end());
@@ -240,15 +267,14 @@ GlbBuilder::Primitive GlbBuilder::add(const TriangleMesh& mesh, int material) {
         primitive.material = material;
         return primitive;
     }
-    const int view = kFiles + static_cast<int>(file_views_.size());
-    file_views_.push_back({bytesOf(mesh.vertices), 0, kVertices});
-    file_views_.push_back({bytesOf(mesh.triangles), 0, kElements});
+    const int view = addView({bytesOf(mesh.vertices), 0, kVertices});
+    addView({bytesOf(mesh.triangles), 0, kElements});
     Primitive primitive;
     primitive.material = material;
     primitive.positions = addPositions(view, 0, mesh.vertices);
-    primitive.indices = addAccessor(view + 1, 0, 3 * mesh.triangles.size(), true);
+    primitive.indices = addAccessor(view + 1, 0, 3 * mesh.triangles.size(), kScalar);
     accessors_json_.endObject();
-    files_.push_back({mesh.digest, primitive});
+    files_.push_back({mesh.digest, view, primitive});
     return primitive;
 }
 
@@ -259,6 +285,7 @@ int GlbBuilder::addMesh(std::string_view name, const std::vector<Primitive>& pri
         json.beginObject().key("attributes").beginObject();
         json.key("POSITION").value(primitive.positions);
         if (primitive.normals >= 0) json.key("NORMAL").value(primitive.normals);
+        if (primitive.places >= 0) json.key("TEXCOORD_0").value(primitive.places);
         json.endObject().key("indices").value(primitive.indices);
         json.key("material").value(primitive.material);
         json.key("mode").value(kTriangles).endObject();
@@ -289,10 +316,9 @@ void GlbBuilder::writeExtras(JsonWriter& json) const {
     json.key("extras").beginObject().key("ispace").value(static_cast<int>(kRecords));
     if (!files_.empty()) {
         json.key("ispace_meshes").beginArray();
-        int view = kFiles;
         for (const FileMesh& file : files_) {
-            json.beginObject().key("digest").value(file.digest).key("positions").value(view++);
-            json.key("indices").value(view++).endObject();
+            json.beginObject().key("digest").value(file.digest).key("positions").value(file.view);
+            json.key("indices").value(file.view + 1).endObject();
         }
         json.endArray();
     }
@@ -333,6 +359,24 @@ void GlbBuilder::writeScene(JsonWriter& json, const std::array<double, 3>& origi
     json.beginArray().value(nodes_).endArray().endObject().endArray();
 }
 
+namespace {
+
+/// The sections of a file with one picture: its cells stay sharp near by.
+std::string picturesText(int view) {
+    JsonWriter json;
+    json.beginObject();
+    json.key("samplers").beginArray().beginObject().key("magFilter").value(kNearest);
+    json.key("minFilter").value(kLinear).key("wrapS").value(kClampToEdge);
+    json.key("wrapT").value(kClampToEdge).endObject().endArray();
+    json.key("images").beginArray().beginObject().key("bufferView").value(view);
+    json.key("mimeType").value("image/png").endObject().endArray();
+    json.key("textures").beginArray().beginObject().key("sampler").value(0);
+    json.key("source").value(0).endObject().endArray();
+    return ',' + json.take().substr(1);
+}
+
+}  // namespace
+
 std::string GlbBuilder::finish(std::string_view records, const std::array<double, 3>& origin) {
     constexpr int kStride = sizeof(Vector);
     if (indices_.empty()) {  // a view has at least one byte
@@ -357,6 +401,7 @@ std::string GlbBuilder::finish(std::string_view records, const std::array<double
         text += key;
         text += section.endArray().text();
     };
+    if (picture_view_ >= 0) text += picturesText(picture_view_);
     append(R"(,"materials":)", materials_json_);
     append(R"(,"meshes":)", meshes_json_);
     append(R"(,"accessors":)", accessors_json_);

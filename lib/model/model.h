@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the writers of OBJ and STL share.
+// lib/model: a scene as named meshes, and as glTF. Uses layout and below.
 #pragma once
 
 #include <array>
@@ -32,9 +32,6 @@ std::vector<ModelNode> modelOf(const Scene& scene);
 std::vector<ModelNode> placedNodes(const Scene& scene, bool with_views = false);
 /// The node of an element; its meshes are empty if there is nothing to show.
 ModelNode nodeOf(const Element& element);
-
-/// Nodes as Wavefront OBJ without materials, see writeObj().
-std::string objOf(const std::vector<ModelNode>& nodes);
 
 /// Frame of a node's meshes.
 inline Frame3 frameOf(const ModelNode& node) { return node.pose ? Frame3(*node.pose) : Frame3(); }

@@ -9,9 +9,9 @@
 #include "env/body.h"
 #include "env/mesh.h"
 #include "env/standing.h"
-#include "io/glb.h"
-#include "io/glb_file.h"
-#include "io/model.h"
+#include "model/glb_file.h"
+#include "model/glb_write.h"
+#include "model/model.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -40,7 +40,8 @@ Eigen::Quaterniond gltfFromFile(const std::string& up) {
 /// Adds the nodes of a scene.
 class GlbScene {
   public:
-    GlbScene(GlbBuilder& builder, Point3 origin) : builder_(builder), origin_(origin) {}
+    GlbScene(GlbBuilder& builder, Point3 origin, const FloorPicture* picture)
+        : builder_(builder), origin_(origin), picture_(picture) {}
 
     void add(const Element& element) {
         if (standsByItself(element.record))
@@ -51,7 +52,9 @@ class GlbScene {
             addFixed(nodeOf(element));
     }
     void add(const ModelNode& node) {
-        if (node.pose)
+        if (picture_ != nullptr && node.keyword.empty())
+            addFloor(node);
+        else if (node.pose)
             addPlaced(node);
         else
             addFixed(node);
@@ -79,6 +82,21 @@ class GlbScene {
     void addFixed(const ModelNode& node) {
         const int mesh = meshAbout(origin_, node.id, node.meshes);
         if (mesh >= 0) builder_.addNode({node.id, node.keyword, mesh, nullptr});
+    }
+
+    /// The floor of the indoor region with the picture on it.
+    void addFloor(const ModelNode& node) {
+        floor_ = surfaceOf(node.meshes.front(), origin_);
+        if (floor_.indices.empty()) return;
+        const Box2& box = picture_->limits;
+        for (const GlbSurface::Vector& at : floor_.positions) {
+            const double x = at[0] + origin_.x, y = -at[2] + origin_.y;
+            floor_.places.push_back({static_cast<float>((x - box.low.x) / box.width()),
+                                     static_cast<float>((box.high.y - y) / box.depth())});
+        }
+        const int material = builder_.pictureMaterial(picture_->name, picture_->png);
+        const int mesh = builder_.addMesh(node.id, {builder_.add(floor_, material)});
+        builder_.addNode({node.id, node.keyword, mesh, nullptr});
     }
 
     /// A thing that stands somewhere; equal ones share a mesh.
@@ -140,6 +158,8 @@ class GlbScene {
 
     GlbBuilder& builder_;
     Point3 origin_;
+    const FloorPicture* picture_;
+    GlbSurface floor_;  // until the file is written
     std::map<Figure, int> figures_;
     std::unordered_map<std::string, int> shapes_;  // by their records without id and place
     std::map<std::string, int> files_;
@@ -158,10 +178,10 @@ std::string recordsText(const Document& document) {
 
 }  // namespace
 
-std::string writeGlb(const Scene& scene, const Document& document) {
+std::string writeGlb(const Scene& scene, const Document& document, const FloorPicture* picture) {
     const Point3 origin = meshOrigin(scene.environment.limits());
     GlbBuilder builder;
-    GlbScene nodes(builder, origin);
+    GlbScene nodes(builder, origin, picture);
     for (const Element& element : scene.environment.elements()) nodes.add(element);
     for (const ModelNode& node : placedNodes(scene, true)) nodes.add(node);
     return builder.finish(recordsText(document), gltfAxes(origin - Point3()));

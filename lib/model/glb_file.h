@@ -46,6 +46,7 @@ struct GlbSurface {
     using Vector = std::array<float, 3>;
     std::vector<Vector> positions, normals;
     std::vector<std::uint32_t> indices;
+    std::vector<std::array<float, 2>> places = {};  ///< on a picture, of each vertex; empty: none
 };
 
 /// The mesh about `origin`. Slivers that floats cannot tell from a line are left out.
@@ -70,13 +71,17 @@ struct GlbNode {
 class GlbBuilder {
   public:
     struct Primitive {
-        int positions = 0, normals = -1, indices = 0;  ///< accessors; -1 for none
+        int positions = 0, normals = -1, places = -1, indices = 0;  ///< accessors; -1 for none
         int material = 0;
     };
 
     /// Materials are made when first used. \return its index
     int material(Material material, bool double_sided);
-    /// \pre the surface has triangles
+    /// A material with a picture (PNG) on it, whose places are 0,0 at its upper left corner and 1,1
+    /// at the lower right one; beyond them its edges go on. \return its index \pre the picture
+    /// stays as it is until finish(), and is the only one
+    int pictureMaterial(std::string_view name, std::string_view png);
+    /// \pre the surface has triangles; it stays as it is until finish() if it has places
     Primitive add(const GlbSurface& surface, int material);
     /// The mesh of a file, in views of its own, once for all of equal digest.
     /// \pre it has triangles, and stays as it is until finish()
@@ -99,10 +104,13 @@ class GlbBuilder {
     };
     struct FileMesh {
         std::string digest;
+        int view = 0;  ///< of its positions; that of its indices follows
         Primitive primitive;
     };
 
-    int addAccessor(int view, std::size_t offset, std::size_t count, bool is_index);
+    int addAccessor(int view, std::size_t offset, std::size_t count, const char* type);
+    int addView(const ViewSpec& view);
+    JsonWriter& beginMaterial(std::string_view name);
     int addPositions(int view, std::size_t offset, const std::vector<GlbSurface::Vector>& points);
     void writeExtras(JsonWriter& json) const;
     static std::vector<std::string_view> writeViews(JsonWriter& json,
@@ -115,7 +123,8 @@ class GlbBuilder {
     std::vector<FileMesh> files_;
     std::map<std::pair<Material, bool>, int> materials_;
     JsonWriter materials_json_, meshes_json_, accessors_json_, nodes_json_;
-    int meshes_ = 0, accessors_ = 0, nodes_ = 0;
+    int material_count_ = 0, meshes_ = 0, accessors_ = 0, nodes_ = 0;
+    int picture_view_ = -1;  ///< of the picture; -1 for none
 };
 
 }  // namespace ispace
