@@ -10,6 +10,9 @@ for program in munged slurmctld slurmd slurmstepd sbatch sinfo; do
     command -v "$program" >/dev/null || skip "no $program (Debian: munge slurmctld slurmd slurm-client)"
 done
 
+# Of a cluster that the test itself may run on.
+unset ${!SLURM_@} ${!SBATCH_@}
+
 # A socket's path must be short.
 cluster=$(mktemp -d "${TMPDIR:-/tmp}/ispace-slurm.$$.XXXXXX")
 export SLURM_CONF=$cluster/slurm.conf
