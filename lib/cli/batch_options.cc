@@ -44,7 +44,7 @@ void checkBatchOptions(const CommandLine& line, const BatchOptions& options,
                          withoutSuffix(common.output) +
                          ".part, and the format by --to if it is "
                          "not the default");
-    if (options.resume && isStream(common.output))
+    if (options.resume && !OutputSet::of(common.output) && isStream(common.output))
         throw UsageError("--resume needs a file (-o): what went into a stream is gone");
 }
 

@@ -52,6 +52,14 @@ scan "$room" "$layout" --frames 5 --to png -o all/
 mkdir shared
 for i in 1 2 3; do scan "$room" "$layout" --frames 5 --to png --shard $i/3 -o shared; done
 diff -r all shared || fail "files of shards are others"
+# Each of them may go on; what a killed one left is its own.
+mkdir resumed
+files=(scan "$room" "$layout" --frames 5 --to png --resume -o resumed/)
+"${files[@]}" --shard 1/3 & job=$!
+"${files[@]}" --shard 2/3
+wait $job
+"${files[@]}" --shard 3/3
+diff -r all resumed || fail "files of shards that may go on are others"
 [ "$(ls all | wc -l)" -eq 10 ] || fail "ten readings, and $(ls all | wc -l) files"
 
 # What does not belong together.

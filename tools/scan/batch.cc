@@ -252,7 +252,12 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
         files = makeDelivery(options, sensors, format, options.poses.empty() ? *job.units : -1);
     std::unique_ptr<Checkpoint> checkpoint;
     if (options.batch.resume) {
-        checkpoint = std::make_unique<Checkpoint>(checkpointOf(output), head);
+        std::string file = checkpointOf(output);
+        // Shards write into one folder.
+        if (names && options.batch.shard)
+            file +=
+                '-' + std::to_string(head.shard.index) + "of" + std::to_string(head.shard.count);
+        checkpoint = std::make_unique<Checkpoint>(file, head);
         own.block.first += readingsIn(checkpoint->part());
     }
     if (names)
