@@ -44,7 +44,7 @@ grep -q "No space left on device" err || fail "coverage: $(cat err)"
 
 # A record ends with the last step that is whole in both of its files, and says which that is.
 rm disk/ballast
-for ballast in 0 9000 20000 25000; do
+for ballast in 0 4000 9000 16000; do
     head -c $ballast /dev/zero >disk/ballast
     expect_status 1 timeout 60 simrun "$data/square.env" "$data/session.3dm" --clock fast \
         --until 1000000 --record disk/run
