@@ -127,7 +127,10 @@ chmod +x bin/arrange
 start_cluster
 set_up slurm
 cd slurm
-PATH=$scratch/bin:$PATH ./slurm.sh 100 >../out 2>../err &
+cp "$scenes"/ispace.* .
+export PATH=$scratch/bin:$PATH
+parts=$(sbatch --parsable --array=1-10 slurm-array.sh 10 shards.yaml)
+./slurm.sh 100 >../out 2>../err &
 submitted=$!
 eventually "twenty jobs" sh -c '[ "$(ls results/*.json | wc -l)" -ge 20 ]'
 on_node2=$(grep -c ' node2 ' ../begun || true)
@@ -147,4 +150,13 @@ grep -q ' node2 0 ' begun || fail "node2 did nothing"
 grep -q ' node1 [1-9]' begun || fail "nothing was requeued: $(cut -d' ' -f2,3 begun | sort | uniq -c)"
 sinfo -h -N -n node2 -o %t | grep -q down || fail "node2 is not down: $(sinfo -h -N)"
 ! grep -qv ' 1$' begun || fail "tasks without SLURM_CPUS_PER_TASK: $(grep -v ' 1$' begun)"
+
+# One long scan in a hundred parts, ten for each task.
+cd slurm
+eventually "all parts" sh -c "[ -z \"\$(squeue -h -j $parts)\" ]"
+scan --merge $(ispace-sweep names shards.yaml) -o merged.jsonl
+scan ispace.env ispace.3dm --noise --frames 500 -q -o whole.jsonl
+expect_same whole.jsonl merged.jsonl "the merged parts are not the whole scan"
+[ "$(wc -l <whole.jsonl)" -gt 500 ] || fail "a short scan: $(wc -l <whole.jsonl)"
+cd ..
 echo "node2 died after $at_death of 100 jobs; requeued: $(awk '$3 > 0 { print $1 }' begun | sort -nu | tr '\n' ' ')"

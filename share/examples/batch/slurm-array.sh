@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# slurm-array.sh TASKS: one task of an array of TASKS, started by slurm.sh. It does its part of the sweep's
+# slurm-array.sh TASKS [SWEEP]: one task of an array of TASKS, started by slurm.sh. It does its part of the sweep's
 # jobs, less what is done already: after a node failed and Slurm requeued the task, or if the array is
 # submitted again. The tools take their number of threads from --cpus-per-task.
 #SBATCH --job-name=ispace-sweep
@@ -10,4 +10,4 @@
 #SBATCH --error=slurm-%A_%a.txt
 #SBATCH --open-mode=append
 set -euo pipefail
-ispace-sweep commands sweep.yaml --shard "$SLURM_ARRAY_TASK_ID/$1" --missing | sh
+ispace-sweep commands "${2:-sweep.yaml}" --shard "$SLURM_ARRAY_TASK_ID/$1" --missing | sh
