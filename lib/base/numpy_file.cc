@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/numpy_file.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace ispace {
+
+std::string npyHeader(std::string_view type, std::span<const std::uint64_t> shape) {
+    constexpr std::size_t kAlignment = 64, kBefore = 10;
+    std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
+    for (std::size_t i = 0; i < shape.size(); ++i)
+        text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
+    text += shape.size() == 1 ? ",), }" : "), }";
+    text.append(kAlignment - (kBefore + text.size() + 1) % kAlignment, ' ');
+    std::string out("\x93NUMPY\1\0", 8);
+    appendLittle(out, static_cast<std::uint16_t>(text.size() + 1));
+    return out.append(text).append("\n");
+}
+
+std::uint32_t crcOf(std::string_view bytes) {
+    return static_cast<std::uint32_t>(
+        ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::uint32_t crcOfBoth(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
+    return static_cast<std::uint32_t>(
+        ::crc32_combine(first, second, static_cast<z_off_t>(second_size)));
+}
+
+namespace {
+
+constexpr std::uint32_t kLocalHead = 0x04034b50, kCentralHead = 0x02014b50, kEnd = 0x06054b50,
+                        kEnd64 = 0x06064b50, kEnd64Locator = 0x07064b50;
+constexpr std::uint16_t kVersion = 20, kVersion64 = 45, kUtf8Names = 1U << 11U;
+constexpr std::uint16_t kFirstDay = 1U << 5U | 1U;  // the first of January 1980, as ZIP counts
+constexpr std::uint64_t kMost32 = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMost16 = std::numeric_limits<std::uint16_t>::max();
+
+std::uint32_t atMost32(std::uint64_t value) {
+    return static_cast<std::uint32_t>(std::min(value, kMost32));
+}
+
+/// What local and central heads have in common, from the version needed to the length of the name.
+void appendMiddle(std::string& out, std::uint16_t version, std::uint32_t crc, std::uint64_t size,
+                  const std::string& name) {
+    appendLittle(out, version);
+    appendLittle(out, kUtf8Names);
+    appendLittle(out, std::uint16_t{0});  // not compressed
+    appendLittle(out, std::uint16_t{0});  // midnight
+    appendLittle(out, kFirstDay);
+    appendLittle(out, crc);
+    appendLittle(out, atMost32(size));
+    appendLittle(out, atMost32(size));
+    appendLittle(out, static_cast<std::uint16_t>(name.size()));
+}
+
+/// The extra field for sizes of 64 bits.
+std::string extra64(std::span<const std::uint64_t> values) {
+    std::string out;
+    if (values.empty()) return out;
+    appendLittle(out, std::uint16_t{1});
+    appendLittle(out, static_cast<std::uint16_t>(sizeof(std::uint64_t) * values.size()));
+    for (const std::uint64_t value : values) appendLittle(out, value);
+    return out;
+}
+
+}  // namespace
+
+void ZipWriter::put(std::string_view bytes) {
+    write_(bytes);
+    at_ += bytes.size();
+}
+
+void ZipWriter::begin(const std::string& name, std::uint64_t size, std::uint32_t crc) {
+    entries_.push_back({name, size, at_, crc});
+    std::vector<std::uint64_t> large;
+    if (size >= kMost32) large = {size, size};
+    const std::string extra = extra64(large);
+    std::string head;
+    appendLittle(head, kLocalHead);
+    appendMiddle(head, large.empty() ? kVersion : kVersion64, crc, size, name);
+    appendLittle(head, static_cast<std::uint16_t>(extra.size()));
+    put(head.append(name).append(extra));
+}
+
+void ZipWriter::add(const std::string& name, std::string_view bytes) {
+    begin(name, bytes.size(), crcOf(bytes));
+    data(bytes);
+}
+
+void ZipWriter::finish() {
+    const std::uint64_t begin = at_;
+    for (const Entry& entry : entries_) {
+        std::vector<std::uint64_t> large;
+        if (entry.size >= kMost32) large = {entry.size, entry.size};
+        if (entry.offset >= kMost32) large.push_back(entry.offset);
+        const std::string extra = extra64(large);
+        const std::uint16_t version = large.empty() ? kVersion : kVersion64;
+        std::string head;
+        appendLittle(head, kCentralHead);
+        appendLittle(head, version);
+        appendMiddle(head, version, entry.crc, entry.size, entry.name);
+        appendLittle(head, static_cast<std::uint16_t>(extra.size()));
+        appendLittle(head, std::uint16_t{0});  // no comment
+        appendLittle(head, std::uint16_t{0});  // the first and only disk
+        appendLittle(head, std::uint16_t{0});
+        appendLittle(head, std::uint32_t{0});
+        appendLittle(head, atMost32(entry.offset));
+        put(head.append(entry.name).append(extra));
+    }
+    const std::uint64_t size = at_ - begin, count = entries_.size();
+    std::string end;
+    if (begin >= kMost32 || size >= kMost32 || count >= kMost16) {
+        constexpr std::uint64_t kRest = 44;
+        const std::uint64_t at = at_;
+        appendLittle(end, kEnd64);
+        appendLittle(end, kRest);
+        appendLittle(end, kVersion64);
+        appendLittle(end, kVersion64);
+        appendLittle(end, std::uint64_t{0});  // both disks
+        for (const std::uint64_t value : {count, count, size, begin}) appendLittle(end, value);
+        appendLittle(end, kEnd64Locator);
+        appendLittle(end, std::uint32_t{0});
+        appendLittle(end, at);
+        appendLittle(end, std::uint32_t{1});
+    }
+    const auto files = static_cast<std::uint16_t>(std::min(count, kMost16));
+    appendLittle(end, kEnd);
+    appendLittle(end, std::uint32_t{0});  // both disks
+    appendLittle(end, files);
+    appendLittle(end, files);
+    appendLittle(end, atMost32(size));
+    appendLittle(end, atMost32(begin));
+    appendLittle(end, std::uint16_t{0});
+    put(end);
+}
+
+}  // namespace ispace
