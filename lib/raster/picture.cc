@@ -333,7 +333,15 @@ Cell classify(int sample, int max_value, const OccupancyRule& rule) {
     const double darkness = static_cast<double>(rule.negate ? sample : max_value - sample) /
                             static_cast<double>(max_value);
     if (darkness > rule.occupied_thresh) return Cell::Occupied;
-    return darkness < rule.free_thresh ? Cell::Free : Cell::Unknown;
+    if (darkness < rule.free_thresh) return Cell::Free;
+    if (rule.mode == OccupancyRule::Mode::Scale) {
+        // Hundredths of the way between the thresholds, which may be its very ends.
+        const double way = rule.occupied_thresh - rule.free_thresh;
+        const double value = std::rint((darkness - rule.free_thresh) / way * 100);
+        if (value == 0) return Cell::Free;
+        if (value == 100) return Cell::Occupied;
+    }
+    return Cell::Unknown;
 }
 
 namespace {

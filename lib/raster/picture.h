@@ -83,7 +83,7 @@ GreyPicture decodePicture(std::string_view bytes, const std::string& name);
 struct OccupancyRule {
     enum class Mode {
         Trinary,  ///< by the two thresholds
-        Scale,    ///< the same, with shades of unknown between the thresholds
+        Scale,    ///< from 0 to 100 between the thresholds: 0 is free, 100 occupied, others unknown
         Raw,      ///< the pixel (of 255) is the value: 0 free, 100 occupied
     };
     Mode mode = Mode::Trinary;

@@ -129,6 +129,18 @@ TEST(Occupancy, TrinaryComparesStrictly) {
     EXPECT_EQ(classify(128, 255, rule), Cell::Unknown);
 }
 
+TEST(Occupancy, ScaleCountsHundredthsBetweenTheThresholds) {
+    OccupancyRule rule;
+    rule.mode = OccupancyRule::Mode::Scale;
+    rule.free_thresh = 0;  // as masks for Nav2's filters have it
+    rule.occupied_thresh = 1;
+    EXPECT_EQ(classify(255, 255, rule), Cell::Free);
+    EXPECT_EQ(classify(254, 255, rule), Cell::Free);     // 0.39 of 100
+    EXPECT_EQ(classify(253, 255, rule), Cell::Unknown);  // 0.78
+    EXPECT_EQ(classify(0, 255, rule), Cell::Occupied);
+    EXPECT_EQ(classify(2, 255, rule), Cell::Unknown);  // 99.2
+}
+
 TEST(Occupancy, NegateTurnsShadesAround) {
     OccupancyRule rule;
     rule.negate = true;
