@@ -11,63 +11,38 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "raster/encode.h"
+#include "sense/format_base.h"
 #include "sense/reading_picture.h"
 #include "sense/reading_text.h"
-#include "sensor/kind.h"
 
 namespace ispace {
 
 namespace {
 
-/// What formats have in common: the sensors, and one file a reading.
-class Base : public ReadingFormat {
+/// One reading behind another.
+class PlainStream final : public ReadingStream {
   public:
-    Base(const Sensors& sensors, FormatOptions options, std::string ending)
-        : sensors_(sensors), options_(std::move(options)), ending_(std::move(ending)) {}
-
-    [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
-                                                 const Reading& reading) const override {
-        return {{ending_, whole(index, reading)}};
+    PlainStream(ByteSink write, const std::string& header) : write_(std::move(write)) {
+        write_(header);
     }
-
-    [[nodiscard]] std::vector<std::string> endings() const override { return {ending_}; }
-
-  protected:
-    [[nodiscard]] const Sensor& sensor(std::size_t index) const { return sensors_.read[index]; }
-    /// \throws UsageError for the first sensor that is none of these
-    void accept(std::string_view format, std::string_view what,
-                bool (*is_held)(const Sensor&)) const {
-        for (const Sensor& one : sensors_.read)
-            if (!is_held(one)) refuse(format, what, one);
-    }
-    [[noreturn]] static void refuse(std::string_view format, std::string_view what,
-                                    const Sensor& one) {
-        throw UsageError(std::string(format) + " holds " + std::string(what) + ", and " + one.id +
-                         " is a " + std::string(kindOf(one.model).keyword) +
-                         "; choose sensors with --select, or another format with --to");
-    }
-    /// A reading as a file of its own.
-    [[nodiscard]] virtual std::string whole(std::size_t index, const Reading& reading) const {
-        std::string bytes = header();
-        append(bytes, index, reading);
-        return bytes;
-    }
-    static bool hasRanges(const Sensor& one) { return one.is<Laser>() || one.is<Ranger>(); }
-    static bool isCamera(const Sensor& one) { return one.is<Camera>(); }
-
-    static constexpr const char* kCameraInfo = ".yaml";
-
-    const Sensors& sensors_;
-    const FormatOptions options_;
+    void write(std::string_view appended) override { write_(appended); }
 
   private:
-    std::string ending_;
+    ByteSink write_;
 };
 
-class Jsonl final : public Base {
+}  // namespace
+
+std::unique_ptr<ReadingStream> ReadingFormat::stream(ByteSink write) const {
+    return std::make_unique<PlainStream>(std::move(write), header());
+}
+
+namespace {
+
+class Jsonl final : public FormatBase {
   public:
     Jsonl(const Sensors& sensors, FormatOptions options)
-        : Base(sensors, std::move(options), ".jsonl") {}
+        : FormatBase(sensors, std::move(options), ".jsonl") {}
     [[nodiscard]] std::string header() const override {
         return scanHeaderLine(options_.history, options_.seed);
     }
@@ -78,9 +53,10 @@ class Jsonl final : public Base {
     }
 };
 
-class Csv final : public Base {
+class Csv final : public FormatBase {
   public:
-    Csv(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".csv") {
+    Csv(const Sensors& sensors, FormatOptions options)
+        : FormatBase(sensors, std::move(options), ".csv") {
         accept("csv", "numbers", [](const Sensor& one) { return !isCamera(one); });
     }
     [[nodiscard]] std::string header() const override { return csvHeader(sensors_.read.front()); }
@@ -105,9 +81,10 @@ class Csv final : public Base {
 };
 
 /// Ranges and depths, float32, little-endian, nothing else; no return is +infinity.
-class Raw final : public Base {
+class Raw final : public FormatBase {
   public:
-    Raw(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".raw") {
+    Raw(const Sensors& sensors, FormatOptions options)
+        : FormatBase(sensors, std::move(options), ".raw") {
         accept("raw", "ranges", hasRanges);
     }
     void append(std::string& out, std::size_t /*index*/, const Reading& reading) const override {
@@ -129,11 +106,11 @@ class Raw final : public Base {
 };
 
 /// Points, as `write` puts them into a file.
-class Cloud : public Base {
+class Cloud : public FormatBase {
   public:
     using Writer = std::string (*)(const PointCloud& cloud, Encoding encoding);
     Cloud(const Sensors& sensors, FormatOptions options, const std::string& name, Writer write)
-        : Base(sensors, std::move(options), "." + name), write_(write) {
+        : FormatBase(sensors, std::move(options), "." + name), write_(write) {
         accept(name, "points", hasRanges);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
@@ -156,10 +133,10 @@ struct Ply final : Cloud {
         : Cloud(sensors, std::move(options), "ply", plyOf) {}
 };
 
-class Carmen final : public Base {
+class Carmen final : public FormatBase {
   public:
     Carmen(const Sensors& sensors, FormatOptions options)
-        : Base(sensors, std::move(options), ".log") {
+        : FormatBase(sensors, std::move(options), ".log") {
         accept("carmen", "scans of level lasers",
                [](const Sensor& one) { return one.is<Laser>(); });
         for (const Sensor& laser : sensors.read)
@@ -211,9 +188,10 @@ class Carmen final : public Base {
 };
 
 /// Pictures, depths and obstacle maps.
-class Png final : public Base {
+class Png final : public FormatBase {
   public:
-    Png(const Sensors& sensors, FormatOptions options) : Base(sensors, std::move(options), ".png") {
+    Png(const Sensors& sensors, FormatOptions options)
+        : FormatBase(sensors, std::move(options), ".png") {
         accept("png", "pictures, depths and obstacle maps",
                [](const Sensor& one) { return hasRanges(one) || isCamera(one); });
         for (const Sensor& one : sensors.read)
@@ -235,7 +213,7 @@ class Png final : public Base {
     }
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
-        std::vector<ReadingFile> files = Base::files(index, reading);
+        std::vector<ReadingFile> files = FormatBase::files(index, reading);
         if (const auto* photo = std::get_if<Photo>(&reading))
             addFilesBeside(sensor(index), *photo, options_, files);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
@@ -263,7 +241,7 @@ class Png final : public Base {
         return found;
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
-        std::vector<std::string> endings = Base::endings();
+        std::vector<std::string> endings = FormatBase::endings();
         if (std::any_of(sensors_.read.begin(), sensors_.read.end(),
                         [](const Sensor& one) { return one.is<Ranger>(); })) {
             if (options_.color) endings.emplace_back(kColor);
@@ -281,10 +259,10 @@ class Png final : public Base {
     static constexpr const char* kColor = "-color.png";
 };
 
-class Jpeg final : public Base {
+class Jpeg final : public FormatBase {
   public:
     Jpeg(const Sensors& sensors, FormatOptions options)
-        : Base(sensors, std::move(options), ".jpg") {
+        : FormatBase(sensors, std::move(options), ".jpg") {
         accept("jpeg", "pictures of cameras", isCamera);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
@@ -293,12 +271,12 @@ class Jpeg final : public Base {
     }
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
-        std::vector<ReadingFile> files = Base::files(index, reading);
+        std::vector<ReadingFile> files = FormatBase::files(index, reading);
         addFilesBeside(sensor(index), std::get<Photo>(reading), options_, files);
         return files;
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
-        std::vector<std::string> endings = Base::endings();
+        std::vector<std::string> endings = FormatBase::endings();
         addEndingsBeside(options_, endings);
         return endings;
     }
@@ -307,13 +285,13 @@ class Jpeg final : public Base {
 };
 
 /// The pictures of one camera, one behind another, for programs that make films.
-class Film : public Base {
+class Film : public FormatBase {
   public:
     using Header = std::string (*)(const Camera& camera);
     using Append = void (*)(std::string& out, const Photo& photo);
     Film(const Sensors& sensors, FormatOptions options, std::string name, const std::string& ending,
          Header header, Append append)
-        : Base(sensors, std::move(options), ending),
+        : FormatBase(sensors, std::move(options), ending),
           name_(std::move(name)),
           header_(header),
           append_(append) {
@@ -363,11 +341,12 @@ std::unique_ptr<ReadingFormat> make(const Sensors& sensors, FormatOptions option
     return std::make_unique<Format>(sensors, std::move(options));
 }
 
-/// The table: a new format is a class above and a row here.
+/// The table: a new format is a class, above or in a file of its own, and a row here.
 constexpr std::pair<std::string_view, Maker> kFormats[] = {
     {"jsonl", make<Jsonl>}, {"csv", make<Csv>},       {"raw", make<Raw>}, {"pcd", make<Pcd>},
     {"ply", make<Ply>},     {"carmen", make<Carmen>}, {"png", make<Png>}, {"jpeg", make<Jpeg>},
-    {"rgb24", make<Rgb24>}, {"y4m", make<Y4m>}};
+    {"rgb24", make<Rgb24>}, {"y4m", make<Y4m>},       {"mcap", makeMcap}, {"npz", makeNpz},
+    {"npy", makeNpy},       {"las", makeLas}};
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/byte_sink.h"
 #include "base/program.h"
 #include "sense/point_cloud.h"
 #include "sense/reading.h"
@@ -22,14 +23,27 @@ struct ReadingFile {
     std::string bytes;
 };
 
+/// Makes one file of many readings, in their order, by one thread. Memory is bounded.
+class ReadingStream {
+  public:
+    virtual ~ReadingStream() = default;
+    /// What ReadingFormat::append() made of the next readings.
+    virtual void write(std::string_view appended) = 0;
+    /// After the last one.
+    virtual void finish() {}
+};
+
 /// Writes readings in one format. Thread-safe.
 class ReadingFormat {
   public:
     virtual ~ReadingFormat() = default;
     /// Bytes before the first reading.
     [[nodiscard]] virtual std::string header() const { return ""; }
-    /// Appends a reading of a sensor (in Sensors::read).
+    /// Appends a reading of a sensor (in Sensors::read): its bytes, or what stream() makes them of.
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
+    /// One file of many readings: header(), and what append() made of each, unless a format says
+    /// otherwise. The format outlives the stream.
+    [[nodiscard]] virtual std::unique_ptr<ReadingStream> stream(ByteSink write) const;
     /// A reading as separate files.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
                                                          const Reading& reading) const = 0;

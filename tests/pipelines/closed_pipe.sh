@@ -20,6 +20,9 @@ into_closed_pipe envc "$data/room.env" --to env
 into_closed_pipe envc "$data/room.env" --info
 into_closed_pipe arrange "$data/room.env" --sensor laser --strategy grid -X 2 -Y 2 --deg 4
 into_closed_pipe scan "$data/room.env" "$data/room.3dm"
+for format in mcap npz las; do
+    into_closed_pipe scan "$data/room.env" "$data/room.3dm" --to $format
+done
 into_closed_pipe coverage "$data/room.env" "$data/room.3dm"
 into_closed_pipe coverage "$data/room.env" "$data/room.3dm" --json
 

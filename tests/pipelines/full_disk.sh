@@ -21,6 +21,9 @@ full envc "$room" --info
 full envc "$room" --info --json
 full arrange "$room" "${placing[@]}"
 full scan "$room" "$layout"
+for format in mcap npz las; do
+    full scan "$room" "$layout" --to $format
+done
 full coverage "$room" "$layout"
 full coverage "$room" "$layout" --json
 for tool in $tools; do
@@ -35,6 +38,12 @@ for command in "envc $room --to glb" "arrange $room ${placing[*]}" "scan $room $
 done
 
 small_disk
+# What waits for the end of a scan waits in TMPDIR, which may be full, too.
+for format in npz las; do
+    expect_status 1 env TMPDIR=disk scan "$room" "$layout" --frames 20000 --to $format -o whole
+    grep -q "^scan: temporary file in disk: error: No space left on device" err || fail "scan: $(cat err)"
+    [ ! -e whole ] && [ -z "$(ls -A disk)" ] || fail "left behind: $(ls -A disk)"
+done
 echo old >disk/target.png
 head -c 60000 /dev/zero >disk/ballast 2>/dev/null || true
 expect_status 1 coverage "$room" "$layout" -o disk/target.png

@@ -12,7 +12,7 @@ run() {
             -j "$1" -o best.3dm
         scan room.glb best.3dm -j "$1" -o scans.jsonl
         { cat best.3dm; echo 'ranger id=k at=-1,0,1 heading=40 tilt=-20 pixels=64,48 sigma=0.01'; } >more.3dm
-        for format in jsonl raw pcd ply png; do
+        for format in jsonl raw pcd ply png mcap npz las; do
             scan room.glb more.3dm --noise --frames 3 --to "$format" -j "$1" -o "$format/"
         done
         scan room.glb best.3dm --noise --frames 30 --to carmen -j "$1" -o logs/

@@ -86,15 +86,18 @@ namespace {
 
 class Stream final : public Delivery {
   public:
-    Stream(const std::string& output, const ReadingFormat& format) : file_(output) {
-        file_.write(format.header());
-    }
+    Stream(const std::string& output, const ReadingFormat& format)
+        : file_(output), stream_(format.stream([this](auto bytes) { file_.write(bytes); })) {}
     [[nodiscard]] Packing how() const override { return Packing::Stream; }
-    void write(Readings& readings) override { file_.write(readings.text); }
-    void commit() override { file_.commit(); }
+    void write(Readings& readings) override { stream_->write(readings.text); }
+    void commit() override {
+        stream_->finish();
+        file_.commit();
+    }
 
   private:
     OutputFile file_;
+    std::unique_ptr<ReadingStream> stream_;
 };
 
 /// Each reading in files of its own.

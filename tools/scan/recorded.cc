@@ -98,16 +98,18 @@ void writeRecorded(const ScanCommand& command) {
     const Sensors lasers = recordedLasers(options, input.scene);
     const auto format = makeFormat(options.format, lasers, formatOptions(command, input));
     if (!format->isStream())
-        throw UsageError("--run: " + options.format +
-                         " holds one reading a file; take one of jsonl|csv|raw|carmen");
+        throw UsageError(
+            "--run: " + options.format +
+            " holds one reading a file; take one of jsonl|csv|raw|carmen|mcap|npz|npy|las");
     format->checkStream();
+    if (format->isBinary()) refuseTerminal(options.common.output, options.format);
     const std::string name = options.view.run + "/scans.jsonl";
     const auto file = std::make_shared<InputFile>(name);
     RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
     RecordedOdometry odometry(options.view.run, input.scene, lasers);
     const bool wants_odometry = options.format == "carmen";
     OutputFile output(options.common.output);
-    output.write(format->header());
+    const auto stream = format->stream([&output](auto bytes) { output.write(bytes); });
     std::int64_t count = 0;
     while (const auto found = scans.next()) {
         const auto laser =
@@ -132,9 +134,10 @@ void writeRecorded(const ScanCommand& command) {
         std::string text;
         format->append(text, static_cast<std::size_t>(laser - lasers.read.begin()),
                        std::vector<Scan>{std::move(scan)});
-        output.write(text);
+        stream->write(text);
         ++count;
     }
+    stream->finish();
     output.commit();
     std::vector<std::string> files = filesOf(input);
     files.push_back(name);
