@@ -194,8 +194,34 @@ std::span<const CoverageFormat> coverageFormats() {
          .square_cell = 0.05,
          .suffix = "yaml",
          .beside_suffix = ".pgm",
-         .write = [](const CoverageProduct& product) {
-             return coverageRosMap(product.coverage, product.cell, product.beside_name);
+         .write =
+             [](const CoverageProduct& product) {
+                 return coverageRosMap(product.coverage, product.cell, product.beside_name);
+             }},
+        {.name = "nav2-speed",
+         .square_cell = 0.05,
+         .suffix = "yaml",
+         .beside_suffix = ".pgm",
+         .takes_speeds = true,
+         .write =
+             [](const CoverageProduct& product) {
+                 return coverageSpeedMask(product.coverage, product.cell, product.speeds,
+                                          product.beside_name);
+             }},
+        {.name = "nav2-keepout",
+         .square_cell = 0.05,
+         .suffix = "yaml",
+         .beside_suffix = ".pgm",
+         .write =
+             [](const CoverageProduct& product) {
+                 return coverageKeepoutMask(product.coverage, product.cell, product.beside_name);
+             }},
+        {.name = "npy",
+         .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageNpy(product.coverage), ""};
+         }},
+        {.name = "npz", .write = [](const CoverageProduct& product) -> CoverageFiles {
+             return {coverageNpz(product.coverage), ""};
          }}};
     return kFormats;
 }

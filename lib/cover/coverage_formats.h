@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cover/coverage.h"
 #include "cover/map.h"
@@ -47,15 +48,32 @@ struct CoverageFiles {
 /// floor. \pre cells are squares of `cell` metres \param image_name how the YAML names the picture
 CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
 
+/// A mask for Nav2's speed filter, as nav2MaskFiles() writes it: free floor that k sensors see has
+/// the k-th of `speeds`, or the last one; there is no limit elsewhere. \param speeds shares of full
+/// speed, 0.01 to 1, to a hundredth \pre cells are squares of `cell` metres
+CoverageFiles coverageSpeedMask(const Coverage& coverage, double cell,
+                                std::span<const double> speeds, const std::string& picture_name);
+/// A mask for Nav2's keep-out filter: free floor that no sensor sees.
+CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
+                                  const std::string& picture_name);
+
+/// The cells as a NumPy array (.npy) of rows and columns, the lowest first: by how many sensors a
+/// cell is seen as int32, -1 outside the room.
+std::string coverageNpy(const Coverage& coverage);
+/// As arrays (.npz): seen (uint32), indoor and free (bool), x of the middles of columns, y of those
+/// of rows, and with cameras density, the pixels a metre of the finest of pixelDensities(), or 0.
+std::string coverageNpz(const Coverage& coverage);
+
 /// What a product is made of.
 struct CoverageProduct {
     const Scene& scene;
     const Coverage& coverage;
     const Coverage* other = nullptr;  ///< what it is compared with, if it is
     MapOptions map = {};
-    double cell = 0;               ///< edge of square cells where the format wants them
-    std::string beside_name = {};  ///< by which the product names the file beside it
-    Document document = {};        ///< the scene's records, with their history, for models
+    double cell = 0;                  ///< edge of square cells where the format wants them
+    std::string beside_name = {};     ///< by which the product names the file beside it
+    std::vector<double> speeds = {};  ///< see coverageSpeedMask()
+    Document document = {};           ///< the scene's records, with their history, for models
 };
 
 /// One format of products: a row that `coverage --to`, the choice by suffix, and the checks of
@@ -66,6 +84,7 @@ struct CoverageFormat {
     double square_cell = 0;                     ///< it wants square cells, of this edge unless told
     std::string_view suffix = name;             ///< of its files, without dot
     const char* beside_suffix = nullptr;        ///< of a file beside the product, named after it
+    bool takes_speeds = false;
     CoverageFiles (*write)(const CoverageProduct& product) = nullptr;
 };
 std::span<const CoverageFormat> coverageFormats();

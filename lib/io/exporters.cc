@@ -148,6 +148,21 @@ constexpr ExportFormat kFormats[] = {
      .beside_role = "the picture of the map",
      .needs_beside = true,
      .naming_hint = "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
+    {.name = "nav2-keepout",
+     .suffix = "yaml",
+     .help = "FILE.yaml and FILE.pgm: a mask for the keep-out filter of Nav2's costmaps, on the "
+             "cells that ros has: 100 in each --zone, 0 elsewhere. FILE.yaml holds the parameters "
+             "of the filter as a comment (type 0, base 0, multiplier 1).",
+     .takes_zones = true,
+     .write =
+         [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
+             return writeKeepoutMask(scene, options.zones,
+                                     options.resolution.value_or(kMapResolution), options.beside);
+         },
+     .beside_suffix = ".pgm",
+     .beside_role = "the picture of the mask",
+     .needs_beside = true,
+     .naming_hint = "a mask is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
 };
 
 }  // namespace

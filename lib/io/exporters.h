@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "layout/scene.h"
+#include "raster/grid.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -22,6 +23,7 @@ struct ExportOptions {
     int width = 1200;                  ///< pixels of a PNG
     std::string title;                 ///< of drawings; "" for none
     std::string beside;  ///< how the product names the file beside it; "": there is none
+    std::vector<std::string> zones = {};  ///< to keep out of, as readZone() reads them
 };
 
 /// A product, and the file that stands beside it; "" where none is needed.
@@ -37,6 +39,7 @@ struct ExportFormat {
     std::string_view help;  ///< for the manual, whole sentences
     std::string_view binary = "";  ///< how messages call what no terminal shows; "" for text
     bool takes_slice = false;
+    bool takes_zones = false;  ///< and needs them
     /// Records are written as they are, without a scene: the other writer is null.
     std::string (*write_records)(Document&& document) = nullptr;
     ExportedFiles (*write)(const Scene&, const Document&, const ExportOptions&) = nullptr;
@@ -127,5 +130,15 @@ constexpr std::int64_t kMaxMapCells = 400'000'000;
 /// \throws UsageError for a resolution that is no length from 0.001 to 1000, or too many cells
 ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
                           const std::string& image_name);
+
+/// The cells of a ROS map: over the box with a rim, their edges on multiples of the resolution.
+/// \throws UsageError as writeRosMap()
+Grid rosMapCells(const Box2& box, double resolution);
+
+/// A mask for Nav2's keep-out filter, with the cells of writeRosMap(): those whose middle lies in
+/// one of the zones or on its edge, and at least the one in whose middle a small zone lies.
+/// \throws UsageError as readZone() and writeRosMap(), and for a zone beside the map
+ExportedFiles writeKeepoutMask(const Scene& scene, const std::vector<std::string>& zones,
+                               double resolution, const std::string& image_name);
 
 }  // namespace ispace

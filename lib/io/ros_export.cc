@@ -34,7 +34,9 @@ double coarserResolution(double resolution, double times) {
     return std::ceil(least / digit) * digit;
 }
 
-Grid gridOf(const Box2& box, double resolution) {
+}  // namespace
+
+Grid rosMapCells(const Box2& box, double resolution) {
     if (!(resolution >= kFinest && resolution <= kCoarsest))
         throw UsageError("a map of " + formatDouble(resolution) +
                          " m a cell cannot be written, wanted " + formatDouble(kFinest) + " to " +
@@ -54,6 +56,8 @@ Grid gridOf(const Box2& box, double resolution) {
                          formatDouble(coarserResolution(resolution, too_many)) + " m");
     return gridOf(origin, resolution, static_cast<int>(columns), static_cast<int>(rows));
 }
+
+namespace {
 
 /// Paints cells directly into the bytes of the picture, top row first.
 class MapPainter {
@@ -171,7 +175,7 @@ std::string yamlText(const std::string& text) {
 ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
                           const std::string& image_name) {
     const Regions& indoor = scene.environment.indoor();
-    const Grid grid = gridOf(bounds(indoor), resolution);
+    const Grid grid = rosMapCells(bounds(indoor), resolution);
     Slice slice = scene.environment.slice(height);
     // Cells are occupied that something touches: not those that a curve touches just from within.
     slice.solids = inscribedSolids(slice);

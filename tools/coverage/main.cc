@@ -101,6 +101,7 @@ void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
     CoverageProduct product{input.scene, measured.coverage,
                             measured.other ? &*measured.other : nullptr, options.map};
     product.document = documentOf(options, input);
+    product.speeds = options.speeds;
     if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
         product.cell = cells->edge;
     if (format.beside_suffix == nullptr) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -39,6 +41,23 @@ ParallaxChoice parseParallax(const std::string& text) {
     return {Angle::degrees(*degrees), static_cast<int>(*cameras)};
 }
 
+/// `30%,60%,100%`. Nav2 takes a limit of nothing for none, and masks know whole per cents.
+std::vector<double> parseSpeeds(const std::string& text) {
+    constexpr double kHundred = 100;
+    std::vector<double> speeds;
+    std::istringstream list(text);
+    for (std::string word; std::getline(list, word, ',');) {
+        const auto share = parseShare(word);
+        if (!share || std::lround(kHundred * *share) < 1)
+            throw UsageError("`" + word +
+                             "` is no share of full speed from 1% to 100%, as in 30%,60%,100%; to "
+                             "keep robots out take --to nav2-keepout");
+        speeds.push_back(*share);
+    }
+    if (speeds.empty()) throw UsageError("no speeds, wanted such as 30%,60%,100%");
+    return speeds;
+}
+
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
     addCellOptions(line, words.cells, "that metrics count");
     line.choice("--grid-of", words.cells_by, {"region", "beams"},
@@ -61,7 +80,7 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
 
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
     if (!line.given("--output")) {
-        for (const char* option : {"--to", "--width", "--color", "--fans", "--trace"})
+        for (const char* option : {"--to", "--width", "--color", "--fans", "--trace", "--speeds"})
             if (line.given(option))
                 throw UsageError(std::string(option) + " is about the map: give -o FILE");
         return;
@@ -69,8 +88,11 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
     if (o.common.output == "-")
         throw UsageError("the report goes to stdout: give the map a file (-o map.png)");
     std::vector<SuffixOf> suffixes;
-    for (const CoverageFormat& format : coverageFormats())
-        suffixes.push_back({std::string(format.suffix), std::string(format.name)});
+    for (const CoverageFormat& format : coverageFormats()) {
+        const auto is_taken = [&format](const SuffixOf& of) { return of.suffix == format.suffix; };
+        const bool is_first = std::none_of(suffixes.begin(), suffixes.end(), is_taken);
+        suffixes.push_back({is_first ? std::string(format.suffix) : "", std::string(format.name)});
+    }
     const std::string name = outputFormat(to, o.common.output, formatNames(), suffixes);
     const CoverageFormat& format = coverageFormat(name);
     o.format = &format;
@@ -84,6 +106,8 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
     for (const char* option : {"--width", "--color", "--fans", "--trace"})
         if (line.given(option) && !format.picture)
             throw UsageError(std::string(option) + " is about pictures, not about " + name);
+    if (line.given("--speeds") && !format.takes_speeds)
+        throw UsageError("--speeds is for --to nav2-speed, not for " + name);
 }
 
 void checkReport(const CoverageToolOptions& o) {
@@ -128,6 +152,11 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},
                 "how views are drawn (default contours)", Enters::History);
+    line.parsed(
+        "--speeds", "P0,P1,...", [&o](const std::string& text) { o.speeds = parseSpeeds(text); },
+        "nav2-speed: shares of full speed on floor that 0, 1, ... sensors see, the last one for "
+        "more (default 30%,60%,100%)",
+        Enters::History);
     line.file("--trace", "FILE", o.trace,
               "draw the places that arrange --trace wrote to this file on the map, coloured by the "
               "best value there",

@@ -23,6 +23,7 @@ struct CoverageToolOptions {
     std::string trace;  ///< file of what a search tried, for the map; "" for none
     std::string run;    ///< folder of a record, whose robots and people are looked at; "" for none
     MapOptions map;
+    std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor that 0, 1, ... sensors see
     bool any_environment = false;
     std::string history_line;
 };

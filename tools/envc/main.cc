@@ -52,8 +52,12 @@ Document readModel(const EnvcOptions& options) {
 
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document) {
     const std::string beside = besideOf(options);
-    ExportOptions how{options.slice, options.import.resolution, options.width, "",
-                      fs::path(beside).filename().string()};
+    ExportOptions how{options.slice,
+                      options.import.resolution,
+                      options.width,
+                      "",
+                      fs::path(beside).filename().string(),
+                      options.zones};
     if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
     const ExportedFiles files = options.format->write(scene, document, how);
     if (beside.empty() || files.beside.empty())

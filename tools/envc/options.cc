@@ -40,6 +40,10 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
                 "(there 0.05 m by default)",
                 Enters::History);
     line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
+    line.texts("--zone", "ZONE", options.zones,
+               "nav2-keepout: floor to keep out of, a zone's id, rect:X,Y,X,Y or "
+               "poly:X,Y;X,Y;...",
+               Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info as JSON", Enters::Nothing);
@@ -156,7 +160,13 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("--info is the product then: leave --slice and --to out");
     if (line.given("--closed") && !line.given("--fence"))
         throw UsageError("--closed is about --fence: give both");
+    const bool takes_zones = options.format != nullptr && options.format->takes_zones;
+    if (line.given("--zone") && !takes_zones)
+        throw UsageError("--zone is for --to nav2-keepout: give both");
     if (options.format == nullptr) return;
+    if (takes_zones && options.zones.empty())
+        throw UsageError(std::string(options.format->name) +
+                         ": say which floor to keep out of: --zone NAME, rect:X,Y,X,Y or poly:…");
     const std::string suffix = suffixOf(options.common.output);
     const ExportFormat& format = *options.format;
     if ((format.needs_beside && suffix != format.suffix) ||

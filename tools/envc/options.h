@@ -17,8 +17,9 @@ struct EnvcOptions {
     std::vector<std::string> inputs;       ///< "-" if none is given
     const ExportFormat* format = nullptr;  ///< of the product; null with info or check
     bool info = false, json = false, check = false;
-    std::optional<double> slice;  ///< height of the obstacle map, which is the product then
-    int width = 1200;             ///< pixels of a PNG
+    std::optional<double> slice;     ///< height of the obstacle map, which is the product then
+    int width = 1200;                ///< pixels of a PNG
+    std::vector<std::string> zones;  ///< to keep out of
     bool any_environment = false;
     ImportOptions import;
     std::string rooms;        ///< "" or a word of --rooms
