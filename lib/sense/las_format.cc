@@ -139,6 +139,7 @@ class Las final : public FormatBase {
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<LasStream>(std::move(write), sensors_);
     }
+    [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:

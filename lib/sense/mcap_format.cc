@@ -197,6 +197,7 @@ class Mcap final : public FormatBase {
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<McapStream>(std::move(write), channels_);
     }
+    [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:

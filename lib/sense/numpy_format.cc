@@ -327,6 +327,7 @@ class Npz final : public FormatBase {
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<NpzStream>(std::move(write), arrays_);
     }
+    [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
@@ -357,6 +358,7 @@ class Npy final : public FormatBase {
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<NpyStream>(std::move(write), arrays_.front());
     }
+    [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:

@@ -44,6 +44,8 @@ class ReadingFormat {
     /// One file of many readings: header(), and what append() made of each, unless a format says
     /// otherwise. The format outlives the stream.
     [[nodiscard]] virtual std::unique_ptr<ReadingStream> stream(ByteSink write) const;
+    /// True if that file is nothing else, so that parts of it can be joined.
+    [[nodiscard]] virtual bool isPlain() const { return true; }
     /// A reading as separate files.
     [[nodiscard]] virtual std::vector<ReadingFile> files(std::size_t sensor,
                                                          const Reading& reading) const = 0;
