@@ -22,6 +22,7 @@
 #include "base/number.h"
 #include "base/program.h"
 #include "sensor/camera.h"
+#include "sensor/kind.h"
 
 namespace ispace {
 
@@ -121,6 +122,38 @@ void limitThreads(int threads) {
 
 std::string shareFolder() {
     return (std::filesystem::path(programPrefix()) / "share" / "ispace").string();
+}
+
+const DeviceCatalogue& shippedDevices() {
+    static const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
+    return devices;
+}
+
+namespace {
+
+const DeviceCatalogue& noDevices() {
+    static const DeviceCatalogue none;
+    return none;
+}
+
+}  // namespace
+
+const DeviceCatalogue& devicesFor(std::initializer_list<const Document*> documents) {
+    for (const Document* const document : documents)
+        if (document != nullptr &&
+            std::any_of(document->records.begin(), document->records.end(), [](const Record& r) {
+                return r.schema().find("model") != nullptr && r.has("model");
+            }))
+            return shippedDevices();
+    return noDevices();
+}
+
+const DeviceCatalogue& devicesForSensors(std::span<const std::string> specs) {
+    const bool all_bare = std::all_of(specs.begin(), specs.end(), [](const std::string& spec) {
+        return sensorKind(spec.substr(0, spec.find_first_of(",:"))) != nullptr &&
+               spec.find("model=") == std::string::npos;
+    });
+    return all_bare ? noDevices() : shippedDevices();
 }
 
 std::string suffixOf(const std::string& output) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include "base/error.h"
 #include "cli/command_line.h"
 #include "cover/target.h"
+#include "layout/devices.h"
 
 namespace ispace {
 
@@ -58,6 +60,15 @@ void limitThreads(int threads);
 
 /// Folder of devices and scenes: `../share/ispace` beside the folder of the running program.
 std::string shareFolder();
+
+/// The devices there, read when first asked for, once for the process.
+/// \throws as loadDevices
+const DeviceCatalogue& shippedDevices();
+
+/// The same, but none where no record names a model: to read them takes longer than a small room.
+const DeviceCatalogue& devicesFor(std::initializer_list<const Document*> documents);
+/// For values of --sensor: none where all name bare kinds.
+const DeviceCatalogue& devicesForSensors(std::span<const std::string> specs);
 
 /// The suffix of a file's name without its dot, in lower case, "yaml" for "yml"; "" for streams,
 /// folders and names without one.

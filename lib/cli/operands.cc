@@ -63,8 +63,8 @@ class OperandReader {
         if (!environment_) findEnvironment();
         if (layout_ && !request_.any_environment)
             checkDigest(*layout_, environment_->records, environment_operand_);
-        const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
-        Scene scene = makeScene(*environment_, layout_ ? &*layout_ : nullptr, devices);
+        const Document* const layout = layout_ ? &*layout_ : nullptr;
+        Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
                 std::move(layout_operand_), std::move(named_)};
@@ -186,7 +186,7 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
     if (!any_environment) checkDigest(layout, input.environment.records, input.environment_operand);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
-    return {makeScene(input.environment, &layout, loadDevices(shareFolder() + "/devices")),
+    return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout})),
             std::move(files)};
 }
 

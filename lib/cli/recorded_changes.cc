@@ -7,7 +7,7 @@
 namespace ispace {
 
 RunChanges changesOfRun(const std::string& folder, const Scene& start) {
-    return {folder, start, loadDevices(shareFolder() + "/devices"), [](const std::string& file) {
+    return {folder, start, shippedDevices(), [](const std::string& file) {
                 return readScene({{file}, true, false}).scene;
             }};
 }

@@ -106,7 +106,7 @@ class ClientNames {
 SceneFolder::SceneFolder(const std::string& folder, bool any_environment)
     : folder_(canonicalFolder(folder.empty() ? "." : folder)),
       any_environment_(any_environment),
-      devices_(loadDevices(shareFolder() + "/devices")) {}
+      devices_(shippedDevices()) {}
 
 std::string SceneFolder::of(const SceneInput& input) {
     const bool through_layout = std::find(input.named.begin(), input.named.end(),

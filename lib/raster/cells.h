@@ -58,6 +58,10 @@ class MapCells {
     [[nodiscard]] std::span<const std::uint8_t> row(int y) const {
         return std::span(cells_).subspan(index(0, y), static_cast<std::size_t>(width_));
     }
+    /// To be set to 0 or 1.
+    [[nodiscard]] std::span<std::uint8_t> row(int y) {
+        return std::span(cells_).subspan(index(0, y), static_cast<std::size_t>(width_));
+    }
     /// Index of cell (x, y) in data(): row by row from the bottom.
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +

@@ -4,79 +4,97 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <new>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
-#include <stdexcept>
 
 namespace ispace {
 
+// OpenCV has these, too, but linking it costs a third of each start of a program.
+
 namespace {
 
-/// Runs what OpenCV does in the calling thread alone, with its errors as ours.
-template <typename Work>
-auto withOpenCv(Work work) {
-    try {
-        static const bool is_alone = (cv::setNumThreads(1), true);
-        static_cast<void>(is_alone);
-        return work();
-    } catch (const cv::Exception& error) {
-        if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
-        throw std::logic_error("OpenCV: " + error.err);
+/// The cells with all of a square of `side` cells to the right and above in the set.
+MapCells eroded(const MapCells& cells, int side) {
+    MapCells result(cells.width(), cells.height());
+    const auto width = static_cast<std::size_t>(cells.width());
+    std::vector<std::uint8_t> across(width);
+    std::vector<int> up(width);  // how many rows on end are in `across`
+    for (int y = cells.height() - 1; y >= 0; --y) {
+        const std::span<const std::uint8_t> in = cells.row(y);
+        int run = 0;
+        for (std::size_t x = width; x-- > 0;) {
+            run = in[x] != 0 ? run + 1 : 0;
+            across[x] = run >= side ? 1 : 0;
+        }
+        std::uint8_t* const out = result.row(y).data();
+        for (std::size_t x = 0; x < width; ++x) {
+            up[x] = across[x] != 0 ? up[x] + 1 : 0;
+            out[x] = up[x] >= side ? 1 : 0;
+        }
     }
+    return result;
 }
 
-/// The same memory; OpenCV takes what it does not write to as a matrix that it could.
-cv::Mat matrixOf(const MapCells& cells) {
-    return {cells.height(), cells.width(), CV_8UC1, const_cast<std::uint8_t*>(cells.data().data())};
-}
-
-/// Squares around a cell: `before` cells to the left of it and below. Beyond the grid is 0.
-void erode(const cv::Mat& from, cv::Mat to, int side, int before) {
-    cv::erode(from, to, cv::getStructuringElement(cv::MORPH_RECT, {side, side}), {before, before},
-              1, cv::BORDER_CONSTANT, cv::Scalar(0));
-}
-void dilate(const cv::Mat& from, cv::Mat to, int side, int before) {
-    cv::dilate(from, to, cv::getStructuringElement(cv::MORPH_RECT, {side, side}), {before, before},
-               1, cv::BORDER_CONSTANT, cv::Scalar(0));
+/// The cells with any of the set in the square of `side` cells whose upper right one lies `shift`
+/// columns and rows further on.
+MapCells dilated(const MapCells& cells, int side, int shift) {
+    MapCells result(cells.width(), cells.height());
+    const int width = cells.width(), height = cells.height();
+    std::vector<std::uint8_t> across(static_cast<std::size_t>(width));
+    std::vector<int> left(across.size());  // for how many rows more a cell of `across` counts
+    for (int y = 0; y < height + shift; ++y) {
+        if (y < height) {
+            const std::uint8_t* const in = cells.row(y).data();
+            int more = 0;
+            for (int x = 0; x < width + shift; ++x) {
+                more = x < width && in[x] != 0 ? side : std::max(more - 1, 0);
+                if (x >= shift) across[static_cast<std::size_t>(x - shift)] = more > 0 ? 1 : 0;
+            }
+        } else {
+            std::fill(across.begin(), across.end(), std::uint8_t{0});
+        }
+        for (std::size_t x = 0; x < across.size(); ++x)
+            left[x] = across[x] != 0 ? side : std::max(left[x] - 1, 0);
+        if (y < shift) continue;
+        std::uint8_t* const out = result.row(y - shift).data();
+        for (std::size_t x = 0; x < across.size(); ++x) out[x] = left[x] > 0 ? 1 : 0;
+    }
+    return result;
 }
 
 }  // namespace
 
-MapCells opened(const MapCells& cells, int side) {
-    return withOpenCv([&] {
-        MapCells result(cells.width(), cells.height());
-        const cv::Mat squares = matrixOf(result);
-        erode(matrixOf(cells), squares, side, 0);
-        dilate(squares, squares, side, side - 1);
-        return result;
-    });
-}
+MapCells opened(const MapCells& cells, int side) { return dilated(eroded(cells, side), side, 0); }
 
-MapCells grown(const MapCells& cells, int reach) {
-    return withOpenCv([&] {
-        MapCells result(cells.width(), cells.height());
-        dilate(matrixOf(cells), matrixOf(result), 2 * reach + 1, reach);
-        return result;
-    });
-}
+MapCells grown(const MapCells& cells, int reach) { return dilated(cells, 2 * reach + 1, reach); }
 
 std::vector<CellPlace> deepestPlaces(const MapCells& cells, const CellPieces& pieces) {
-    return withOpenCv([&] {
-        cv::Mat padded, depth;
-        cv::copyMakeBorder(matrixOf(cells), padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-        cv::distanceTransform(padded, depth, cv::DIST_L1, cv::DIST_MASK_3);
-        std::vector<CellPlace> places(pieces.size());
-        std::vector<float> deepest(pieces.size());
-        pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
-            const auto* const row = depth.ptr<float>(run.row + 1) + 1;
-            const auto* const best = std::max_element(row + run.first, row + run.last + 1);
-            if (*best <= deepest[piece]) return;
-            deepest[piece] = *best;
-            places[piece] = {static_cast<int>(best - row), run.row};
-        });
-        return places;
+    const int width = cells.width(), height = cells.height();
+    // Steps to what is outside, with a column on each side, and a row below and above, of zeros.
+    const std::size_t n = static_cast<std::size_t>(width) + 2;
+    std::vector<int> steps(n * (static_cast<std::size_t>(height) + 2));
+    const auto row_of = [&](int y) { return &steps[n * (static_cast<std::size_t>(y) + 1) + 1]; };
+    for (int y = 0; y < height; ++y) {
+        const std::uint8_t* const is_in = cells.row(y).data();
+        int* const row = row_of(y);
+        const int* const below = row - n;
+        for (int x = 0; x < width; ++x)
+            if (is_in[x] != 0) row[x] = 1 + std::min(row[x - 1], below[x]);
+    }
+    for (int y = height - 1; y >= 0; --y) {
+        int* const row = row_of(y);
+        const int* const above = row + n;
+        for (int x = width - 1; x >= 0; --x)
+            row[x] = std::min(row[x], 1 + std::min(row[x + 1], above[x]));
+    }
+    std::vector<CellPlace> places(pieces.size());
+    std::vector<int> deepest(pieces.size());
+    pieces.forEachRun([&](const RowRun& run, std::size_t piece) {
+        const int* const row = row_of(run.row);
+        const int* const best = std::max_element(row + run.first, row + run.last + 1);
+        if (*best <= deepest[piece]) return;
+        deepest[piece] = *best;
+        places[piece] = {static_cast<int>(best - row), run.row};
     });
+    return places;
 }
 
 namespace {

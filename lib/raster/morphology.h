@@ -7,8 +7,7 @@
 
 namespace ispace {
 
-/// Morphology of sets of cells, by OpenCV; nothing beyond the grid is in a set.
-/// \throws std::bad_alloc
+// Morphology of sets of cells; nothing beyond the grid is in a set. All take O(cells).
 
 /// The union of all squares of `side` cells that lie in the set. \pre side >= 1
 MapCells opened(const MapCells& cells, int side);

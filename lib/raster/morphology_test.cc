@@ -73,6 +73,35 @@ TEST(DeepestPlaces, AreFarFromTheRimAndTheGridsEdge) {
     EXPECT_EQ(places[1].y, 1);
 }
 
+TEST(DeepestPlaces, EqualBruteForce) {
+    std::mt19937_64 random(5);
+    for (int round = 0; round < 60; ++round) {
+        MapCells cells(1 + static_cast<int>(random() % 16), 1 + static_cast<int>(random() % 16));
+        for (int y = 0; y < cells.height(); ++y)
+            for (int x = 0; x < cells.width(); ++x)
+                if (random() % 100 < 85) cells.insert(x, y);
+        const CellPieces pieces(cells, CellPieces::Joined::BySides);
+        const std::vector<CellPlace> found = deepestPlaces(cells, pieces);
+        std::vector<int> deepest(pieces.size());
+        std::vector<CellPlace> wanted(pieces.size());
+        cells.forEach([&](int x, int y) {
+            int steps = 100;
+            for (int v = -1; v <= cells.height(); ++v)
+                for (int u = -1; u <= cells.width(); ++u)
+                    if (!cells.contains(u, v))
+                        steps = std::min(steps, std::abs(u - x) + std::abs(v - y));
+            const std::size_t piece = pieces.at({x, y}).value();
+            if (steps <= deepest[piece]) return;
+            deepest[piece] = steps;
+            wanted[piece] = {x, y};
+        });
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            ASSERT_EQ(found[i].x, wanted[i].x);
+            ASSERT_EQ(found[i].y, wanted[i].y);
+        }
+    }
+}
+
 TEST(SquaredDistances, EqualBruteForce) {
     std::mt19937_64 random(3);
     for (int round = 0; round < 60; ++round) {

@@ -71,7 +71,7 @@ Work read(const ArrangeToolOptions& options) {
     std::vector<std::string> streams = options.operands;
     streams.push_back(options.places_file);
     mustReadStdinOnce(streams);
-    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
+    const DeviceCatalogue& devices = devicesForSensors(options.sensors);
     const std::vector<std::string_view> kinds = keywordsOf(&SensorKind::is_arranged);
     std::vector<SensorSpec> added;
     added.reserve(options.sensors.size());
@@ -85,7 +85,8 @@ Work read(const ArrangeToolOptions& options) {
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.layout = withoutPlaces(*input.layout, options.fixed);
-        input.scene = makeScene(input.environment, &*input.layout, devices);
+        input.scene = makeScene(input.environment, &*input.layout,
+                                devicesFor({&input.environment, &*input.layout}));
     }
     const bool open = options.how.target || options.how.budget;
     work.groups = groupsToPlace(input.scene, added, devices, open);

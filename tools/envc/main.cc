@@ -92,7 +92,7 @@ void compile(const EnvcOptions& options, Document document) {
                   [](const Record& record) { return record.keyword() == "environment"; });
     document.kind = DocumentKind::Environment;
     if (options.format != nullptr) rebaseTo(options.common.output, document);
-    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
+    const DeviceCatalogue& devices = devicesFor({&document});
     if (options.check) {
         check(document, devices);
         talk(options.common, "envc", "nothing found");

@@ -143,8 +143,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     claimOutputs(options.common);
-    const DeviceCatalogue devices = loadDevices(shareFolder() + "/devices");
-    if (options.list_models) return writeAll(options.common.output, deviceTable(devices));
+    if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
     if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
     if (!options.view.views.empty()) return takeViews(command);
@@ -155,7 +154,7 @@ void scan(const ScanCommand& command) {
     const bool moves = !options.poses.empty();
     std::vector<std::string> files = filesOf(input);
     const Sensors sensors =
-        moves ? sensorForPoses(options, scene, devices, files) : placedSensors(options, input);
+        moves ? sensorForPoses(options, scene, shippedDevices(), files) : placedSensors(options, input);
     command.checkSensors(sensors.read);
     if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
