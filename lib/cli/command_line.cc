@@ -85,6 +85,7 @@ struct CommandLine::Data {
     };
 
     std::string tool, synopsis, summary;
+    std::string statuses = "0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met";
     CLI::App app;
     std::vector<Entry> entries;
     bool help = false, version = false;
@@ -300,6 +301,8 @@ void CommandLine::renamed(const std::string& name, const std::string& hint) {
     data_->renamed[name] = hint;
 }
 
+void CommandLine::exitStatus(const std::string& text) { data_->statuses = text; }
+
 void CommandLine::operands(std::vector<std::string>& variable, std::size_t most) {
     data_->operands = &variable;
     data_->max_operands = most;
@@ -434,7 +437,7 @@ std::string CommandLine::helpText() const {
             out += std::string(kHelpColumn - name.size(), ' ');
         appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
     }
-    out += "\nExit status: 0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met.\n";
+    out += "\nExit status: " + data_->statuses + ".\n";
     out += "Details: man " + data_->tool + "\n";
     return out;
 }

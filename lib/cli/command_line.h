@@ -83,6 +83,8 @@ class CommandLine {
                 const std::string& help, Enters enters);
     /// An option that no longer exists, and what to use instead.
     void renamed(const std::string& name, const std::string& hint);
+    /// What the exit status tells, for `--help`, where it is not what it is elsewhere.
+    void exitStatus(const std::string& text);
     /// The operands in order; at most `most`.
     void operands(std::vector<std::string>& variable, std::size_t most);
     /// Any number of operands where this flag is given.

@@ -31,8 +31,9 @@
 #include <string>
 #include <vector>
 
-#include "compare.h"
-#include "pictures.h"
+#include "base/golden.h"
+#include "draw/picture_difference.h"
+#include "rows.h"
 
 namespace fs = std::filesystem;
 
@@ -45,7 +46,7 @@ struct Case {
     int status = 0;
     std::string error_line;
     std::set<std::string> creates, pictures;
-    golden::Tolerance tolerance;
+    ispace::Tolerance tolerance;
     bool exact = false;
 };
 
@@ -158,9 +159,10 @@ class Verdict {
         : test_(test), update_(std::getenv("UPDATE_GOLDEN") != nullptr) {}
 
     void text(const std::string& what, const fs::path& expected_file, std::string actual) {
-        if (!test_.exact) actual = golden::withoutHistory(actual);
+        if (!test_.exact) actual = ispace::withoutHistory(actual);
         if (update_) return update(expected_file, actual);
-        const std::string found = golden::difference(read(expected_file), actual, test_.tolerance);
+        const std::string found =
+            ispace::textDifference(read(expected_file), actual, test_.tolerance);
         if (!found.empty()) fail(what + " differs from " + expected_file.string() + ", " + found);
     }
 
@@ -177,13 +179,13 @@ class Verdict {
         }
         if (test_.error_line.empty()) return text("standard error", file, actual);
         const std::string expected = tool + test_.error_line + "\n";
-        const std::string found = golden::difference(expected, actual, test_.tolerance);
+        const std::string found = ispace::textDifference(expected, actual, test_.tolerance);
         if (!found.empty()) fail("standard error differs from ERR, " + found);
     }
 
     void picture(const std::string& name, const fs::path& expected_file, const std::string& png) {
         if (update_) return update(expected_file, png);
-        const std::string found = golden::pictureDifference(read(expected_file), png);
+        const std::string found = ispace::pictureDifference(read(expected_file), png);
         if (!found.empty()) fail(name + " differs from " + expected_file.string() + ": " + found);
     }
 

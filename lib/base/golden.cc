@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compare.h"
+#include "base/golden.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-namespace golden {
+#include "base/message.h"
+
+namespace ispace {
 namespace {
 
 bool isWordByte(char c) {
@@ -46,30 +48,12 @@ std::string lineAround(std::string_view text, std::size_t at) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     // Long lines (JSON) are cut to the neighbourhood of the difference.
     const std::size_t from = at - begin > 60 ? at - 60 : begin;
-    return std::string(text.substr(from, std::min(end - from, std::size_t{140})));
+    return printable(text.substr(from, std::min(end - from, std::size_t{140})));
 }
 
 bool isMagic(std::string_view line) {
     return line.starts_with("#env ") || line.starts_with("#3dm ") ||
            line.starts_with("# ispace yaml ");
-}
-
-/// Where the argument at `at` of a CMake command ends: a quoted one behind its closing quote.
-std::size_t argumentEnd(std::string_view source, std::size_t at) {
-    if (source[at] != '"') return std::min(source.find_first_of(" \n\")", at), source.size());
-    for (++at; at < source.size() && source[at] != '"'; ++at) {
-        if (source[at] == '\\') ++at;
-    }
-    return std::min(at + 1, source.size());
-}
-
-std::string quoted(std::string_view line) {
-    std::string result = "\"";
-    for (const char c : line) {
-        if (c == '"' || c == '\\' || c == '$') result += '\\';
-        result += c;
-    }
-    return result += '"';
 }
 
 }  // namespace
@@ -103,7 +87,8 @@ std::string withoutHistory(std::string_view text) {
     return result += text;
 }
 
-std::string difference(std::string_view expected, std::string_view actual, Tolerance tolerance) {
+std::string textDifference(std::string_view expected, std::string_view actual,
+                           Tolerance tolerance) {
     std::size_t e = 0;
     std::size_t a = 0;
     std::size_t line = 1;
@@ -120,30 +105,4 @@ std::string difference(std::string_view expected, std::string_view actual, Toler
            "\n  actual:   " + lineAround(actual, a);
 }
 
-std::optional<std::string> withErrorLine(std::string_view source, std::string_view name,
-                                         std::string_view line) {
-    const std::string head = "ispace_golden(" + std::string(name);
-    std::size_t row = source.find(head);
-    while (row != std::string_view::npos && source.find_first_of(" \n", row) != row + head.size()) {
-        row = source.find(head, row + 1);
-    }
-    if (row == std::string_view::npos) return std::nullopt;
-    std::size_t end = row + head.size();  // of what stays of the row
-    std::size_t at = end;
-    bool stays = true;
-    while (at < source.size() && source[at] != ')') {
-        if (source[at] == ' ' || source[at] == '\n') {
-            ++at;
-            continue;
-        }
-        const std::size_t next = argumentEnd(source, at);
-        if (source.substr(at, next - at) == "ERR") stays = false;
-        if (stays) end = next;
-        at = next;
-    }
-    std::string result(source.substr(0, end));
-    if (!line.empty()) result += "\n  ERR " + quoted(line);
-    return result += source.substr(at);
-}
-
-}  // namespace golden
+}  // namespace ispace

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "compare.h"
+#include "base/golden.h"
 
 #include <gtest/gtest.h>
 
-namespace golden {
+namespace ispace {
 namespace {
 
 bool same(std::string_view expected, std::string_view actual, Tolerance tolerance = {0.01, 0}) {
-    return difference(expected, actual, tolerance).empty();
+    return textDifference(expected, actual, tolerance).empty();
 }
 
-TEST(Difference, NumbersAgreeWithinTheTolerance) {
+TEST(TextDifference, NumbersAgreeWithinTheTolerance) {
     EXPECT_TRUE(same("at=1.00,2", "at=1.005,2.0"));
     EXPECT_TRUE(same("(4.1, -2).", "(4.105, -2.001)."));
     EXPECT_FALSE(same("at=1.00,2", "at=1.02,2"));
@@ -20,7 +20,7 @@ TEST(Difference, NumbersAgreeWithinTheTolerance) {
     EXPECT_TRUE(same("97.4%", "97.405%"));
 }
 
-TEST(Difference, WordsWithDigitsAreNoNumbers) {
+TEST(TextDifference, WordsWithDigitsAreNoNumbers) {
     EXPECT_FALSE(same("sha256:1234ab", "sha256:1234ac"));
     EXPECT_FALSE(same("5cm", "5.001cm"));
     EXPECT_FALSE(same("id=l1", "id=l2"));
@@ -28,14 +28,14 @@ TEST(Difference, WordsWithDigitsAreNoNumbers) {
     EXPECT_FALSE(same("1", "inf"));
 }
 
-TEST(Difference, BlanksLinesAndLengthCount) {
+TEST(TextDifference, BlanksLinesAndLengthCount) {
     EXPECT_TRUE(same("", ""));
     EXPECT_FALSE(same("", "a"));
     EXPECT_FALSE(same("a", ""));
     EXPECT_FALSE(same("a\n", "a"));
     EXPECT_FALSE(same("a b", "a  b"));
     EXPECT_FALSE(same("1,2", "1,2,3"));
-    EXPECT_NE(difference("a\nb\n", "a\nc\n", {}).find("line 2"), std::string::npos);
+    EXPECT_NE(textDifference("a\nb\n", "a\nc\n", {}).find("line 2"), std::string::npos);
 }
 
 TEST(WithoutHistory, DropsOnlyTheLinesAfterTheMagicLine) {
@@ -52,30 +52,5 @@ TEST(WithoutHistory, EmptiesTheListInJson) {
     EXPECT_EQ(withoutHistory(R"({"history":[)"), R"({"history":[)");
 }
 
-constexpr const char* kRows =
-    "# Rows (of a test).\n"
-    "ispace_golden(leaky_too \"envc )\")\n"
-    "ispace_golden(leaky\n  \"envc \\\"a) ERR\" STATUS 1\n  ERR \"error: old\")\n"
-    "ispace_golden(last \"envc\" STATUS 1)\n";
-
-TEST(ErrorLine, ReplacesWhatTheRowHas) {
-    EXPECT_EQ(withErrorLine(kRows, "leaky", "error: new; \"$\\\""),
-              "# Rows (of a test).\n"
-              "ispace_golden(leaky_too \"envc )\")\n"
-              "ispace_golden(leaky\n  \"envc \\\"a) ERR\" STATUS 1\n"
-              "  ERR \"error: new; \\\"\\$\\\\\\\"\")\n"
-              "ispace_golden(last \"envc\" STATUS 1)\n");
-    EXPECT_EQ(withErrorLine(kRows, "leaky", "error: old"), kRows);
-}
-
-TEST(ErrorLine, IsPutInAndTakenOut) {
-    const std::string added = withErrorLine(kRows, "last", "warning: x").value_or("");
-    EXPECT_TRUE(added.ends_with("ispace_golden(last \"envc\" STATUS 1\n  ERR \"warning: x\")\n"));
-    EXPECT_EQ(withErrorLine(added, "last", ""), kRows);
-    EXPECT_EQ(withErrorLine(kRows, "last", ""), kRows);
-}
-
-TEST(ErrorLine, NeedsTheRow) { EXPECT_EQ(withErrorLine(kRows, "leak", "x"), std::nullopt); }
-
 }  // namespace
-}  // namespace golden
+}  // namespace ispace

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pictures.h"
+#include "draw/picture_difference.h"
 
 #include <cstdint>
 #include <cstdlib>
 
 #include "draw/picture.h"
 
-namespace golden {
+namespace ispace {
 
 std::string pictureDifference(const std::string& expected_png, const std::string& actual_png) {
-    const ispace::Image expected = ispace::decodePng(expected_png);
-    const ispace::Image actual = ispace::decodePng(actual_png);
+    const Image expected = decodePng(expected_png);
+    const Image actual = decodePng(actual_png);
     if (expected.width != actual.width || expected.height != actual.height)
         return std::to_string(actual.width) + " x " + std::to_string(actual.height) +
                " pixels, expected " + std::to_string(expected.width) + " x " +
@@ -34,4 +34,4 @@ std::string pictureDifference(const std::string& expected_png, const std::string
            std::to_string(first / width);
 }
 
-}  // namespace golden
+}  // namespace ispace

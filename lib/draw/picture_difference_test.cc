@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pictures.h"
+#include "draw/picture_difference.h"
 
 #include <gtest/gtest.h>
 
 #include "draw/picture.h"
 
-namespace golden {
+namespace ispace {
 namespace {
 
 /// A page with a square of this side.
 std::string png(double side, std::uint32_t color, double width = 100) {
-    using namespace ispace;
     Picture picture(width, 100);
     picture.area(Polygon{{10, 10}, {10 + side, 10}, {10 + side, 10 + side}, {10, 10 + side}},
                  {Color::rgb(color)});
@@ -37,4 +36,4 @@ TEST(PictureDifference, RefusesWhatIsNoPicture) {
 }
 
 }  // namespace
-}  // namespace golden
+}  // namespace ispace

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// golden-diff: compares what a tool wrote with what it should write, numbers within a tolerance.
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/golden.h"
+#include "base/number.h"
+#include "cli/command_line.h"
+#include "cli/run_tool.h"
+#include "draw/picture_difference.h"
+
+namespace {
+
+using namespace ispace;
+
+struct Options {
+    std::vector<std::string> operands;
+    Tolerance tolerance;
+    bool history = false, quiet = false;
+};
+
+auto takeTolerance(double& variable) {
+    return [&variable](const std::string& text) {
+        const auto number = parseDouble(text);
+        if (!number || *number < 0) throw UsageError('`' + text + "` is not a number from 0 on");
+        variable = *number;
+    };
+}
+
+Options parseOptions(int argc, const char* const* argv) {
+    Options o;
+    CommandLine line("golden-diff", "EXPECTED ACTUAL",
+                     "Compare two files that the tools wrote: numbers within a tolerance, history "
+                     "left out, everything else byte by byte; PNGs by their pixels. - is stdin.");
+    line.exitStatus("0 no difference, 1 a difference, 2 trouble, as with diff");
+    line.operands(o.operands, 2);
+    line.parsed("--abs", "X", takeTolerance(o.tolerance.absolute),
+                "how far two numbers may lie apart (default 1e-9)", Enters::Nothing);
+    line.parsed("--rel", "Y", takeTolerance(o.tolerance.relative),
+                "this much more, times the larger of the two (default 1e-9)", Enters::Nothing);
+    line.flag("--history", o.history, "compare history, too", Enters::Nothing);
+    line.flag("-q,--quiet", o.quiet, "only the exit status tells", Enters::Nothing);
+    line.parse(argc, argv);
+    if (o.operands.size() != 2) throw UsageError("two files are wanted, EXPECTED and ACTUAL");
+    if (o.operands[0] == "-" && o.operands[1] == "-")
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
+    return o;
+}
+
+bool isPng(const std::string& bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+
+std::string differenceOf(const Options& options, const std::string& expected,
+                         const std::string& actual) {
+    if (isPng(expected) && isPng(actual)) return pictureDifference(expected, actual);
+    if (options.history) return textDifference(expected, actual, options.tolerance);
+    return textDifference(withoutHistory(expected), withoutHistory(actual), options.tolerance);
+}
+
+/// True, and says where, if the files do not agree.
+bool differ(const Options& options) {
+    const std::string &expected = options.operands[0], &actual = options.operands[1];
+    const std::string found = differenceOf(options, readAll(expected), readAll(actual));
+    if (!found.empty() && !options.quiet)
+        writeAll("-", displayName(actual) + " differs from " + displayName(expected) + ", " +
+                          found + '\n');
+    return !found.empty();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    constexpr int kSame = 0, kDiffer = 1, kTrouble = 2;
+    bool is_other = false;
+    const int status = runTool("golden-diff", [&] { is_other = differ(parseOptions(argc, argv)); });
+    if (status != 0) return kTrouble;
+    return is_other ? kDiffer : kSame;
+}
