@@ -71,31 +71,48 @@ void letNumbersThrow() {
         [](void* memory, std::size_t) { std::free(memory); });
 }
 
+constexpr std::string_view kNoMemory = "error: not enough memory for this input";
+
 /// Says what was thrown. \pre within a handler
-Status sayException(const std::string& tool) {
+int sayException(const std::string& tool) {
     try {
         throw;
-    } catch (const UsageError& error) {
-        say(tool, std::string("error: ") + error.what());
-        return kUsage;
-    } catch (const UnmetError& error) {
-        say(tool, std::string("error: ") + error.what());
-        return kUnmet;
-    } catch (const FormatError& error) {
-        for (const Diagnostic& diagnostic : error.diagnostics()) say(tool, diagnostic.text());
-    } catch (const std::system_error& error) {
-        say(tool, systemErrorText(error));
     } catch (const std::bad_alloc&) {
         sayMemoryIsOut(tool);
     } catch (const std::length_error&) {
         sayMemoryIsOut(tool);
-    } catch (const std::exception& error) {
-        say(tool, std::string("error: ") + error.what());
+    } catch (...) {
+        const ToolFailure failure = currentFailure();
+        for (const std::string& line : failure.lines) say(tool, line);
+        return failure.status;
     }
     return kFailed;
 }
 
 }  // namespace
+
+ToolFailure currentFailure() {
+    try {
+        throw;
+    } catch (const UsageError& error) {
+        return {kUsage, {std::string("error: ") + error.what()}};
+    } catch (const UnmetError& error) {
+        return {kUnmet, {std::string("error: ") + error.what()}};
+    } catch (const FormatError& error) {
+        ToolFailure failure{kFailed};
+        for (const Diagnostic& diagnostic : error.diagnostics())
+            failure.lines.push_back(diagnostic.text());
+        return failure;
+    } catch (const std::system_error& error) {
+        return {kFailed, {systemErrorText(error)}};
+    } catch (const std::bad_alloc&) {
+        return {kFailed, {std::string(kNoMemory)}};
+    } catch (const std::length_error&) {
+        return {kFailed, {std::string(kNoMemory)}};
+    } catch (const std::exception& error) {
+        return {kFailed, {std::string("error: ") + error.what()}};
+    }
+}
 
 int runTool(const std::string& tool, const std::function<void()>& body) {
     occupyStandardStreams();
@@ -122,8 +139,6 @@ int runTool(const std::string& tool, const std::function<void()>& body) {
 }
 
 namespace {
-
-constexpr std::string_view kNoMemory = ": error: not enough memory for this input";
 
 /// The first part of `text` that is fit for one line.
 std::string_view firstLine(std::string_view text) { return text.substr(0, text.find('\n')); }
@@ -195,7 +210,7 @@ void sayLine(std::initializer_list<std::string_view> pieces) noexcept {
 
 void sayMemoryIsOut(std::string_view tool) noexcept {
     static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
-    if (!is_told.test_and_set()) sayLine({tool, kNoMemory});
+    if (!is_told.test_and_set()) sayLine({tool, ": ", kNoMemory});
 }
 
 namespace {

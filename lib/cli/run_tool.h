@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ispace {
 
@@ -22,6 +23,15 @@ struct TextRequested {
 /// status: 0 done; 1 bad data or failed I/O; 2 usage; 3 a stated requirement not met. A closed pipe
 /// ends the process silently.
 int runTool(const std::string& tool, const std::function<void()>& body);
+
+/// What runTool makes of an exception.
+struct ToolFailure {
+    int status = 1;
+    std::vector<std::string> lines = {};  ///< of its message, without the tool's name
+};
+
+/// That of the exception being handled, for who goes on after it. \pre within a handler
+ToolFailure currentFailure();
 
 /// Writes the pieces and a newline to stderr. Needs no memory, and waits where stderr is
 /// non-blocking. May be called at any time, also before main().

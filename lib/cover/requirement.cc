@@ -135,6 +135,14 @@ Requirement parseRequirement(std::string_view text) {
             shareOfText(text.substr(equals + 1))};
 }
 
+std::string requirementText(const Requirement& requirement) {
+    std::string text;
+    if (requirement.density) text.append(pixelDensities()[*requirement.density].name) += ':';
+    if (requirement.of == Requirement::Of::Free) text += "free:";
+    if (requirement.of == Requirement::Of::Zone) text += "zone:" + requirement.zone + '=';
+    return text + formatPercent(requirement.share);
+}
+
 void mustHaveZone(const Requirement& requirement, const Environment& environment) {
     if (requirement.of != Requirement::Of::Zone) return;
     std::vector<std::string> known;

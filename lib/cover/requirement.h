@@ -25,6 +25,9 @@ struct Requirement {
 /// \throws UsageError for what is none
 Requirement parseRequirement(std::string_view text);
 
+/// As parseRequirement() reads it: "identify:free:95%".
+std::string requirementText(const Requirement& requirement);
+
 /// \throws UsageError if it is about a zone that the room does not have, with the nearest name
 void mustHaveZone(const Requirement& requirement, const Environment& environment);
 

@@ -23,6 +23,16 @@ TEST(ParseRequirement, KnowsAllForms) {
     EXPECT_EQ(parseRequirement("identify:zone:door=1"), (Requirement{Of::Zone, "door", 1, 4}));
 }
 
+TEST(ParseRequirement, ReadsWhatItIsWrittenAs) {
+    EXPECT_EQ(requirementText({Of::Indoor, "", 0.95}), "95%");
+    EXPECT_EQ(requirementText({Of::Zone, "door", 1, 4}), "identify:zone:door=100%");
+    for (const char* text :
+         {"0.125", "free:50%", "zone:a=b=0", "monitor:95%", "recognize:free:50%"}) {
+        const Requirement requirement = parseRequirement(text);
+        EXPECT_EQ(parseRequirement(requirementText(requirement)), requirement) << text;
+    }
+}
+
 TEST(ParseRequirement, RefusesTheRest) {
     for (const char* text : {"", "95", "120%", "-1%", "free", "free:", "free:95", "zone:", "zone:a",
                              "zone:=95%", "zone:a=", "zone:a=95", "room:95%", "nan%", "identify",

@@ -119,7 +119,6 @@ Field LineLexer::field() {
                        key_column};
     }
     next_ = end + 1;
-    const int value_column = column();
     if (atEnd() || isBlank(line_[next_])) {
         const std::string found = excerpt(line_.substr(begin, next_ - begin));
         // `key= value`: one error, not two.
@@ -130,8 +129,11 @@ Field LineLexer::field() {
         throw LexError{"no value right after " + found + ", an empty text is written \"\"",
                        key_column};
     }
-    const Piece value = line_[next_] == '"' ? quotedValue(value_column) : plainValue(value_column);
-    return {{key, key_column}, value};
+    return {{key, key_column}, word()};
+}
+
+Piece LineLexer::word() {
+    return line_[next_] == '"' ? quotedValue(column()) : plainValue(column());
 }
 
 Piece LineLexer::plainValue(int column) {

@@ -64,6 +64,9 @@ class LineLexer {
     bool more();
     /// \throws LexError
     Field field();
+    /// A value without a key, as lists of names have them; see Field::value.
+    /// \pre more() \throws LexError
+    Piece word();
 
   private:
     void skipBlanks();

@@ -81,9 +81,4 @@ class ExpectationJudge {
 /// What is not met, a line each, for messages; "" if all is.
 std::string unmetText(const std::vector<RunVerdict>& verdicts);
 
-/// The verdicts in the XML that CI servers read as JUnit's: a testsuite with a testcase for each
-/// expectation, its time that of the verdict in simulated seconds, and a failure where it is not
-/// met. \param suite its name, e.g. that of the environment
-std::string junitXml(const std::vector<RunVerdict>& verdicts, const std::string& suite);
-
 }  // namespace ispace

@@ -232,26 +232,5 @@ TEST_F(ExpectTest, OutlivesChangesOfTheWorld) {
     EXPECT_FALSE(verdicts[1].is_met);
 }
 
-TEST(JunitXml, IsWhatServersRead) {
-    const std::vector<RunVerdict> verdicts = {
-        {.expectation = "no collision", .is_met = true, .time = seconds(9)},
-        {.expectation = "r1 within 1 of \"<&\"",
-         .is_met = false,
-         .time = milliseconds(1500),
-         .reason = "r1 was 2 m away"}};
-    EXPECT_EQ(junitXml(verdicts, "room.env"),
-              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-              "<testsuites>\n"
-              "  <testsuite name=\"room.env\" tests=\"2\" failures=\"1\" errors=\"0\" "
-              "skipped=\"0\" time=\"9.000\">\n"
-              "    <testcase classname=\"simrun\" name=\"no collision\" time=\"9.000\" />\n"
-              "    <testcase classname=\"simrun\" name=\"r1 within 1 of &quot;&lt;&amp;&quot;\" "
-              "time=\"1.500\">\n"
-              "      <failure message=\"r1 was 2 m away\" type=\"unmet\" />\n"
-              "    </testcase>\n"
-              "  </testsuite>\n"
-              "</testsuites>\n");
-}
-
 }  // namespace
 }  // namespace ispace

@@ -7,7 +7,7 @@
 DESTDIR=$scratch/stage cmake --install "$binary_dir" --prefix /opt/ispace >log
 mv stage/opt/ispace moved # an installed tree may be moved: nothing is compiled in
 [ "$(ls stage/opt)" = "" ] || fail "installed elsewhere: $(find stage)"
-for tool in $tools ispace ispace-sweep; do
+for tool in $tools ispace ispace-sweep golden-diff; do
     [ -x "moved/bin/$tool" ] || fail "no bin/$tool"
     [ -s "moved/share/man/man1/$tool.1" ] || fail "no man page of $tool"
 done
@@ -16,16 +16,18 @@ for format in env 3dm yaml; do
 done
 [ -s moved/share/man/man7/ispace-protocol.7 ] || fail "no man page of the protocol"
 [ -s moved/share/man/man7/ispace-wire.7 ] || fail "no man page of device ports"
+[ -s moved/share/man/man7/ispace-stability.7 ] || fail "no man page of what is stable"
 for schema in "$source_dir"/share/schemas/*.json; do
     cmp "$schema" "moved/share/ispace/schemas/${schema##*/}" || fail "not installed: $schema"
 done
 if command -v man >/dev/null; then
-    for page in $tools ispace ispace-sweep ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire; do
+    for page in $tools ispace ispace-sweep golden-diff ispace-env ispace-3dm ispace-yaml ispace-protocol ispace-wire \
+        ispace-stability; do
         man -M moved/share/man -w "$page" >page && grep -q moved "page" ||
             fail "man does not find $page: $(cat page)"
     done
 fi
-[ "$(ls moved/bin | wc -l)" -eq 7 ] || fail "more than the tools in bin: $(ls moved/bin)"
+[ "$(ls moved/bin | wc -l)" -eq 8 ] || fail "more than the tools in bin: $(ls moved/bin)"
 if find moved -type l | grep .; then fail "links installed"; fi
 
 mkdir elsewhere

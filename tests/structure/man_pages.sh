@@ -20,7 +20,7 @@ options_of_help() {
         grep -oE -- '(^|, )--?[A-Za-z][A-Za-z-]*' | tr -d ' ,' | LC_ALL=C sort
 }
 
-programs=$tools
+programs="$tools golden-diff"
 if /usr/bin/python3 -c 'import yaml' 2>/dev/null; then
     programs+=" ispace-sweep"
 else
@@ -96,3 +96,16 @@ plain "$page" | grep -E -A 1 '^\.(SS|TP)|^(\.B.* )?(HELP|QUIT|TOKEN)\b|^\.B[RI]?
 for verb in $verbs; do
     grep -qw -- "$verb" heads || fail "the manual lacks the request $verb"
 done
+
+# What is promised between versions: every schema there is, and no other.
+page=$binary_dir/share/man/man7/ispace-stability.7
+if command -v groff >/dev/null; then
+    groff -man -ww -z -Tutf8 "$page" 2>groff.err
+    [ ! -s groff.err ] || fail "ispace-stability: $(cat groff.err)"
+fi
+promised() { plain "$1" | sed -n '/^\.SS JSON/,/^\.SS CSV/p' | sed -n 's/^\.B \(ispace-.*\/[0-9]*\|GeoJSON of .*\)$/\1/p' | LC_ALL=C sort; }
+sed -n 's/^  "title": "\(.*\)",$/\1/p' "$source_dir"/share/schemas/*.json | LC_ALL=C sort >schemas
+[ "$(wc -l <schemas)" -eq "$(ls "$source_dir"/share/schemas/*.json | wc -l)" ] || fail "titles of schemas: $(cat schemas)"
+promised "$page" | diff schemas - || fail "share/schemas (<) and ispace-stability (>) differ"
+sed '/ispace.-scan/d' "$page" >without_scan
+! promised without_scan | diff -q schemas - >/dev/null || fail "self-test: a schema that is not promised passes"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // coverage: measures and draws what the sensors of a scene see.
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "base/program.h"
 #include "base/run_files.h"
 #include "cli/operands.h"
@@ -17,10 +15,10 @@
 #include "cover/coverage_formats.h"
 #include "cover/run_sight.h"
 #include "cover/trace_file.h"
+#include "coverage/batch.h"
+#include "coverage/judge.h"
 #include "coverage/options.h"
 #include "layout/scene.h"
-#include "sense/ultrasound.h"
-#include "sense/warnings.h"
 
 namespace {
 
@@ -31,26 +29,6 @@ struct Measured {
     Coverage coverage;
     std::optional<Coverage> other;
 };
-
-/// Of what a user may not have meant, and of what is left out.
-void warnOfSensors(const CommonOptions& options, const Scene& scene) {
-    warn(options, "coverage", sensorWarnings(scene, sensorsOf(scene, {}), {}, true));
-    if (const std::size_t count = sensorsOf<Receiver>(scene).size();
-        count > 0 && count < kMinReceivers)
-        warn(options, "coverage",
-             "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
-                 " receivers have to hear a tag, here are " + std::to_string(count));
-}
-
-/// Nobody asked for cells, and they are not as small as usual.
-void tellOfLargeCells(const CoverageToolOptions& options, const Grid& grid) {
-    const double edge = roundSignificant(grid.limits.width() / grid.columns);
-    if (options.common.quiet || !std::holds_alternative<RoomCells>(options.measure.cells) ||
-        edge <= kRoomCell)
-        return;
-    std::cerr << "coverage: the room is large: cells are " << formatDouble(edge) << " m instead of "
-              << formatDouble(kRoomCell) << " m (--cell M makes them smaller)\n";
-}
 
 /// A layout may bring furniture, which is part of the comparison, but not another room.
 void mustBeSameRoom(const Environment& room, const Environment& other, const std::string& file) {
@@ -114,16 +92,18 @@ void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
     writeTogether(std::vector<NamedBytes>{{beside, files.beside}, {output, files.product}});
 }
 
-void checkRequired(const CoverageToolOptions& options, const Coverage& coverage) {
-    std::string missing;
-    for (const Requirement& requirement : options.requirements) {
-        const auto [is_met, text] = checkRequirement(requirement, coverage);
-        if (is_met)
-            talk(options.common, "coverage", text);
-        else
-            missing.append(missing.empty() ? "" : "; ").append(text);
+/// Says what is met, and writes the verdicts where that is wanted. \throws UnmetError
+void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
+                   const Coverage& coverage, std::optional<OutputFile>& junit) {
+    const std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
+    for (const JunitCase& verdict : verdicts)
+        if (verdict.outcome == JunitCase::Outcome::Met)
+            talk(options.common, "coverage", verdict.message);
+    if (junit) {
+        junit->write(junitXml("coverage", baseName(input.environment_operand), verdicts));
+        junit->commit();
     }
-    if (!missing.empty()) throw UnmetError(missing);
+    if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
 }
 
 /// A record knows its scene.
@@ -162,6 +142,7 @@ void coverage(CoverageToolOptions options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
+    claimOutput(options.junit, "--junit");
     if (options.format != nullptr && options.format->beside_suffix != nullptr)
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),
                     "the picture of the map");
@@ -178,12 +159,16 @@ void coverage(CoverageToolOptions options) {
         files.push_back(options.trace);
     }
     if (!options.report.empty()) mustBeWritable(options.report);
+    std::optional<OutputFile> junit;
+    if (!options.junit.empty()) junit.emplace(options.junit);
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
-    warnOfSensors(options.common, input.scene);
+    warn(options.common, "coverage", doubtsOf(input.scene));
     const Measured measured = measure(options, input.scene, other ? &other->scene : nullptr);
     const CoverageReport& report = measured.coverage.report;
-    tellOfLargeCells(options, report.grid);
+    if (const std::string text = largeCellsText(options.measure, report.grid);
+        !text.empty() && !options.common.quiet)
+        std::cerr << "coverage: " << text << '\n';
     const std::optional<RunSight> run = lookAtRun(options, input.scene);
     if (run) options.map.run = &*run;
     if (run) files.push_back(RecordedFiles(options.run).robots);
@@ -198,11 +183,17 @@ void coverage(CoverageToolOptions options) {
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
-    checkRequired(options, measured.coverage);
+    checkRequired(options, input, measured.coverage, junit);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("coverage", [&] { coverage(ispace::parseCoverageOptions(argc, argv)); });
+    return ispace::runTool("coverage", [&] {
+        const auto options = ispace::parseCoverageOptions(argc, argv);
+        if (options.batch.empty())
+            coverage(options);
+        else
+            ispace::runBatch(options);
+    });
 }

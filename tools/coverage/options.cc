@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "cli/outputs.h"
 
 namespace ispace {
 
@@ -110,6 +111,28 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         throw UsageError("--speeds is for --to nav2-speed, not for " + name);
 }
 
+/// Of many scenes there are only reports.
+void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
+    if (!o.operands.empty())
+        throw UsageError("--batch takes scenes from LIST: put " + o.operands.front() +
+                         " on a line of it");
+    for (const char* option : {"--report", "--compare", "--run", "--to", "--width", "--color",
+                               "--fans", "--trace", "--MD", "--MF"})
+        if (line.given(option))
+            throw UsageError(std::string(option[2] == 'M' ? option + 1 : option) +
+                             " is about one scene, and --batch about many");
+    static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
+    if (o.resume && isStream(o.common.output))
+        throw UsageError("--resume keeps what is done beside a file: give -o FILE.jsonl");
+}
+
+void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
+    for (const char* option : {"--shard", "--resume"})
+        if (line.given(option))
+            throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
+    checkProduct(line, o, to);
+}
+
 void checkReport(const CoverageToolOptions& o) {
     if (o.report == "-")
         throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
@@ -128,12 +151,29 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     line.file("--report", "FILE", o.report, "also write the report there, as JSON (.json)",
               Enters::Nothing);
+    line.file("--batch", "LIST", o.batch,
+              "measure many scenes in one process: LIST (- is stdin) has a line `ENV [LAYOUT]` for "
+              "each; a report a line, as JSON, in its order",
+              Enters::Nothing);
+    line.parsed(
+        "--shard", "I/N", [&o](const std::string& text) { o.shard = parseShard(text); },
+        "with --batch: measure the I-th of N shares of LIST; their outputs joined by cat are that "
+        "of "
+        "the whole",
+        Enters::Nothing);
+    line.flag("--resume", o.resume,
+              "with --batch: keep what is done beside FILE, and go on with what a run that was "
+              "killed left there",
+              Enters::Nothing);
     addMeasureOptions(line, o.measure, words);
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
                "identify:NAME=95%",
                Enters::History);
+    line.file("--junit", "FILE", o.junit,
+              "write what became of the requirements there, as XML that CI servers read",
+              Enters::Nothing);
     line.file("--compare", "LAYOUT", o.other,
               "report gains and losses against this layout, in numbers and on the map",
               Enters::BaseName);
@@ -174,7 +214,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         o.requirements.push_back(parseRequirement(text));
-    checkProduct(line, o, words.to);
+    if (line.given("--junit") && o.requirements.empty())
+        throw UsageError("--junit writes what became of requirements: give --require");
+    if (o.batch.empty())
+        checkOne(line, o, words.to);
+    else
+        checkBatch(line, o);
+    o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
     return o;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shard.h"
 #include "cli/common_options.h"
 #include "cover/coverage_formats.h"
 #include "cover/map.h"
@@ -16,6 +17,11 @@ struct CoverageToolOptions {
     std::vector<std::string> operands;
     CoverageOptions measure;
     std::vector<Requirement> requirements;
+    std::string junit;    ///< file for what became of the requirements; "" for none
+    std::string command;  ///< its history line, without operands
+    std::string batch;    ///< list of many scenes, whose reports are the product; "" for one scene
+    Shard shard;          ///< of the list
+    bool resume = false;
     std::string other;  ///< LAYOUT to compare with; "" for none
     bool json = false;
     std::string report;  ///< file for the report as JSON besides stdout; "" for none

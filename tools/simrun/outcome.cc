@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "cli/junit.h"
 
 namespace ispace {
 
@@ -34,7 +35,14 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const
               std::optional<OutputFile>& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
     if (junit) {
-        junit->write(junitXml(verdicts, baseName(input.environment_operand)));
+        std::vector<JunitCase> cases;
+        for (const RunVerdict& verdict : verdicts)
+            cases.push_back(
+                {.name = verdict.expectation,
+                 .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
+                 .message = verdict.reason,
+                 .time = verdict.time});
+        junit->write(junitXml("simrun", baseName(input.environment_operand), cases));
         junit->commit();
     }
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);

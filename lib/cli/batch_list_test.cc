@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/batch_list.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "cli/common_options.h"
+
+namespace ispace {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(BatchList, TakesNamesByTheRulesOfRecords) {
+    const auto jobs = readBatchList(
+        "# a sweep\n\nroom.glb best.3dm\r\n \t\"my room.env\"\t# seen from the door\n"
+        "\"a\\\"b\\\\c.env\" d=1.3dm\n",
+        "jobs");
+    ASSERT_EQ(jobs.size(), 3U);
+    EXPECT_EQ(jobs[0].line, 3);
+    EXPECT_EQ(jobs[0].operands, (Words{"room.glb", "best.3dm"}));
+    EXPECT_EQ(jobs[0].text(), "room.glb best.3dm");
+    EXPECT_EQ(jobs[1].line, 4);
+    EXPECT_EQ(jobs[1].operands, (Words{"my room.env"}));
+    EXPECT_EQ(jobs[2].operands, (Words{"a\"b\\c.env", "d=1.3dm"}));
+}
+
+TEST(BatchList, KeepsThePlaceOfWrongLines) {
+    const auto jobs = readBatchList("a b c\n\"open\na.env -\n\"\"\nlast.env", "jobs");
+    ASSERT_EQ(jobs.size(), 5U);
+    EXPECT_EQ(jobs[0].wrong, "more than ENV and LAYOUT: put names with blanks in quotes");
+    EXPECT_EQ(jobs[1].wrong, "the quote that opens here is not closed");
+    EXPECT_EQ(jobs[2].wrong, "stdin is not read by a job of a list: give a file");
+    EXPECT_EQ(jobs[3].wrong, "an empty name");
+    EXPECT_EQ(jobs[4].wrong, "");
+    EXPECT_EQ(jobs[4].line, 5);
+}
+
+TEST(BatchList, WantsTextAndJobs) {
+    EXPECT_THROW(readBatchList("", "jobs"), FormatError);
+    EXPECT_THROW(readBatchList("# nothing\n\n", "jobs"), FormatError);
+    EXPECT_THROW(readBatchList(std::string("a\0b\n", 4), "jobs"), FormatError);
+}
+
+TEST(RunInOrder, DeliversInOrderAndFewAtATime) {
+    for (const int threads : {1, 2, 8}) {
+        limitThreads(threads);
+        std::atomic<int> waiting = 0, most = 0;
+        std::vector<std::size_t> order;
+        runInOrder(500, [&](std::size_t i) -> std::function<void()> {
+            const int now = ++waiting;
+            for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+            }
+            return [&, i] {
+                --waiting;
+                order.push_back(i);
+            };
+        });
+        ASSERT_EQ(order.size(), 500U);
+        for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
+        EXPECT_LE(most, 2 * threads);
+    }
+}
+
+TEST(RunInOrder, EndsWithWhatIsThrown) {
+    std::size_t delivered = 0;
+    const auto work = [&](std::size_t i) -> std::function<void()> {
+        if (i == 7) throw std::runtime_error("seven");
+        return [&] { ++delivered; };
+    };
+    EXPECT_THROW(runInOrder(1000, work), std::runtime_error);
+    EXPECT_LT(delivered, 1000U);
+    runInOrder(0, work);
+    EXPECT_THROW(runInOrder(3,
+                            [](std::size_t) -> std::function<void()> {
+                                return [] { throw std::runtime_error("full disk"); };
+                            }),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,152 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# coverage --batch: many scenes in one process give what as many processes do, whatever becomes of single ones.
+. "$(dirname "$0")/common.sh"
+
+cp "$scenes"/* . 2>/dev/null || true
+cp "$data"/{square.env,half.3dm,whole.3dm,zones.env,several.3dm,leaky.env} .
+cp square.env "a room.env"
+{ cat square.env; echo 'laser id=in at=3,3 model=urg-04lx'; } >own.env
+cat >list <<'LIST'
+# All of these work.
+ispace.env ispace.3dm
+square.env half.3dm
+
+"a room.env" whole.3dm   # quoted
+own.env
+half.3dm square.env
+hall.env hall.3dm
+zones.env several.3dm
+LIST
+options="--grid 50 --any-environment"
+
+# The same bytes as single runs, for any number of threads.
+grep -v '^#' list | sed 's/ *#.*//' | while read -r line; do
+    [ -z "$line" ] || eval "coverage -q $options --json $line"
+done >single
+[ "$(wc -l <single)" -eq 7 ] || fail "not 7 single runs"
+for threads in 1 2 7; do
+    # shellcheck disable=SC2086
+    coverage -q $options --batch list -j $threads >batch
+    expect_same single batch "a batch on $threads threads differs from single runs"
+done
+# shellcheck disable=SC2086
+coverage -q $options --batch - -o reports.jsonl <list
+expect_same single reports.jsonl "a list on stdin, reports in a file"
+
+# What is wrong with one scene is said with its place, leaves `null`, and stops no other.
+cat >bad <<'LIST'
+square.env half.3dm
+missing.env half.3dm
+square.env half.3dm hall.3dm
+leaky.env half.3dm
+square.env "half.3dm
+square.env
+square.env -
+own.env
+LIST
+expect_status 1 coverage --batch bad -j 2
+[ "$(grep -c '^null$' out)" -eq 6 ] || fail "not six lines of null: $(cut -c1-40 out)"
+[ "$(sed -n '1p;8p' out | grep -c '^{"schema":"ispace-coverage/1"')" -eq 2 ] || fail "$(cut -c1-40 out)"
+cut -c1-60 err >said
+cat >wanted <<'SAID'
+coverage: bad:2: missing.env: error: No such file or directory
+coverage: bad:3: error: more than ENV and LAYOUT: put names with blanks in quotes
+coverage: bad:4: leaky.env:
+coverage: bad:5: error: the quote that opens here is not closed
+coverage: bad:6: error: square.env holds no placed sensor: give a layout after it
+coverage: bad:7: error: stdin is not read by a job of a list: give a file
+coverage: bad:8: warning: in stands outside the room at 3,3
+coverage: bad: error: 6 of 8 jobs failed, see above
+SAID
+while read -r line; do
+    grep -qF "$line" err || fail "not said: $line; but: $(cat err)"
+done <wanted
+expect_status 1 coverage -q --batch bad
+! grep -q warning err || fail "-q warns: $(cat err)"
+
+# Requirements count for each; a JUnit file lists them all.
+printf 'square.env half.3dm\nsquare.env whole.3dm\n' >two
+expect_status 0 coverage --batch two --require 40%
+expect_status 3 coverage --batch two --require 40% --require free:60% --junit two.xml
+[ "$(wc -l <out)" -eq 2 ] || fail "reports are missing: $(cat out)"
+grep -q '^coverage: two:1: error: free coverage is 50.00% (exact), below the required 60%' err || fail "$(cat err)"
+grep -q '^coverage: error: 1 of 2 jobs missed a requirement' err || fail "$(cat err)"
+python3 "$source_dir/tests/schemas/junit.py" two.xml || fail "not JUnit: $(cat two.xml)"
+grep -q 'tests="4" failures="1" errors="0"' two.xml || fail "$(cat two.xml)"
+grep -q 'name="two:1 square.env half.3dm: free:60%"' two.xml || fail "$(cat two.xml)"
+expect_status 1 coverage --batch bad --require 40% --junit bad.xml
+python3 "$source_dir/tests/schemas/junit.py" bad.xml || fail "not JUnit: $(cat bad.xml)"
+grep -q 'tests="8" failures="1" errors="6"' bad.xml || fail "$(cat bad.xml)"
+expect_status 1 coverage --batch two --require zone:door=1%
+grep -q '^coverage: two:2: error: the room has no zone `door`' err || fail "$(cat err)"
+
+# What is held does not grow with their number.
+peak() {
+    python3 -c 'import resource, subprocess, sys
+subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' coverage -j 2 --grid 20 --batch "$1"
+}
+for _ in $(seq 25); do cat two; done >some
+for _ in $(seq 1000); do cat two; done >many
+few=$(peak some)
+all=$(peak many)
+[ "$all" -lt $((few + 8192)) ] || fail "$few kB for 50 scenes, $all kB for 2000"
+
+# A list that is none, a full disk, and what does not go with it.
+expect_error 1 coverage --batch "$data/random.bin"
+expect_error 1 coverage --batch /dev/null
+expect_error 1 coverage --batch missing
+status=0
+coverage --batch two >/dev/full 2>err || status=$?
+[ "$status" -eq 1 ] || fail "status $status on a full disk"
+one_error coverage "a full disk"
+expect_error 2 coverage --batch two square.env
+for option in "--report r.json" "--compare half.3dm" "--run r" "--to png" "--color sensor" -MD "-o map.png"; do
+    # shellcheck disable=SC2086
+    expect_error 2 coverage --batch two $option
+done
+expect_error 2 coverage --batch two -o two
+cmp two <(printf 'square.env half.3dm\nsquare.env whole.3dm\n') || fail "the list was replaced"
+
+# Shares joined are the whole, for any number of them.
+for count in 2 3 9; do
+    for index in $(seq $count); do
+        # shellcheck disable=SC2086
+        coverage -q $options --batch list --shard "$index/$count" >"share$index"
+    done
+    # shellcheck disable=SC2046
+    cat $(seq -f share%g $count) >joined
+    expect_same single joined "$count shares joined differ from the whole"
+done
+
+# Killed again and again, a run ends with the same bytes, messages and status.
+for _ in $(seq 40); do cat bad; done >long
+coverage --batch long -j 2 --require 40% --junit whole.xml >whole 2>err.whole || [ $? -eq 1 ]
+kills=0
+while :; do
+    coverage --batch long -j 2 --require 40% --resume -o gone_on --junit gone_on.xml 2>err.gone_on &
+    job=$!
+    sleep "0.0$((RANDOM % 9))"
+    if [ $kills -lt 12 ]; then kill -9 "$job" 2>/dev/null && kills=$((kills + 1)); fi
+    status=0
+    wait "$job" 2>/dev/null || status=$?
+    [ "$status" -eq 137 ] || break
+done
+[ "$status" -eq 1 ] && [ "$kills" -ge 1 ] || fail "status $status after $kills kills: $(cat err.gone_on)"
+expect_same whole gone_on "what was killed and gone on with differs from a whole run"
+expect_same whole.xml gone_on.xml "its JUnit file does"
+expect_same err.whole err.gone_on "its messages do"
+[ ! -e gone_on.resume ] || fail "the checkpoint is left"
+
+# What another run left is refused, and left alone.
+coverage --batch long -j 1 --resume -o other.jsonl 2>/dev/null &
+job=$!
+for _ in $(seq 500); do [ -s other.jsonl.resume ] || sleep 0.01; done
+kill -9 "$job" && wait "$job" 2>/dev/null || true
+if [ -s other.jsonl.resume ]; then
+    cp other.jsonl.resume kept
+    expect_error 1 coverage --batch long --resume -o other.jsonl --grid 7
+    expect_error 1 coverage --batch two --resume -o other.jsonl
+    expect_same kept other.jsonl.resume "a checkpoint of another run was touched"
+fi

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/batch.h"
+
+#include <optional>
+
+#include "base/checkpoint.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/program.h"
+#include "base/run_files.h"
+#include "cli/batch_list.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "cli/run_tool.h"
+#include "coverage/judge.h"
+#include "coverage/outcome.h"
+#include "layout/scene.h"
+#include "record/text.h"
+#include "trace/worlds.h"
+
+namespace ispace {
+
+namespace {
+
+/// Measures jobs one by one, from any thread.
+class BatchWorker {
+  public:
+    explicit BatchWorker(const CoverageToolOptions& options) : options_(options) {}
+
+    [[nodiscard]] SceneOutcome run(const BatchJob& job) const {
+        SceneOutcome outcome;
+        try {
+            measure(job, outcome);
+        } catch (...) {
+            const ToolFailure failure = currentFailure();
+            outcome.failed = true;
+            outcome.messages.insert(outcome.messages.end(), failure.lines.begin(),
+                                    failure.lines.end());
+            outcome.verdicts = {{.name = nameOf(job),
+                                 .outcome = JunitCase::Outcome::Error,
+                                 .message = failure.lines.front()}};
+        }
+        return outcome;
+    }
+
+  private:
+    void measure(const BatchJob& job, SceneOutcome& outcome) const {
+        if (!job.wrong.empty()) throw UsageError(job.wrong);
+        const SceneInput input = readScene({.operands = job.operands,
+                                            .any_environment = options_.any_environment,
+                                            .layout_from_stdin = false});
+        const Scene& scene = input.scene;
+        if (!input.layout && scene.sensors.empty())
+            throw UsageError(input.environment_operand +
+                             " holds no placed sensor: give a layout after it");
+        for (const Requirement& requirement : options_.requirements)
+            mustHaveZone(requirement, scene.environment);
+        for (const Diagnostic& warning : input.environment.warnings)
+            outcome.messages.push_back(warning.text());
+        for (const std::string& doubt : doubtsOf(scene))
+            outcome.messages.push_back("warning: " + doubt);
+        Worlds worlds(scene.environment);
+        const Coverage coverage = measureCoverage(scene, worlds, options_.measure);
+        if (std::string text = largeCellsText(options_.measure, coverage.report.grid);
+            !text.empty())
+            outcome.messages.push_back(std::move(text));
+        if (options_.common.quiet) outcome.messages.clear();
+        outcome.verdicts = judge(options_.requirements, coverage, nameOf(job) + ": ");
+        if (std::string unmet = unmetText(outcome.verdicts); !unmet.empty())
+            outcome.messages.push_back("error: " + unmet);
+        outcome.report = coverageJson(coverage.report);
+    }
+
+    /// For CI servers: the same for whoever runs the list, wherever it is.
+    [[nodiscard]] std::string nameOf(const BatchJob& job) const {
+        return baseName(options_.batch) + ':' + std::to_string(job.line) + ' ' + job.text();
+    }
+
+    const CoverageToolOptions& options_;
+};
+
+/// Writes what became of the jobs, in their order.
+class BatchWriter {
+  public:
+    explicit BatchWriter(const CoverageToolOptions& options)
+        : options_(options), reports_(options.common.output) {
+        if (!options.junit.empty()) junit_.emplace(options.junit);
+    }
+
+    void take(const BatchJob& job, const SceneOutcome& outcome) {
+        reports_.write(outcome.report);
+        for (const std::string& message : outcome.messages)
+            sayLine({"coverage: ", displayName(options_.batch), ":", std::to_string(job.line), ": ",
+                     printable(message)});
+        if (outcome.failed) ++failed_;
+        if (!unmetText(outcome.verdicts).empty()) ++unmet_;
+        if (junit_)
+            verdicts_.insert(verdicts_.end(), outcome.verdicts.begin(), outcome.verdicts.end());
+    }
+
+    void commit() {
+        reports_.commit();
+        if (!junit_) return;
+        junit_->write(junitXml("coverage", baseName(options_.batch), verdicts_));
+        junit_->commit();
+    }
+
+    /// \throws as runBatch
+    void conclude(std::size_t jobs) const {
+        const auto share = [jobs](std::size_t count) {
+            return std::to_string(count) + " of " + std::to_string(jobs) + " jobs ";
+        };
+        if (failed_ > 0)
+            throw FormatError(
+                {displayName(options_.batch), 0, 0, share(failed_) + "failed, see above"});
+        if (unmet_ > 0) throw UnmetError(share(unmet_) + "missed a requirement");
+        talk(options_.common, "coverage", std::to_string(jobs) + " jobs done");
+    }
+
+  private:
+    const CoverageToolOptions& options_;
+    OutputFile reports_;
+    std::optional<OutputFile> junit_;
+    std::vector<JunitCase> verdicts_;
+    std::size_t failed_ = 0, unmet_ = 0;
+};
+
+/// The jobs of a list that are this process' share, and what it has done of them before.
+class Share {
+  public:
+    explicit Share(const CoverageToolOptions& options)
+        : options_(options),
+          list_(options.batch == "-" ? readStdin() : readAll(options.batch)),
+          jobs_(readBatchList(list_, displayName(options.batch))) {
+        const auto [first, end] = options.shard.blockOf(static_cast<std::int64_t>(jobs_.size()));
+        first_ = static_cast<std::size_t>(first);
+        count_ = static_cast<std::size_t>(end - first);
+        if (options.resume) goOn();
+    }
+
+    [[nodiscard]] std::size_t size() const { return count_; }
+    [[nodiscard]] const BatchJob& job(std::size_t i) const { return jobs_[first_ + i]; }
+    [[nodiscard]] bool isDone(std::size_t i) const { return i < done_.size() && done_[i]; }
+
+    /// What became of it before. \pre isDone()
+    [[nodiscard]] SceneOutcome outcome(std::size_t i) const {
+        return SceneOutcome::fromText(checkpoint_->part().find(nameOf(i)).value());
+    }
+    /// Keeps what becomes of it now.
+    void keep(std::size_t i, const SceneOutcome& outcome) {
+        if (checkpoint_) checkpoint_->add(nameOf(i), outcome.text());
+    }
+    void finish() {
+        if (checkpoint_) checkpoint_->remove();
+    }
+
+  private:
+    [[nodiscard]] std::string nameOf(std::size_t i) const { return std::to_string(first_ + i + 1); }
+
+    void goOn() {
+        JobId id;
+        id.tool = "coverage";
+        id.history = {options_.command};
+        id.inputs = sha256(list_);
+        id.form = "jsonl";
+        id.units = static_cast<std::int64_t>(jobs_.size());
+        checkpoint_.emplace(options_.common.output + ".resume", PartHead{id, options_.shard});
+        for (std::size_t i = 0; i < count_; ++i)
+            done_.push_back(checkpoint_->part().has(nameOf(i)));
+    }
+
+    const CoverageToolOptions& options_;
+    std::string list_;
+    std::vector<BatchJob> jobs_;
+    std::size_t first_ = 0, count_ = 0;
+    std::vector<bool> done_;
+    std::optional<Checkpoint> checkpoint_;
+};
+
+}  // namespace
+
+void runBatch(const CoverageToolOptions& options) {
+    limitThreads(options.common.threads);
+    claimOutputs(options.common);
+    claimOutput(options.junit, "--junit");
+    Share share(options);
+    const BatchWorker worker(options);
+    BatchWriter writer(options);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    progress->begin("scenes", static_cast<std::int64_t>(share.size()));
+    const auto finish = [&](std::size_t i, const SceneOutcome& outcome) {
+        writer.take(share.job(i), outcome);
+        progress->advance(1);
+    };
+    runInOrder(share.size(), [&](std::size_t i) -> std::function<void()> {
+        if (share.isDone(i)) return [&, i] { finish(i, share.outcome(i)); };
+        return [&, i, outcome = worker.run(share.job(i))] {
+            share.keep(i, outcome);
+            finish(i, outcome);
+        };
+    });
+    progress->end();
+    writer.commit();
+    share.finish();
+    writer.conclude(share.size());
+}
+
+}  // namespace ispace
