@@ -53,7 +53,8 @@ bool isPng(const std::string& bytes) { return bytes.starts_with("\x89PNG\r\n\x1a
 
 std::string differenceOf(const Options& options, const std::string& expected,
                          const std::string& actual) {
-    if (isPng(expected) && isPng(actual)) return pictureDifference(expected, actual);
+    if (isPng(expected) != isPng(actual)) return "one is a PNG and the other is not";
+    if (isPng(expected)) return pictureDifference(expected, actual);
     if (options.history) return textDifference(expected, actual, options.tolerance);
     return textDifference(withoutHistory(expected), withoutHistory(actual), options.tolerance);
 }
