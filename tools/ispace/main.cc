@@ -41,7 +41,8 @@ constexpr std::string_view kUsage =
     "Run a tool of ispace, or open its manual page.\n\nTools:\n";
 
 constexpr std::string_view kRest =
-    "\nPages: those of the tools, and env, 3dm, yaml (formats), protocol, wire.\n"
+    "\nPages: those of the tools, and env, 3dm, yaml (formats), protocol, wire,\n"
+    "stability, golden-diff, sweep.\n"
     "\nOptions:\n"
     "  -h, --help     show this help and exit\n"
     "  -V, --version  show version and licence and exit\n"
