@@ -10,6 +10,7 @@
 #include "base/program.h"
 #include "base/run_files.h"
 #include "cli/batch_list.h"
+#include "cli/batch_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -166,7 +167,7 @@ class Share {
         id.inputs = sha256(list_);
         id.form = "jsonl";
         id.units = static_cast<std::int64_t>(jobs_.size());
-        checkpoint_.emplace(options_.common.output + ".resume", PartHead{id, options_.shard});
+        checkpoint_.emplace(checkpointOf(options_.common.output), PartHead{id, options_.shard});
         for (std::size_t i = 0; i < count_; ++i)
             done_.push_back(checkpoint_->part().has(nameOf(i)));
     }
