@@ -25,7 +25,7 @@ for package in one/*.deb; do
         *) dpkg-deb -x "$package" root ;;
     esac
 done
-[ "$(ls root/usr/bin | tr '\n' ' ')" = "ispace ispace-sweep " ] || fail "in /usr/bin: $(ls root/usr/bin)"
+[ "$(ls root/usr/bin | tr '\n' ' ')" = "golden-diff ispace ispace-sweep " ] || fail "in /usr/bin: $(ls root/usr/bin)"
 [ "$(cd short/usr/bin && ls)" = "$(tr ' ' '\n' <<<"$tools" | sort)" ] || fail "short names: $(ls short/usr/bin)"
 for tool in $tools; do
     [ -x "root/usr/lib/ispace/bin/$tool" ] || fail "no $tool"
@@ -33,7 +33,7 @@ for tool in $tools; do
     [ -s "root/usr/share/man/man1/$tool.1ispace.gz" ] || fail "no manual page of $tool"
 done
 for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.5 man5/ispace-yaml.5 \
-    man7/ispace-protocol.7 man7/ispace-wire.7; do
+    man1/golden-diff.1 man7/ispace-protocol.7 man7/ispace-stability.7 man7/ispace-wire.7; do
     [ -s "root/usr/share/man/$page.gz" ] || fail "no page $page"
 done
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
