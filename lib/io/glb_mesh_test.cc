@@ -11,10 +11,10 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "model/glb_file.h"
-#include "model/model.h"
 #include "io/test_glb.h"
 #include "layout/schemas.h"
+#include "model/glb_file.h"
+#include "model/model.h"
 #include "record/text.h"
 
 namespace ispace {

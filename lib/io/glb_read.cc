@@ -14,8 +14,8 @@
 
 #include "base/error.h"
 #include "io/glb.h"
-#include "model/glb_file.h"
 #include "io/input.h"
+#include "model/glb_file.h"
 #include "record/text.h"
 
 namespace ispace {

@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 #include "io/exporters.h"
-#include "model/model.h"
 #include "io/robot_xml.h"
 #include "io/sdf_parts.h"
 #include "io/sdf_sensors.h"
 #include "layout/bodies.h"
+#include "model/model.h"
 #include "sensor/kind.h"
 
 namespace ispace {

@@ -149,7 +149,8 @@ TEST(ScipSession, ACountedStream) {
     ScipSession session(room, "l1");
     EXPECT_EQ(answered(session, "MD0044004601002\n"), reply("MD0044004601002", "00P"));
     EXPECT_EQ(stepped(room, session, 6), "");
-    // Begun after 0.1 s and 0.2 s, and there with the last beam, 67 ms later; three steps to the right of the front, 30 degrees behind the side.
+    // Begun after 0.1 s and 0.2 s, and there with the last beam, 67 ms later; three steps to the
+    // right of the front, 30 degrees behind the side.
     const std::string first = stepped(room, session, 1), second = stepped(room, session, 4);
     EXPECT_TRUE(first.starts_with("MD0044004601001\n99b\n001T")) << first;
     EXPECT_TRUE(second.starts_with("MD0044004601000\n99b\n0038")) << second;

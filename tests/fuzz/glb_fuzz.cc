@@ -5,8 +5,8 @@
 
 #include "fuzz.h"
 #include "io/glb.h"
-#include "model/glb_file.h"
 #include "layout/schemas.h"
+#include "model/glb_file.h"
 
 namespace {
 

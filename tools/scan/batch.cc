@@ -245,8 +245,8 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
         return own;
     }
     if (!names && format.isStream() && !format.isPlain())
-        throw UsageError(std::string(options.batch.shard ? "--shard" : "--resume") + ": a file of " +
-                         options.format +
+        throw UsageError(std::string(options.batch.shard ? "--shard" : "--resume") +
+                         ": a file of " + options.format +
                          " is made as a whole: name a folder (-o DIR/) for a file each reading, or "
                          "take jsonl, csv, raw or pcd");
     if (!names && format.isStream()) format.checkStream();

@@ -153,8 +153,8 @@ void scan(const ScanCommand& command) {
     const Scene& scene = input.scene;
     const bool moves = !options.poses.empty();
     std::vector<std::string> files = filesOf(input);
-    const Sensors sensors =
-        moves ? sensorForPoses(options, scene, shippedDevices(), files) : placedSensors(options, input);
+    const Sensors sensors = moves ? sensorForPoses(options, scene, shippedDevices(), files)
+                                  : placedSensors(options, input);
     command.checkSensors(sensors.read);
     if (!moves) warn(options.common, "scan", sensorWarnings(scene, sensors, options.select));
     const auto format = makeFormat(options.format, sensors, formatOptions(command, input));
