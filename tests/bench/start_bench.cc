@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     writeAll(room, "#env 1\nfence path=-2,-2;2,-2;2,2;-2,2 closed=yes\n");
     writeAll(layout, "#3dm 1\nlaser id=l at=0,0 range=10 fov=180 step=1\n");
     std::string lines;
-    for (int i = 0; i < kRooms; ++i) lines += room + ' ' + layout + '\n';
+    for (int i = 0; i < kRooms; ++i) lines.append(room).append(1, ' ').append(layout) += '\n';
     writeAll(list, lines);
 
     std::vector<Case> cases;
