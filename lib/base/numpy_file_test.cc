@@ -17,11 +17,11 @@ Number numberAt(std::string_view bytes, std::size_t at) {
 
 TEST(NpyHeader, IsAlignedAndSaysTypeAndShape) {
     using Shape = std::vector<std::uint64_t>;
-    const std::pair<Shape, std::string> kCases[] = {{{}, "()"},
-                                                    {{5}, "(5,)"},
-                                                    {{0, 6}, "(0, 6)"},
-                                                    {{12345678901, 2, 3}, "(12345678901, 2, 3)"}};
-    for (const auto& [shape, text] : kCases) {
+    const std::pair<Shape, std::string> cases[] = {{{}, "()"},
+                                                   {{5}, "(5,)"},
+                                                   {{0, 6}, "(0, 6)"},
+                                                   {{12345678901, 2, 3}, "(12345678901, 2, 3)"}};
+    for (const auto& [shape, text] : cases) {
         const std::string header = npyHeader("<f4", shape);
         EXPECT_EQ(header.size() % 64, 0U);
         EXPECT_EQ(header.substr(0, 8), std::string("\x93NUMPY\1\0", 8));

@@ -23,7 +23,8 @@ TEST(McapWriter, MakesTheSameBytesHoweverMessagesAreHandedOver) {
     std::string together;
     for (std::uint16_t i = 0; i < 300; ++i) {
         std::string message;
-        appendMcapMessage(message, i % 2, i, 1000U * i, std::string(20'000U + i, 'x'));
+        appendMcapMessage(message, i % 2, i, std::uint64_t{1000} * i,
+                          std::string(20'000U + i, 'x'));
         one_by_one.push_back(message);
         together += message;
     }
