@@ -19,7 +19,7 @@ for tool in $tools; do
     expect_error 2 "$tool" "$data/room.env" --threads -1
     expect_error 2 "$tool" "$data/room.env" --output
     # A suffix that no format has is a slip, whatever else it may be the suffix of.
-    for suffix in mcap sdf foo; do
+    for suffix in bag dwg foo; do
         [ "$tool" = simrun ] && continue # has no -o
         expect_error 2 "$tool" "$data/room.env" "${extra[@]}" -o "out.$suffix"
         grep -q "suffix .\.$suffix., wanted \." err || fail "$tool does not name formats: $(cat err)"
