@@ -36,6 +36,7 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const
     const std::vector<RunVerdict> verdicts = judge.verdicts();
     if (junit) {
         std::vector<JunitCase> cases;
+        cases.reserve(verdicts.size());
         for (const RunVerdict& verdict : verdicts)
             cases.push_back(
                 {.name = verdict.expectation,
