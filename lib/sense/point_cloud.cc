@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/point_cloud.h"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
-#include "base/number.h"
 #include "geom/rotation.h"
-#include "sense/float_text.h"
 
 namespace ispace {
 
@@ -130,165 +126,6 @@ PointCloud cloudOf(const Laser& laser, std::span<const Scan> scans, Coordinates 
         }
     }
     return cloud;
-}
-
-namespace {
-
-void appendReturns(std::vector<float>& to, const std::vector<float>& xyz) {
-    for (std::size_t i = 0; i < xyz.size(); i += 3)
-        if (!std::isnan(xyz[i])) to.insert(to.end(), {xyz[i], xyz[i + 1], xyz[i + 2]});
-}
-
-}  // namespace
-
-void CloudPile::add(PointCloud cloud) {
-    if (all_.width == 0 && all_.xyz.empty()) {
-        all_ = std::move(cloud);
-        return;
-    }
-    if (organised_ && cloud.width != all_.width) {
-        organised_ = false;
-        std::vector<float> returns;
-        appendReturns(returns, all_.xyz);
-        all_.xyz = std::move(returns);
-    }
-    if (organised_) {
-        all_.height += cloud.height;
-        all_.xyz.insert(all_.xyz.end(), cloud.xyz.begin(), cloud.xyz.end());
-    } else {
-        appendReturns(all_.xyz, cloud.xyz);
-    }
-}
-
-PointCloud CloudPile::take() {
-    if (!organised_) {
-        all_.width = all_.xyz.size() / 3;
-        all_.height = 1;
-    }
-    organised_ = true;
-    return std::exchange(all_, PointCloud());
-}
-
-namespace {
-
-void appendViewpoint(std::string& out, const Pose3& pose) {
-    const Eigen::Quaterniond turn = quaternionOf(pose);
-    out += "VIEWPOINT";
-    for (const double part : {pose.position.x, pose.position.y, pose.position.z, turn.w(), turn.x(),
-                              turn.y(), turn.z()}) {
-        out += ' ';
-        appendDouble(out, part);
-    }
-    out += '\n';
-}
-
-}  // namespace
-
-std::string pcdOf(const PointCloud& cloud, Encoding encoding) {
-    std::string out =
-        "# .PCD v0.7 - Point Cloud Data file format\n"
-        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
-    out.append("WIDTH ").append(std::to_string(cloud.width));
-    out.append("\nHEIGHT ").append(std::to_string(cloud.height)).append("\n");
-    appendViewpoint(out, cloud.viewpoint);
-    out.append("POINTS ").append(std::to_string(cloud.size())).append("\n");
-    out += encoding == Encoding::Binary ? "DATA binary\n" : "DATA ascii\n";
-
-    const std::vector<float>& xyz = cloud.xyz;
-    if (encoding == Encoding::Binary) {
-        static_assert(std::endian::native == std::endian::little);
-        out.append(reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float));
-        return out;
-    }
-    TextTail tail(out, kNumberRoom * xyz.size());
-    for (std::size_t i = 0; i < xyz.size(); ++i) {
-        if (std::isnan(xyz[i])) {
-            tail.put("nan");
-        } else {
-            tail.put(xyz[i]);
-        }
-        tail.put(i % 3 == 2 ? '\n' : ' ');
-    }
-    return out;
-}
-
-namespace {
-
-bool isMissing(const PointCloud& cloud, std::size_t point) {
-    return std::isnan(cloud.xyz[3 * point]);
-}
-
-std::string header(const PointCloud& cloud, Encoding encoding, std::size_t present) {
-    const bool organised = cloud.height > 1;
-    std::string out = "ply\nformat ";
-    out += encoding == Encoding::Binary ? "binary_little_endian 1.0\n" : "ascii 1.0\n";
-    if (organised) {
-        out.append("obj_info num_cols ").append(std::to_string(cloud.width));
-        out.append("\nobj_info num_rows ").append(std::to_string(cloud.height)).append("\n");
-    }
-    out.append("element vertex ").append(std::to_string(present));
-    out += "\nproperty float x\nproperty float y\nproperty float z\n";
-    if (organised) {
-        out.append("element range_grid ").append(std::to_string(cloud.size()));
-        out += "\nproperty list uchar int vertex_indices\n";
-    }
-    return out + "end_header\n";
-}
-
-void appendBinary(std::string& out, const PointCloud& cloud) {
-    static_assert(std::endian::native == std::endian::little);
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-        if (!isMissing(cloud, i))
-            out.append(reinterpret_cast<const char*>(&cloud.xyz[3 * i]), 3 * sizeof(float));
-    if (cloud.height <= 1) return;
-    std::int32_t index = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        if (isMissing(cloud, i)) {
-            out += '\0';
-            continue;
-        }
-        out += '\1';
-        out.append(reinterpret_cast<const char*>(&index), sizeof(index));
-        ++index;
-    }
-}
-
-void appendAscii(std::string& out, const PointCloud& cloud) {
-    TextTail tail(out, kNumberRoom * 4 * cloud.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        if (isMissing(cloud, i)) continue;
-        for (std::size_t part = 0; part < 3; ++part) {
-            tail.put(cloud.xyz[3 * i + part]);
-            tail.put(part == 2 ? '\n' : ' ');
-        }
-    }
-    if (cloud.height <= 1) return;
-    std::size_t index = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        if (isMissing(cloud, i)) {
-            tail.put("0\n");
-            continue;
-        }
-        tail.put("1 ");
-        tail.put(index++);
-        tail.put('\n');
-    }
-}
-
-}  // namespace
-
-std::string plyOf(const PointCloud& cloud, Encoding encoding) {
-    std::size_t present = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-        if (!isMissing(cloud, i)) ++present;
-    std::string out = header(cloud, encoding, present);
-    if (encoding == Encoding::Binary) {
-        out.reserve(out.size() + cloud.size() * (3 * sizeof(float) + 5));
-        appendBinary(out, cloud);
-    } else {
-        appendAscii(out, cloud);
-    }
-    return out;
 }
 
 }  // namespace ispace

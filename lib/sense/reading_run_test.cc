@@ -139,28 +139,6 @@ TEST(Sensors, AChoiceOfTagsIsNoChoiceOfReceivers) {
     EXPECT_THROW(sensorsOf(scene, {"x*"}), UsageError);
 }
 
-TEST(CloudPile, KeepsRowsOfOneWidthAndDropsMissingPointsElse) {
-    const float none = std::numeric_limits<float>::quiet_NaN();
-    const PointCloud two{
-        .width = 2, .height = 1, .xyz = {1, 2, 3, none, none, none}, .viewpoint = {}};
-    const PointCloud one{.width = 1, .height = 1, .xyz = {7, 8, 9}, .viewpoint = {}};
-    CloudPile pile;
-    pile.add(two);
-    pile.add(two);
-    const PointCloud rows = pile.take();
-    EXPECT_EQ(rows.width, 2U);
-    EXPECT_EQ(rows.height, 2U);
-    EXPECT_EQ(rows.xyz.size(), 12U);
-    pile.add(two);
-    pile.add(one);
-    pile.add(two);
-    const PointCloud mixed = pile.take();
-    EXPECT_EQ(mixed.width, 3U);
-    EXPECT_EQ(mixed.height, 1U);
-    EXPECT_EQ(mixed.xyz, (std::vector<float>{1, 2, 3, 7, 8, 9, 1, 2, 3}));
-    EXPECT_EQ(pile.take().size(), 0U);
-}
-
 TEST(SensorWarnings, SensorsWithoutPlaceAndInsideSolids) {
     const Scene scene = testing::scene(kRoom + "cube id=c at=6,1 size=1,1,1\n",
                                        "laser id=a\nranger id=b\nlaser id=in at=6,1\n"

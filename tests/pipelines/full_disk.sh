@@ -39,7 +39,7 @@ done
 
 small_disk
 # What waits for the end of a scan waits in TMPDIR, which may be full, too.
-for format in npz las; do
+for format in npz las ply; do
     expect_status 1 env TMPDIR=disk scan "$room" "$layout" --frames 20000 --to $format -o whole
     grep -q "^scan: temporary file in disk: error: No space left on device" err || fail "scan: $(cat err)"
     [ ! -e whole ] && [ -z "$(ls -A disk)" ] || fail "left behind: $(ls -A disk)"

@@ -34,6 +34,7 @@ for format in jsonl csv raw; do joins "$format" 3 "${still[@]}" --to "$format"; 
 joins carmen 3 "${still[@]}" --to carmen --select l1
 joins pcd "1 2 14 19" scan "$room" "$layout" --frames 7 --to pcd
 joins "pcd in text" 2 scan "$room" "$layout" --frames 7 --to pcd --encoding ascii
+joins "ply of two lasers" "2 5" scan "$room" "$layout" --frames 7 --to ply
 joins "ply of one laser" 3 scan "$room" "$layout" --frames 14 --select l1 --to ply
 joins poses "1 2 3 7 13 18" scan "$room" --poses way.txt --model urg-04lx --noise
 joins "poses as a cloud" 3 scan "$room" --poses way.txt --model urg-04lx --to ply --encoding ascii

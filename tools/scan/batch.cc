@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -81,52 +82,58 @@ std::string recordName(std::string_view what, const Readings& readings, std::int
     return name;
 }
 
-/// Joins the readings of parts, in their order.
-class Joiner {
-  public:
-    /// \param form as JobId has it
-    Joiner(const std::string& target, const std::string& form) : file_(target), form_(form) {}
-
-    void add(const PartFile& part) {
+/// Rows of all clouds in parts, whose records are read and checked.
+CloudRows rowsIn(std::span<const PartFile> parts) {
+    CloudRows rows;
+    for (const PartFile& part : parts)
         for (std::size_t i = 0; i < part.records(); ++i) {
             const std::string bytes = part.bytes(i);
-            const std::string& name = part.name(i);
-            if (name == kHeader) {
-                if (!std::exchange(has_header_, true)) file_.write(bytes);
-            } else if (name.starts_with(kReadings)) {
-                file_.write(bytes);
-            } else if (name.starts_with(kClouds)) {
-                addClouds(part, bytes);
+            if (!part.name(i).starts_with(kClouds)) continue;
+            for (std::string_view left = bytes; !left.empty();) {
+                const auto cloud = takeCloud(left);
+                if (!cloud)
+                    throw FormatError({part.file(), 0, 0, "a cloud of points is not whole"});
+                rows.add(cloud->width, cloud->height);
             }
         }
+    return rows;
+}
+
+/// The readings of parts, in their order, as one file.
+class Joiner {
+  public:
+    /// Damage is told before anything goes into a stream.
+    Joiner(std::span<const PartFile> parts, const std::string& target)
+        : parts_(parts), file_(target) {
+        const std::string_view form = parts.front().head().job.form;
+        const CloudRows rows = rowsIn(parts);
+        checkPoints(rows.points);
+        if (const auto format = cloudFormatOf(form.substr(0, form.find(' '))))
+            clouds_.emplace(*format, form.ends_with("text") ? Encoding::Ascii : Encoding::Binary,
+                            rows.width, rows.count, [this](auto bytes) { file_.write(bytes); });
     }
-    void commit() {
-        if (form_.starts_with("pcd"))
-            file_.write(pcdOf(clouds_.take(), encoding()));
-        else if (form_.starts_with("ply"))
-            file_.write(plyOf(clouds_.take(), encoding()));
+    void write() {
+        for (const PartFile& part : parts_)
+            for (std::size_t i = 0; i < part.records(); ++i) add(part.name(i), part.bytes(i));
+        if (clouds_) clouds_->finish();
         file_.commit();
     }
 
   private:
-    void addClouds(const PartFile& part, std::string_view bytes) {
-        while (!bytes.empty()) {
-            auto cloud = takeCloud(bytes);
-            if (!cloud) throw FormatError({part.file(), 0, 0, "a cloud of points is not whole"});
-            points_ += cloud->size();
-            checkPoints(points_);
-            clouds_.add(std::move(*cloud));
+    void add(const std::string& name, std::string_view bytes) {
+        if (name == kHeader) {
+            if (!std::exchange(has_header_, true)) file_.write(bytes);
+        } else if (name.starts_with(kReadings)) {
+            file_.write(bytes);
+        } else if (name.starts_with(kClouds)) {
+            while (const auto cloud = takeCloud(bytes)) clouds_->add(*cloud);
         }
     }
-    [[nodiscard]] Encoding encoding() const {
-        return form_.ends_with("text") ? Encoding::Ascii : Encoding::Binary;
-    }
 
+    std::span<const PartFile> parts_;
     OutputFile file_;
-    std::string form_;
     bool has_header_ = false;
-    CloudPile clouds_;
-    std::size_t points_ = 0;
+    std::optional<CloudStream> clouds_;
 };
 
 /// Readings as records: of a part, of a checkpoint, or of a checkpoint that becomes a part.
@@ -160,9 +167,7 @@ class RecordDelivery final : public Delivery {
             for (std::size_t i = 0; i < done.records(); ++i) part.add(done.name(i), done.bytes(i));
             part.finish();
         } else {
-            Joiner whole(options_.common.output, head_.job.form);
-            whole.add(done);
-            whole.commit();
+            Joiner({&done, 1}, options_.common.output).write();
         }
         checkpoint_->remove();
     }
@@ -286,8 +291,6 @@ void mergeReadings(const ScanCommand& command) {
     for (const PartFile& part : parts) {
         const Shard::Block block = part.head().shard.blockOf(job.units.value_or(0));
         const std::int64_t found = readingsIn(part);
-        // Damage is told before anything goes into a stream.
-        for (std::size_t i = 0; i < part.records(); ++i) static_cast<void>(part.bytes(i));
         if (found != block.end - block.first)
             throw FormatError({part.file(), 0, 0,
                                "holds " + std::to_string(found) + " readings, and shard " +
@@ -296,9 +299,7 @@ void mergeReadings(const ScanCommand& command) {
                                    std::to_string(block.end - block.first)});
         count += found;
     }
-    Joiner whole(output, job.form);
-    for (const PartFile& part : parts) whole.add(part);
-    whole.commit();
+    Joiner(parts, output).write();
     writeDependencies(options.common, options.operands);
     talk(options.common, "scan",
          std::to_string(count) + (count == 1 ? " reading" : " readings") + " joined");

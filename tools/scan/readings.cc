@@ -158,44 +158,56 @@ class OneFile final : public Delivery {
     std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-/// All points in one cloud, which is held in memory until it is whole.
+/// Points of each row that a sensor makes, and rows of a reading.
+std::size_t rowWidth(const Sensor& sensor) {
+    return static_cast<std::size_t>(sensor.is<Laser>() ? sensor.as<Laser>().beams
+                                                       : sensor.as<Ranger>().columns);
+}
+std::size_t rowsOf(const Sensor& sensor) {
+    return static_cast<std::size_t>(sensor.is<Laser>() ? sensor.as<Laser>().scans()
+                                                       : sensor.as<Ranger>().rows);
+}
+
+/// All points in one cloud.
 class OneCloud final : public Delivery {
   public:
-    /// \param a_frame readings a frame \param count all readings, -1 if nobody knows
-    OneCloud(const ScanToolOptions& options, std::size_t a_frame, std::int64_t count)
-        : options_(options),
-          file_(options.common.output),
-          a_frame_(a_frame),
-          frames_(std::max<std::int64_t>(count, 0) / static_cast<std::int64_t>(a_frame)) {}
+    /// \param count all readings, -1 if nobody knows
+    OneCloud(const ScanToolOptions& options, const Sensors& sensors, std::int64_t count)
+        : file_(options.common.output), frames_(framesOf(sensors, count)) {
+        CloudRows rows;
+        for (const Sensor& sensor : sensors.read) rows.add(rowWidth(sensor), rowsOf(sensor));
+        checkPoints(rows.points * frames_);
+        cloud_.emplace(*cloudFormatOf(options.format), options.encoding, rows.width,
+                       count < 0 ? std::nullopt : std::optional(rows.count * frames_),
+                       [this](std::string_view bytes) { file_.write(bytes); });
+    }
     [[nodiscard]] Packing how() const override { return Packing::Clouds; }
     void write(Readings& readings) override {
-        for (PointCloud& cloud : readings.clouds) {
+        for (const PointCloud& cloud : readings.clouds) {
             points_ += cloud.size();
-            if (++readings_ == a_frame_) checkPoints(points_ * static_cast<std::size_t>(frames_));
             checkPoints(points_);
-            clouds_.add(std::move(cloud));
+            cloud_->add(cloud);
         }
     }
     void commit() override {
-        const PointCloud cloud = clouds_.take();
-        file_.write(options_.format == "pcd" ? pcdOf(cloud, options_.encoding)
-                                             : plyOf(cloud, options_.encoding));
+        cloud_->finish();
         file_.commit();
     }
 
   private:
-    const ScanToolOptions& options_;
+    static std::size_t framesOf(const Sensors& sensors, std::int64_t count) {
+        return static_cast<std::size_t>(std::max<std::int64_t>(count, 0)) / sensors.read.size();
+    }
+
     OutputFile file_;
-    CloudPile clouds_;
-    std::size_t a_frame_, readings_ = 0, points_ = 0;
-    std::int64_t frames_;
+    std::size_t frames_, points_ = 0;
+    std::optional<CloudStream> cloud_;
 };
 
 }  // namespace
 
 bool isOneCloud(const ScanToolOptions& options) {
-    const bool is_cloud = options.format == "pcd" || options.format == "ply";
-    return is_cloud && options.coordinates == Coordinates::World;
+    return cloudFormatOf(options.format) && options.coordinates == Coordinates::World;
 }
 
 void checkPoints(std::size_t points) {
@@ -240,7 +252,7 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     format.checkStream();
     if (format.isStream()) return std::make_unique<Stream>(output, format);
     if (count == 1) return std::make_unique<OneFile>(output, format.endings());
-    if (isOneCloud(options)) return std::make_unique<OneCloud>(options, sensors.read.size(), count);
+    if (isOneCloud(options)) return std::make_unique<OneCloud>(options, sensors, count);
     const std::string many = count < 0 ? "poses" : std::to_string(count) + " readings";
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +
