@@ -177,6 +177,7 @@ void measure(benchmark::State& state, const Case& test, const Use& use, double p
     state.counters["two_threads"] = two;
     state.counters["a_core"] = core;
     state.counters["others"] = times.others;
+    state.counters["megabytes"] = times.whole[1].memory;
     state.counters["start_seconds"] = times.start[0].wall;
     const std::size_t primitives = use.level ? test.lines : test.triangles;
     state.counters["primitives"] = static_cast<double>(primitives);
@@ -186,14 +187,16 @@ void measure(benchmark::State& state, const Case& test, const Use& use, double p
         bench::cell(one / unit, 1, 8) + bench::cell(two / unit, 1, 8) +
         bench::cell(two / one, 2, 6) + bench::cell(core / unit, 1, 8) +
         bench::cell(bytes / parts, 1, 10) + bench::cell(1e-6 * one * bytes / parts, 0, 6) +
-        bench::cell(1000 * times.start[0].wall, 0, 7) + bench::cell(times.others, 1, 8));
+        bench::cell(1000 * times.start[0].wall, 0, 7) + bench::cell(times.whole[1].memory, 0, 8) +
+        bench::cell(times.others, 1, 8));
 }
 
 std::string heading(const std::string& what, const std::string& primitives) {
     return what + "\n" + bench::leftCell("scene", 12) + bench::cell(primitives, 8) + "  " +
            bench::leftCell("format", 13) + bench::cell("-j 1", 8) + bench::cell("-j 2", 8) +
            bench::cell("times", 6) + bench::cell("a core", 8) + bench::cell("bytes", 10) +
-           bench::cell("MB/s", 6) + bench::cell("start", 7) + bench::cell("others", 8);
+           bench::cell("MB/s", 6) + bench::cell("start", 7) + bench::cell("memory", 8) +
+           bench::cell("others", 8);
 }
 
 void add(const std::string& group, const Case& test, const Use& use, double parts, double unit,
@@ -243,7 +246,7 @@ int main(int argc, char** argv) {
         add("depth", test, Use{"raw", true, 60, "kinect-v1", false}, 1, 1, folder.name);
     bench::TableReporter reporter(
         {{"scan", heading("scan --poses to /dev/null, level: million beams a second, bytes a beam, "
-                          "start in milliseconds",
+                          "start in milliseconds, memory of two threads in megabytes",
                           "lines")},
          {"tilted", heading("The same tilted", "triang.")},
          {"depth", heading("Depth pictures of 640 x 480 (kinect-v1): pictures a second, bytes a "

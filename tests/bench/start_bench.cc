@@ -65,7 +65,7 @@ void measureBatch(benchmark::State& state, const std::vector<std::string>& opera
     bench::Spent one, many;
     for (auto _ : state) {
         one = bench::runTool({tool("coverage"), "--batch", list}, "/dev/null");
-        many = {0, 0};
+        many = {0, 0, 0};
         for (int i = 0; i < kRooms; ++i) {
             std::vector<std::string> words = {tool("coverage"), "--json"};
             words.insert(words.end(), operands.begin(), operands.end());

@@ -11,9 +11,9 @@
 
 namespace ispace::bench {
 
-/// Seconds of one run, or the least of several.
+/// What one run took, or the least of several: seconds, and megabytes that were in memory at most.
 struct Spent {
-    double wall = std::numeric_limits<double>::infinity(), processor = wall;
+    double wall = std::numeric_limits<double>::infinity(), processor = wall, memory = wall;
 
     void keepQuicker(const Spent& other);
 };
