@@ -23,6 +23,7 @@
 #include "io/input.h"
 #include "io/line_plan.h"
 #include "io/svg_elements.h"
+#include "io/xml_file.h"
 
 namespace ispace {
 
@@ -64,16 +65,11 @@ double metresOf(const std::string& unit) {
 class SvgReader {
   public:
     SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options)
-        : bytes_(bytes), name_(name), options_(options) {}
+        : file_(bytes, name), options_(options) {}
 
     SvgDrawing read() {
-        for (std::size_t i = 0; i < bytes_.size(); ++i)
-            if (bytes_[i] == '\n') line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
-        const pugi::xml_parse_result result = file_.load_buffer(
-            bytes_.data(), bytes_.size(), pugi::parse_default, pugi::encoding_utf8);
-        if (!result) fail(lineAt(result.offset), std::string("bad XML: ") + result.description());
-        const pugi::xml_node root = file_.document_element();
-        if (svgName(root) != "svg") fail(lineOf(root), "no `svg` at the root");
+        const pugi::xml_node root = file_.root();
+        if (svgName(root) != "svg") file_.fail(root, "no `svg` at the root");
         listElements(root);
         total_ = kFreePoints + kPointsPerElement * count_;
         budget_ = std::min(options_.max_points, total_);
@@ -85,22 +81,13 @@ class SvgReader {
     }
 
   private:
-    [[noreturn]] void fail(int line, const std::string& message) const {
-        failFile(name_, message, line);
-    }
-    [[nodiscard]] int lineAt(std::ptrdiff_t offset) const {
-        const auto behind = std::lower_bound(line_ends_.begin(), line_ends_.end(), offset);
-        return 1 + static_cast<int>(behind - line_ends_.begin());
-    }
-    [[nodiscard]] int lineOf(pugi::xml_node node) const { return lineAt(node.offset_debug()); }
-
     /// Errors in attributes get the line of their element.
     template <typename Read>
     void at(pugi::xml_node node, Read read) {
         try {
             read();
         } catch (const SvgError& error) {
-            fail(lineOf(node), '`' + std::string(svgName(node)) + "`: " + error.what());
+            file_.fail(node, '`' + std::string(svgName(node)) + "`: " + error.what());
         }
     }
 
@@ -288,7 +275,7 @@ class SvgReader {
     void addPath(pugi::xml_node node, const SvgSubpath& path, const Affine& frame) {
         PlanShape shape;
         shape.layer = layer();
-        shape.path.line = lineOf(node);
+        shape.path.line = file_.lineOf(node);
         shape.path.closed = path.closed;
         Polygon& points = shape.path.points;
         points.push_back(frame * path.start);
@@ -338,17 +325,14 @@ class SvgReader {
         if (round && from != to) shape.chords.push_back({{from, to}, frame * arc.center});
     }
 
-    std::string_view bytes_;
-    const std::string& name_;
+    XmlFile file_;
     const ImportOptions& options_;
-    pugi::xml_document file_;
     std::unordered_map<std::string, pugi::xml_node> ids_;
     std::size_t count_ = 0, total_ = 0, budget_ = 0;
     SvgSheet sheet_;
     SvgBox page_;
     Affine page_frame_;
     std::vector<pugi::xml_node> names_;  // elements around, and the one itself
-    std::vector<std::ptrdiff_t> line_ends_;
     SvgDrawing drawing_;
 };
 
