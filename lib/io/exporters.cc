@@ -76,7 +76,9 @@ constexpr ExportFormat kFormats[] = {
              "and polylines, a ground plane, and the sensors with their fields of view, samples, "
              "ranges, rates and noise; robots and people are bodies that stand still. Walls "
              "without thickness become 2 mm thick. Meshes stand in FILE.meshes.obj beside it. SDF "
-             "has no sweeps (the first scan is written), no ultrasound and no mirrors.",
+             "has no sweeps (the first scan is written) and no mirrors. Ultrasound and tags stand "
+             "there as bodies that do nothing, mats and gates not at all, and a warning counts "
+             "them; zones are left out.",
      .write =
          [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
              return writeSdf(scene, options.title, options.beside);

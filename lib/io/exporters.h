@@ -29,6 +29,8 @@ struct ExportOptions {
 /// A product, and the file that stands beside it; "" where none is needed.
 struct ExportedFiles {
     std::string product, beside;
+    /// What the format has no words for: a sentence for people, "" where nothing is lost.
+    std::string left_out = "";
 };
 
 /// A format of envc: one row of exportFormats().
@@ -98,10 +100,10 @@ std::string writeStl(const Scene& scene);
 /// models of sensors, robots and people. Sensors work if SDF knows their kind, see addSdfSensor();
 /// those on a robot are in its link. Walls without thickness are kSheetThickness thick.
 ///
-/// Meshes of files are parts of an OBJ beside the world. Mats, gates, zones and views are left
-/// out. Equal scenes give equal bytes.
-/// \param title names the world, up to its first dot \param mesh_name the OBJ, as the world names
-/// it \throws UsageError if there are meshes and that is empty
+/// Meshes of files are parts of an OBJ beside the world. Sensors that SDF does not know stand
+/// there as bodies; mats, gates and zones are left out; ExportedFiles::left_out counts both. Equal
+/// scenes give equal bytes. \param title names the world, up to its first dot \param mesh_name the
+/// OBJ, as the world names it \throws UsageError if there are meshes and that is empty
 ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
 
 /// The placed sensors as URDF: a link each, named by its id, with a fixed joint from `world` or

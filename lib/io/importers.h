@@ -116,10 +116,9 @@ bool isSdf(std::string_view bytes);
 /// walls; their ends are moved onto the mid-lines of walls in whose thickness they end, and the
 /// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
 /// polylines on the floor closed fences.
-/// - Meshes become `mesh` records if their file lies in the world's folder or below; of `model://`
-/// and `package://` the name may be that of a folder there, or of the folder itself.
-/// - Planes and slabs of floor are left out; includes are not read, with a warning; so is what
-/// leans, and every other shape, with a note.
+/// - Meshes become `mesh` records if sdfPaths() leads to a file in the world's folder or below, and
+/// are else left out with a warning.
+/// - Planes and slabs of floor, what leans, and every other shape are left out, with a note.
 /// \throws FormatError as readSdfShapes(), and if there is nothing in it
 Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);

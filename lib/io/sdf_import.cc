@@ -17,6 +17,7 @@
 #include "io/line_plan.h"
 #include "io/mesh_file.h"
 #include "io/plan_rooms.h"
+#include "io/sdf_files.h"
 #include "io/sdf_parts.h"
 #include "io/sdf_shapes.h"
 #include "io/side_files.h"
@@ -157,6 +158,7 @@ class SdfImporter {
         : world_(std::move(world)), name_(name), options_(options), out_(out) {}
 
     void write() {
+        for (std::string& source : world_.sources) out_.source(std::move(source));
         sortShapes();
         if (walls_.empty() && fences_.empty() && blocks_.empty() && meshes_ == 0) failEmpty();
         joinEnds(walls_);
@@ -171,10 +173,7 @@ class SdfImporter {
 
   private:
     [[noreturn]] void failEmpty() const {
-        failFile(name_, "no box, cylinder, polyline or mesh in it" +
-                            (world_.includes.empty()
-                                 ? std::string()
-                                 : "; includes are not read: " + listText(world_.includes)));
+        failFile(name_, "no box, cylinder, polyline or mesh in it");
     }
 
     void sortShapes() {
@@ -222,15 +221,9 @@ class SdfImporter {
     }
 
     /// The file that a URI means, relative to the folder of the world; nothing if it is not there.
-    [[nodiscard]] std::optional<std::string> fileOf(std::string_view uri) const {
-        std::vector<std::string_view> names{uri};
-        for (const std::string_view scheme : {"model://", "package://", "file://"})
-            if (uri.starts_with(scheme)) names = {uri.substr(scheme.size())};
-        // The folder of a model may be that of the world.
-        if (const std::size_t slash = names.front().find('/'); slash != std::string_view::npos)
-            names.push_back(names.front().substr(slash + 1));
-        for (const std::string_view file : names)
-            if (isBeside(std::string(file))) return std::string(file);
+    [[nodiscard]] std::optional<std::string> fileOf(const SdfMesh& mesh) const {
+        for (std::string& path : sdfPaths(mesh.uri, mesh.folder))
+            if (isBeside(path)) return std::move(path);
         return std::nullopt;
     }
 
@@ -252,7 +245,7 @@ class SdfImporter {
             ++world_.left_out["mesh that leans or is stretched"];
             return;
         }
-        const std::optional<std::string> file = fileOf(mesh.uri);
+        const std::optional<std::string> file = fileOf(mesh);
         if (!file) {
             ++missing_[printable(mesh.uri)];
             return;
@@ -357,10 +350,6 @@ class SdfImporter {
     }
 
     void note() {
-        if (!world_.includes.empty())
-            out_.warn("includes are not read: " + listText(world_.includes) +
-                      "; write the world with everything in it, for example with `gz sdf -p`, or "
-                      "add what is missing with --add");
         if (!missing_.empty())
             out_.warn("meshes left out that are not in the world's folder or below: " +
                       listText(missing_));

@@ -27,7 +27,7 @@ struct SdfPolyline {
     double height = 0;  ///< from the origin up
 };
 struct SdfMesh {
-    std::string uri;
+    std::string uri, folder;  ///< see sdfPaths()
     std::array<double, 3> scale{1, 1, 1};
 };
 
@@ -35,22 +35,24 @@ struct SdfShape {
     std::variant<SdfBox, SdfCylinder, SdfPolyline, SdfMesh> shape;
     Eigen::Isometry3d world_from_shape;
     std::string model;  ///< name of the outermost model
-    int line = 0;
+    int line = 0;       ///< of the world; of what is included, that of the `include`
 };
 
 /// The shapes of a world, or of a model without one.
 struct SdfWorld {
     std::vector<SdfShape> shapes;
     std::map<std::string, std::size_t> left_out;  ///< by what they are
-    std::map<std::string, std::size_t> includes;  ///< that are not resolved, by their URI
+    std::vector<std::string> sources;             ///< files read besides it, as opened
 };
 
 /// Reads the collision shapes of all links, or where a link has none its visuals that every sensor
-/// sees (without `visibility_flags`), with the poses of SDF 1.0 to 1.11: nested models, frames,
-/// `relative_to`, `attached_to` and `placement_frame`. Neither includes nor entities are resolved.
+/// sees (without `visibility_flags`), in the world and in the models that it includes, with the
+/// poses of SdfFrames. Entities are not resolved.
+/// \param name the world's file, whose folder holds what it includes
 /// \param most shapes and points of polylines
 /// \throws FormatError with the line: bad XML, no world and no model, numbers that are none, frames
-///         that are not there or depend on each other, models nested too deep, more than `most`
+///         that are not there or depend on each other, models nested too deep, includes that are
+///         not there or include themselves, more than `most`
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name, std::size_t most);
 
 }  // namespace ispace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 #include <pugixml.hpp>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "base/error.h"
 #include "io/exporters.h"
+#include "io/line_plan.h"
 #include "io/robot_xml.h"
 #include "io/sdf_parts.h"
 #include "io/sdf_sensors.h"
@@ -53,6 +55,9 @@ class WorldWriter {
         for (const Placed& placed : scene_.placed) addPlaced(placed);
         ExportedFiles files{xmlText(file_), ""};
         if (!mesh_nodes_.empty()) files.beside = objOf(mesh_nodes_);
+        if (!left_out_.empty())
+            files.left_out =
+                "SDF has no such sensors, so none works in the world: " + listText(left_out_);
         return files;
     }
 
@@ -143,6 +148,8 @@ class WorldWriter {
             for (const Upright& upright : humanUprights(record.number("height")))
                 parts.push_back(sdfPart(upright));
             addSdfParts(addModel(idOf(placed), placed.pose), parts, mesh_file_);
+        } else {
+            ++left_out_[record.keyword()];
         }
     }
 
@@ -169,7 +176,8 @@ class WorldWriter {
     /// The sensor, and its body as a box that no camera sees.
     void addSensor(pugi::xml_node link, const Placed& placed, const Pose3& link_from_sensor) {
         const std::string& id = idOf(placed);
-        addSdfSensor(link, id, scene_.sensors[placed.index].model, link_from_sensor);
+        if (!addSdfSensor(link, id, scene_.sensors[placed.index].model, link_from_sensor))
+            ++left_out_[scene_.records[placed.record].keyword()];
         const MeshBox box = boxAround(bodyOf(scene_, placed));
         pugi::xml_node visual = link.append_child("visual");
         visual.append_attribute("name").set_value((id + "_body").c_str());
@@ -192,6 +200,7 @@ class WorldWriter {
     pugi::xml_node world_;
     XmlNames names_{{"world", "sun"}};
     std::vector<ModelNode> mesh_nodes_;
+    std::map<std::string, std::size_t> left_out_;
 };
 
 }  // namespace

@@ -27,9 +27,11 @@ human id=h1 at=5,5
 ultrasound id=u1 at=4,4,2.4 tilt=-90
 END
 
-envc room.env room.3dm -o room.sdf
+envc room.env room.3dm -o room.sdf 2>err
+grep -qx 'envc: warning: SDF has no such sensors, so none works in the world: ultrasound (1)' err ||
+    fail "nothing said of the ultrasound: $(cat err)"
 [ ! -e room.meshes.obj ] || fail "meshes where there are none"
-envc room.env room.3dm --to sdf >stream.sdf
+envc room.env room.3dm --to sdf -q >stream.sdf
 expect_same room.sdf stream.sdf "a stream differs"
 
 if command -v check_urdf >/dev/null; then
@@ -73,10 +75,10 @@ fi
 read_sdf=$binary_dir/tests/read_sdf
 [ -x "$read_sdf" ] || skip "no libsdformat here"
 
-# sdf_facts WORLD: its lines to ./facts; nothing may be complained about.
+# sdf_facts WORLD [FOLDER...]: its lines to ./facts; nothing may be complained about.
 sdf_facts() {
     # With its folder: the reader knows a road.sdf of its own.
-    "$read_sdf" "$PWD/$1" >facts 2>err || fail "libsdformat refuses $1: $(cat err)"
+    "$read_sdf" "$PWD/$1" "${@:2}" >facts 2>err || fail "libsdformat refuses $1: $(cat err)"
     [ ! -s err ] || fail "libsdformat complains about $1: $(cat err)"
 }
 # fact TEXT: a line of it, once.
@@ -113,11 +115,14 @@ grep -q '^sensor g1 g1 at 2.000000 2.000000 1.000000 rpy 0.087266 0.174533 0.000
     fail "another g1: $(grep g1 facts)"
 grep -q '^visual u1 u1_body' facts || fail "no body of u1"
 
+envc room.env room.3dm --add 'mat at=1,2 size=1,1' --add 'gate at=2,2' --to sdf 2>err >more.sdf
+grep -q 'in the world: gate (1), mat (1), ultrasound (1)$' err || fail "not all counted: $(cat err)"
+
 # Every scene, and the same floor when envc reads its world.
 indoor() { envc "$@" --info --json 2>/dev/null | sed -n 's/.*"indoor_area":\([0-9.e-]*\).*/\1/p'; }
 for scene in "$scenes"/*.env; do
     name=$(basename "$scene" .env)
-    envc "$scene" -o "$name.sdf"
+    envc "$scene" -o "$name.sdf" -q
     sdf_facts "$name.sdf"
 done
 for name in crowded ispace facilities; do
@@ -137,8 +142,9 @@ expect_error 2 envc room.env --add 'mesh file=wedge.obj' --to sdf
 grep -q 'name it with -o FILE.sdf' err || fail "no hint: $(cat err)"
 
 # A world of others: where libsdformat sees boxes and cylinders, envc does.
-grep -v '<include>' "$data/gazebo.sdf" >world.sdf
-sdf_facts world.sdf
+cp -r "$data"/{cabinet,models} .
+grep -v 'model://sun' "$data/gazebo.sdf" >world.sdf
+sdf_facts world.sdf "$PWD" "$PWD/models"
 envc world.sdf --to env >world.env 2>/dev/null
 # seen MODEL SHAPE KEYWORD ID HEIGHT: the middle of MODEL's shape, HEIGHT high, is that of the record.
 seen() {
@@ -153,4 +159,11 @@ seen() {
 seen table box cube table 0.04
 seen table::leg cylinder cylinder table-2 0.7
 seen crate box cube crate 0.5
+# Cabinets that are included with drawers that they include.
+seen cabinet box cube cabinet 0.9
+seen cabinet::left box cube cabinet-2 0.4
+seen cabinet::right box cube cabinet-3 0.4
+seen other box cube other 0.9
+seen other::left box cube other-2 0.4
+seen other::right box cube other-3 0.4
 grep -q '^wall id=house-5 from=3,0 to=3,2.8 thickness=0.1' world.env || fail "no inner wall: $(cat world.env)"

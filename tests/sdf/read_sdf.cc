@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads a world through libsdformat and prints what it found, a line each, with all poses in the
-// world's frame: read_sdf FILE. Exit status: 0 no errors, 1 errors, 2 usage.
+// world's frame: read_sdf FILE [FOLDER...]. Models that it includes are in the folders.
+// Exit status: 0 no errors, 1 errors, 2 usage.
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <sdf/sdf.hh>
 #include <string>
@@ -108,10 +110,18 @@ bool printModel(const sdf::Model& model, const std::string& outer_name, const Po
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
+    if (argc < 2) {
         std::cerr << "read_sdf: wanted a file\n";
         return 2;
     }
+    sdf::setFindCallback([&](const std::string& uri) {
+        const std::string scheme = "model://";
+        for (int i = 2; i < argc; ++i)
+            if (const std::string path = std::string(argv[i]) + '/' + uri.substr(scheme.size());
+                uri.rfind(scheme, 0) == 0 && std::filesystem::exists(path))
+                return path;
+        return std::string();
+    });
     sdf::Root root;
     const sdf::Errors errors = root.Load(argv[1]);
     for (const sdf::Error& error : errors) std::cerr << error.Message() << '\n';

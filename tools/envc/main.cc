@@ -60,6 +60,7 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
                       options.zones};
     if (!isStream(options.inputs.front())) how.title = baseName(options.inputs.front());
     const ExportedFiles files = options.format->write(scene, document, how);
+    if (!files.left_out.empty()) warn(options.common, "envc", files.left_out);
     if (beside.empty() || files.beside.empty())
         writeAll(options.common.output, files.product);
     else

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/sdf_files.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "io/import_records.h"
+#include "io/input.h"
+#include "io/side_files.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kIncludable{"model", "light", "actor"};
+/// How many missing models a message names.
+constexpr std::size_t kMostNamed = 8;
+
+std::string joined(const std::string& folder, std::string_view path) {
+    return (fs::path(folder) / path).lexically_normal().string();
+}
+
+/// The name of a model on Fuel: what stands behind `/models/`.
+std::string_view fuelName(std::string_view uri) {
+    constexpr std::string_view kModels = "/models/";
+    const std::size_t at = uri.find(kModels);
+    if (at == std::string_view::npos) return {};
+    const std::string_view rest = uri.substr(at + kModels.size());
+    return rest.substr(0, rest.find('/'));
+}
+
+std::string withBlanks(std::string_view name) {
+    std::string text(name);
+    for (std::size_t at = 0; (at = text.find("%20", at)) != std::string::npos;)
+        text.replace(at, 3, " ");
+    return text;
+}
+
+bool isUrl(std::string_view uri) {
+    return uri.starts_with("http://") || uri.starts_with("https://");
+}
+
+std::string_view uriOf(pugi::xml_node include) { return trimmed(include.child_value("uri")); }
+
+/// Gazebo's sun and ground plane, from its own models or from Fuel.
+bool isSurrounding(std::string_view uri) {
+    const std::string_view last = isUrl(uri) ? fuelName(uri) : uri.substr(uri.rfind('/') + 1);
+    std::string name = withBlanks(last);
+    std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+        return c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+    });
+    return name == "sun" || name == "ground_plane";
+}
+
+/// "1.10" is later than "1.9".
+std::pair<int, int> versionOf(pugi::xml_node node) {
+    const std::string_view text = node.attribute("version").value();
+    std::pair<int, int> version{0, 0};
+    const char* const end = text.data() + text.size();
+    const auto [dot, error] = std::from_chars(text.data(), end, version.first);
+    if (error == std::errc() && dot != end) std::from_chars(dot + 1, end, version.second);
+    return version;
+}
+
+}  // namespace
+
+std::vector<std::string> sdfPaths(std::string_view uri, const std::string& folder) {
+    if (isUrl(uri)) {
+        const std::string name = withBlanks(fuelName(uri));
+        if (name.empty()) return {};
+        return {name, joined("models", name)};
+    }
+    std::vector<std::string> paths;
+    std::string_view path = uri;
+    for (const std::string_view scheme : {"model://", "package://", "file://"})
+        if (uri.starts_with(scheme)) path = uri.substr(scheme.size());
+    if (path.empty()) return {};
+    if (path.size() == uri.size() || uri.starts_with("file://")) {
+        paths.push_back(joined(folder, path));
+    } else {
+        paths = {std::string(path), joined("models", path)};
+        if (!folder.empty()) paths.push_back(joined(joined(folder, ".."), path));
+    }
+    // The folder of a model may be that of the world.
+    if (const std::size_t slash = path.find('/'); slash != std::string_view::npos)
+        paths.emplace_back(path.substr(slash + 1));
+    return paths;
+}
+
+SdfFiles::SdfFiles(std::string_view bytes, std::string name) {
+    std::error_code ignored;
+    std::string identity = fs::weakly_canonical(name, ignored).string();
+    files_.push_back(std::unique_ptr<File>(
+        new File{XmlFile(bytes, std::move(name)), "", std::move(identity), nullptr}));
+    by_document_.emplace(root().root().hash_value(), files_.back().get());
+}
+
+const SdfFiles::File& SdfFiles::fileOf(pugi::xml_node node) const {
+    return *by_document_.at(node.root().hash_value());
+}
+
+bool SdfFiles::isThere(const std::string& path) const {
+    try {
+        return openSideFile(name(), path, false).has_value();
+    } catch (const FormatError&) {
+        return false;  // elsewhere, or no file that can be read
+    }
+}
+
+std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
+    const std::string file = sideFilePath(name(), path);
+    const std::size_t size = openRegular(file).size;
+    if (size > kMaxBytes - bytes_)
+        fail(user, "the models that are included come to more than " +
+                       std::to_string(kMaxBytes / 1'000'000) + " MB");
+    bytes_ += size;
+    if (std::find(sources_.begin(), sources_.end(), file) == sources_.end())
+        sources_.push_back(file);
+    return readAll(file);
+}
+
+/// The file of a model whose folder or file this is: the latest that its model.config names.
+std::optional<std::string> SdfFiles::modelFile(pugi::xml_node include, const std::string& path) {
+    std::error_code ignored;
+    if (!fs::is_directory(sideFilePath(name(), path), ignored))
+        return isThere(path) ? std::optional(path) : std::nullopt;
+    std::string file = "model.sdf";
+    if (const std::string config = joined(path, "model.config"); isThere(config)) {
+        const XmlFile xml(read(include, config), sideFilePath(name(), config));
+        std::pair<int, int> latest{-1, 0};
+        for (const pugi::xml_node sdf : xml.root().children("sdf"))
+            if (const auto version = versionOf(sdf); version > latest) {
+                latest = version;
+                file = trimmed(sdf.child_value());
+            }
+    }
+    file = joined(path, file);
+    return isThere(file) ? std::optional(file) : std::nullopt;
+}
+
+std::optional<std::string> SdfFiles::includedFile(pugi::xml_node include) {
+    for (const std::string& path : sdfPaths(uriOf(include), folderOf(include)))
+        if (std::optional<std::string> file = modelFile(include, path)) return file;
+    return std::nullopt;
+}
+
+void SdfFiles::checkCycle(pugi::xml_node include, const std::string& file,
+                          const std::string& identity) const {
+    std::vector<const File*> users;
+    for (const File* user = &fileOf(include); user != nullptr; user = user->includer) {
+        users.push_back(user);
+        if (user->identity != identity) continue;
+        std::string cycle;
+        for (auto name = users.rbegin(); name != users.rend(); ++name)
+            cycle.append(displayName((*name)->xml.name())).append(" -> ");
+        fail(include, "files include each other in a circle: " + cycle.append(file));
+    }
+}
+
+void SdfFiles::load(pugi::xml_node include, const std::string& path) {
+    std::error_code ignored;
+    const std::string file = sideFilePath(name(), path);
+    std::string identity = fs::weakly_canonical(file, ignored).string();
+    checkCycle(include, file, identity);
+    if (files_.size() > kMaxIncludes)
+        fail(include, "more than " + std::to_string(kMaxIncludes) + " includes in all");
+    const std::string bytes = read(include, path);
+    files_.push_back(
+        std::unique_ptr<File>(new File{XmlFile(bytes, file), fs::path(path).parent_path().string(),
+                                       std::move(identity), &fileOf(include)}));
+    const XmlFile& xml = files_.back()->xml;
+    by_document_.emplace(xml.root().root().hash_value(), files_.back().get());
+    pugi::xml_node& thing = included_[include.hash_value()];
+    for (const char* kind : kIncludable)
+        if (!thing) thing = xml.root().child(kind);
+    if (!thing) xml.fail(xml.root(), "no `model` in it, but a world includes it");
+}
+
+void SdfFiles::loadIncludes(pugi::xml_node parent) {
+    std::vector<std::string> missing;
+    pugi::xml_node first;
+    for (const pugi::xml_node include : parent.children("include")) {
+        if (included_.contains(include.hash_value())) continue;
+        if (const std::optional<std::string> file = includedFile(include)) {
+            load(include, *file);
+            continue;
+        }
+        included_[include.hash_value()] = {};
+        const std::string_view uri = uriOf(include);
+        if (uri.empty()) fail(include, "`include` without `uri`");
+        if (isSurrounding(uri)) continue;
+        if (missing.empty()) first = include;
+        if (const std::string name = excerpt(uri);
+            std::find(missing.begin(), missing.end(), name) == missing.end())
+            missing.push_back(name);
+    }
+    if (missing.empty()) return;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+        names += (i == 0 ? "" : ", ") + missing[i];
+    if (missing.size() > kMostNamed)
+        names += " and " + std::to_string(missing.size() - kMostNamed) + " more";
+    fail(first, names + (missing.size() == 1 ? " is" : " are") +
+                    " not in the folder of the world or below: put the folder of each model there, "
+                    "write the world with everything in it (`gz sdf -p`), or delete the `include`");
+}
+
+pugi::xml_node SdfFiles::included(pugi::xml_node include) const {
+    return included_.at(include.hash_value());
+}
+
+std::vector<double> SdfFiles::numbersOf(pugi::xml_node node, std::string_view text,
+                                        std::size_t count) const {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    std::vector<double> numbers;
+    const auto refuse = [&] {
+        fail(node, '`' + std::string(node.name()) + "`: found " + excerpt(text) + ", wanted " +
+                       countText(count, "number"));
+    };
+    for (std::size_t at = 0;;) {
+        at = std::min(text.find_first_not_of(kBlanks, at), text.size());
+        if (at == text.size()) break;
+        const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+        const auto number = parseDouble(text.substr(at, end - at));
+        if (!number || numbers.size() == count) refuse();
+        numbers.push_back(*number);
+        at = end;
+    }
+    if (numbers.size() != count) refuse();
+    return numbers;
+}
+
+std::vector<double> SdfFiles::numbersIn(pugi::xml_node parent, const char* key,
+                                        std::size_t count) const {
+    const pugi::xml_node node = parent.child(key);
+    if (!node) fail(parent, '`' + std::string(parent.name()) + "` without `" + key + '`');
+    return numbersOf(node, node.child_value(), count);
+}
+
+double SdfFiles::lengthIn(pugi::xml_node parent, const char* key) const {
+    const double length = numbersIn(parent, key, 1).front();
+    if (!(length > 0))
+        fail(parent,
+             std::string("a ") + key + " of " + formatDouble(length) + ", wanted more than 0");
+    return length;
+}
+
+}  // namespace ispace

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "io/xml_file.h"
+
+namespace ispace {
+
+/// What a URI in an SDF file may mean: paths relative to the folder of the world, the likeliest
+/// first. The name in `model://NAME/…` and `package://NAME/…` is that of a folder beside the world,
+/// in `models` there, or beside the model that says so; or the world's own folder. Other paths are
+/// relative to the file that holds them. Of a model on Fuel only the name counts: nothing is
+/// fetched. \param folder of the file that holds the URI, relative to the world's; "": the same
+std::vector<std::string> sdfPaths(std::string_view uri, const std::string& folder);
+
+/// A world in SDF and the models that it includes, which lie in its folder or below, links
+/// followed.
+class SdfFiles {
+  public:
+    /// Of all models included; each is parsed anew wherever it is included.
+    static constexpr std::size_t kMaxIncludes = 10'000, kMaxBytes = 64'000'000;
+
+    /// \throws FormatError with the line: bad XML
+    SdfFiles(std::string_view bytes, std::string name);
+
+    [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
+
+    /// Reads what the includes of a world or model put in it.
+    /// \throws FormatError with the line: some are not there, which one error names together, hold
+    ///         no model, light or actor, or include themselves, or there are too many
+    void loadIncludes(pugi::xml_node parent);
+    /// The model, light or actor of such an include. Nothing for the sun and the ground plane of
+    /// Gazebo where they are not found: neither stands in a room. \pre loadIncludes(its parent)
+    [[nodiscard]] pugi::xml_node included(pugi::xml_node include) const;
+
+    /// Files read besides the world, each once, as opened.
+    [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
+    /// The folder of the file that a node is in, relative to that of the world.
+    [[nodiscard]] const std::string& folderOf(pugi::xml_node node) const {
+        return fileOf(node).folder;
+    }
+    [[nodiscard]] int lineOf(pugi::xml_node node) const { return fileOf(node).xml.lineOf(node); }
+    /// \throws FormatError at the node's line of its file
+    [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
+        fileOf(node).xml.fail(node, message);
+    }
+
+    /// All numbers of a text. \throws FormatError unless there are `count`
+    [[nodiscard]] std::vector<double> numbersOf(pugi::xml_node node, std::string_view text,
+                                                std::size_t count) const;
+    /// The same of a child.
+    [[nodiscard]] std::vector<double> numbersIn(pugi::xml_node parent, const char* key,
+                                                std::size_t count) const;
+    /// A number above 0.
+    [[nodiscard]] double lengthIn(pugi::xml_node parent, const char* key) const;
+
+  private:
+    struct File {
+        XmlFile xml;
+        std::string folder;
+        std::string identity;  // its path without links and detours
+        const File* includer = nullptr;
+    };
+    [[nodiscard]] const File& fileOf(pugi::xml_node node) const;
+    /// Paths relative to the folder of the world, of what is there.
+    [[nodiscard]] bool isThere(const std::string& path) const;
+    std::optional<std::string> modelFile(pugi::xml_node include, const std::string& path);
+    std::optional<std::string> includedFile(pugi::xml_node include);
+    /// \throws FormatError at `user` if all files come to too much
+    std::string read(pugi::xml_node user, const std::string& path);
+    void load(pugi::xml_node include, const std::string& path);
+    void checkCycle(pugi::xml_node include, const std::string& file,
+                    const std::string& identity) const;
+    [[nodiscard]] const std::string& name() const { return files_.front()->xml.name(); }
+
+    std::vector<std::unique_ptr<File>> files_;  // the world first
+    std::unordered_map<std::size_t, const File*> by_document_;
+    std::unordered_map<std::size_t, pugi::xml_node> included_;  // by the include
+    std::vector<std::string> sources_;
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace ispace
