@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/draw: one retained picture with PNG, SVG and PDF behind it. Uses raster; Cairo inside.
+// lib/draw: one retained picture with PNG, SVG and PDF behind it. Uses raster; a module links Cairo.
 #pragma once
 
 #include <cstddef>

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "raster/picture.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,9 +12,9 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "base/program.h"
 #include "raster/encode.h"
 #include "raster/module/decoded_picture.h"
+#include "raster/module_symbol.h"
 
 namespace ispace {
 
@@ -187,16 +184,13 @@ const PictureFormat* formatOf(std::string_view bytes) {
 /// \throws FormatError with the hint what else one can do
 void* moduleFunction(const char* function, const std::string& format, const std::string& name,
                      const char* hint) {
-    const std::string path =
-        (std::filesystem::path(programPrefix()) / "lib" / "ispace" / "pictures.so").string();
-    void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    void* const found = module == nullptr ? nullptr : ::dlsym(module, function);
+    std::string error;
+    void* const found = moduleSymbol("pictures.so", function, error);
     if (found != nullptr) return found;
-    const char* const reason = ::dlerror();
     throw FormatError(Diagnostic{displayName(name), 0, 0,
                                  "a " + format +
                                      " picture needs OpenCV (Debian: libopencv-imgcodecs406): " +
-                                     printable(reason == nullptr ? path : reason) + hint});
+                                     printable(error) + hint});
 }
 
 PictureDecoder& decoder(const std::string& format, const std::string& name) {

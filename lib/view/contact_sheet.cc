@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "draw/raster.h"
+
 namespace ispace {
 
 ContactSheet::ContactSheet(const std::vector<PictureSize>& shapes)
@@ -41,7 +43,7 @@ Image ContactSheet::draw(const std::vector<Image>& images,
             page.text(places_[i].corner + Vec2{0, -0.45 * em_},
                       fitText(names[i], places_[i].size.columns, style), style);
     }
-    return decodePng(page.write(PictureFormat::Png));
+    return rasterOf(page);
 }
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "cover/sight.h"
+#include "draw/raster.h"
 #include "sensor/kind.h"
 #include "view/sight_marks.h"
 
@@ -74,7 +75,7 @@ void FloorColors::add(const std::vector<Polygon>& seen, const Color& color) {
         {scale_, {limits_.low.x + left / scale_, limits_.high.y - top / scale_}, {0, 0}});
     floor.area(seen, {Color{}});
     floor.pop();
-    const Image image = decodePng(floor.write(PictureFormat::Png));
+    const Image image = rasterOf(floor);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto share = 1 - static_cast<float>(image.pixels[i] & 0xFFU) / 255;
         const auto wide = static_cast<std::size_t>(image.width);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/message.h"
+#include "draw/raster.h"
 #include "render/bands.h"
 #include "render/render.h"
 #include "sense/warnings.h"
@@ -63,7 +64,7 @@ class ViewDrawer {
         for (const SightMarks::Line& line : marks_.lines) addLine(page, line);
         if (options_.labels) addLabels(page);
         if (standpoint_.is_to_scale) addScale(page);
-        return decodePng(page.write(PictureFormat::Png));
+        return rasterOf(page);
     }
 
   private:

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Each library costs time at every start: OpenCV's core and imgproc with the 15 they need some 4 ms,
-# its imgcodecs, with GDAL and 140 more, 59 ms. So no tool links them: the module for pictures does,
-# which is opened when a picture asks for it. No tool links assimp, which some files make crash: the
-# program does that is started for each mesh.
+# its imgcodecs, with GDAL and 140 more, 59 ms; Cairo, with those of X11 and fonts, 1.7 ms. So no tool
+# links them: modules do, which are opened when a picture is read that asks for it, or one is drawn. No
+# tool links assimp, which some files make crash: the program does that is started for each mesh.
 . "$(dirname "$0")/../pipelines/common.sh"
 
-heavy='libopencv|libGL|liblapack|libgdal|libcrypto'
-max_libraries=34
+heavy='libopencv|libGL|liblapack|libgdal|libcrypto|libcairo|libX11|libfontconfig|libfreetype'
+max_libraries=16
 module=$binary_dir/lib/ispace/pictures.so
 ldd "$module" >module.ldd
 grep -q libopencv_imgcodecs module.ldd || fail "the module for pictures does without OpenCV: $(cat module.ldd)"
+ldd "$binary_dir/lib/ispace/drawing.so" >module.ldd
+grep -q libcairo module.ldd || fail "the module for drawing does without Cairo: $(cat module.ldd)"
 ldd "$binary_dir/lib/ispace/read-mesh" >module.ldd
 grep -q libassimp module.ldd || fail "read-mesh does without assimp"
 for tool in $tools; do
@@ -30,6 +32,11 @@ status=0
 [ "$status" -eq 1 ] || fail "status $status without the module"
 grep -q 'a JPEG picture needs OpenCV (Debian: libopencv-imgcodecs406): .*pictures.so' err ||
     fail "no hint: $(cat err)"
+"$envc" "$data/room.env" --to glb -o room.glb
+status=0
+"$envc" "$data/room.env" --to svg >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "status $status without the module for drawing"
+grep -q 'drawing needs Cairo (Debian: libcairo2): .*drawing.so' err || fail "no hint: $(cat err)"
 
 # The same for the program that reads meshes, when one is met.
 "$envc" "$data/room.env" --to env >/dev/null

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "draw/font.h"
+#include "draw/module/font.h"
 
 #include <cairo-ft.h>
 #include <ft2build.h>

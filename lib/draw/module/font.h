@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The font of pictures; for lib/draw only.
+// The font of pictures; for the module only.
 #pragma once
 
 struct _cairo_font_face;  // NOLINT(bugprone-reserved-identifier): Cairo's cairo_font_face_t
