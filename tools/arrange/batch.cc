@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "cli/batch_options.h"
+#include "cli/outputs.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -140,6 +142,30 @@ void JobLedger::writePart() {
 
 void JobLedger::removeCheckpoint() {
     if (checkpoint_) checkpoint_->remove();
+}
+
+std::unique_ptr<JobLedger> ledgerOf(const ArrangeCommand& command, const ArrangeWork& work,
+                                    const std::vector<PartFile>& parts, bool& is_done) {
+    const ArrangeToolOptions& options = command.options();
+    const BatchOptions& batch = options.batch;
+    JobId job = arrangeJob(command, work.input, work.places);
+    if (!parts.empty()) {
+        const JobId& made = parts.front().head().job;
+        job.form = made.form;
+        if (const std::string difference = job.differenceFrom(made); !difference.empty())
+            throw FormatError({parts.front().file(), 0, 0,
+                               "not of what is read now: " + difference + " differs"});
+        return std::make_unique<JobLedger>(parts);
+    }
+    if (!batch.shard && !batch.resume) return nullptr;
+    if (batch.shard)
+        for (const std::string* file :
+             {&work.input.environment_operand, &work.input.layout_operand, &options.places_file})
+            if (!file->empty() && isStream(*file))
+                throw UsageError("--shard: the merge reads its input again; give it as a file");
+    const PartHead head{job, batch.shard.value_or(Shard())};
+    is_done = batch.shard && batch.resume && isDoneAlready(options.common.output, head);
+    return is_done ? nullptr : std::make_unique<JobLedger>(command, head);
 }
 
 }  // namespace ispace

@@ -9,11 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "arrange/options.h"
+#include "arrange/work.h"
 #include "base/checkpoint.h"
 #include "base/ledger.h"
 #include "base/part_file.h"
-#include "cli/operands.h"
 
 namespace ispace {
 
@@ -63,5 +62,10 @@ class JobLedger final : public Ledger {
     std::string trouble_;
     mutable std::mutex mutex_;
 };
+
+/// The ledger of a job that is shared out or may be gone on with; null for others, and for a part
+/// that is done already. \param parts those of a merge
+std::unique_ptr<JobLedger> ledgerOf(const ArrangeCommand& command, const ArrangeWork& work,
+                                    const std::vector<PartFile>& parts, bool& is_done);
 
 }  // namespace ispace

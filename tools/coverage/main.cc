@@ -10,44 +10,19 @@
 #include "base/run_files.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "cli/recorded_changes.h"
 #include "cli/run_tool.h"
 #include "cover/coverage_formats.h"
 #include "cover/run_sight.h"
 #include "cover/trace_file.h"
 #include "coverage/batch.h"
 #include "coverage/judge.h"
+#include "coverage/measured.h"
 #include "coverage/options.h"
 #include "layout/scene.h"
 
 namespace {
 
 using namespace ispace;
-
-/// Everything measured, and compared if that is wanted.
-struct Measured {
-    Coverage coverage;
-    std::optional<Coverage> other;
-};
-
-/// A layout may bring furniture, which is part of the comparison, but not another room.
-void mustBeSameRoom(const Environment& room, const Environment& other, const std::string& file) {
-    if (room.limits() == other.limits() && room.indoor() == other.indoor()) return;
-    throw FormatError({displayName(file), 0, 0,
-                       "its walls make another room: layouts of one room can be compared"});
-}
-
-Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
-    Worlds worlds(scene.environment);
-    Measured measured{measureCoverage(scene, worlds, options.measure), {}};
-    if (other == nullptr) return measured;
-    mustBeSameRoom(scene.environment, other->environment, options.other);
-    Worlds other_worlds(other->environment);
-    measured.other = measureCoverage(*other, other_worlds, options.measure);
-    compare(measured.coverage, *measured.other, scene.environment.indoor(),
-            options.other == "-" ? displayName("-") : baseName(options.other));
-    return measured;
-}
 
 /// What a search tried, from stdin only where that is not read yet.
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SceneInput& input) {
@@ -58,38 +33,14 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
     return readTrace(bytes, displayName(options.trace)).poses;
 }
 
-/// What a model holds: the records of the scene, under what made both inputs and this command.
-Document documentOf(const CoverageToolOptions& options, const SceneInput& input) {
-    Document document;
-    document.history = input.environment.history;
-    if (input.layout)
-        document.history.insert(document.history.end(), input.layout->history.begin(),
-                                input.layout->history.end());
-    document.history.push_back(options.history_line);
-    document.records = input.scene.records;
-    rebaseFiles(document.records, "",
-                std::filesystem::path(options.common.output).parent_path().string());
-    return document;
-}
-
-void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
-                  const Measured& measured) {
-    const std::string& output = options.common.output;
-    const CoverageFormat& format = *options.format;
-    CoverageProduct product{input.scene, measured.coverage,
-                            measured.other ? &*measured.other : nullptr, options.map};
-    product.document = documentOf(options, input);
-    product.speeds = options.speeds;
-    if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
-        product.cell = cells->edge;
-    if (format.beside_suffix == nullptr) {
-        writeAll(output, format.write(product).product);
-        return;
-    }
-    const std::string beside = withSuffix(output, format.beside_suffix);
-    product.beside_name = std::filesystem::path(beside).filename().string();
-    const CoverageFiles files = format.write(product);
-    writeTogether(std::vector<NamedBytes>{{beside, files.beside}, {output, files.product}});
+/// A record knows its scene.
+SceneInput readInput(const CoverageToolOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (!options.run.empty() && operands.empty())
+        if (const std::string scene = RecordedFiles(options.run).scene;
+            std::filesystem::exists(scene))
+            operands.push_back(scene);
+    return readScene({operands, options.any_environment, true});
 }
 
 /// Says what is met, and writes the verdicts where that is wanted. \throws UnmetError
@@ -104,32 +55,6 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
         junit->commit();
     }
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
-}
-
-/// A record knows its scene.
-SceneInput readInput(const CoverageToolOptions& options) {
-    std::vector<std::string> operands = options.operands;
-    if (!options.run.empty() && operands.empty())
-        if (const std::string scene = RecordedFiles(options.run).scene;
-            std::filesystem::exists(scene))
-            operands.push_back(scene);
-    return readScene({operands, options.any_environment, true});
-}
-
-/// What the layout saw of a recorded run; nothing without --run.
-std::optional<RunSight> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
-    if (options.run.empty()) return std::nullopt;
-    RunReader reader(options.run);
-    RunChanges changes = changesOfRun(options.run, scene);
-    RunSight run =
-        measureRun(scene, reader,
-                   {.plane = options.measure.plane, .density = options.measure.density}, &changes);
-    if (!changes.failure().empty()) warn(options.common, "coverage", changes.failure());
-    run.name = baseName(options.run);
-    if (reader.isCut())
-        warn(options.common, "coverage",
-             "the record ends in the midst of a step, which is left out");
-    return run;
 }
 
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,

@@ -2,10 +2,8 @@
 // scan: simulates what the sensors of a scene read.
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <optional>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "cli/operands.h"
@@ -18,25 +16,12 @@
 #include "scan/readings.h"
 #include "scan/recorded.h"
 #include "scan/views.h"
-#include "sense/sensors.h"
+#include "scan/work.h"
 #include "sense/warnings.h"
 
 namespace {
 
 using namespace ispace;
-
-Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
-    Sensors sensors = sensorsOf(input.scene, options.select);
-    if (!sensors.read.empty()) return sensors;
-    if (!options.select.empty())
-        throw UsageError(
-            "--select chooses nothing that is read: receivers hear tags, and sensors "
-            "need a place");
-    const std::string& file = input.layout ? input.layout_operand : input.environment_operand;
-    throw FormatError(
-        {displayName(file), 0, 0,
-         "no placed laser, ranger, camera or tag: give one `at=x,y`, or let arrange place it"});
-}
 
 /// Counts the poses that are inside something solid.
 class BuriedPoses {
@@ -60,85 +45,6 @@ class BuriedPoses {
     std::int64_t count_ = 0;
     ReadingJob first_;
 };
-
-/// The text of --poses, held for a batch, which needs it more than once.
-std::shared_ptr<const std::string> posesText(const ScanToolOptions& options) {
-    if (options.poses.empty() || !isBatch(options)) return std::make_shared<std::string>();
-    return std::make_shared<std::string>(options.poses == "-" ? readStdin()
-                                                              : readAll(options.poses));
-}
-
-ByteReader readerOfPoses(const ScanToolOptions& options,
-                         const std::shared_ptr<const std::string>& text) {
-    if (isBatch(options))
-        return [text, at = std::size_t{0}](std::string& bytes) mutable {
-            constexpr std::size_t kChunk = 1 << 16;
-            const std::string_view piece = std::string_view(*text).substr(at, kChunk);
-            bytes += piece;
-            at += piece.size();
-            return !piece.empty();
-        };
-    if (options.poses == "-" && isTerminalInput())
-        throw UsageError("stdin is a terminal: give a file of poses, or send them through a pipe");
-    return [file = std::make_shared<InputFile>(options.poses)](std::string& bytes) {
-        return file->read(bytes);
-    };
-}
-
-std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors,
-                                         const std::shared_ptr<const std::string>& poses_text) {
-    if (options.poses.empty())
-        return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
-    PoseLines poses(readerOfPoses(options, poses_text), displayName(options.poses));
-    if (!options.motion) return std::make_unique<PoseSource>(std::move(poses));
-    const SensorModel& model = sensors.read.front().model;
-    return std::make_unique<MotionSource>(std::move(poses), readingRate(model), readingTime(model),
-                                          options.frames);
-}
-
-/// What a run has to take, and where it goes.
-struct ReadingWork {
-    std::unique_ptr<ReadingSource> source;
-    std::unique_ptr<Delivery> delivery;  ///< null: all is done
-    std::int64_t count = -1;             ///< of readings; -1 if nobody knows
-};
-
-ReadingWork workOf(const ScanCommand& command, const SceneInput& input, const Sensors& sensors,
-                   const ReadingFormat& format) {
-    const ScanToolOptions& options = command.options();
-    const bool moves = !options.poses.empty();
-    const auto poses = posesText(options);
-    ReadingWork work;
-    work.source = sourceFor(options, sensors, poses);
-    if (!moves) work.count = static_cast<const StillSource&>(*work.source).count();
-    if (!isBatch(options)) {
-        work.delivery = makeDelivery(options, sensors, format, work.count);
-        return work;
-    }
-    constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
-    if (moves) work.count = sourceFor(options, sensors, poses)->skip(kAll);
-    OwnReadings own = ownReadings(options, readingsJob(command, input, format, *poses, work.count),
-                                  sensors, format);
-    work.delivery = std::move(own.delivery);
-    work.source->skip(own.block.first);
-    work.count = own.block.end - own.block.first;
-    return work;
-}
-
-SceneRequest requestOf(const ScanToolOptions& options) {
-    // The sensor of --poses may come from a LAYOUT, too.
-    const bool wants_layout =
-        options.poses.empty() || (options.model.empty() && options.poses != "-");
-    const bool takes_stdin =
-        std::find(options.operands.begin(), options.operands.end(), "-") != options.operands.end();
-    if (options.poses == "-" && takes_stdin)
-        throw UsageError("stdin cannot be read twice: only one of operands and --poses can be -");
-    // A receiver alone reads nothing.
-    return {options.operands,
-            options.any_environment,
-            wants_layout,
-            {"laser", "ranger", "camera", "tag"}};
-}
 
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
