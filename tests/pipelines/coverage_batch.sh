@@ -102,9 +102,25 @@ coverage --batch two >/dev/full 2>err || status=$?
 [ "$status" -eq 1 ] || fail "status $status on a full disk"
 one_error coverage "a full disk"
 expect_error 2 coverage --batch two square.env
-for option in "--report r.json" "--compare half.3dm" "--run r" "--to png" "--color sensor" -MD "-o map.png"; do
+expect_error 2 coverage --batch two -o map.png
+# Each option either works with it, as those do in this file or for any number of scenes, or is refused by name.
+works="--help --version --json --batch --shard --resume --grid --cell --grid-of --height --plane --density --parallax
+    --require --junit --any-environment --output --quiet --verbose --threads --seed --progress --no-progress"
+refused="--report=r.json --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
+    --trace=two --speeds=30%"
+for option in $refused; do
+    expect_error 2 coverage --batch two -o reports.jsonl "$option"
+    grep -q -e "^coverage: error: ${option%%=*} is about .*--batch" err || fail "$option: $(cat err)"
+done
+coverage --help | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >options
+# shellcheck disable=SC2086
+printf '%s\n' $works $refused -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"
+for option in "--cell 0.5" "--grid-of beams" "--height 1" "--plane 1" "--parallax 30" "--density 50"; do
     # shellcheck disable=SC2086
-    expect_error 2 coverage --batch two $option
+    coverage -q --batch two $option >of_two
+    # shellcheck disable=SC2086
+    { coverage -q --json square.env half.3dm $option && coverage -q --json square.env whole.3dm $option; } >ones
+    expect_same ones of_two "a batch with $option differs from single runs"
 done
 expect_error 2 coverage --batch two -o two
 cmp two <(printf 'square.env half.3dm\nsquare.env whole.3dm\n') || fail "the list was replaced"

@@ -21,6 +21,10 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
+/// What is about the map alone.
+constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
+                                       "--fans", "--trace", "--speeds"};
+
 /// Words of options that become something else once they are read.
 struct Words {
     std::string to, cells_by, color, fans;
@@ -81,7 +85,7 @@ void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words
 
 void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::string& to) {
     if (!line.given("--output")) {
-        for (const char* option : {"--to", "--width", "--color", "--fans", "--trace", "--speeds"})
+        for (const char* option : kMapOptions)
             if (line.given(option))
                 throw UsageError(std::string(option) + " is about the map: give -o FILE");
         return;
@@ -116,11 +120,14 @@ void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
     if (!o.operands.empty())
         throw UsageError("--batch takes scenes from LIST: put " + o.operands.front() +
                          " on a line of it");
-    for (const char* option : {"--report", "--compare", "--run", "--to", "--width", "--color",
-                               "--fans", "--trace", "--MD", "--MF"})
+    for (const char* option : {"--report", "--compare", "--run", "--MD", "--MF"})
         if (line.given(option))
             throw UsageError(std::string(option[2] == 'M' ? option + 1 : option) +
                              " is about one scene, and --batch about many");
+    for (const char* option : kMapOptions)
+        if (line.given(option))
+            throw UsageError(std::string(option) +
+                             " is about the map, and --batch draws none: it writes reports");
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
     if (o.resume && isStream(o.common.output))
         throw UsageError("--resume keeps what is done beside a file: give -o FILE.jsonl");
