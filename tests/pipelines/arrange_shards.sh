@@ -32,6 +32,9 @@ joins "a grid" 2 "${laser[@]}" --strategy grid -X 6 -Y 6
 in_shards 2 "${laser[@]}" "${coarse[@]}" --share candidates
 expect_same whole.3dm single.3dm "candidates of swap"
 joins "a target" 3 "${laser[@]}" "${coarse[@]}" --target 40%
+joins "a target of greedy" 2 "${laser[@]}" "${coarse[@]}" --target 40% --optimize greedy
+joins "a target of exact" 2 "${laser[@]}" "${coarse[@]}" --target 30% --optimize exact
+joins "starts in random places" 3 "${laser[@]}" --strategy random --optimize swap
 joins starts "1 2 3 7 21 26" "${laser[@]}" "${coarse[@]}" --seed 3
 joins "many starts" 3 "${laser[@]}" "${coarse[@]}" --starts 50
 joins "kinds and a budget" 3 arrange room.glb -q --sensor laser,range=4,fov=180,cost=2:4 \
@@ -69,6 +72,15 @@ arrange -q --merge s1.part s2.part --trace merged.jsonl --curve merged.csv -o wh
 expect_same merged.jsonl single.jsonl "--trace of a merge"
 expect_same merged.csv single.csv "--curve of a merge"
 
+# A target that is not reached: the merge writes the best layout and says so, as a single run does.
+expect_status 3 "${laser[@]}" "${coarse[@]}" --target 99% -o single.3dm
+sed 's/^arrange: //' err >err.single
+for i in 1 2; do "${laser[@]}" "${coarse[@]}" --target 99% --shard $i/2 -o s$i.part; done
+expect_status 3 arrange -q --merge s1.part s2.part -o whole.3dm
+expect_same whole.3dm single.3dm "a target out of reach"
+expect_same err.single <(sed 's/^arrange: //' err) "what is said of it"
+for i in 1 2; do "${laser[@]}" "${coarse[@]}" --shard $i/2 -o s$i.part; done
+
 # What does not belong together, and what makes no sense.
 expect_error 1 arrange --merge s2.part -o none.3dm
 grep -q 'missing shard 1 of 2' err || fail "$(cat err)"
@@ -92,5 +104,7 @@ for words in "--shard 1/2 -o s.3dm" "--shard 1/2 --strategy random" "--shard 1/2
     # shellcheck disable=SC2086
     expect_error 2 arrange room.glb --sensor laser $words
 done
+expect_error 2 arrange room.glb --sensor laser --shard 1/2 --strategy random
+grep -q 'share the starts of --optimize swap' err || fail "no hint: $(cat err)"
 expect_status 2 arrange - --sensor laser --shard 1/2 <room.glb
 grep -q 'the merge reads its input again' err || fail "$(cat err)"

@@ -55,6 +55,12 @@ cameras=(arrange "$scenes/open-office.env" --sensor camera:3 --candidates 1.5,1.
 "${cameras[@]}" -o single
 killed_often cameras.3dm 50 "${cameras[@]}"
 
+target=(arrange room.glb --sensor laser,range=4,fov=180:9 --candidates 0.25,0.25,16 --target 70% -q --no-progress)
+"${target[@]}" -o single
+killed_often target.3dm 90 "${target[@]}"
+"${target[@]}" --shard 2/3 -o single
+killed_often target.part 60 "${target[@]}" --shard 2/3
+
 # TERM keeps all that is done, and says how to go on.
 set -m
 "${proof[@]}" --resume --checkpoint-interval 1000 -o best.3dm 2>err & job=$!

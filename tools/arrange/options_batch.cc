@@ -52,8 +52,9 @@ void ArrangeCommand::settleBatch() {
     if (share.what == Shared::Candidates && how.strategy == Strategy::Random &&
         how.mount.on != MountOn::Frame)
         throw UsageError(
-            "--shard: --strategy random draws its places one after another, which cannot be "
-            "shared; run it with several --seed and keep the best");
+            "--shard: --strategy random draws places about the best of those before, so its "
+            "candidates cannot be shared; share the starts of --optimize swap, or run it with "
+            "several --seed and keep the best");
     if (share.what != Shared::Tree && options_.time_limit)
         throw UsageError(
             "--time-limit would leave gaps in what shards share; only parts of a "
