@@ -219,7 +219,8 @@ void mustFit(const Scene& scene, const Grid& grid) {
 
 /// Exact metrics, or the reason why there are none.
 void tryExactMetrics(Coverage& coverage, const Environment& environment,
-                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
+                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
+                     bool keep_depths) {
     std::string& missing = coverage.report.exact_missing;
     for (const SensorView& view : coverage.sensors)
         if (!view.region) {
@@ -232,7 +233,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment,
             return;
         }
     try {
-        addExactMetrics(coverage, environment, free_floor, zones);
+        addExactMetrics(coverage, environment, free_floor, zones, keep_depths);
     } catch (const FormatError& error) {
         missing = error.diagnostics().front().message;
     }
@@ -255,7 +256,7 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
     layers.push_back({.curves = curvesWithArcs(indoor), .counts = false, .marks = kIndoorMark});
     double gained = 0, lost = 0;
     try {
-        Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
+        forEachArea(layers, [&](const LayerLabel& label, double area) {
             if (label.count == 0 || (label.marks & kIndoorMark) == 0) return;
             if (label.numbers < kOtherNumber) gained += area;
             if (label.numbers % kOtherNumber == 0) lost += area;
@@ -293,7 +294,8 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
         report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
-    if (options.exact) tryExactMetrics(coverage, environment, level->freeFloor(), zones);
+    if (options.exact)
+        tryExactMetrics(coverage, environment, level->freeFloor(), zones, options.keep_depths);
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);

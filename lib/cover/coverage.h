@@ -36,6 +36,9 @@ struct CoverageOptions {
     double density = 0;  ///< cameras cover where they have so many pixels a metre; 0: all in view
     CellRule cells_by = CellRule::Region;
     bool exact = true;  ///< closed forms beside the cells
+    /// Keep in Coverage::overlay by how many sensors and by which floor is seen; else whether any
+    /// does (count 0 or 1), which takes much less memory where many look at the same floor.
+    bool keep_depths = true;
     std::optional<ParallaxChoice> parallax = {};
 };
 
@@ -165,8 +168,9 @@ struct Coverage {
     std::vector<SensorView> sensors;  ///< as report.sensors
     /// One for each laser and ranger, in order, then one for all receivers if there are any.
     std::vector<SeenSet> sets;
-    /// The regions of all sets (count, number i + 1 of set i) over indoor region and free floor
-    /// (marks). Nothing where a region is not known or nobody asked.
+    /// The regions of all sets (count, number i + 1 of set i; see CoverageOptions::keep_depths)
+    /// over indoor region and free floor (marks). Nothing where a region is not known or nobody
+    /// asked.
     std::optional<Overlay> overlay;
     /// Indoor region and free floor (marks as above), what cameras see at all (kCameraMark) and
     /// with the pixels of each of pixelDensities() (classMark), and some zones each

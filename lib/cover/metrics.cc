@@ -152,19 +152,17 @@ void addZoneLayers(std::span<const Zone> zones, std::vector<Layer>& layers) {
     }
 }
 
-/// Calls add(zone, label, area) for each zone that holds a face of the indoor region.
-template <typename Add>
-void addIndoorAreas(const Overlay& overlay, Add add) {
-    overlay.addAreas([&](const LayerLabel& label, double area) {
-        if ((label.marks & kIndoorMark) == 0) return;
-        for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
-            add(static_cast<std::size_t>(std::countr_zero(bits)), label, area);
-    });
+/// Calls visit(zone) for each zone that holds a face, if it is of the indoor region.
+template <typename Visit>
+void forEachIndoorZone(const LayerLabel& label, Visit visit) {
+    if ((label.marks & kIndoorMark) == 0) return;
+    for (std::uint64_t bits = label.marks >> kFirstZoneBit; bits != 0; bits &= bits - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 /// All sets over indoor region, free floor and some zones.
-Overlay overlayOf(const Coverage& coverage, const Environment& environment,
-                  const std::vector<Region>& free_floor, std::span<const Zone> zones) {
+std::vector<Layer> layersOf(const Coverage& coverage, const Environment& environment,
+                            const std::vector<Region>& free_floor, std::span<const Zone> zones) {
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + 2 + zones.size());
     for (std::size_t i = 0; i < coverage.sets.size(); ++i)
@@ -176,7 +174,12 @@ Overlay overlayOf(const Coverage& coverage, const Environment& environment,
         for (Curve& curve : curvesWithArcs(piece)) free.push_back(std::move(curve));
     layers.push_back(markLayer(std::move(free), kFreeMark));
     addZoneLayers(zones, layers);
-    return Overlay(layers, environment.slice(coverage.target.height).sheets);
+    return layers;
+}
+
+/// Whether anything is seen, and on which floor.
+LayerLabel withoutDepths(const LayerLabel& label) {
+    return {.count = std::min(label.count, 1), .marks = label.marks & (kIndoorMark | kFreeMark)};
 }
 
 /// Areas of an overlay, by what they count for.
@@ -199,14 +202,19 @@ struct Areas {
     }
 };
 
-void addZones(std::span<ZoneMetrics> metrics, const Overlay& overlay) {
-    std::vector<double> covered(metrics.size());
-    addIndoorAreas(overlay, [&](std::size_t zone, const LayerLabel& label, double area) {
-        if (label.count > 0) covered[zone] += area;
-    });
-    for (std::size_t i = 0; i < metrics.size(); ++i)
-        metrics[i].coverage.exact = shareOf(covered[i], metrics[i].area);
-}
+/// Covered indoor area of some zones.
+struct ZoneAreas {
+    std::vector<double> covered;  // [zone]
+
+    void add(const LayerLabel& label, double area) {
+        if (label.count > 0)
+            forEachIndoorZone(label, [&](std::size_t zone) { covered[zone] += area; });
+    }
+    void setShares(std::span<ZoneMetrics> metrics) const {
+        for (std::size_t i = 0; i < metrics.size(); ++i)
+            metrics[i].coverage.exact = shareOf(covered[i], metrics[i].area);
+    }
+};
 
 void addPieces(CoverageReport& report, const Overlay& overlay) {
     const std::vector<Region> covered = overlay.regions([](const LayerLabel& label) {
@@ -286,8 +294,8 @@ std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
         std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark)};
         addZoneLayers(std::span(zones).subspan(first, count), layers);
-        addIndoorAreas(Overlay(layers), [&](std::size_t zone, const LayerLabel&, double area) {
-            metrics[first + zone].area += area;
+        forEachArea(layers, [&](const LayerLabel& label, double area) {
+            forEachIndoorZone(label, [&](std::size_t zone) { metrics[first + zone].area += area; });
         });
     }
     for (ZoneMetrics& zone : metrics)
@@ -296,22 +304,34 @@ std::vector<ZoneMetrics> zoneMetricsOf(const Environment& environment,
 }
 
 void addExactMetrics(Coverage& coverage, const Environment& environment,
-                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones) {
+                     const std::vector<Region>& free_floor, const std::vector<Zone>& zones,
+                     bool keep_depths) {
     CoverageReport& report = coverage.report;
+    Areas areas(coverage.sets.size());
     std::optional<Overlay> main;  // with the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
-        Overlay overlay =
-            overlayOf(coverage, environment, free_floor, std::span(zones).subspan(first, count));
-        addZones(std::span(report.zones).subspan(first, count), overlay);
-        if (first == 0) main = std::move(overlay);
+        const std::vector<Layer> layers =
+            layersOf(coverage, environment, free_floor, std::span(zones).subspan(first, count));
+        ZoneAreas by_zone{std::vector<double>(count)};
+        const auto add = [&](const LayerLabel& label, double area) {
+            if (first == 0) areas.add(label, area);
+            by_zone.add(label, area);
+        };
+        if (first > 0) {
+            forEachArea(layers, add);
+        } else if (const auto& sheets = environment.slice(coverage.target.height).sheets;
+                   keep_depths) {
+            main.emplace(layers, sheets);
+            main->addAreas(add);
+        } else {
+            main.emplace(layers, sheets, Overlay::Coarse{.label = withoutDepths, .add_area = add});
+        }
+        by_zone.setShares(std::span(report.zones).subspan(first, count));
     }
     addReceivers(coverage);
     coverage.overlay = std::move(main);  // from here on nothing throws
 
-    Areas areas(coverage.sets.size());
-    coverage.overlay->addAreas(
-        [&areas](const LayerLabel& label, double area) { areas.add(label, area); });
     report.total_effective_area.exact = std::max(0.0, areas.covered);
     report.overlap.exact = std::max(0.0, areas.repeated);
     double indoor_covered = 0;

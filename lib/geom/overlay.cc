@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
 
-#include "geom/arrangement.h"
 #include "geom/overlay_lattice.h"
-#include "geom/predicates.h"
+#include "geom/overlay_strips.h"
 
 namespace ispace {
 
@@ -207,7 +207,109 @@ std::vector<lattice::Edge> latticeEdges(const ChordCurves& curves, std::size_t l
 
 }  // namespace
 
-Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls) {
+/// Makes what an overlay keeps of its parts.
+class Overlay::Maker {
+  public:
+    Maker(Overlay& overlay, const ChordCurves& curves, const Coarse& coarse)
+        : overlay_(overlay), curves_(curves), coarse_(coarse) {}
+
+    /// As lattice::PartVisitor.
+    std::function<void()> visit(lattice::Part part) {
+        auto kept = std::make_shared<Kept>();
+        if (!coarse_.label) kept->edges.reserve(part.edges.size());
+        for (std::size_t i = 0; i < part.edges.size(); ++i)
+            add(part.edges[i], part.labels[i], part.points, *kept);
+        kept->points = std::move(part.points);
+        return [this, kept, is_whole = part.is_whole] { take(*kept, is_whole); };
+    }
+
+    void finish() {
+        overlay_.ends_.insert(overlay_.ends_.end(), ends_of_walls_.begin(), ends_of_walls_.end());
+        if (overlay_.points_.empty())
+            for (const auto& [x, y] : table_.points()) overlay_.points_.push_back({x, y});
+    }
+
+  private:
+    /// Of a part; ends are numbers of its points.
+    struct Kept {
+        std::vector<Edge> edges;
+        std::vector<LayerLabel> walls;
+        std::vector<Ends> ends, ends_of_walls;
+        std::vector<lattice::Point> points;
+        std::vector<std::pair<LayerLabel, double>> areas;
+    };
+
+    void add(const lattice::Edge& line, const lattice::EdgeLabels& labels,
+             const std::vector<lattice::Point>& points, Kept& kept) const {
+        const Ends ends{line.from, line.to, line.is_wall};
+        auto [left, right] = labels;
+        if (left != right) {
+            const lattice::Point p = points[line.from], q = points[line.to];
+            Edge edge{overlay_.placeOf({p.x, p.y}), overlay_.placeOf({q.x, q.y}), left, right};
+            if (line.circle != kNone) {
+                const Circle& circle = curves_.circles[line.circle];
+                edge.bulge = bulgeOf(circle, edge.from, edge.to);
+                edge.radius = circle.radius;
+                edge.center = circle.center;
+            }
+            if (coarse_.label) {
+                const double area = overlay_.areaLeftOf(edge);
+                kept.areas.emplace_back(left, area);
+                kept.areas.emplace_back(right, -area);
+                edge.left = left = coarse_.label(left);
+                edge.right = right = coarse_.label(right);
+            }
+            if (left != right) {
+                kept.edges.push_back(edge);
+                kept.ends.push_back(ends);
+            }
+        } else if (coarse_.label) {
+            left = right = coarse_.label(left);
+        }
+        if (line.is_wall && left == right && left != LayerLabel{}) {
+            kept.walls.push_back(left);
+            kept.ends_of_walls.push_back(ends);
+        }
+    }
+
+    /// In the order of parts.
+    void take(Kept& kept, bool is_whole) {
+        for (const auto& [label, area] : kept.areas) coarse_.add_area(label, area);
+        if (is_whole) {
+            overlay_.edges_ = std::move(kept.edges);
+            overlay_.walls_ = std::move(kept.walls);
+            overlay_.ends_ = std::move(kept.ends);
+            ends_of_walls_ = std::move(kept.ends_of_walls);
+            overlay_.points_.reserve(kept.points.size());
+            for (const auto& [x, y] : kept.points) overlay_.points_.push_back({x, y});
+            return;
+        }
+        numbers_.assign(kept.points.size(), kNone);
+        const auto number = [&](Index point) {
+            if (numbers_[point] == kNone) numbers_[point] = table_.add(kept.points[point]);
+            return numbers_[point];
+        };
+        const auto append = [&](const std::vector<Ends>& ends, std::vector<Ends>& all) {
+            for (const Ends& e : ends) all.push_back({number(e.from), number(e.to), e.is_wall});
+        };
+        append(kept.ends, overlay_.ends_);
+        append(kept.ends_of_walls, ends_of_walls_);
+        overlay_.edges_.insert(overlay_.edges_.end(), kept.edges.begin(), kept.edges.end());
+        overlay_.walls_.insert(overlay_.walls_.end(), kept.walls.begin(), kept.walls.end());
+        lattice::mustBeFew(overlay_.edges_.size());
+        kept = {};
+    }
+
+    Overlay& overlay_;
+    const ChordCurves& curves_;
+    const Coarse& coarse_;
+    std::vector<Ends> ends_of_walls_;
+    lattice::PointTable table_;
+    std::vector<Index> numbers_;  // of a part's points in the table
+};
+
+Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
+                 const Coarse& coarse) {
     const ChordCurves curves(layers);
     const Lattice lattice(curves.box);
     unit_ = lattice.unit();
@@ -216,174 +318,17 @@ Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls)
     lattice::PointTable table;
     lattice::SetStore sets(layers.size());
     std::vector<lattice::Edge> edges = latticeEdges(curves, layers.size(), walls, lattice, table);
-    edges = snapRounded(merged(std::move(edges), table.points(), sets), table, sets);
-    const auto labels = labelsOf(layers, table.points(), edges, sets);
-
-    points_.reserve(table.points().size());
-    for (const auto& [x, y] : table.points()) points_.push_back({x, y});
-    edges_.reserve(edges.size());
-    ends_.reserve(edges.size());
-    std::vector<Ends> ends_of_walls;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto& [left, right] = labels[i];
-        const lattice::Edge& edge = edges[i];
-        const Ends ends{edge.from, edge.to, edge.is_wall};
-        if (left != right) {
-            const Point2 from = place(edge.from), to = place(edge.to);
-            edges_.push_back({from, to, left, right});
-            if (edge.circle != kNone) {
-                const Circle& circle = curves.circles[edge.circle];
-                edges_.back().bulge = bulgeOf(circle, from, to);
-                edges_.back().radius = circle.radius;
-                edges_.back().center = circle.center;
-            }
-            ends_.push_back(ends);
-        } else if (edge.is_wall && left != LayerLabel{}) {
-            walls_.push_back(left);
-            ends_of_walls.push_back(ends);
-        }
-    }
-    ends_.insert(ends_.end(), ends_of_walls.begin(), ends_of_walls.end());
+    edges = merged(std::move(edges), table.points(), sets);
+    Maker maker(*this, curves, coarse);
+    lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0,
+                         [&](lattice::Part part) { return maker.visit(std::move(part)); });
+    maker.finish();
 }
 
-namespace {
-
-/// Puts arcs back in the place of chords, those of the circles that were laid out: what is laid out
-/// again then coincides with them as before.
-class ArcTable {
-  public:
-    explicit ArcTable(std::span<const Overlay::Edge> edges) {
-        for (const Overlay::Edge& edge : edges) {
-            if (edge.radius == 0) continue;
-            const double turn = edge.bulge > 0 ? 1 : -1;
-            arcs_.push_back({edge.from, edge.to, turn * edge.radius, edge.center});
-            arcs_.push_back({edge.to, edge.from, -turn * edge.radius, edge.center});
-        }
-        std::sort(arcs_.begin(), arcs_.end(), less);
-    }
-
-    [[nodiscard]] Curve curveOf(const Polygon& polygon) const {
-        Curve curve;
-        curve.reserve(polygon.size());
-        forEachEdge(polygon, [&](const Segment2& edge) { add(edgeFrom(edge.a, edge.b), curve); });
-        return withEndsOnCircles(curve);
-    }
-
-  private:
-    static bool less(const CurveEdge& a, const CurveEdge& b) {
-        return a.from != b.from ? lexLess(a.from, b.from) : lexLess(a.to, b.to);
-    }
-
-    [[nodiscard]] CurveEdge edgeFrom(Point2 from, Point2 to) const {
-        auto found = std::lower_bound(arcs_.begin(), arcs_.end(), CurveEdge{from, to}, less);
-        if (found != arcs_.end() && found->from == from && found->to == to) return *found;
-        // Outlines leave out vertices where they go straight on: the first of several pieces.
-        found = std::lower_bound(arcs_.begin(), arcs_.end(), from,
-                                 [](const CurveEdge& a, Point2 p) { return lexLess(a.from, p); });
-        for (; found != arcs_.end() && found->from == from; ++found)
-            if (orientation(from, found->to, to) == Turn::Straight &&
-                dot(found->to - from, to - from) > 0)
-                return {from, to, found->radius, found->center};
-        return {from, to};
-    }
-
-    /// Pieces of one arc one after another become one again, of at most a quarter turn.
-    static void add(const CurveEdge& edge, Curve& curve) {
-        if (!curve.empty() && edge.isArc() && curve.back().radius == edge.radius &&
-            curve.back().center == edge.center) {
-            const Vec2 from = curve.back().from - edge.center, to = edge.to - edge.center;
-            if (dot(from, to) > 0) {
-                curve.back().to = edge.to;
-                return;
-            }
-        }
-        curve.push_back(edge);
-    }
-
-    /// An arc that was cut has its end on a chord: from there on to the circle, so that the area is
-    /// that of Overlay::Edge::bulge.
-    static Curve withEndsOnCircles(const Curve& curve) {
-        constexpr double kNear = 1e-9;  // metres
-        Curve out;
-        out.reserve(curve.size());
-        for (const CurveEdge& edge : curve) {
-            if (!edge.isArc()) {
-                out.push_back(edge);
-                continue;
-            }
-            const auto on_circle = [&edge](Point2 p) {
-                const Vec2 way = p - edge.center;
-                const Point2 q = edge.center + (std::abs(edge.radius) / length(way)) * way;
-                return distance(p, q) > kNear ? q : p;
-            };
-            const Point2 from = on_circle(edge.from), to = on_circle(edge.to);
-            if (from != edge.from) out.push_back({edge.from, from});
-            out.push_back({from, to, edge.radius, edge.center});
-            if (to != edge.to) out.push_back({to, edge.to});
-        }
-        return out;
-    }
-
-    std::vector<CurveEdge> arcs_;
-};
-
-}  // namespace
-
-std::vector<Curve> Overlay::withArcs(std::span<const Region> regions) const {
-    const ArcTable arcs(edges_);
-    std::vector<Curve> curves;
-    for (const Region& region : regions)
-        for (const Polygon& polygon : curvesOf(region)) curves.push_back(arcs.curveOf(polygon));
-    return curves;
-}
-
-std::vector<double> Overlay::areasOf(std::span<const Region> regions) const {
-    const ArcTable arcs(edges_);
-    std::vector<double> areas;
-    areas.reserve(regions.size());
-    for (const Region& region : regions) {
-        double area = 0;
-        for (const Polygon& polygon : curvesOf(region)) area += signedArea(arcs.curveOf(polygon));
-        areas.push_back(area);
-    }
-    return areas;
-}
-
-std::vector<Region> Overlay::trace(const std::vector<Sides>& sides) const {
-    std::vector<lattice::Point> points;
-    points.reserve(points_.size());
-    for (const auto& [x, y] : points_) points.push_back({x, y});
-    std::vector<plane::Line> lines;
-    std::vector<bool> has_piece;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        if (sides[i] == kNowhere) continue;
-        lines.push_back({ends_[i].from, ends_[i].to});
-        has_piece.push_back((sides[i] & kLeft) != 0);
-        has_piece.push_back((sides[i] & kRight) != 0);
-    }
-    const plane::Faces<lattice::Point> faces(points, lines, std::move(has_piece));
-    const plane::Graph<lattice::Point>& graph = faces.graph();
-    const auto goes_on = [&](Index before, Index half) {
-        return lattice::cross(graph.pointOf(graph.source(before)),
-                              graph.pointOf(graph.source(half)),
-                              graph.pointOf(graph.target(half))) == 0;
-    };
-    std::vector<Region> regions(faces.count());
-    const auto face_of = [&](Index half) { return faces.of(half); };
-    faces.forEachBoundary(face_of, [&](Index face, const plane::Loop& loop, bool is_outline) {
-        Polygon curve;
-        curve.reserve(loop.size());
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            if (!goes_on(loop[i == 0 ? loop.size() - 1 : i - 1], loop[i]))
-                curve.push_back(place(graph.source(loop[i])));
-        rotateToLowest(curve);
-        if (is_outline)
-            regions[face].outline = std::move(curve);
-        else
-            regions[face].holes.push_back(std::move(curve));
-    });
-    putInOrder(regions);
-    return regions;
+void forEachArea(std::span<const Layer> layers,
+                 const std::function<void(const LayerLabel&, double)>& add) {
+    const auto all_one = [](const LayerLabel&) { return LayerLabel(); };
+    const Overlay nothing(layers, {}, {.label = all_one, .add_area = add});
 }
 
 }  // namespace ispace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -40,8 +41,8 @@ struct Layer {
 /// length of all boundaries, plus kChordError squared where an arc is crossed (kChordError times a
 /// chord's length where something ends or passes between an arc and its chord). Where input
 /// vertices must keep their doubles, as for rooms and walls, use boolean.h or planar_map.h.
-/// Deterministic. O((n + crossings) log n) unless edges crowd at one place; about 300 bytes an
-/// edge.
+/// Deterministic. O((n + crossings) log n) unless edges crowd at one place. Large ones are made in
+/// strips, several at once, and take about 130 bytes an edge.
 class Overlay {
   public:
     /// An edge of the overlay. Label `left` is what lies on its left.
@@ -54,10 +55,24 @@ class Overlay {
         Point2 center = {};
     };
 
+    /// What to keep of an overlay with more faces than are asked for one by one.
+    struct Coarse {
+        /// Neighbouring faces whose labels become the same are kept as one face, with that label.
+        /// Called by several threads at once. \pre label({}) == {}
+        std::function<LayerLabel(const LayerLabel&)> label;
+        /// Is told of all faces what addAreas() would tell, by one thread, in an order that depends
+        /// only on the input.
+        std::function<void(const LayerLabel&, double)> add_area;
+    };
+
     /// `walls` separate the regions of regions() without changing any label.
     /// \pre all coordinates are finite
     /// \throws FormatError (without a place) for outlines that cross by the ten million
-    explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {});
+    explicit Overlay(std::span<const Layer> layers, std::span<const Segment2> walls = {})
+        : Overlay(layers, walls, Coarse()) {}
+    /// Memory for the edges that are kept and for those of some strips.
+    /// \throws FormatError (without a place) for outlines that cross by the billion
+    Overlay(std::span<const Layer> layers, std::span<const Segment2> walls, const Coarse& coarse);
 
     /// Edges between faces of different labels, in an order that depends only on the input.
     [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
@@ -96,9 +111,13 @@ class Overlay {
         std::uint32_t from, to;
         bool is_wall;
     };
+    class Maker;
     /// Where a piece lies, seen along an edge.
     enum Sides : std::uint8_t { kNowhere = 0, kLeft = 1, kRight = 2, kBoth = 3 };
 
+    [[nodiscard]] Point2 placeOf(LatticePoint point) const {
+        return middle_ + Vec2{unit_ * point.x, unit_ * point.y};
+    }
     /// What the edge adds to the area of what lies on its left.
     [[nodiscard]] double areaLeftOf(const Edge& edge) const {
         return cross(edge.from - middle_, edge.to - middle_) / 2 + edge.bulge;
@@ -106,9 +125,7 @@ class Overlay {
     /// The pieces with these boundaries: for each of edges_ and then of walls_.
     [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
     [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;
-    [[nodiscard]] Point2 place(std::uint32_t point) const {
-        return middle_ + Vec2{unit_ * points_[point].x, unit_ * points_[point].y};
-    }
+    [[nodiscard]] Point2 place(std::uint32_t point) const { return placeOf(points_[point]); }
 
     std::vector<Edge> edges_;
     std::vector<LayerLabel> walls_;  // walls with the same label on both sides, and what it is
@@ -117,6 +134,10 @@ class Overlay {
     Point2 middle_;  // of the lattice
     double unit_ = 0;
 };
+
+/// As Overlay(layers).addAreas(add), but nothing is kept. \throws FormatError as for what is Coarse
+void forEachArea(std::span<const Layer> layers,
+                 const std::function<void(const LayerLabel&, double)>& add);
 
 template <typename Add>
 void Overlay::addAreas(Add add) const {

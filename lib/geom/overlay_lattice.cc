@@ -62,7 +62,7 @@ Index SetStore::addOdd(std::vector<Index>& layers) {
         return only;
     }
     first_.push_back(items_.size());
-    return static_cast<Index>(first_.size() - 2);
+    return size() - 1;
 }
 
 namespace {
@@ -177,16 +177,21 @@ class Place {
     LayerLabel label_;
 };
 
-/// Connected components of the edges: each lies in a face of another, or outside all.
+/// Connected components of the edges between points in some columns: each lies in a face of
+/// another, or outside all. Those at the end of an edge that comes in from the left are left out.
 class Nesting {
   public:
-    explicit Nesting(const Graph& graph)
-        : component_of_(graph.vertices(), kNone), first_inside_(graph.halves() / 2, kNone) {
+    Nesting(const Graph& graph, const Columns& columns, bool anything_enters)
+        : columns_(columns),
+          component_of_(graph.vertices(), kNone),
+          first_inside_(graph.halves() / 2, kNone) {
         for (Index v = 0; v < graph.vertices(); ++v) {
-            if (component_of_[v] == kNone && !graph.leaving(v).empty()) addComponent(graph, v);
+            if (component_of_[v] == kNone && columns.hold(graph.pointOf(v)) &&
+                !graph.leaving(v).empty())
+                addComponent(graph, v);
         }
         next_.assign(roots_.size(), kNone);
-        if (roots_.size() < 2) {
+        if (roots_.size() < 2 && !anything_enters) {
             outermost_ = roots_;
             return;
         }
@@ -213,6 +218,7 @@ class Nesting {
     void addComponent(const Graph& graph, Index start) {
         const auto number = static_cast<Index>(roots_.size());
         Index lowest = start;
+        bool is_entered = false;
         std::vector<Index>& open = open_;
         open.assign(1, start);
         component_of_[start] = number;
@@ -223,12 +229,18 @@ class Nesting {
             for (const Index half : graph.leaving(v)) {
                 const Index other = graph.target(half);
                 if (component_of_[other] != kNone) continue;
+                if (!columns_.hold(graph.pointOf(other))) {
+                    is_entered = is_entered || graph.pointOf(other).x < columns_.first;
+                    continue;
+                }
                 component_of_[other] = number;
                 open.push_back(other);
             }
         }
-        roots_.push_back(lowest);
+        if (!is_entered) roots_.push_back(lowest);
     }
+
+    const Columns& columns_;
 
     std::vector<Index> component_of_;  // points
     std::vector<Index> roots_;         // lowest point of each component
@@ -238,53 +250,102 @@ class Nesting {
     std::vector<Index> open_;
 };
 
-}  // namespace
+/// A walk around all points in some columns.
+class Walk {
+  public:
+    Walk(std::span<const Layer> layers, const std::vector<Edge>& edges, const SetStore& sets,
+         const Graph& graph, const Columns& columns)
+        : edges_(edges),
+          sets_(sets),
+          graph_(graph),
+          columns_(columns),
+          place_(layers),
+          begun_(graph.vertices()),
+          labels_(edges.size()) {}
 
-std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
-                                 const std::vector<Edge>& edges, const SetStore& sets) {
-    std::vector<plane::Line> lines;
-    lines.reserve(edges.size());
-    for (const Edge& edge : edges) lines.push_back({edge.from, edge.to});
-    const Graph graph(points, lines);
-    const Nesting nesting(graph);
-    std::vector<EdgeLabels> labels(edges.size());
-    Place place(layers);
-    // A turn around a point, from before the half-edge at `at`: at its end the place is the same
-    // again, so that turns begun meanwhile may be made one within another.
+    std::vector<EdgeLabels> run() {
+        const std::vector<Index> entering = linesThatEnter();
+        const Nesting nesting(graph_, columns_, !entering.empty());
+        for (const Index root : nesting.outermost()) {
+            begin(root, 0);
+            goOn(nesting);
+        }
+        // Up along the left side of the columns.
+        for (const Index line : entering) {
+            place_.cross(sets_[edges_[line].set]);
+            nesting.forEachAbove(line, [&](Index lowest) { begin(lowest, 0); });
+            begin(edges_[line].to, graph_.placeOf(2 * line + 1));
+            goOn(nesting);
+        }
+        return std::move(labels_);
+    }
+
+  private:
+    /// A turn around a point, from before the half-edge at `at`: at its end the place is the same
+    /// again, so that turns begun meanwhile may be made one within another.
     struct Turn {
         Index vertex, at;
         Index left;  // half-edges to come
     };
-    std::vector<Turn> turns;
-    std::vector<bool> begun(points.size());
-    const auto begin = [&](Index vertex, Index at) {
-        if (begun[vertex]) return;
-        begun[vertex] = true;
-        turns.push_back({vertex, at, static_cast<Index>(graph.leaving(vertex).size())});
-    };
-    for (const Index root : nesting.outermost()) {
-        begin(root, 0);
-        while (!turns.empty()) {
-            Turn& turn = turns.back();
+
+    /// Lines from the left of the columns, from below.
+    [[nodiscard]] std::vector<Index> linesThatEnter() const {
+        std::vector<Index> lines;
+        for (Index i = 0; i < edges_.size(); ++i)
+            if (graph_.pointOf(edges_[i].from).x < columns_.first) lines.push_back(i);
+        std::sort(lines.begin(), lines.end(),
+                  [this](Index e, Index f) { return e != f && graph_.isAbove(f, e); });
+        return lines;
+    }
+
+    void begin(Index vertex, Index at) {
+        if (begun_[vertex] || !columns_.hold(graph_.pointOf(vertex))) return;
+        begun_[vertex] = true;
+        turns_.push_back({vertex, at, static_cast<Index>(graph_.leaving(vertex).size())});
+    }
+
+    void goOn(const Nesting& nesting) {
+        while (!turns_.empty()) {
+            Turn& turn = turns_.back();
             if (turn.left == 0) {
-                turns.pop_back();
+                turns_.pop_back();
                 continue;
             }
-            const std::span<const Index> about = graph.leaving(turn.vertex);
+            const std::span<const Index> about = graph_.leaving(turn.vertex);
             const Index half = about[turn.at];
             turn.at = turn.at + 1 == about.size() ? 0 : turn.at + 1;
             --turn.left;
             const Index line = half / 2;
-            if (half % 2 == 0) labels[line].right = place.label();
-            place.cross(sets[edges[line].set]);
+            if (half % 2 == 0) labels_[line].right = place_.label();
+            place_.cross(sets_[edges_[line].set]);
             if (half % 2 == 0) {
-                labels[line].left = place.label();
+                labels_[line].left = place_.label();
                 nesting.forEachAbove(line, [&](Index lowest) { begin(lowest, 0); });
             }
-            begin(graph.target(half), graph.placeOf(plane::twin(half)));
+            begin(graph_.target(half), graph_.placeOf(plane::twin(half)));
         }
     }
-    return labels;
+
+    const std::vector<Edge>& edges_;
+    const SetStore& sets_;
+    const Graph& graph_;
+    const Columns& columns_;
+    Place place_;
+    std::vector<bool> begun_;  // points
+    std::vector<Turn> turns_;
+    std::vector<EdgeLabels> labels_;
+};
+
+}  // namespace
+
+std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
+                                 const std::vector<Edge>& edges, const SetStore& sets,
+                                 const Columns& columns) {
+    std::vector<plane::Line> lines;
+    lines.reserve(edges.size());
+    for (const Edge& edge : edges) lines.push_back({edge.from, edge.to});
+    const Graph graph(points, lines);
+    return Walk(layers, edges, sets, graph, columns).run();
 }
 
 }  // namespace ispace::lattice

@@ -78,16 +78,25 @@ class SetStore {
   public:
     /// Sets 0 ... layers - 1 hold that layer alone, set `layers` is empty.
     explicit SetStore(std::size_t layers);
+    /// Has the sets of another, which must stay as it is, by the same numbers; its own follow.
+    explicit SetStore(const SetStore* base)
+        : base_(base), empty_(base->empty_), offset_(base->size()), first_(1) {}
     [[nodiscard]] Index emptySet() const { return empty_; }
     [[nodiscard]] std::span<const Index> operator[](Index set) const {
-        return std::span(items_).subspan(first_[set], first_[set + 1] - first_[set]);
+        if (set < offset_) return (*base_)[set];
+        const std::size_t own = set - offset_;
+        return std::span(items_).subspan(first_[own], first_[own + 1] - first_[own]);
     }
     /// The set of the layers that are in an odd number of sets. \param layers of all sets one after
     /// another; sorted in place
     Index addOdd(std::vector<Index>& layers);
 
   private:
+    [[nodiscard]] Index size() const { return offset_ + static_cast<Index>(first_.size() - 1); }
+
+    const SetStore* base_ = nullptr;
     Index empty_;
+    Index offset_ = 0;  // number of the first set that is its own
     std::vector<std::size_t> first_;
     std::vector<Index> items_;  // by set, ascending
 };
@@ -114,17 +123,48 @@ struct Cell {
 /// In steps of the lattice, in x as well as in y.
 constexpr std::int32_t kReach = 2;
 
-/// Divides the box of all points into square cells, and crowded ones again, until few edges come
-/// near each cell or dividing no longer separates them (because they lie along each other). The
-/// order depends only on the input. `visit` may add points; they belong to no cell.
-/// \pre edges begin at their lower end (lexLess)
+/// Columns of the lattice, both ends included.
+struct Columns {
+    std::int32_t first = std::numeric_limits<std::int32_t>::min();
+    std::int32_t last = std::numeric_limits<std::int32_t>::max();
+
+    [[nodiscard]] bool hold(Point p) const { return first <= p.x && p.x <= last; }
+};
+
+/// Divides the box of all points, as far as it lies in these columns, into square cells, and
+/// crowded ones again, until few edges come near each cell or dividing no longer separates them
+/// (because they lie along each other). The order depends only on the input. `visit` may add
+/// points; they belong to no cell. \pre edges begin at their lower end (lexLess)
 void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
-                 const std::function<void(const Cell&)>& visit);
+                 const Columns& columns, const std::function<void(const Cell&)>& visit);
+
+/// \throws FormatError (without a place) for more crossings than some gigabytes hold
+void mustBeFew(std::size_t crossings);
+
+/// The points that each edge is led through, between its ends and in their order.
+struct Ways {
+    std::vector<std::size_t> first;  // of the points of each edge, and the end
+    std::vector<Index> points;
+
+    [[nodiscard]] std::span<const Index> operator[](std::size_t edge) const {
+        return std::span(points).subspan(first[edge], first[edge + 1] - first[edge]);
+    }
+};
+
+/// Snap rounding (Hobby 1999), in three steps; see snapRounded(). Edges are merged() before each.
+///
+/// First, edges pass the ends of others within the square of half-width 1 about them.
+std::vector<Edge> ledThroughEnds(const std::vector<Edge>& edges, const std::vector<Point>& points);
+/// Then, they pass all ends and crossings in these columns, rounded to the lattice, which are added
+/// to the table. What lies in other columns makes no difference.
+/// \throws FormatError (without a place) for edges that cross by the ten million
+Ways waysThroughPixels(const std::vector<Edge>& edges, PointTable& table, const Columns& columns);
+/// Each edge cut in pieces from point to point; those from or to kNone are left out.
+std::vector<Edge> routed(const std::vector<Edge>& edges, const Ways& ways);
 
 /// Edges that meet at common ends only, in place of these (which are merged()): each is led through
-/// points near it. First through ends of others within the square of half-width 1 about them, so
-/// that edges that lay along each other before they were rounded become the same; then through all
-/// ends and crossings, rounded to the lattice (snap rounding, Hobby 1999). No place of an edge
+/// points near it. First through ends of others, so that edges that lay along each other before
+/// they were rounded become the same; then through all ends and crossings. No place of an edge
 /// moves by more than 1.42 and then 0.71 steps. Adds points to the table.
 /// \throws FormatError (without a place) for edges that cross by the ten million
 std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets);
@@ -134,11 +174,14 @@ struct EdgeLabels {
     LayerLabel left, right;
 };
 
-/// Labels of the edges, which are merged() and meet at common ends only; the outside of everything
-/// is {0, 0, 0}. A walk around all points, along which the set of layers that hold the place is
-/// kept. O(layers + edges and what is in their sets), and plane::Graph::linesBelow for the
-/// components.
+/// Labels of the edges that end in these columns, of edges that are merged() and meet at common
+/// ends only; the outside of everything is {0, 0, 0}. A walk around all points, along which the set
+/// of layers that hold the place is kept. O(layers + edges and what is in their sets), and
+/// plane::Graph::linesBelow for the components.
+/// \pre all edges over these columns are there, others are not; none ends to the left and begins
+///      to the left
 std::vector<EdgeLabels> labelsOf(std::span<const Layer> layers, const std::vector<Point>& points,
-                                 const std::vector<Edge>& edges, const SetStore& sets);
+                                 const std::vector<Edge>& edges, const SetStore& sets,
+                                 const Columns& columns = {});
 
 }  // namespace ispace::lattice

@@ -161,14 +161,27 @@ class Division {
 }  // namespace
 
 void forEachCell(const std::vector<Point>& points, const std::vector<Edge>& edges,
-                 const std::function<void(const Cell&)>& visit) {
+                 const Columns& columns, const std::function<void(const Cell&)>& visit) {
     // What is visited may add points: those that were there are enough to look for.
-    std::vector<Index> all_edges(edges.size()), all_points(points.size());
+    std::vector<Index> all_edges(edges.size()), points_there;
     std::iota(all_edges.begin(), all_edges.end(), Index{0});
-    std::iota(all_points.begin(), all_points.end(), Index{0});
+    points_there.reserve(points.size());
     Box box;
-    for (const Point p : points) box.add(p);
-    Division(points, edges, visit).divide({box, all_edges, all_points});
+    for (Index i = 0; i < points.size(); ++i) {
+        box.add(points[i]);
+        if (columns.hold(points[i])) points_there.push_back(i);
+    }
+    box.low.x = std::max(box.low.x, columns.first);
+    box.high.x = std::min(box.high.x, columns.last);
+    if (box.low.x > box.high.x) return;
+    Division(points, edges, visit).divide({box, all_edges, points_there});
+}
+
+void mustBeFew(std::size_t crossings) {
+    constexpr std::size_t kMost = 16'000'000;
+    if (crossings > kMost)
+        throw FormatError(
+            {"", 0, 0, "outlines cross more than " + std::to_string(kMost) + " times"});
 }
 
 namespace {
@@ -179,32 +192,24 @@ struct Pass {
     std::int64_t at;  // grows along the edge
 };
 
-/// The same edges, each cut in pieces from point to point.
-std::vector<Edge> routed(const std::vector<Edge>& edges, const std::vector<Pass>& passes) {
-    std::vector<std::size_t> next(edges.size() + 1, 0);
+/// By edge, in their order along it.
+Ways waysOf(const std::vector<Pass>& passes, std::size_t edges) {
+    std::vector<std::size_t> next(edges + 1, 0);
     for (const Pass& pass : passes) ++next[pass.edge + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
+    Ways ways{next, {}};
     std::vector<Pass> ordered(passes.size());
     for (const Pass& pass : passes) ordered[next[pass.edge]++] = pass;
-    std::vector<Edge> pieces;
-    pieces.reserve(edges.size() + passes.size());
-    std::size_t from = 0;
-    for (std::size_t i = 0; i < edges.size(); from = next[i++]) {
-        const auto first = ordered.begin() + static_cast<std::ptrdiff_t>(from);
-        const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(next[i]);
+    ways.points.reserve(passes.size());
+    for (std::size_t i = 0; i < edges; ++i) {
+        const auto first = ordered.begin() + static_cast<std::ptrdiff_t>(ways.first[i]);
+        const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(ways.first[i + 1]);
         std::sort(first, last, [](const Pass& p, const Pass& q) {
             return p.at != q.at ? p.at < q.at : p.point < q.point;
         });
-        Edge piece = edges[i];
-        for (auto pass = first; pass != last; ++pass) {
-            piece.to = pass->point;
-            pieces.push_back(piece);
-            piece.from = piece.to;
-        }
-        piece.to = edges[i].to;
-        pieces.push_back(piece);
+        for (auto pass = first; pass != last; ++pass) ways.points.push_back(pass->point);
     }
-    return pieces;
+    return ways;
 }
 
 /// An edge with what is asked of it again and again.
@@ -250,20 +255,12 @@ std::vector<Span> spansOf(const Cell& cell, const std::vector<Edge>& edges,
     return spans;
 }
 
-/// \throws FormatError for more than some gigabytes of them
-void mustBeFew(const std::vector<Pass>& passes) {
-    constexpr std::size_t kMaxPasses = 16'000'000;
-    if (passes.size() > kMaxPasses)
-        throw FormatError(
-            {"", 0, 0, "outlines cross more than " + std::to_string(kMaxPasses) + " times"});
-}
-
 /// Ends of edges that lay along another before rounding: both were moved by at most half a step in
 /// x and in y.
 std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
     std::vector<Pass> passes;
     passes.reserve(edges.size());
-    forEachCell(points, edges, [&](const Cell& cell) {
+    forEachCell(points, edges, {}, [&](const Cell& cell) {
         for (const Span& s : spansOf(cell, edges, points)) {
             for (const Index i : cell.points) {
                 const Point p = points[i];
@@ -273,7 +270,7 @@ std::vector<Pass> passesOfEnds(const std::vector<Edge>& edges, const std::vector
                     passes.push_back({s.edge, i, at});
             }
         }
-        mustBeFew(passes);
+        mustBeFew(passes.size());
     });
     return passes;
 }
@@ -305,11 +302,12 @@ bool crossingOf(const Span& s, const Span& t, Point& pixel) {
 }
 
 /// All edges that meet the pixels of ends and crossings.
-std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table) {
+std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table,
+                                 const Columns& columns) {
     std::vector<Pass> passes;
     passes.reserve(4 * edges.size());
     std::vector<Index> pixels;
-    forEachCell(table.points(), edges, [&](const Cell& cell) {
+    forEachCell(table.points(), edges, columns, [&](const Cell& cell) {
         pixels.assign(cell.points.begin(), cell.points.end());
         const std::vector<Span> spans = spansOf(cell, edges, table.points());
         for (std::size_t i = 0; i < spans.size(); ++i) {
@@ -328,18 +326,41 @@ std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& tab
                     passes.push_back({s.edge, id, s.at(p)});
             }
         }
-        mustBeFew(passes);
+        mustBeFew(passes.size());
     });
     return passes;
 }
 
 }  // namespace
 
+std::vector<Edge> routed(const std::vector<Edge>& edges, const Ways& ways) {
+    std::vector<Edge> pieces;
+    pieces.reserve(edges.size() + ways.points.size());
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        Edge piece = edges[i];
+        const auto lead_to = [&](Index point) {
+            piece.to = point;
+            if (piece.from != kNone && piece.to != kNone) pieces.push_back(piece);
+            piece.from = point;
+        };
+        for (const Index point : ways[i]) lead_to(point);
+        lead_to(edges[i].to);
+    }
+    return pieces;
+}
+
+std::vector<Edge> ledThroughEnds(const std::vector<Edge>& edges, const std::vector<Point>& points) {
+    return routed(edges, waysOf(passesOfEnds(edges, points), edges.size()));
+}
+
+Ways waysThroughPixels(const std::vector<Edge>& edges, PointTable& table, const Columns& columns) {
+    return waysOf(passesOfPixels(edges, table, columns), edges.size());
+}
+
 std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets) {
-    const std::vector<Pass> of_ends = passesOfEnds(edges, table.points());
-    edges = merged(routed(edges, of_ends), table.points(), sets);
-    const std::vector<Pass> of_pixels = passesOfPixels(edges, table);
-    return merged(routed(edges, of_pixels), table.points(), sets);
+    edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+    const Ways ways = waysThroughPixels(edges, table, {});
+    return merged(routed(edges, ways), table.points(), sets);
 }
 
 }  // namespace ispace::lattice

@@ -219,7 +219,7 @@ TEST(Cells, coverPointsAndEdges) {
     const auto& points = drawing.table.points();
     std::vector<int> seen(points.size());
     std::size_t cells = 0;
-    forEachCell(points, drawing.edges, [&](const Cell& cell) {
+    forEachCell(points, drawing.edges, {}, [&](const Cell& cell) {
         ++cells;
         std::vector<bool> listed(drawing.edges.size());
         for (const Index i : cell.edges) {

@@ -229,6 +229,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkBatch(line, o);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
+    o.measure.keep_depths = o.format != nullptr;  // to be drawn
     return o;
 }
 

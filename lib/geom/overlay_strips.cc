@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geom/overlay_strips.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace ispace::lattice {
+
+namespace {
+
+/// Ends of edges in a strip: the fewer, the more often edges are looked at that lie in several.
+constexpr std::size_t kQuick = 4096;
+/// Strips in which an edge lies, on average, at most.
+constexpr std::size_t kMostStrips = 6;
+
+/// A piece of an edge from one strip to another.
+struct Crossing {
+    Index edge;
+    Point from, to;
+};
+
+/// A strip: first its part of the edges, then the ways of these, then what comes from elsewhere.
+struct Strip {
+    Columns columns;
+    std::vector<Index> edges;   // numbers of those that lie in it or end there
+    std::vector<Index> points;  // numbers of the ends that lie in it
+    PointTable table;           // its points, then ends elsewhere
+    std::vector<Edge> parts;    // as edges, by its own table
+    Ways ways;
+    std::vector<Crossing> entering;
+    std::vector<Point> beyond;  // where the last piece of each edge ends that leaves it
+    std::size_t open = 0;       // edges of which that is not known yet
+};
+
+/// The strip, of some side by side, that holds the column.
+std::size_t stripAt(const std::vector<Strip>& strips, std::int32_t x) {
+    const auto next =
+        std::upper_bound(strips.begin(), strips.end(), x,
+                         [](std::int32_t v, const Strip& s) { return v < s.columns.first; });
+    return static_cast<std::size_t>(next - strips.begin()) - 1;
+}
+
+class Sweep {
+  public:
+    Sweep(std::span<const Layer> layers, const std::vector<Edge>& edges,
+          const std::vector<Point>& points, const SetStore& sets)
+        : layers_(layers), edges_(edges), points_(points), sets_(sets) {}
+
+    /// Makes strips with so many ends in each. False, with none, where they are too narrow.
+    bool divide(std::size_t ends) {
+        std::vector<std::int32_t> xs;
+        xs.reserve(points_.size());
+        for (const Point p : points_) xs.push_back(p.x);
+        std::sort(xs.begin(), xs.end());
+        strips_.resize(1);
+        for (std::size_t i = ends; i + ends <= xs.size(); i += ends) {
+            if (xs[i] <= strips_.back().columns.first || xs[i] == xs.front()) continue;
+            strips_.back().columns.last = xs[i] - 1;
+            strips_.emplace_back().columns.first = xs[i];
+        }
+        if (!areWide()) {
+            strips_.clear();
+            return false;
+        }
+        for (Index i = 0; i < points_.size(); ++i)
+            strips_[stripAt(strips_, points_[i].x)].points.push_back(i);
+        for (Index i = 0; i < edges_.size(); ++i) {
+            const std::size_t last = lastOf(edges_[i]);
+            for (std::size_t k = firstOf(edges_[i]); k <= last; ++k) strips_[k].edges.push_back(i);
+        }
+        return true;
+    }
+
+    void run(const PartVisitor& visit) {
+        last_of_.resize(edges_.size());
+        const auto at_once =
+            static_cast<std::size_t>(std::max(1, 2 * tbb::this_task_arena::max_concurrency()));
+        std::size_t found = 0, made = 0;
+        std::vector<std::function<void()>> products;
+        while (made < strips_.size()) {
+            const std::size_t goal = std::min(strips_.size(), found + at_once);
+            tbb::parallel_for(found, goal, [this](std::size_t i) { find(strips_[i]); });
+            for (; found < goal; ++found) link(found);
+            std::size_t known = made;
+            while (known < found && strips_[known].open == 0) ++known;
+            products.assign(known - made, {});
+            tbb::parallel_for(made, known, [&](std::size_t i) {
+                products[i - made] = visit(partOf(strips_[i]));
+                strips_[i] = Strip();
+            });
+            for (const auto& finish : products) finish();
+            made = known;
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t firstOf(const Edge& edge) const {
+        return stripAt(strips_, points_[edge.from].x);
+    }
+    [[nodiscard]] std::size_t lastOf(const Edge& edge) const {
+        return stripAt(strips_, points_[edge.to].x);
+    }
+    [[nodiscard]] bool areWide() const {
+        std::size_t count = 0;
+        for (const Edge& edge : edges_) count += lastOf(edge) - firstOf(edge) + 1;
+        return count <= kMostStrips * edges_.size();
+    }
+
+    /// The ways of its edges, as far as they lie in it.
+    void find(Strip& strip) const {
+        strip.table.reserve(2 * (strip.points.size() + 2 * strip.edges.size()));
+        for (const Index i : strip.points) strip.table.add(points_[i]);
+        strip.parts.reserve(strip.edges.size());
+        for (const Index i : strip.edges) {
+            Edge part = edges_[i];
+            part.from = strip.table.add(points_[part.from]);
+            part.to = strip.table.add(points_[part.to]);
+            strip.parts.push_back(part);
+        }
+        strip.ways = waysThroughPixels(strip.parts, strip.table, strip.columns);
+    }
+
+    /// Joins the ways in a strip to those in the strips before it.
+    void link(std::size_t number) {
+        Strip& strip = strips_[number];
+        const std::vector<Point>& points = strip.table.points();
+        strip.beyond.resize(strip.edges.size());
+        for (Index k = 0; k < strip.edges.size(); ++k) {
+            const Edge& part = strip.parts[k];
+            const std::span<const Index> way = strip.ways[k];
+            const bool enters = points[part.from].x < strip.columns.first;
+            const bool leaves = points[part.to].x > strip.columns.last;
+            if (enters && (!way.empty() || !leaves))
+                close(strip.edges[k], number, points[way.empty() ? part.to : way.front()]);
+            if (leaves && (!way.empty() || !enters)) {
+                last_of_[strip.edges[k]] = {static_cast<Index>(number), k,
+                                            points[way.empty() ? part.from : way.back()]};
+                ++strip.open;
+            }
+        }
+    }
+
+    void close(Index edge, std::size_t number, Point to) {
+        const Last& last = last_of_[edge];
+        strips_[last.strip].beyond[last.index] = to;
+        --strips_[last.strip].open;
+        for (std::size_t i = last.strip + 1; i <= number; ++i)
+            strips_[i].entering.push_back({edge, last.at, to});
+    }
+
+    /// The pieces of its edges that begin in it.
+    [[nodiscard]] Part partOf(Strip& strip) const {
+        const auto x_of = [&](Index point) { return strip.table.points()[point].x; };
+        for (Index k = 0; k < strip.parts.size(); ++k) {
+            Edge& part = strip.parts[k];
+            const bool enters = x_of(part.from) < strip.columns.first;
+            if (x_of(part.to) > strip.columns.last)
+                part.to =
+                    enters && strip.ways[k].empty() ? kNone : strip.table.add(strip.beyond[k]);
+            if (enters) part.from = kNone;
+        }
+        std::vector<Edge> pieces = routed(strip.parts, strip.ways);
+        for (const Crossing& crossing : strip.entering) {
+            Edge piece = edges_[crossing.edge];
+            piece.from = strip.table.add(crossing.from);
+            piece.to = strip.table.add(crossing.to);
+            pieces.push_back(piece);
+        }
+        SetStore sets(&sets_);
+        Part part;
+        part.edges = merged(std::move(pieces), strip.table.points(), sets);
+        part.labels = labelsOf(layers_, strip.table.points(), part.edges, sets, strip.columns);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < part.edges.size(); ++i) {
+            if (x_of(part.edges[i].from) < strip.columns.first) continue;
+            part.edges[count] = part.edges[i];
+            part.labels[count++] = part.labels[i];
+        }
+        part.edges.resize(count);
+        part.labels.resize(count);
+        part.points = strip.table.points();
+        return part;
+    }
+
+    /// The last point of an edge so far, with the strip in which it is and the edge's index there.
+    struct Last {
+        Index strip, index;
+        Point at;
+    };
+
+    std::span<const Layer> layers_;
+    const std::vector<Edge>& edges_;
+    const std::vector<Point>& points_;
+    const SetStore& sets_;
+    std::vector<Strip> strips_;
+    std::vector<Last> last_of_;  // edges that lie in several strips
+};
+
+}  // namespace
+
+void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
+                 SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
+    edges = merged(ledThroughEnds(edges, table.points()), table.points(), sets);
+    std::size_t ends = at_least == 0 ? kQuick : at_least;
+    Sweep sweep(layers, edges, table.points(), sets);
+    bool is_divided = false;
+    while (!is_divided && 2 * ends <= table.points().size()) {
+        is_divided = sweep.divide(ends);
+        ends *= 2;
+    }
+    if (is_divided) {
+        tbb::this_task_arena::isolate([&] { sweep.run(visit); });
+        return;
+    }
+    const Ways ways = waysThroughPixels(edges, table, {});
+    edges = merged(routed(edges, ways), table.points(), sets);
+    std::vector<EdgeLabels> labels = labelsOf(layers, table.points(), edges, sets);
+    visit({table.points(), std::move(edges), std::move(labels), true})();
+}
+
+}  // namespace ispace::lattice
